@@ -22,7 +22,7 @@ from ..core.inputs import numbers, require_whole
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
-from ..periodic.decoupled.exponents import SlowModes, SlowMonodromy
+from ..periodic.decoupled.slow_modes import SlowModes, SlowMonodromy
 from .held import (
     HeldModes,
     buckling_speed,
@@ -54,7 +54,7 @@ def running_frequencies(system: LinearPeriodic, speeds: Array, held: Array, rest
     The multiples of the speed are chosen by the ``held`` frequencies [rad/s], ``(ns, modes)``;
     where they are NaN by those of the speed before, before the first by ``rest``.
     """
-    slow, turn = SlowModes(system, {}), 2.0 * np.pi / system.period
+    slow, turn = SlowModes(system), 2.0 * np.pi / system.period
     frequency, growth, share = np.empty((3, *held.shape))
     count, before, farthest = held.shape[1], rest, 0.0
     modes: HeldModes | None = None

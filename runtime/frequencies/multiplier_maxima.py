@@ -13,20 +13,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import BadInput, bad
-from ..core.families import LinearPeriodic
+from ..core.families import DAMPING, LinearPeriodic
+from ..core.inputs import require_whole
 from ..core.results import Check
-from ..core.trigonometric import even_angles
 from ..hill import Meissner, discriminant
-from ..periodic import Prepared, prepare
-from ..periodic.decoupled.exponents import SlowModes, SlowMultipliers
-from ..periodic.decoupled.frames import held_modes
-from ..periodic.first_order import canonical_form
+from ..periodic import Prepared, prepare, reduced_system
+from ..periodic.decoupled import SlowModes
+from ..periodic.decoupled.riccati import plain_equation
+from ..periodic.decoupled.slow_modes import frozen_frequencies
+from ..periodic.equation import equation_of, sampled
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
 
+# Turn of the highest mode between two samples [rad].
+_TURN = 0.35
 _MOST_SAMPLES = 4000
+# Lowest frequency left out, over the highest wanted and over the highest kept.
+_BEYOND, _GAP = 4.0, 1.3
+# Modes followed where nobody says how many.
+_USUAL = 4
 # Error of the transition matrices: the place of a maximum is open by the root of it.
 _RTOL = 1e-9
 
@@ -56,11 +63,21 @@ def multiplier_maxima(
     modes stand apart from the rest the speeds are swept on those alone; what that costs at the
     highest speed is in the error.  A maximum between two samples, of which the highest mode turns
     by 0.35 rad at most, may be missed.
+
+    Raises
+    ------
+    BadInput
+        If the range needs more than 4000 samples.
     """
     low, high = speed_range
-    slow = SlowModes(system, {})
-    top = slow.highest_frequency(high, count)
-    number = int(np.ceil(top * system.period * (1 / low - 1 / high) / 0.35)) + 8
+    wanted = min(system.size, _USUAL)
+    if count is not None:
+        wanted = require_whole("count", count, 1, system.size)
+    # With the crank held there is neither damping nor centrifugal stiffness.
+    held = sampled(system.without("B", *DAMPING))
+    frozen = frozen_frequencies(plain_equation(held, high))
+    top = float(np.max(frozen[:, wanted - 1]))
+    number = int(np.ceil(top * system.period * (1 / low - 1 / high) / _TURN)) + 8
     if number > _MOST_SAMPLES:
         raise bad(
             "speed_range",
@@ -69,36 +86,38 @@ def multiplier_maxima(
             "raise the lowest speed or ask for fewer modes",
         )
     speed = 1.0 / np.linspace(1 / high, 1 / low, number)
-    wanted = slow.wanted(count)
-    few = few_modes(slow.system, (low, high), wanted)
-    # At the highest speed the modes left out matter most.
-    whole = slow.exponents(speed if few is None else speed[:1], wanted, rtol=_RTOL)
-    values = whole.multipliers if few is None else multipliers_of(few, speed, wanted)
+    few = few_modes(system, frozen, (low, high), wanted)
+    values = few.multipliers(speed, wanted)
     real = _larger(values)
 
     def value(at: Array, mode: Whole) -> Array:
-        if few is None:
-            got = slow.exponents(at, wanted, rtol=_RTOL).multipliers
-        else:
-            got = multipliers_of(few, at, wanted)
-        return np.asarray(_larger(got)[np.arange(len(at)), mode])
+        return np.asarray(_larger(few.multipliers(at, wanted))[np.arange(len(at)), mode])
 
     row, mode = _peaks(real)
     brackets = speed[row - 1], speed[row], speed[row + 1]
     around = real[row - 1, mode], real[row, mode], real[row + 1, mode]
-    at, best, width = _refined(value, mode, brackets, around)
-    noise = np.max(whole.error[row if few is None else np.zeros_like(row)], axis=-1)
-    noise = noise + (0.0 if few is None else few.error)
+    at, best, width = refined_maxima(value, mode, brackets, around)
+    # At the highest speed the modes left out matter most.
+    whole = SlowModes(system).motions(high, wanted, rtol=_RTOL)
+    known, noise = whole.multipliers()
+    distance = np.abs(known[:, None] - values[0])
+    nearest = np.argmin(distance, axis=0)
+    # A multiplier's turn is its frequency over the speed: what it is off by, the speed is.
+    turn = np.repeat(np.mean(frozen[:, :wanted], axis=0), 2) * system.period / high
+    slip = float(np.max(np.min(distance, axis=0) / np.abs(values[0]) / turn))
     span = np.abs(brackets[2] - brackets[0])
-    error = width + np.minimum(_blur(around, span, noise), span)
+    blur = _blur(around, span, np.max(noise[nearest]) + few.ready.error)
     method = "local maxima of the real parts of the multipliers"
-    if few is not None:
-        error = error + _slip(whole, values[0]) * at
-        method += f", on {few.system.size} natural modes"
-    return Maxima(at, mode + 1, best, error, method, whole.checks)
+    if few.ready.system.size < system.size:
+        method += f", on {few.ready.system.size} natural modes"
+    checks = {
+        "decoupled": Check(whole.residual, _RTOL),
+        "converged": Check(whole.integration, max(_RTOL, 100 * whole.rounding)),
+    }
+    return Maxima(at, mode + 1, best, width + np.minimum(blur, span) + slip * at, method, checks)
 
 
-def _blur(values: tuple[Array, Array, Array], across: Array, noise: Array) -> Array:
+def _blur(values: tuple[Array, Array, Array], across: Array, noise: float) -> Array:
     """Return how far the place of a maximum is open: rounding leaves it so by its root.
 
     From the values before, at and after the highest sample, and how far the outer two are apart.
@@ -112,17 +131,6 @@ def _larger(values: ComplexArray) -> Array:
     return np.asarray(np.max(values.real.reshape(len(values), -1, 2), axis=-1))
 
 
-def _slip(whole: SlowMultipliers, values: ComplexArray) -> float:
-    """Return the relative error of speeds by the modes left out, from one speed.
-
-    A multiplier's turn is its frequency over the speed: what it is off by, the speed is.
-    """
-    gap = np.abs(whole.multipliers[0][:, None] - values)
-    nearest = np.argmin(gap, axis=0)
-    turn = whole.frequency[0, nearest] * whole.period / whole.speed[0]
-    return float(np.max(np.min(gap, axis=0) / np.abs(values) / turn))
-
-
 def _peaks(values: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Return row and column of the entries above both neighbours in their column."""
     inner = values[1:-1]
@@ -131,21 +139,38 @@ def _peaks(values: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     return row + 1, column
 
 
-def _refined(
+def refined_maxima(
     call: Callable[[Array, Whole], Array],
-    mode: Whole,
+    which: Whole,
     brackets: tuple[Array, Array, Array],
     values: tuple[Array, Array, Array],
+    *,
+    steps: int = 12,
+    rtol: float = 1e-7,
 ) -> tuple[Array, Array, Array]:
-    """Refine maxima between samples by parabolas, all at once; return places, values, errors.
+    """Refine maxima of many functions by parabolas, all at once.
 
-    ``brackets`` and ``values`` are first, middle and last, the middle value the largest.
+    Parameters
+    ----------
+    call : callable
+        From places and numbers of functions to values.
+    which : ndarray of int
+        Number of each maximum's function, ``(k,)``.
+    brackets, values : tuple of ndarray
+        Places and values before, at and after each maximum, ``(k,)`` each.
+    steps : int
+        Most steps.
+    rtol : float
+        Relative step from which a maximum has settled: beyond, the values say no more.
+
+    Returns
+    -------
+    places, values, errors : ndarray, shape (k,)
     """
     x, f = np.stack(brackets), np.stack(values)
     moved = np.max(np.abs(x - x[1]), axis=0)
-    for _ in range(12):
-        # Relative step at which a maximum is found: beyond, the values say no more.
-        wide = moved > 1e-7 * x[1]
+    for _ in range(steps):
+        wide = moved > rtol * x[1]
         if not np.any(wide):
             break
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -156,7 +181,7 @@ def _refined(
         usable = np.isfinite(vertex) & (vertex > low) & (vertex < high)
         trial = np.where(usable & (vertex != x[1]), vertex, 0.5 * (x[1] + x[2]))
         got = np.array(f[1])
-        got[wide] = call(trial[wide], mode[wide])
+        got[wide] = call(trial[wide], which[wide])
         moved = np.where(wide, np.abs(trial - x[1]), moved)
         better = wide & (got > f[1])
         beyond = (trial - x[1]) * (x[2] - x[1]) > 0
@@ -216,51 +241,57 @@ def _meissner_maxima(
     row, mode = _peaks(values[:, None])
     brackets = speed[row - 1], speed[row], speed[row + 1]
     around = values[row - 1], values[row], values[row + 1]
-    return _refined(half_trace, mode.astype(np.int64), brackets, around)
+    return refined_maxima(half_trace, mode.astype(np.int64), brackets, around)
 
 
-def multipliers_of(ready: Prepared, speed: Array, count: int) -> ComplexArray:
-    """Return the multipliers of the lowest modes ``(ns, 2 count)``, two to a mode."""
-    half = ready.system.size
-    found = ready.monodromy(speed)
-    values, vectors = np.linalg.eig(found.scaled)
-    # In velocities of time, not of angle, a state is the same at all speeds.
-    size = np.concatenate([found.scale[:, :half], found.scale[:, half:] * speed[:, None]], 1)
-    level = _level(ready, vectors * size[:, :, None])
-    order = np.argsort(level, axis=-1, kind="stable")[:, : 2 * count]
-    return np.take_along_axis(values.astype(complex), order, axis=-1)
+class FewModes(NamedTuple):
+    """The lowest natural modes of a stiff system, prepared for a range of speeds."""
+
+    ready: Prepared
+
+    def multipliers(self, speed: Array, count: int) -> ComplexArray:
+        """Return the multipliers of the lowest modes ``(ns, 2 count)``, two to a mode."""
+        half = self.ready.system.size
+        found = self.ready.monodromy(speed)
+        values, vectors = np.linalg.eig(found.scaled)
+        # In velocities of time, not of angle, a state is the same at all speeds.
+        size = np.concatenate([found.scale[:, :half], found.scale[:, half:] * speed[:, None]], 1)
+        level = self._level(vectors * size[:, :, None])
+        order = np.argsort(level, axis=-1, kind="stable")[:, : 2 * count]
+        return np.take_along_axis(values.astype(complex), order, axis=-1)
+
+    def _level(self, states: ComplexArray) -> Array:
+        """Return energy over action of states (q, M qd) in columns, by the modes held at 0."""
+        held = self.ready.system.without("B", *DAMPING)
+        equation = equation_of(held, np.array([self.ready.span[1]]))
+        squares, modes = (found[0, 0] for found in equation.frozen_modes(np.zeros(1)))
+        shapes = equation.scale[0][:, None] * modes
+        half = len(shapes)
+        rest = np.abs(np.linalg.solve(shapes, states[:, :half])) ** 2
+        moved = np.abs(shapes.T @ states[:, half:]) ** 2
+        rate = np.maximum(np.sqrt(np.maximum(squares, 0.0)) * equation.speed[0], 1.0)[:, None]
+        energy = rate**2 * rest + moved
+        return np.asarray(np.sum(energy, axis=1) / np.sum(energy / rate, axis=1))
 
 
-def _level(ready: Prepared, states: ComplexArray) -> Array:
-    """Return energy over action of states (q, M qd) in columns, by the modes held at 0."""
-    form = canonical_form(ready.system, np.array([ready.span[1]]), {})
-    frequency, shapes, mass, _ = held_modes(form, np.zeros(1))
-    half = ready.system.size
-    rest = np.abs(shapes[0].T @ mass[0] @ states[:, :half]) ** 2
-    moved = np.abs(shapes[0].T @ states[:, half:]) ** 2
-    rate = np.maximum(frequency[0], 1.0)[:, None]
-    energy = rate**2 * rest + moved
-    return np.asarray(np.sum(energy, axis=1) / np.sum(energy / rate, axis=1))
+def few_modes(
+    system: LinearPeriodic, frequency: Array, span: tuple[float, float], count: int
+) -> FewModes:
+    """Return the lowest modes over speeds; all where no few modes stand apart from the rest.
 
-
-def few_modes(system: LinearPeriodic, span: tuple[float, float], count: int) -> Prepared | None:
-    """Return a stiff system on its lowest modes, prepared for a range of speeds.
-
-    None where no few modes stand apart from the rest.
+    The frequencies with the crank held at angles ``(nt, n)`` [rad/s] tell which do.
     """
-    from ..periodic.reduced import reduced_system
-
-    form = canonical_form(system, np.array([span[1]]), {})
-    frequency = held_modes(form, even_angles(system.period, 128))[0]
     top, low = np.max(frequency, axis=0), np.min(frequency, axis=0)
+
+    def ready(few: LinearPeriodic) -> FewModes:
+        return FewModes(prepare(few, span, samples=1, forcing=False, rtol=0.1 * _RTOL))
+
     for kept in range(count, system.size):
-        # The lowest mode left out is well above those kept, and far above those wanted.
-        apart = low[kept] >= 1.3 * top[kept - 1] and low[kept] >= 4.0 * top[count - 1]
+        apart = low[kept] >= _GAP * top[kept - 1] and low[kept] >= _BEYOND * top[count - 1]
         if not apart:
             continue
         try:
-            reduced = reduced_system(system, kept)
-            return prepare(reduced, span, samples=1, forcing=False, rtol=0.1 * _RTOL)
+            return ready(reduced_system(system, kept))
         except BadInput:
             continue
-    return None
+    return ready(system)

@@ -260,6 +260,18 @@ class Equation:
         unit = self.scale
         return self.fields[name].mean() * unit[:, :, None] * unit[:, None, :]
 
+    def rate(self) -> Array:
+        """Return the largest rate of change of the state per radian by mean arrays, ``(nb,)``."""
+        inverse = np.linalg.inv(np.linalg.cholesky(self.mean("mass")))
+        stiffness, damping, turning = (
+            np.linalg.norm(
+                inverse @ self.mean(name) @ np.swapaxes(inverse, -1, -2), ord=2, axis=(-2, -1)
+            )
+            for name in ("stiffness", "damping", "gyroscopic")
+        )
+        rate = np.sqrt(stiffness) + damping + turning
+        return np.asarray(np.maximum(2 * np.pi / self.period, rate))
+
     def cholesky_of_mass(self, angles: Array) -> Array:
         """Return the Cholesky factors of the scaled mass at angles, ``(nb, nt, n, n)``.
 
@@ -277,6 +289,26 @@ class Equation:
         except np.linalg.LinAlgError:
             lowest = float(np.min(np.linalg.eigvalsh(mass)))
             raise _bad_mass(f"smallest eigenvalue {lowest:.3g}") from None
+
+    def frozen_modes(self, angles: Array) -> tuple[Array, Array]:
+        """Return the modes at angles as if the crank were held, ``(nb, nt, ...)``.
+
+        Of the mass and the symmetric part of the stiffness field, in scaled coordinates.
+
+        Returns
+        -------
+        squares : ndarray, shape (nb, nt, n)
+            Squared frequencies [1/rad^2], rising; nt is 1 where the two arrays are constant.
+        modes : ndarray, shape (nb, nt, n, n)
+            In columns, of unit mass.
+        """
+        return _modes(self.cholesky_of_mass(angles), -self.stiffness(angles))
+
+    def stiffness(self, angles: Array) -> Array:
+        """Return the stiffness field at angles; zeros where there is none."""
+        if "stiffness" in self.fields:
+            return self.at("stiffness", angles)
+        return np.zeros((len(self.speed), 1, self.size, self.size))
 
     def generator(self, angles: Array) -> Array:
         """Return L of y' = L y in the scaled state (q/scale, p scale), and 1 where forced.
@@ -698,7 +730,6 @@ def _rates(equation: Equation) -> tuple[Array, Array, bool]:
 def _frozen(equation: Equation) -> tuple[Array, Array, bool]:
     """Return :func:`_rates` with modes of every member."""
     angles = equation.period * np.arange(float(_PLACES)) / _PLACES
-    inverse = np.linalg.inv(equation.cholesky_of_mass(angles))
     damped = "damping" in equation.fields
     shape = (len(equation.speed), equation.size)
     if "stiffness" not in equation.fields:
@@ -707,15 +738,22 @@ def _frozen(equation: Equation) -> tuple[Array, Array, bool]:
     turned = np.swapaxes(stiffness, -1, -2)
     gap = np.max(np.abs(stiffness - turned), initial=0.0)
     damped |= bool(gap > 1e-13 * np.max(np.abs(stiffness), initial=0.0))
-    back = np.swapaxes(inverse, -1, -2)
-    squares, modes = np.linalg.eigh(inverse @ (0.5 * (stiffness + turned)) @ back)
+    squares, shapes = _modes(equation.cholesky_of_mass(angles), stiffness)
     frequency = np.sqrt(np.max(np.abs(squares), axis=1))
     if "damping" not in equation.fields:
         return frequency, np.zeros(shape), damped
-    shapes = back @ modes
     through = equation.at("damping", angles) @ shapes
     decay = 0.5 * np.mean(np.sum(shapes * through, axis=-2), axis=1) * equation.period
     return frequency, decay, damped
+
+
+def _modes(cholesky: Array, stiffness: Array) -> tuple[Array, Array]:
+    """Return squared frequencies and modes of unit mass, from Cholesky's factors of the mass."""
+    inverse = np.linalg.inv(cholesky)
+    back = np.swapaxes(inverse, -1, -2)
+    symmetric = 0.5 * (stiffness + np.swapaxes(stiffness, -1, -2))
+    squares, modes = np.linalg.eigh(inverse @ symmetric @ back)
+    return squares, back @ modes
 
 
 def _bad_mass(found: str) -> BadInput:

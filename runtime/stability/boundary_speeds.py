@@ -15,7 +15,7 @@ from ..core.families import LinearPeriodic
 from ..core.inputs import speed_span
 from ..core.results import Check, Result, provenance
 from ..periodic import Monodromy, monodromy
-from ..periodic.first_order import canonical_form
+from ..periodic.equation import equation_of
 from .fourier_matrices import Wave, real_matrices, waves
 
 if TYPE_CHECKING:
@@ -142,10 +142,10 @@ def speed_boundaries(
     low, high = speed_span(speed_range)
     if not 1e-14 <= rtol < 1:
         raise bad("rtol", rtol, "a number from 1e-14 to 1", "choose 1e-11")
-    form = canonical_form(system, low, parameters)
+    rate = float(equation_of(system, low, parameters).rate()[0])
     found = waves(system, parameters)
     reach = max(wave.reach for wave in found)
-    usual = ceil(float(form.rate[0]) * system.period / (2 * np.pi)) + reach + 6
+    usual = ceil(rate * system.period / (2 * np.pi)) + reach + 6
     parts = [
         _converged(_Problem(found, system.size, system.period, sign, low, high), usual, rtol)
         for sign in wanted
@@ -422,8 +422,7 @@ def at_boundaries(
     speed, sign, error = speed[pick], sign[pick], error[pick]
     matrices = monodromy(system, speed, **parameters)
     value = _smallest(matrices, sign)
-    form = canonical_form(system, speed, parameters)
-    turning = 2 * form.rate * system.period
+    turning = 2 * equation_of(system, speed, parameters).rate() * system.period
     width = matrices.matrix.shape[-1]
     limit = 8 * width * (matrices.error + (1 + turning) * error / speed)
     # Most that a singular value, relative to the matrix, may be and still count as zero.

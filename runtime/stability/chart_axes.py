@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from ..core.errors import bad
-from ..core.families import DAMPING, Array, LinearPeriodic, Term
+from ..core.families import Array, LinearPeriodic, Term
 from ..core.periodic_function import PeriodicFunction
 from ..hill import HillForm
 from ..hill.form import is_hill
@@ -94,13 +94,7 @@ def _times(term: Term, speed: float) -> Term:
 def is_damped(system: LinearPeriodic, names: Names, axes: Axes) -> bool:
     """Return True where some damping term acts at some angle, somewhere on the chart."""
     grid = on_grid(names, axes)[1]
-    scales = system.scale_values(**{k: v for k, v in grid.items() if k not in system.geometry})
-    angles = np.linspace(0.0, system.period, 65)[:-1]
-    return any(
-        (term.scale is None or bool(np.any(scales[term.scale]))) and bool(np.any(term(angles)))
-        for term in system.terms
-        if term.array in DAMPING
-    )
+    return system.is_damped(**{k: v for k, v in grid.items() if k not in system.geometry})
 
 
 def is_symplectic(system: LinearPeriodic, damped: bool) -> bool:

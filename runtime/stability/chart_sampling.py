@@ -17,7 +17,7 @@ from ..core.progress import bar
 from ..core.workers import Workers, check_executor
 from ..hill import discriminant, hill_form
 from ..hill.form import is_hill
-from ..periodic.first_order import canonical_form
+from ..periodic.equation import equation_of
 from .chart_axes import (
     Axes,
     Names,
@@ -144,7 +144,7 @@ class Sampler:
             if name not in self.system.geometry
         }
         speed = corner.pop("speed", np.ones(4))
-        rate = float(np.max(canonical_form(self.system, speed, corner).rate))
+        rate = float(np.max(equation_of(self.system, speed, corner).rate()))
         # A segment has a phase of 4 rad; its series cost as much as 3000 products of matrices.
         segments = max(8.0, rate * self.system.period / 4.0)
         product = 2.0 * (2 * self.system.size) ** 3

@@ -8,12 +8,12 @@ the kind: at +1, at -1, or with its conjugate elsewhere.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..frequencies.multiplier_maxima import refined_maxima
 from ..periodic.multipliers import conditions
 from .over_speed import MatricesOverSpeed
 from .pairs import bracketed_roots, perturbation_size, phase_grid
@@ -25,7 +25,6 @@ Index = NDArray[np.intp]
 
 _EPS = float(np.finfo(float).eps)
 _TOGETHER = 256
-_Growth = Callable[[Index, Array], tuple[Array, Array]]
 # Places at which growth is looked for, in half widths from the middle of the undamped region.
 _PLACES = np.linspace(-1.5, 1.5, 13)
 
@@ -74,17 +73,10 @@ class _Crossing:
 
 
 class Crossings:
-    """Crossings of the circle between the samples of a range.
+    """Crossings of the circle between rising samples of a range, its ends among them.
 
-    Parameters
-    ----------
-    matrices : MatricesOverSpeed
-        Of the system.
-    speed : ndarray
-        Samples, rising [rad/s]; the first and the last are the ends of the range.
-    sharp : bool
-        Whether multipliers rest on the circle, as without damping: a region then begins where
-        one is outside beyond its error.
+    Where ``sharp``, multipliers rest on the circle, as without damping: a region then begins where
+    one is outside beyond its error.
     """
 
     def __init__(self, matrices: MatricesOverSpeed, speed: Array, sharp: bool = False) -> None:
@@ -98,16 +90,13 @@ class Crossings:
         parts: list[tuple[Array, ...]] = [(none, none, none.astype(complex), np.zeros(0))]
         for start in range(0, len(speed), _TOGETHER):
             matrices, error = self._matrices(speed[start : start + _TOGETHER])
-            values, vectors = np.linalg.eig(matrices)
-            values = values.astype(complex)
+            values, vectors = (part.astype(complex) for part in np.linalg.eig(matrices))
             size = np.maximum(np.abs(values), 1e-300)
-            own = conditions(vectors.astype(complex))
             shift = perturbation_size(matrices, error)
-            noise = own * shift[:, None] / size
+            noise = np.minimum(conditions(vectors) * shift[:, None] / size, 1.0)
             order = np.argsort(-size, axis=-1, kind="stable")
-            columns = (np.log(size), np.minimum(noise, 1.0), values)
-            ordered = (np.take_along_axis(c, order, axis=-1) for c in columns)
-            parts.append((*ordered, shift))
+            columns = (np.log(size), noise, values)
+            parts.append((*(np.take_along_axis(c, order, axis=-1) for c in columns), shift))
         return Levels(*(np.concatenate(c) for c in zip(*parts, strict=True)))
 
     def spans(self) -> list[Span]:
@@ -274,14 +263,11 @@ def damped_regions(
     begin, end = np.maximum(undamped.begin, span[0]), np.minimum(undamped.end, span[1])
     phase = np.angle(undamped.multiplier)
 
-    def growth(which: Index, speed: Array) -> tuple[Array, Array]:
-        return _growth(matrices, speed, phase[which])
-
     middle, half = 0.5 * (begin + end), 0.5 * (end - begin)
     ends = np.unique(np.concatenate([span, begin, end]))
     more = np.concatenate(
         [
-            _highest(growth, middle, half),
+            _highest(matrices, phase, middle, half),
             (middle[:, None] + half[:, None] * _PLACES).ravel(),
             0.5 * (ends[1:] + ends[:-1]),
         ]
@@ -337,67 +323,36 @@ def _upper(turn: NDArray[np.complex128]) -> NDArray[np.complex128]:
     return value
 
 
-def _highest(growth: _Growth, middle: Array, half: Array) -> Array:
-    """Return where growth is greatest about the undamped regions."""
-    k, places = len(middle), len(_PLACES)
-    rows = np.arange(k)
+def _highest(matrices: MatricesOverSpeed, phase: Array, middle: Array, half: Array) -> Array:
+    """Return where the multipliers near given phases grow most about the undamped regions."""
+    if not len(middle):
+        return middle
+    rows, count = np.arange(len(middle)), len(_PLACES)
     speed = np.maximum(middle[:, None] + half[:, None] * _PLACES, 1e-3 * middle[:, None])
-    value, _ = growth(np.repeat(rows, places), speed.ravel())
-    value = value.reshape(k, places)
-    best = np.clip(np.argmax(value, axis=1), 1, places - 2) if k else rows
-    x = np.stack([speed[rows, best + s] for s in (-1, 0, 1)])
-    g = np.stack([value[rows, best + s] for s in (-1, 0, 1)])
-    for _ in range(4):
-        place = _vertex(x, g)
-        new, _ = growth(rows, place)
-        x, g = _three(x, g, place, new)
-    found: Array = x[np.argmax(g, axis=0), rows]
-    return found
+
+    def growth(at: Array, which: Index) -> Array:
+        return _growth(matrices, at, phase[which])
+
+    value = growth(speed.ravel(), np.repeat(rows, count)).reshape(-1, count)
+    best = np.clip(np.argmax(value, axis=1), 1, count - 2)
+    brackets, around = (
+        (table[rows, best - 1], table[rows, best], table[rows, best + 1])
+        for table in (speed, value)
+    )
+    return refined_maxima(growth, rows, brackets, around, steps=4, rtol=0.0)[0]
 
 
-def _growth(matrices: MatricesOverSpeed, speed: Array, phase: Array) -> tuple[Array, Array]:
-    """Return the largest log modulus of the multipliers near a phase, and its error."""
-    if not len(speed):
-        return np.zeros(0), np.zeros(0)
-    scaled, error = matrices(speed)
-    values, vectors = np.linalg.eig(scaled)
+def _growth(matrices: MatricesOverSpeed, speed: Array, phase: Array) -> Array:
+    """Return the largest log modulus of the multipliers near a phase."""
+    values = np.linalg.eigvals(matrices(speed)[0])
     away = np.abs(np.angle(values * np.exp(-1j * phase)[:, None]))
     with np.errstate(divide="ignore"):
         logarithm = np.log(np.abs(values))
     # Those that the undamped pair has become, whatever else grows at another argument.
     second = np.sort(away, axis=-1)[:, 1:2]
     # Arguments [rad] that count as that of the pair in any case.
-    logarithm = np.where(away <= np.maximum(second, 0.1), logarithm, -np.inf)
-    chosen = np.argmax(logarithm, axis=-1)
-    rows = np.arange(len(speed))
-    own = conditions(vectors.astype(complex))[rows, chosen]
-    noise = own * perturbation_size(scaled, error) / np.abs(values[rows, chosen])
-    return logarithm[rows, chosen], np.minimum(noise, 1.0)
-
-
-def _vertex(x: Array, g: Array) -> Array:
-    """Return where a parabola through three points is greatest, within them."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        left, right = (g[1] - g[0]) / (x[1] - x[0]), (g[2] - g[1]) / (x[2] - x[1])
-        curve = (right - left) / (x[2] - x[0])
-        place = 0.5 * (x[0] + x[1]) - 0.5 * left / curve
-    usable = np.isfinite(place) & (curve < 0)
-    place = np.where(usable, place, 0.5 * (x[1] + x[2]))
-    margin = 1e-2 * (x[2] - x[0])
-    value: Array = np.clip(place, x[0] + margin, x[2] - margin)
-    return value
-
-
-def _three(x: Array, g: Array, place: Array, value: Array) -> tuple[Array, Array]:
-    """Return the greatest of four points and its neighbours."""
-    four = np.concatenate([x, place[None]])
-    order = np.argsort(four, axis=0, kind="stable")
-    four = np.take_along_axis(four, order, axis=0)
-    values = np.take_along_axis(np.concatenate([g, value[None]]), order, axis=0)
-    top = np.clip(np.argmax(values, axis=0), 1, 2)
-    rows = np.arange(four.shape[1])
-    chosen = [(four[top + s, rows], values[top + s, rows]) for s in (-1, 0, 1)]
-    return np.stack([c[0] for c in chosen]), np.stack([c[1] for c in chosen])
+    near = away <= np.maximum(second, 0.1)
+    return np.asarray(np.max(np.where(near, logarithm, -np.inf), axis=-1))
 
 
 def mended(

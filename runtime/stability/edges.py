@@ -14,13 +14,11 @@ from ..core.families import DAMPING, LinearPeriodic
 from ..core.inputs import numbers, speed_span
 from ..core.results import Check, Result, provenance
 from ..periodic import floquet_multipliers
-from ..periodic.decoupled.reduced import SlowSystem
-from ..periodic.equation import at_geometry
-from ..periodic.first_order import canonical_form
+from ..periodic.decoupled import SlowSystem
+from ..periodic.equation import at_geometry, equation_of
 from .boundary_speeds import SpeedBoundaries, speed_boundaries
 from .crossings import damped_regions, mended
 from .labels import (
-    Modes,
     averaged_modes,
     boundary_units,
     held_modes,
@@ -195,15 +193,15 @@ def stability_edges(
     else:
         system, values = at_geometry(system, parameters)
         parameters = {name: float(numbers(name, value)) for name, value in values.items()}
-    damped = canonical_form(system, low, parameters).damped
     sharp = system.without(*DAMPING)
-    if not canonical_form(sharp, low, parameters).conservative:
+    if equation_of(sharp, low, parameters).damped:
         raise bad(
             "system",
             "stiffness or centrifugal terms that are not symmetric",
             "a system conservative but for damping",
             "use floquet_multipliers or stability_chart",
         )
+    damped = system.is_damped(**parameters)
     if damped:
         _check_damping(system, parameters)
     matrices = MatricesOverSpeed(sharp, span, parameters, rtol)
@@ -345,48 +343,50 @@ def _combined(matrices: MatricesOverSpeed, events: Events, edges: Edges, *, held
     """
     middle, begin, end = _reached(edges, events.reach)
     phase = edges.phase
-    modes, shares = _described(matrices, middle, np.exp(1j * phase), held=held)
+    shares: Array | None = None
+    if held:
+        modes = held_modes(matrices, middle)
+        shares = pair_shares(matrices, modes, middle, np.exp(1j * phase))
+    else:
+        modes = averaged_modes(matrices, middle)
     pair, harmonic, off = meeting_labels(modes, phase, phase, shares)
-    rows = np.arange(len(middle))
-    signs = [np.sign(modes.turns[rows, pair[:, c] - 1]) for c in (0, 1)] if len(middle) else [rows]
-    kind = tuple(
-        "sum" if a == b else "difference" for a, b in zip(signs[0], signs[-1], strict=True)
-    )
+    rows = np.arange(len(middle))[:, None]
+    signs = np.sign(modes.turns[rows, pair - 1])
+    kind = tuple("sum" if first == second else "difference" for first, second in signs)
     turn = np.exp(1j * np.abs(phase))
     return Regions(
         edges.lower, edges.upper, edges.error, turn, pair, np.abs(harmonic), off, begin, end, kind
     )
 
 
-def _described(
-    matrices: MatricesOverSpeed, speed: Array, met: ComplexArray, *, held: bool
-) -> tuple[Modes, Array | None]:
-    """Return modes at speeds, and how much of the motion at multipliers each has."""
-    if not held:
-        return averaged_modes(matrices.system, speed, matrices.parameters), None
-    modes = held_modes(matrices.system, speed)
-    return modes, pair_shares(matrices, modes, speed, met)
-
-
 def _met(matrices: MatricesOverSpeed, events: Events, edges: Edges) -> Regions:
     """Return the principal regions, in which a mode's own two multipliers meet, with labels."""
     kept = _single(edges, np.flatnonzero(np.abs(np.sin(edges.phase)) <= np.sqrt(_REAL)))
-    middle, begin, end = (values[kept] for values in _reached(edges, events.reach))
+    middle, *reach = (values[kept] for values in _reached(edges, events.reach))
     real = np.where(np.cos(edges.phase[kept]) > 0, 1.0, -1.0)
-    modes, shares = _described(matrices, middle, real.astype(complex), held=True)
-    lack = np.zeros_like(modes.turns) if shares is None else 1.0 - shares
-    mode, number, off = principal_labels(modes.turns, real, lack)
+    modes = held_modes(matrices, middle)
+    lack = 1.0 - pair_shares(matrices, modes, middle, real.astype(complex))
+    ends = np.stack([edges.lower[kept], edges.upper[kept]])
+    labels = principal_labels(modes.turns, real, lack)
+    return _principal(ends, edges.error[kept], real, labels, np.stack(reach))
+
+
+def _principal(
+    ends: Array, error: Array, real: Array, labels: tuple[Whole, Whole, Array], reach: Array
+) -> Regions:
+    """Return principal regions from ends and reach ``(2, k)``, multipliers +-1 and labels."""
+    mode, number, off = labels
     return Regions(
-        edges.lower[kept],
-        edges.upper[kept],
-        edges.error[kept],
+        ends[0],
+        ends[1],
+        error,
         real.astype(complex),
         np.stack([mode, mode], axis=1),
         number,
         off,
-        begin,
-        end,
-        ("principal",) * len(kept),
+        reach[0],
+        reach[1],
+        ("principal",) * len(real),
     )
 
 
@@ -410,30 +410,18 @@ def _bounded(
     matrices: MatricesOverSpeed, boundaries: SpeedBoundaries, span: tuple[float, float]
 ) -> Regions:
     """Return the regions between pairs of boundaries with multiplier +-1."""
-    system, parameters = matrices.system, matrices.parameters
-    modes = averaged_modes(system, boundaries.speed, parameters)
-    units = boundary_units(system, modes, boundaries, parameters)
-    mode, number, off = unit_labels(modes, boundaries, units)
-    ends, error = np.full((2, len(units)), np.nan), np.zeros(len(units))
-    multiplier = np.zeros(len(units), dtype=complex)
+    modes = averaged_modes(matrices, boundaries.speed)
+    units = boundary_units(matrices, modes, boundaries)
+    ends, error, real = np.full((2, len(units)), np.nan), *np.zeros((2, len(units)))
     for column, unit in enumerate(units):
         for side, row in enumerate(unit):
             if row >= 0:
                 ends[side, column] = boundaries.speed[row]
-                multiplier[column] = boundaries.multiplier[row]
+                real[column] = boundaries.multiplier[row]
                 error[column] = max(error[column], boundaries.error[row])
-    regions = Regions(
-        ends[0],
-        ends[1],
-        error,
-        multiplier,
-        np.stack([mode, mode], axis=1),
-        number,
-        off,
-        np.where(np.isfinite(ends[0]), ends[0], span[0]),
-        np.where(np.isfinite(ends[1]), ends[1], span[1]),
-        ("principal",) * len(units),
-    )
+    reach = np.where(np.isfinite(ends), ends, np.array(span)[:, None])
+    labels = unit_labels(modes, boundaries, units)
+    regions = _principal(ends, error, real, labels, reach)
     return joined(regions, _endless(matrices, boundaries, span))
 
 
@@ -441,30 +429,17 @@ def _endless(
     matrices: MatricesOverSpeed, boundaries: SpeedBoundaries, span: tuple[float, float]
 ) -> Regions:
     """Return principal regions in which all of the range lies, for multipliers without boundary."""
-    system, parameters = matrices.system, matrices.parameters
     middle = np.array([0.5 * (span[0] + span[1])])
-    values = floquet_multipliers(system, middle, **parameters)
-    real = np.abs(values.multipliers.imag) <= 4 * values.error
-    count = {}
-    for sign in (1, -1):
-        beyond = sign * values.multipliers.real > 1.0 + 4 * values.error
-        count[sign] = 0 if np.any(boundaries.multiplier == sign) else int(np.sum(real & beyond))
-    turn = np.repeat(np.array([1, -1]), [count[1], count[-1]])
-    k = len(turn)
-    turns = np.repeat(averaged_modes(system, middle, parameters).turns, k, axis=0)
-    mode, number, off = principal_labels(turns, turn, np.zeros_like(turns))
-    return Regions(
-        np.full(k, np.nan),
-        np.full(k, np.nan),
-        np.zeros(k),
-        turn.astype(complex),
-        np.stack([mode, mode], axis=1),
-        number,
-        off,
-        np.full(k, span[0]),
-        np.full(k, span[1]),
-        ("principal",) * k,
-    )
+    values = floquet_multipliers(matrices.system, middle, **matrices.parameters)
+    multipliers, error = values.multipliers[0], values.error[0]
+    outside = (np.abs(multipliers.imag) <= 4 * error) & (np.abs(multipliers.real) > 1 + 4 * error)
+    real = np.sign(multipliers.real[outside])
+    real = np.sort(real[~np.isin(real, boundaries.multiplier)])[::-1]
+    k = len(real)
+    turns = np.repeat(averaged_modes(matrices, middle).turns, k, axis=0)
+    labels = principal_labels(turns, real, np.zeros_like(turns))
+    reach = np.repeat(np.array(span)[:, None], k, axis=1)
+    return _principal(np.full((2, k), np.nan), np.zeros(k), real, labels, reach)
 
 
 def _draw(found: StabilityEdges, ax: Axes | None) -> Axes:

@@ -169,19 +169,11 @@ def _shifted(coefficients: Complex, centre: float) -> Complex:
 class Several:
     """Effective operator of any dimension at given parameters, as a function of the detuning.
 
-    Attributes
-    ----------
-    matrices : ndarray
-        Coefficients of the powers of the detuning, ``(order + 1, r, r)``.
-    members : tuple of int
-        Mode, from 1, of each basis function.
-    modes : tuple of int or None
-        The two modes of the resonance; None where all exponents meet exactly, so that no motion
-        belongs to some of the modes.
-    lossless : bool
-        Whether exponents can leave the imaginary axis in pairs alone.
-    noise : float
-        Growth, over the size of the operator, up to which an exponent does not count as growing.
+    ``matrices`` ``(order + 1, r, r)`` are the coefficients of the detuning's powers, ``members``
+    the mode, from 1, of each basis function, ``modes`` the two of the resonance, None where all
+    exponents meet exactly, so that no motion belongs to some of the modes.  Where ``lossless``,
+    exponents can leave the imaginary axis in pairs alone; up to ``noise``, over the size of the
+    operator, an exponent does not count as growing.
     """
 
     matrices: Complex

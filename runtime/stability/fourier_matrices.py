@@ -10,35 +10,28 @@ needs no derivative of a coefficient, and is symmetric where the system is undam
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..core.families import LinearPeriodic, Term
-from ..core.trigonometric import even_angles
+from ..core.families import LinearPeriodic
+from ..periodic.equation import SPEED_POWER, sampled
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-SPEED_EXPONENT = {"M": 2, "A": 2, "B": 2, "C": 1, "D": 1, "K": 0, "Kg": 0}
-_MOST_SAMPLES = 8192
+# Amplitude over the largest below which the last harmonics are round-off.
+_ROUND_OFF = 4e-16
 
 
 @dataclass(frozen=True)
 class Wave:
-    """Fourier coefficients of one term, its parameter factor included.
+    """Fourier coefficients of the terms of one array that carry one power of the speed.
 
-    Attributes
-    ----------
-    array : str
-        The array that the term belongs to.
-    exponent : int
-        Power of the speed in the equation.
-    coefficients : ndarray of complex
-        Shape ``(2 r + 1, n, n)``, for harmonics -r to r of the period.
+    Of shape ``(2 r + 1, n, n)``, for harmonics -r to r of the period.
     """
 
     array: str
@@ -50,17 +43,6 @@ class Wave:
         """Highest harmonic r."""
         return len(self.coefficients) // 2
 
-    def placed(
-        self, rate: Array
-    ) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], ComplexArray, Array, Array]]:
-        """Yield rows and columns among a motion's harmonics, the block, and the rates of both."""
-        count = len(rate)
-        for shift, block in enumerate(self.coefficients, start=-self.reach):
-            # Row k, column l = k - shift.
-            rows = np.arange(max(0, shift), min(count, count + shift))
-            columns = rows - shift
-            yield rows, columns, block, rate[rows][:, None, None], rate[columns][:, None, None]
-
 
 def waves(system: LinearPeriodic, parameters: Mapping[str, ArrayLike]) -> tuple[Wave, ...]:
     """Return the Fourier coefficients of the terms that act at constant speed without forcing.
@@ -68,68 +50,43 @@ def waves(system: LinearPeriodic, parameters: Mapping[str, ArrayLike]) -> tuple[
     Raises
     ------
     BadInput
-        If a parameter is not one number, or a term is not smooth enough for 8192 samples.
+        If a parameter is not one number, or a term is not smooth enough to have a Fourier series.
     """
     for name, value in parameters.items():
         if np.ndim(value) != 0 or not np.isfinite(np.asarray(value, dtype=float)):
             raise bad(name, value, "one finite number", "treat one parameter value at a time")
     scales = system.scale_values(**parameters)
-    found = []
-    for term in system.terms:
-        if term.array not in SPEED_EXPONENT:
-            continue
-        factor = 1.0 if term.scale is None else float(scales[term.scale])
-        if factor != 0.0:
-            coefficients = factor * _coefficients(term, system.period)
-            found.append(Wave(term.array, SPEED_EXPONENT[term.array] + term.power, coefficients))
-    return _merged(found)
-
-
-def _merged(found: list[Wave]) -> tuple[Wave, ...]:
-    """Add up the waves of like array and power."""
+    known = sampled(system)
+    if known.harmonics < 0:
+        raise bad(
+            "LinearPeriodic.terms",
+            "a function whose Fourier series does not end",
+            "smooth periodic functions",
+            "check it for jumps and kinks",
+        )
+    # Harmonics from 0 on, like terms added up.
     sums: dict[tuple[str, int], ComplexArray] = {}
-    for wave in found:
-        old = sums.get((wave.array, wave.exponent))
-        long, short = wave.coefficients, old
-        if short is None:
-            sums[wave.array, wave.exponent] = long
+    for place, term in enumerate(system.terms):
+        factor = 1.0 if term.scale is None else float(scales[term.scale])
+        if term.array not in SPEED_POWER or term.array in "fhp" or factor == 0.0:
             continue
-        if len(short) > len(long):
-            long, short = short, long
-        total = np.array(long)
-        margin = (len(long) - len(short)) // 2
-        total[margin : margin + len(short)] += short
-        sums[wave.array, wave.exponent] = total
-    return tuple(Wave(array, power, value) for (array, power), value in sums.items())
-
-
-def _coefficients(term: Term, period: float) -> ComplexArray:
-    """Return the coefficients of one term, those at round-off left out."""
-    if term.constant:
-        return np.asarray(term(np.zeros(1)), dtype=complex)
-    count = 512
-    while True:
-        values = np.asarray(term(even_angles(period, count)), dtype=float)
-        half = np.fft.rfft(values, axis=0) / count
-        size = np.max(np.abs(half), axis=(1, 2))
-        kept = size > 4e-16 * np.max(size)
-        reach = int(np.flatnonzero(kept)[-1]) if np.any(kept) else 0
-        if 3 * reach < count:
-            break
-        # Round-off in the samples leaves a floor that no further sampling lowers.
-        if np.max(size[count // 3 :]) < 1e-14 * np.max(size) and count >= 256:
-            reach = min(reach, count // 3)
-            break
-        count *= 2
-        if count > _MOST_SAMPLES:
-            raise bad(
-                f"term {term.array} ({term.scale})",
-                f"a function that {_MOST_SAMPLES} samples do not resolve",
-                "a smooth periodic function",
-                "check it for jumps and kinks",
-            )
-    upper = half[: reach + 1]
-    return np.concatenate([np.conj(upper[:0:-1]), upper])
+        series = known.series.get(place)
+        if series is None:
+            series = np.asarray(term(np.zeros(1)), dtype=float)
+        half = len(series) // 2
+        key = term.array, 2 + SPEED_POWER[term.array] + term.power
+        total = sums.setdefault(
+            key, np.zeros((known.harmonics + 1, system.size, system.size), dtype=complex)
+        )
+        total[0] += factor * series[0]
+        total[1 : half + 1] += 0.5 * factor * (series[1 : half + 1] - 1j * series[half + 1 :])
+    found = []
+    for (array, exponent), total in sums.items():
+        size = np.max(np.abs(total), axis=(1, 2))
+        reach = int(np.flatnonzero(size > _ROUND_OFF * np.max(size))[-1]) if np.any(size) else 0
+        upper = total[: reach + 1]
+        found.append(Wave(array, exponent, np.concatenate([np.conj(upper[:0:-1]), upper])))
+    return tuple(found)
 
 
 def real_matrices(
@@ -149,7 +106,11 @@ def real_matrices(
         total = totals.setdefault(
             wave.exponent, np.zeros((count, size, count, size), dtype=complex)
         )
-        for rows, columns, block, left, right in wave.placed(rate):
+        for shift, block in enumerate(wave.coefficients, start=-wave.reach):
+            # Row k, column l = k - shift.
+            rows = np.arange(max(0, shift), min(count, count + shift))
+            columns = rows - shift
+            left, right = (rate[index][:, None, None] for index in (rows, columns))
             total[rows, :, columns, :] += _entry(wave.array, block, left, right)
     return {exponent: _in_real_basis(total) for exponent, total in totals.items()}
 

@@ -29,7 +29,7 @@ def largest_modulus(
     Parameters
     ----------
     coefficients : ndarray, shape (..., k)
-        As :func:`characteristic` returns them.
+        As :func:`weighed_characteristic` returns them.
     reduced : bool
         Whether they are the first half of a palindromic polynomial; then the roots are sought in
         ``z = rho + 1/rho``, where stability means z real and ``|z| <= 2``.
@@ -283,30 +283,13 @@ def half_trace_rows(
     return np.stack([row for row, _ in rows]), np.stack([error for _, error in rows])
 
 
-def characteristic(matrices: Array, *, reduced: bool) -> Array:
-    """Return coefficients of the characteristic polynomial of each matrix.
-
-    Parameters
-    ----------
-    matrices : ndarray, shape (..., 2n, 2n)
-        Monodromy matrices.
-    reduced : bool
-        For a symplectic matrix the coefficients are palindromic; only the first n are returned.
-
-    Returns
-    -------
-    ndarray, shape (..., n) or (..., 2n)
-        ``c_1, c_2, ...`` of ``rho^2n + c_1 rho^(2n-1) + ...``; not finite where they overflow.
-    """
-    size = matrices.shape[-1]
-    return weighed_characteristic(matrices, size // 2 if reduced else size)[0]
-
-
 def weighed_characteristic(
     matrices: Array, wanted: int, change: Array | None = None
 ) -> tuple[Array, Array]:
     """Return the first coefficients of characteristic polynomials, and what moves them.
 
+    ``c_1, c_2, ...`` of ``rho^2n + c_1 rho^(2n-1) + ...``, not finite where they overflow; those of
+    a symplectic matrix are palindromic, so that n of them are enough.
     Faddeev and LeVerrier: ``B_k = X B_(k-1) + c_k``, ``c_k = -tr(X B_(k-1)) / k``.  Its round-off
     grows like powers of X, and where too much of a coefficient would be lost the polynomial is
     made from the eigenvalues instead.

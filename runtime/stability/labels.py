@@ -13,10 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.families import LinearPeriodic
 from ..core.trigonometric import even_angles
 from ..periodic import floquet_multipliers
-from ..periodic.first_order import canonical_form
+from ..periodic.equation import equation_of
 from ..periodic.signatures import form_matrix
 from .boundary_speeds import SpeedBoundaries
 from .meetings import generator
@@ -41,15 +40,9 @@ _LACK = 4.0
 class Modes:
     """Modes of the averaged equation at k speeds.
 
-    Attributes
-    ----------
-    turns : ndarray, shape (k, n)
-        Turns in a period of each multiplier of positive signature; negative where the mode has
-        negative energy; NaN where the averaged equation is not stable.
-    shapes : ndarray of complex, shape (k, n, n)
-        Displacements in rows, of unit norm by the mean mass.
-    mass : ndarray, shape (k, n, n)
-        Mean mass.
+    ``turns`` ``(k, n)`` are those in a period of each multiplier of positive signature, negative
+    where the mode has negative energy, NaN where the averaged equation is not stable; ``shapes``
+    ``(k, n, n)`` the displacements in rows, of unit norm by the mean ``mass``.
     """
 
     turns: Array
@@ -57,16 +50,14 @@ class Modes:
     mass: Array
 
 
-def averaged_modes(
-    system: LinearPeriodic, speed: Array, parameters: Mapping[str, float | Array]
-) -> Modes:
+def averaged_modes(matrices: MatricesOverSpeed, speed: Array) -> Modes:
     """Return the modes of the averaged equation at speeds of shape ``(k,)``."""
-    n = system.size
+    n = matrices.system.size
     if not len(speed):
         return Modes(np.zeros((0, n)), np.zeros((0, n, n), dtype=complex), np.zeros((0, n, n)))
-    form = canonical_form(system, speed, parameters)
-    mean = form.mean
-    rate = generator(mean)
+    equation = equation_of(matrices.known, speed, matrices.parameters)
+    mass, gyro, push = (equation.mean(name) for name in ("mass", "gyroscopic", "stiffness"))
+    rate = generator(mass, gyro, push)
     values, vectors = np.linalg.eig(rate)
     values, vectors = values.astype(complex), vectors.astype(complex)
     sign = np.real(np.diagonal(form_matrix(vectors), axis1=-2, axis2=-1))
@@ -78,11 +69,12 @@ def averaged_modes(
         if len(chosen) != n:
             continue
         chosen = chosen[np.argsort(np.abs(values[row, chosen].imag), kind="stable")]
-        turns[row] = values[row, chosen].imag * system.period / (2 * np.pi)
+        turns[row] = values[row, chosen].imag * equation.period / (2 * np.pi)
         own = vectors[row][:n, chosen].T
-        norm = np.sqrt(np.real(np.einsum("ji,ik,jk->j", own.conj(), mean["M"][row], own)))
-        shapes[row] = own / norm[:, None]
-    return Modes(turns, shapes, mean["M"])
+        norm = np.sqrt(np.real(np.einsum("ji,ik,jk->j", own.conj(), mass[row], own)))
+        shapes[row] = own / norm[:, None] * equation.scale[row]
+    unit = equation.scale
+    return Modes(turns, shapes, mass / unit[:, :, None] / unit[:, None, :])
 
 
 def meeting_labels(
@@ -152,143 +144,74 @@ def principal_labels(turns: Array, real: Array, lack: Array) -> tuple[Whole, Who
 Unit = tuple[int, int]
 
 
-def boundary_units(
-    system: LinearPeriodic,
-    modes: Modes,
-    found: SpeedBoundaries,
-    parameters: Mapping[str, float],
-) -> list[Unit]:
-    """Return the two boundaries of each principal region, lower first; -1 where one is missing.
-
-    Boundaries between which a real multiplier stays off the circle make a group.  A group of two
-    is a region; in a larger one, where regions lie within each other, those belong together whose
-    motion is mostly of one mode.  Boundaries that coincide within a region are one of their own.
-    """
+def boundary_units(matrices: MatricesOverSpeed, modes: Modes, found: SpeedBoundaries) -> list[Unit]:
+    """Return the two boundaries of each principal region, lower first; -1 where one is missing."""
     owner = np.argmax(_shares(modes, found), axis=-1) if len(found.speed) else np.zeros(0, int)
     units: list[Unit] = []
     for sign in (1, -1):
         own = np.flatnonzero(found.multiplier == sign)
-        if not len(own):
-            continue
-        speed = found.speed[own]
-        middle = np.concatenate(
-            [
-                [speed[0] * (1 - _BESIDE)],
-                0.5 * (speed[1:] + speed[:-1]),
-                [speed[-1] * (1 + _BESIDE)],
-            ]
-        )
-        values = floquet_multipliers(system, middle, **parameters)
-        real = np.abs(values.multipliers.imag) <= 4 * values.error
-        beyond = sign * values.multipliers.real > 1.0 + 4 * values.error
-        count = np.sum(real & beyond, axis=-1)
-        off = count > 0
-        # Regions too narrow to show growth.
-        narrow = np.concatenate([[False], np.diff(speed) <= _BESIDE * speed[1:], [False]])
-        linked = (off | narrow)[1:-1]
-        touching = _touching(found, own, count, narrow)
-        mine: list[Unit] = [(int(own[i]), int(own[i + 1])) for i in touching]
-        alone = np.concatenate([own[touching], own[touching + 1]])
-        for members in np.split(own, np.flatnonzero(~linked) + 1):
-            first, last = members[0] == own[0], members[-1] == own[-1]
-            at_end = bool(first and off[0]), bool(last and off[-1])
-            group = members[~np.isin(members, alone)]
-            if not len(group):
-                continue
-            if np.all(np.isfinite(modes.turns[group])) or any(at_end):
-                mine.extend(_units(group, owner[group], at_end))
-            else:
-                # Without modes: one within the other.
-                pairs = (len(group) + 1) // 2
-                mine.extend((int(group[d]), int(group[-1 - d])) for d in range(pairs))
-        if not np.array_equal(_covering(mine, own)[~narrow], count[~narrow]):
-            mine = _nested(own, count, narrow) or mine
-        units.extend(mine)
+        if len(own):
+            units.extend(_paired(found, own, owner, _beyond(matrices, found.speed[own], sign)))
     return units
 
 
-def _touching(
-    found: SpeedBoundaries,
-    own: NDArray[np.intp],
-    count: NDArray[np.intp],
-    narrow: NDArray[np.bool_],
-) -> NDArray[np.intp]:
-    """Return the first of each two boundaries that coincide to their errors and change nothing.
-
-    At a double boundary two multipliers touch +-1 and go back: a closed region.  Its two motions
-    span a plane in which only rounding chooses, so that modes do not tell what belongs together.
-    """
-    apart = np.diff(found.speed[own])
-    same = apart <= found.error[own][1:] + found.error[own][:-1]
-    beside = ~narrow[:-2] & ~narrow[2:] & (count[:-2] == count[2:])
-    value: NDArray[np.intp] = np.flatnonzero(same & narrow[1:-1] & beside)
-    return value
+def _beyond(matrices: MatricesOverSpeed, speed: Array, sign: int) -> list[int]:
+    """Return how many real multipliers are off the circle before, between and behind boundaries."""
+    ends = speed[0] * (1 - _BESIDE), speed[-1] * (1 + _BESIDE)
+    middle = np.concatenate([ends[:1], 0.5 * (speed[1:] + speed[:-1]), ends[1:]])
+    values = floquet_multipliers(matrices.system, middle, **matrices.parameters)
+    real = np.abs(values.multipliers.imag) <= 4 * values.error
+    beyond = sign * values.multipliers.real > 1.0 + 4 * values.error
+    return [int(number) for number in np.sum(real & beyond, axis=-1)]
 
 
-def _covering(units: list[Unit], own: NDArray[np.intp]) -> Whole:
-    """Return how many regions cover each interval before, between and behind boundaries."""
-    place = {int(row): i for i, row in enumerate(own)}
-    change = np.zeros(len(own) + 2, dtype=np.int64)
-    for first, last in units:
-        change[place[first] + 1 if first >= 0 else 0] += 1
-        change[place[last] + 1 if last >= 0 else -1] -= 1
-    value: Whole = np.cumsum(change)[:-1]
-    return value
-
-
-def _nested(
-    own: NDArray[np.intp], count: NDArray[np.intp], narrow: NDArray[np.bool_]
-) -> list[Unit] | None:
+def _paired(
+    found: SpeedBoundaries, own: NDArray[np.intp], owner: NDArray[np.intp], count: list[int]
+) -> list[Unit]:
     """Pair boundaries so that as many regions cover each interval as multipliers are off there.
 
-    A boundary behind which one more is off begins a region, another ends the last one begun; two
-    that nearly coincide and change nothing are one of their own.  None where the numbers do not
-    follow from boundaries alone.
+    A boundary behind which one more is off begins a region, another ends the last one begun, rather
+    one whose motion is mostly of the same mode.  Two that nearly coincide and change nothing are a
+    region of their own, or the end of one and the beginning of the next.
     """
-    begun, found = [-1] * int(count[0]), list[Unit]()
+    begun, units = [-1] * count[0], list[Unit]()
+
+    def same(row: int) -> list[int]:
+        return [k for k, first in enumerate(begun) if first >= 0 and owner[first] == owner[row]]
+
+    def end(row: int) -> None:
+        alike = same(row)
+        first = begun.pop(alike[-1] if alike else -1) if begun else -1
+        units.append((first, row))
+
+    rows = own.tolist()
     i = 0
-    while i < len(own):
-        row = int(own[i])
-        step = int(count[i + 1] - count[i])
-        if narrow[i + 1]:
-            step = int(count[i + 2] - count[i])
-            other = int(own[i + 1])
-            i += 2
-            if step == 0:
-                found.append((row, other))
-            elif step == 2:
-                begun.extend((row, other))
-            elif step == -2 and len(begun) >= 2:
-                found.extend(((begun.pop(), row), (begun.pop(), other)))
+    while i < len(rows):
+        row, step = rows[i], count[i + 1] - count[i]
+        other = rows[i + 1] if i + 1 < len(rows) else row
+        apart = found.speed[other] - found.speed[row]
+        if other == row or apart > _BESIDE * found.speed[other]:
+            # Growth may be too small to be seen.
+            if step < 0 or (step == 0 and same(row)):
+                end(row)
             else:
-                return None
+                begun.append(row)
+            i += 1
             continue
-        i += 1
-        if step == 1:
-            begun.append(row)
-        elif step == -1 and begun:
-            found.append((begun.pop(), row))
+        step = count[i + 2] - count[i]
+        i += 2
+        if step > 1:
+            begun.extend((row, other))
+        elif step < -1:
+            end(row)
+            end(other)
+        # At a double boundary only rounding chooses the motions.
+        elif owner[row] != owner[other] and same(row) and apart > sum(found.error[[row, other]]):
+            end(row)
+            begun.append(other)
         else:
-            return None
-    found.extend((row, -1) for row in begun)
-    return None if (-1, -1) in found else found
-
-
-def _units(
-    group: NDArray[np.intp], owner: NDArray[np.intp], at_end: tuple[bool, bool]
-) -> list[Unit]:
-    """Pair the boundaries of one group; ``at_end`` tells whether growth goes on beyond its ends."""
-    members = [int(row) for row in group]
-    if len(members) == 2 and not any(at_end):
-        return [(members[0], members[1])]
-    found: list[Unit] = []
-    for mode in np.unique(owner):
-        own = [row for row, whose in zip(members, owner, strict=True) if whose == mode]
-        if len(own) % 2:
-            # The one that stands alone is at an end of the range.
-            found.append((-1, own.pop(0)) if at_end[0] else (own.pop(), -1))
-        found.extend((own[i], own[i + 1]) for i in range(0, len(own), 2))
-    return found
+            units.append((row, other))
+    return units + [(row, -1) for row in begun if row >= 0]
 
 
 def unit_labels(
@@ -350,35 +273,22 @@ def _assigned(rows: int, options: Mapping[Label, Mapping[int, float]]) -> dict[i
 # ---------------------------------------------------------------- modes with the crank held
 
 
-def held_modes(system: LinearPeriodic, speed: Array) -> Modes:
+def held_modes(matrices: MatricesOverSpeed, speed: Array) -> Modes:
     """Return the modes with the crank held: mean frequencies in turns, shapes at angle 0."""
-    n = system.size
+    known, n, period = matrices.known, matrices.system.size, matrices.system.period
     if not len(speed):
         return Modes(np.zeros((0, n)), np.zeros((0, n, n), dtype=complex), np.zeros((0, n, n)))
-    # Angles and speeds at which frequencies with the crank held are computed; they change little.
+    # Speeds at which frequencies with the crank held are computed; they change little.
     some = np.linspace(np.min(speed), np.max(speed), 65)
-    turns, _, _ = _held(system, some, even_angles(system.period, 64))
-    mean = np.mean(turns, axis=1) * some[:, None]
+    squares, _ = equation_of(known, some).frozen_modes(even_angles(period, 64))
+    mean = np.mean(np.sqrt(np.maximum(squares, 0.0)), axis=1) * some[:, None]
     frequency = np.stack([np.interp(speed, some, mean[:, j]) for j in range(n)], axis=1)
-    _, shapes, mass = _held(system, speed, np.zeros(1))
-    rows = np.swapaxes(shapes[:, 0], -1, -2).astype(complex)
-    whole = system.period / (2 * np.pi)
-    return Modes(frequency / speed[:, None] * whole, rows, mass[:, 0])
-
-
-def _held(system: LinearPeriodic, speed: Array, theta: Array) -> tuple[Array, Array, Array]:
-    """Return frequencies over the speed ``(k, nt, n)``, modes in columns, and the mass."""
-    form = canonical_form(system, speed, {})
-    shape = (len(speed), len(theta), system.size, system.size)
-    mass = np.broadcast_to(form.require_mass(form.assemble("M", theta)), shape)
-    held = np.zeros(shape)
-    for names, sign in ((("K", "Kg"), 1.0), ("B", -1.0)):
-        part = form.assemble(names, theta)
-        held = held if part is None else held + sign * part
-    inverse = np.linalg.inv(np.linalg.cholesky(mass))
-    moved = inverse @ held @ np.swapaxes(inverse, -1, -2)
-    square, vectors = np.linalg.eigh(0.5 * (moved + np.swapaxes(moved, -1, -2)))
-    return np.sqrt(np.maximum(square, 0.0)), np.swapaxes(inverse, -1, -2) @ vectors, mass
+    equation, start = equation_of(known, speed), np.zeros(1)
+    shapes, unit = equation.frozen_modes(start)[1][:, 0], equation.scale
+    rows = np.swapaxes(unit[:, :, None] * shapes, -1, -2).astype(complex)
+    mass = equation.at("mass", start)[:, 0] / unit[:, :, None] / unit[:, None, :]
+    whole = period / (2 * np.pi)
+    return Modes(frequency / speed[:, None] * whole, rows, np.broadcast_to(mass, rows.shape))
 
 
 def pair_shares(

@@ -10,11 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
-from ..core.families import LinearPeriodic
-from ..core.inputs import is_whole, numbers
+from ..core.families import DAMPING, LinearPeriodic
+from ..core.inputs import is_whole, speed_span
 from ..core.trigonometric import even_angles
-from ..periodic.equation import SPEED_POWER
-from ..periodic.first_order import canonical_form
+from ..periodic.equation import SPEED_POWER, equation_of
 from ..periodic.signatures import form_matrix
 
 Array = NDArray[np.float64]
@@ -30,7 +29,7 @@ IMAGINARY = 1e-7
 
 @dataclass(frozen=True)
 class Resonance:
-    """A speed (or parameter value) at which exponents of the mean system meet.
+    """A crank speed at which exponents of the mean system meet.
 
     Attributes
     ----------
@@ -41,13 +40,11 @@ class Resonance:
     harmonic : int
         n.
     speed : float
-        The speed w [rad/s], or the value of the detuned parameter.
+        The speed w [rad/s].
     frequencies : tuple of float
         Frequencies of the two modes of the mean system there [rad/s].
     signatures : tuple of int
         Krein signatures of the exponents that meet; (0, 0) where the system is not conservative.
-    detuning : str
-        What ``speed`` is a value of: "speed" or a parameter's name.
     """
 
     kind: Kind
@@ -56,7 +53,6 @@ class Resonance:
     speed: float
     frequencies: tuple[float, float]
     signatures: tuple[int, int]
-    detuning: str = "speed"
 
     @property
     def opens(self) -> bool:
@@ -72,63 +68,53 @@ class Resonance:
             return f"2 w{i} = {right}"
         return f"w{i} {'+' if self.kind == 'sum' else '-'} w{j} = {right}"
 
-    def at(self, value: float) -> dict[str, float]:
-        """Return a value of the detuned parameter by name; nothing where that is the speed."""
-        return {} if self.detuning == "speed" else {self.detuning: value}
-
 
 class MeanSystem:
     """The undamped system with its coefficients replaced by their means over the period.
 
-    ``parameters`` replace the system's own values; ``detuning`` is "speed" or the parameter that is
-    varied, at the crank speed ``speed`` [rad/s].
+    ``parameters`` replace the system's own values.
     """
 
-    def __init__(
-        self,
-        system: LinearPeriodic,
-        parameters: Mapping[str, float],
-        detuning: str = "speed",
-        speed: float = 1.0,
-    ) -> None:
-        self.system, self.parameters = system, dict(parameters)
-        self.detuning, self.speed = detuning, speed
+    def __init__(self, system: LinearPeriodic, parameters: Mapping[str, float]) -> None:
+        self.system = system
         count = 1024 if any(not term.constant for term in system.terms) else 1
         theta = even_angles(system.period, count)
+        scales = system.scale_values(**parameters)
+        # Name of the array, power of the speed, and mean.
         self._means = [
-            (term, np.asarray(term(theta[:1] if term.constant else theta), dtype=float).mean(0))
+            (
+                "K" if term.array == "Kg" else term.array,
+                float(SPEED_POWER[term.array] + term.power),
+                (1.0 if term.scale is None else float(scales[term.scale]))
+                * np.mean(term(theta[:1] if term.constant else theta), axis=0),
+            )
             for term in system.terms
             if term.array in _ARRAYS
         ]
 
-    def _generator(self, at: Array) -> Array:
-        """Return L at values of the detuned quantity ``(nb,)``, shape ``(nb, 2n, 2n)``."""
+    def _generator(self, speed: Array) -> Array:
+        """Return L at crank speeds ``(nb,)`` [rad/s], shape ``(nb, 2n, 2n)``."""
         n = self.system.size
-        speed = at if self.detuning == "speed" else np.full(len(at), self.speed)
-        varied = {} if self.detuning == "speed" else {self.detuning: at}
-        scales = self.system.scale_values(**self.parameters, **varied)
-        total = {name: np.zeros((len(at), n, n)) for name in ("M", "A", "B", "K")}
-        for term, mean in self._means:
-            factor = 1.0 if term.scale is None else scales[term.scale]
-            factor = factor * speed ** float(SPEED_POWER[term.array] + term.power)
-            total["K" if term.array == "Kg" else term.array] += factor[:, None, None] * mean
-        return generator(total)
+        total = {name: np.zeros((len(speed), n, n)) for name in ("M", "A", "B", "K")}
+        for name, power, mean in self._means:
+            total[name] += (speed**power)[:, None, None] * mean
+        return generator(total["M"], total["A"], total["B"] - total["K"])
 
-    def frequencies(self, at: Array) -> Array:
+    def frequencies(self, speed: Array) -> Array:
         """Return frequencies in radians per radian of crank angle, rising; ``(nb, n)``.
 
         Not a number for modes that do not oscillate, the first ones.
         """
-        values = np.linalg.eigvals(self._generator(at)).astype(complex)
+        values = np.linalg.eigvals(self._generator(speed)).astype(complex)
         upper = np.where(_turning(values), values.imag, np.nan)
         # Modes that do not oscillate are the lowest: the others keep their numbers.
         rising: Array = -np.sort(-upper, axis=-1)[:, : self.system.size][:, ::-1]
         return rising
 
-    def modes(self, at: float) -> tuple[Array, NDArray[np.int64]]:
-        """Return frequencies and Krein signatures of exp(i nu theta) at one value, ``(n,)``."""
+    def modes(self, speed: float) -> tuple[Array, NDArray[np.int64]]:
+        """Return frequencies and Krein signatures of exp(i nu theta) at one speed, ``(n,)``."""
         n = self.system.size
-        values, vectors = np.linalg.eig(self._generator(np.array([at]))[0])
+        values, vectors = np.linalg.eig(self._generator(np.array([speed]))[0])
         kept = np.flatnonzero(_turning(values))
         kept = kept[np.argsort(values.imag[kept], kind="stable")]
         form = np.diagonal(form_matrix(vectors[:, kept].astype(complex))).real
@@ -137,7 +123,7 @@ class MeanSystem:
         return nu, signs
 
     def meetings(self, span: tuple[float, float], conditions: Sequence[Condition]) -> list[Array]:
-        """Return all values in a span at which the two exponents of each condition meet, rising."""
+        """Return all speeds in a span at which the two exponents of each condition meet, rising."""
         first, second, minus, turns = (
             np.array(column)
             for column in zip(
@@ -155,7 +141,7 @@ class MeanSystem:
             both = nu[rows, first[which]] + np.where(minus[which], -other, other)
             return np.asarray(both - turns[which])
 
-        grid = np.geomspace(*span, _GRID) if span[0] > 0 else np.linspace(*span, _GRID)
+        grid = np.geomspace(*span, _GRID)
         nu = self.frequencies(grid)
         value = nu[:, first] + np.where(minus, -1.0, 1.0) * nu[:, second] - turns
         with np.errstate(invalid="ignore"):
@@ -173,30 +159,27 @@ class MeanSystem:
         return [places[met & (which == k)] for k in range(len(conditions))]
 
     def described(
-        self, kind: Kind, modes: tuple[int, int], harmonic: int, at: float, conservative: bool
+        self, kind: Kind, modes: tuple[int, int], harmonic: int, speed: float, conservative: bool
     ) -> Resonance:
         """Return the record of one meeting, with frequencies and signatures."""
-        nu, signs = self.modes(at)
-        speed = at if self.detuning == "speed" else self.speed
+        nu, signs = self.modes(speed)
         i, j = modes[0] - 1, modes[1] - 1
         second = int(signs[j]) if kind == "difference" else -int(signs[j])
         return Resonance(
             kind=kind,
             modes=modes,
             harmonic=harmonic,
-            speed=at,
+            speed=speed,
             frequencies=(float(nu[i] * speed), float(nu[j] * speed)),
             signatures=(int(signs[i]), second) if conservative else (0, 0),
-            detuning=self.detuning,
         )
 
 
-def generator(mean: Mapping[str, Array]) -> Array:
-    """Return L of y' = L y, y = (q, p), of mean M, A, B and K; shape ``(nb, 2n, 2n)``."""
-    flexibility, gyro = np.linalg.inv(mean["M"]), mean["A"]
+def generator(mass: Array, gyro: Array, push: Array) -> Array:
+    """Return L of y' = L y, y = (q, p), of mean M, A and B - K; shape ``(nb, 2n, 2n)``."""
+    flexibility = np.linalg.inv(mass)
     back = np.swapaxes(gyro, -1, -2) @ flexibility
-    lower = mean["B"] - mean["K"] - back @ gyro
-    return np.block([[-flexibility @ gyro, flexibility], [lower, back]])
+    return np.block([[-flexibility @ gyro, flexibility], [push - back @ gyro, back]])
 
 
 def _turning(values: NDArray[np.complex128]) -> NDArray[np.bool_]:
@@ -211,8 +194,6 @@ def resonances(
     *,
     kinds: Sequence[Kind] = ("principal", "sum", "difference"),
     highest: int = 12,
-    detuning: str = "speed",
-    speed: float = 1.0,
     **parameters: float,
 ) -> list[Resonance]:
     """Return where exponents of the mean system meet, by falling speed.
@@ -222,15 +203,11 @@ def resonances(
     system : LinearPeriodic
         The system.  Its coefficients are averaged over the period, damping is left out.
     speed_range : pair of float
-        Lowest and highest crank speed [rad/s], or value of the parameter ``detuning``.
+        Lowest and highest crank speed [rad/s].
     kinds : sequence of str
         Any of "principal", "sum", "difference".
     highest : int
         Highest harmonic n.
-    detuning : str
-        "speed", or a parameter to be varied at constant ``speed``.
-    speed : float
-        Crank speed [rad/s] where a parameter is varied.
     **parameters : float
         Parameter values that replace the system's own.
 
@@ -248,7 +225,7 @@ def resonances(
     -----
     Smith, chapter 9, suggestion 1.
     """
-    span = _checked_span(speed_range, detuning)
+    span = speed_span(speed_range)
     if not is_whole(highest, 1):
         raise bad("highest", highest, "a whole number of at least 1", "choose 12")
     if not isinstance(kinds, tuple | list):
@@ -256,11 +233,8 @@ def resonances(
     wrong = sorted(str(kind) for kind in kinds if kind not in get_args(Kind))
     if wrong:
         raise bad("kinds", wrong, "principal, sum or difference", "correct the name")
-    varied = {} if detuning == "speed" else {detuning: span[0]}
-    where = span[0] if detuning == "speed" else speed
-    canonical_form(system, where, {**parameters, **varied})
-    mean = MeanSystem(system, parameters, detuning, speed)
-    undamped = conservative(system, where, {**parameters, **varied})
+    mean = MeanSystem(system, parameters)
+    undamped = conservative(system, span[0], parameters)
     conditions: list[Condition] = [
         (kind, (i, j) if kind == "difference" else (j, i), n)
         for i in range(1, system.size + 1)
@@ -281,18 +255,4 @@ def resonances(
 
 def conservative(system: LinearPeriodic, speed: float, parameters: Mapping[str, float]) -> bool:
     """Return True where the system without its damping terms has a symplectic flow."""
-    theta = even_angles(system.period, 8)
-    b, k, g = (system.array(name, theta, speed, **parameters) for name in ("B", "K", "Kg"))
-    return all(
-        float(np.max(np.abs(value - np.swapaxes(value, -1, -2))))
-        <= 1e-13 * float(np.max(np.abs(value)))
-        for value in (b, k + g)
-    )
-
-
-def _checked_span(span: tuple[float, float], detuning: str) -> tuple[float, float]:
-    values = numbers("speed_range", span)
-    good = values.shape == (2,) and bool(np.all(np.isfinite(values))) and values[0] < values[1]
-    if not good or (detuning == "speed" and not values[0] > 0):
-        raise bad("speed_range", span, "(low, high) with low < high, speeds positive", "correct it")
-    return float(values[0]), float(values[1])
+    return not equation_of(system.without(*DAMPING), speed, parameters).damped

@@ -1,8 +1,8 @@
 """Effective operator of a parametric resonance: the Floquet operator on the exponents that meet.
 
 The Floquet operator L(theta) - d/dtheta of the canonical variables is a power series in eps (the
-periodic part), sigma (the detuning) and delta (the damping) about a constant system; with the
-speed as detuning, 1/w = (1 + sigma)/w0, so that K/w^2 and C/w are exact polynomials.  Bloch's
+periodic part), sigma (the detuning) and delta (the damping) about a constant system; the
+detuning of the speed is 1/w = (1 + sigma)/w0, so that K/w^2 and C/w are exact polynomials.  Bloch's
 recursion (:mod:`..hill.bloch`) reduces it to the few harmonics of the few modes whose exponents
 coincide; what keeps them apart at the expansion point is one more variable.  Where the undamped
 flow is symplectic the result is brought to the symmetric form, h^H G + G h = 0 in the undamped
@@ -39,38 +39,21 @@ Graded = list[Complex]
 
 _ZERO: Index = (0, 0, 0)
 _ARRAYS = ("M", "A", "B", *DAMPING, "K", "Kg")
-# Chebyshev nodes for the dependence on a parameter, detuned relatively by so much; coefficients
-# that are round-off of the samples; the last one where no polynomial follows.
-_NODES, _DETUNING = 24, 0.5
+# Chebyshev nodes for the dependence on a parameter; coefficients that are round-off of the samples;
+# the last one where no polynomial follows.
+_NODES = 24
 _NOISE, _MOST_TAIL = 1e-14, 1e-10
 
 
 @dataclass(frozen=True)
 class Point:
-    """The constant system about which everything is expanded, and the variables.
+    """The constant system about which everything is expanded, at the speed of resonance [rad/s].
 
-    Attributes
-    ----------
-    system : LinearPeriodic
-        The system.
-    parameters : mapping of str to float
-        Values that replace the system's own.
-    detuning : str
-        "speed" or the name of the parameter that is detuned.
-    at : float
-        Value of the detuned quantity at resonance; speed [rad/s].
-    speed : float
-        Crank speed [rad/s] where a parameter is detuned.
-    parameter : str or None
-        Name of the parameter p = radius eps; None where eps multiplies all that is periodic.
-    radius : float
-        As above.
+    ``parameter`` is the name of p = radius eps; None where eps multiplies all that is periodic.
     """
 
     system: LinearPeriodic
     parameters: Mapping[str, float]
-    detuning: str
-    at: float
     speed: float
     parameter: str | None = None
     radius: float = 1.0
@@ -191,14 +174,12 @@ def _arrays(point: Point, order: int) -> dict[str, Series]:
             parts = [mean, values - mean]
         name = "K" if term.array == "Kg" else term.array
         power = SPEED_POWER[term.array] + term.power
-        speeds = [point.speed**power]
-        if point.detuning == "speed":
-            speeds = [point.at**power * c for c in _binomial(-power, order)]
-        scale = scales[term.scale] if term.scale is not None else {(0, 0): 1.0}
-        for ((i, j), number), (k, speed), (extra, part) in product(
-            scale.items(), enumerate(speeds), enumerate(parts)
+        speeds = [point.speed**power * c for c in _binomial(-power, order)]
+        scale = scales[term.scale] if term.scale is not None else np.ones(1)
+        for (i, number), (j, speed), (extra, part) in product(
+            enumerate(scale.tolist()), enumerate(speeds), enumerate(parts)
         ):
-            index = (i + extra, j + k, int(term.array in DAMPING))
+            index = (i + extra, j, int(term.array in DAMPING))
             if number * speed != 0.0 and sum(index) <= order:
                 out[name] = _sum(out[name], {index: number * speed * part})
     return out
@@ -211,33 +192,20 @@ def _binomial(power: int, order: int) -> list[float]:
     return [float((-1) ** k * comb(-power + k - 1, k)) for k in range(order + 1)]
 
 
-def _scale_series(point: Point, order: int) -> dict[str, dict[tuple[int, int], float]]:
-    """Return the power series in (eps, sigma) of each parameter monomial that a term names."""
-    nodes = chebyshev.chebpts1(_NODES)
-    axes: list[tuple[str, Array]] = []
-    if point.parameter is not None:
-        axes.append((point.parameter, point.radius * nodes))
-    if point.detuning != "speed":
-        axes.append((point.detuning, point.at * (1 + _DETUNING * nodes)))
+def _scale_series(point: Point, order: int) -> dict[str, Array]:
+    """Return the power series in eps of each parameter monomial that a term names."""
     given: dict[str, float | Array] = dict(point.parameters)
-    for place, (name, values) in enumerate(axes):
-        given[name] = values.reshape([-1 if a == place else 1 for a in range(len(axes))])
+    if point.parameter is not None:
+        given[point.parameter] = point.radius * chebyshev.chebpts1(_NODES)
     with np.errstate(divide="ignore", invalid="ignore"):
         scales = point.system.scale_values(**given)
-    shape = (_NODES,) * len(axes)
-    out: dict[str, dict[tuple[int, int], float]] = {}
+    out: dict[str, Array] = {}
     for name in {term.scale for term in point.system.terms if term.scale is not None}:
-        table = np.broadcast_to(np.asarray(scales[name], dtype=float), shape)
-        for axis, (label, _) in enumerate(axes):
-            table = np.apply_along_axis(_power_series, axis, table, order, label)
-        if point.detuning != "speed":
-            table = table * _DETUNING ** -np.arange(order + 1.0)
+        value = np.asarray(scales[name], dtype=float)
         if point.parameter is None:
-            table = table[None]
-        if point.detuning == "speed":
-            table = table[..., None]
-        places = np.argwhere(table != 0.0).tolist()
-        out[name] = {(i, j): float(table[i, j]) for i, j in places if i + j <= order}
+            out[name] = value.reshape(1)
+            continue
+        out[name] = _power_series(np.broadcast_to(value, _NODES), order, point.parameter)
     return out
 
 

@@ -20,16 +20,7 @@ Array = NDArray[np.float64]
 class MatricesOverSpeed:
     """Scaled monodromy matrices of one system over the speed; tables are made where first needed.
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        The system.
-    span : pair of float
-        Speeds [rad/s] of the tables; beyond them each matrix is solved for itself.
-    parameters : mapping
-        Parameter values that replace the system's own; no geometry.
-    rtol : float
-        Wanted error of the matrices.
+    Beyond the span of the tables [rad/s] each matrix is solved for itself.
     """
 
     def __init__(
@@ -45,8 +36,8 @@ class MatricesOverSpeed:
         count = max(1, ceil(log(high / low) / log(1.5) - 1e-9))
         self._edges = low * (high / low) ** (np.arange(count + 1) / count)
         self._edges[[0, -1]] = low, high
-        known = sampled(system, forcing=False)
-        self._maker = TableMaker(known, (low * high) ** 0.5, parameters)
+        self.known = sampled(system, forcing=False)
+        self._maker = TableMaker(self.known, (low * high) ** 0.5, parameters)
         self._tables: dict[int, tuple[Table, float]] = {}
 
     @property

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
-from ..periodic.first_order import canonical_form
+from ..periodic.equation import equation_of
 from ..periodic.multipliers import conditions
 from ..periodic.signatures import form_matrix, signatures_of
 from .over_speed import MatricesOverSpeed
@@ -39,19 +39,12 @@ _TELLING = 1e-5
 
 @dataclass(frozen=True)
 class Events:
-    """Meetings of multipliers, each between two sampled speeds; arrays of shape ``(k,)``.
+    """Meetings of multipliers, each between two sampled speeds, ``(k,)`` or ``(k, 2)``.
 
-    Attributes
-    ----------
-    low, high : ndarray
-        Speeds on either side, where the pair is apart; NaN where the range ends first, or where
-        one of the two is then at +-1 and off the circle.
-    inside : ndarray
-        A sampled speed where the pair was found off the circle or not told apart; NaN where none.
-    reach : ndarray, shape (k, 2)
-        First and last sampled speed inside, or low and high where there is none.
-    plus, minus : ndarray, shape (k, 2)
-        Arguments of the multipliers of positive and of negative signature at low and high.
+    The pair is apart at ``low`` and ``high``, NaN where the range ends first or one of the two is
+    then at +-1 and off the circle.  ``inside`` is a sampled speed where it was found off the circle
+    or not told apart, ``reach`` the first and the last such; ``plus`` and ``minus`` are the
+    arguments of the multipliers of positive and of negative signature at low and high.
     """
 
     low: Array
@@ -64,16 +57,10 @@ class Events:
 
 @dataclass(frozen=True)
 class Samples:
-    """Lifted arguments of the multipliers of positive signature over the speed.
+    """Arguments of the multipliers of positive signature over the rising speed, ``(ns, n)``.
 
-    Attributes
-    ----------
-    speed : ndarray, shape (ns,)
-        Rising.
-    phase : ndarray, shape (ns, n)
-        Followed from sample to sample; up to a whole number of turns.
-    open : ndarray of bool, shape (ns, n)
-        True where the multiplier is off the circle or its signature open.
+    They are followed from sample to sample, up to a whole number of turns; ``open`` is true where
+    the multiplier is off the circle or its signature open.
     """
 
     speed: Array
@@ -91,9 +78,9 @@ def phase_grid(matrices: MatricesOverSpeed, span: tuple[float, float], more: Arr
     """
     low, high = span
     system = matrices.system
-    ends = canonical_form(system, np.array([low, high]), matrices.parameters)
+    ends = equation_of(matrices.known, np.array([low, high]), matrices.parameters)
     # From one sample to the next the fastest mode turns by 0.3 rad.
-    fastest = float(np.max(ends.rate * ends.speed))
+    fastest = float(np.max(ends.rate() * ends.speed))
     count = int(np.ceil(fastest * system.period * (1 / low - 1 / high) / 0.3)) + 2
     if count > _MOST_SAMPLES:
         raise bad(
@@ -246,18 +233,9 @@ def _passages(turns: Array, locked: Flags, hidden: Flags) -> list[Passage]:
 class Pair:
     """Two multipliers at each of k places, all arrays of shape ``(k,)``.
 
-    Attributes
-    ----------
-    gap : ndarray
-        g; negative off the circle.
-    noise : ndarray
-        Absolute error of g.
-    ahead : ndarray
-        Argument by which the positive one is ahead of the negative one [rad]; 0 off the circle.
-    plus, minus : ndarray
-        Their arguments [rad].
-    blur : ndarray
-        Distance within which the two are not told apart.
+    ``gap`` is g, negative off the circle, ``noise`` its absolute error, ``ahead`` the angle by
+    which the positive one leads the negative one [rad], 0 off the circle; ``plus`` and ``minus``
+    are their arguments [rad]; within ``blur`` the two are not told apart.
     """
 
     gap: Array
@@ -321,17 +299,9 @@ def _wrapped(angle: Array) -> Array:
 class Edges:
     """Edges of tongues, each array of shape ``(k,)``.
 
-    Attributes
-    ----------
-    lower, upper : ndarray
-        Speeds [rad/s]; equal where the tongue is too narrow to be told from none; NaN where the
-        range ended first.
-    error : ndarray
-        Absolute error of either edge.
-    least : ndarray
-        Width below which the tongue would not be told from none.
-    phase : ndarray
-        Argument of the multiplier at the edges, or inside [rad].
+    ``lower`` and ``upper`` [rad/s] are equal where the tongue is too narrow to be told from none,
+    NaN where the range ended first; ``error`` is that of either, ``least`` the width below which
+    the tongue would not be told from none, ``phase`` the argument of the multiplier there [rad].
     """
 
     lower: Array

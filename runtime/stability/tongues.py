@@ -16,7 +16,7 @@ from ..core.inputs import numbers, require_whole
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ..hill.bloch import BEYOND, HIGHEST
 from ..periodic import floquet_multipliers
-from ..periodic.first_order import canonical_form
+from ..periodic.equation import equation_of
 from .ends import UNBOUNDED, Ends, Several, expected, two_exponents
 from .meetings import MeanSystem, Resonance, conservative
 from .operators import Point, ResonantOperator, constant_at, resonant_operator
@@ -41,11 +41,10 @@ class Tongue(Result):
     Attributes
     ----------
     lower, upper : ndarray
-        Ends of the range [rad/s] (values of the detuned parameter where it is not the speed),
-        shape ``batch``.  Equal where the order is too low to open the range, or nothing opens it;
-        not a number where damping closes it, or where it is lost in another range of the same
-        exponents (the check ``told apart``); 0 and inf (-inf and inf) where the series shows no
-        end to the instability.
+        Ends of the range [rad/s], shape ``batch``.  Equal where the order is too low to open the
+        range, or nothing opens it; not a number where damping closes it, or where it is lost in
+        another range of the same exponents (the check ``told apart``); 0 and inf where the series
+        shows no end to the instability.
     open : ndarray of bool
         True where the range is unstable and has a width.
     error : ndarray
@@ -106,8 +105,7 @@ class Tongue(Result):
         from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
-        speed = self.resonance.detuning == "speed"
-        unit = 30 / np.pi if speed else 1.0
+        unit = 30 / np.pi
         bounded = np.isfinite(self.upper.ravel())
         lower = np.where(bounded, self.lower.ravel(), np.nan) * unit
         upper = np.where(bounded, self.upper.ravel(), np.nan) * unit
@@ -121,7 +119,7 @@ class Tongue(Result):
             for left, right in zip(lower, upper, strict=True):
                 ax.axvspan(left, right, alpha=0.4, label=self.label)
             ax.set_yticks([])
-        ax.set_xlabel("crank speed [rpm]" if speed else self.resonance.detuning.replace("_", " "))
+        ax.set_xlabel("crank speed [rpm]")
         ax.legend()
         return ax
 
@@ -134,7 +132,6 @@ def tongue(
     order: int = 2,
     damping_factor: ArrayLike = 1.0,
     merge: float = 0.04,
-    speed: float = 1.0,
     **parameters: float,
 ) -> Tongue:
     """Return the ends of the tongue that starts at a resonance, to a chosen order.
@@ -160,8 +157,6 @@ def tongue(
     merge : float
         Distance of other exponents, in harmonics of the period, up to which they are treated
         together with the two of the resonance.
-    speed : float
-        Crank speed [rad/s] where the resonance is one of a parameter.
     **parameters : float
         Values of further parameters that replace the system's own.
 
@@ -191,8 +186,8 @@ def tongue(
     if not isinstance(resonance, Resonance):
         raise bad("resonance", repr(resonance), "a Resonance", "take one that resonances() gives")
     name, values, factor = _arguments(parameter, damping_factor)
-    _check_names(system, resonance, name, parameters, speed)
-    problem = _Problem(system, resonance, dict(parameters), speed, order, merge)
+    _check_names(system, resonance, name, parameters)
+    problem = _Problem(system, resonance, dict(parameters), order, merge)
     flat, drag = values.ravel(), factor.ravel()
     series = name is not None and problem.starts_at_zero(name)
     if series and name is not None:
@@ -265,19 +260,15 @@ def _check_names(
     resonance: Resonance,
     name: str | None,
     parameters: Mapping[str, float],
-    speed: float,
 ) -> None:
     """Raise where names clash or are unknown, or a resonance does not fit the system."""
-    varied = resonance.at(resonance.speed)
-    names = [*parameters, *([] if name is None else [name]), *varied]
-    if len(set(names)) != len(names):
-        raise bad("parameters", sorted(names), "each parameter once", "leave one out")
+    if name is not None and name in parameters:
+        raise bad("parameters", sorted([*parameters, name]), "each parameter once", "leave one out")
     if max(resonance.modes) > system.size or min(resonance.modes) < 1:
         expected_modes = f"modes from 1 to {system.size}"
         raise bad("resonance.modes", resonance.modes, expected_modes, "correct it")
     given = {} if name is None else {name: system.parameters.get(name, 0.0)}
-    at = speed if varied else resonance.speed
-    canonical_form(system, at, {**parameters, **given, **varied})
+    equation_of(system, resonance.speed, {**parameters, **given})
 
 
 class _Places(NamedTuple):
@@ -296,27 +287,23 @@ class _Problem:
     system: LinearPeriodic
     resonance: Resonance
     parameters: dict[str, float]
-    speed: float
     order: int
     merge: float
 
     def starts_at_zero(self, name: str) -> bool:
         """Return True where the system rests on a constant one with the parameter zero."""
         given = {**self.parameters, name: 0.0}
-        if not constant_at(self.system, {**given, **self.resonance.at(self.resonance.speed)}):
-            return False
-        return len(self._meetings(given)) > 0
+        return constant_at(self.system, given) and len(self._meetings(given)) > 0
 
     def _meetings(self, parameters: Mapping[str, float]) -> Array:
         """Return where the exponents of the resonance meet, not too far from where they did."""
         item = self.resonance
-        mean = MeanSystem(self.system, parameters, item.detuning, self.speed)
+        mean = MeanSystem(self.system, parameters)
         return mean.meetings(self._span, [(item.kind, item.modes, item.harmonic)])[0]
 
     @property
     def _span(self) -> tuple[float, float]:
-        low, high = sorted((self.resonance.speed / _NEAR, self.resonance.speed * _NEAR))
-        return low, high
+        return self.resonance.speed / _NEAR, self.resonance.speed * _NEAR
 
     def operator(
         self, changes: Mapping[str, float], name: str | None, radius: float
@@ -334,10 +321,8 @@ class _Problem:
                 "choose values nearer to those that the resonance was found at",
             )
         at = float(meetings[np.argmin(np.abs(meetings - item.speed))])
-        point = Point(self.system, given, item.detuning, at, self.speed, name, radius)
-        whole = {**given, **({} if name is None else {name: radius}), **item.at(at)}
-        speed = at if item.detuning == "speed" else self.speed
-        flow = conservative(self.system, speed, whole)
+        point = Point(self.system, given, at, name, radius)
+        flow = conservative(self.system, at, given if name is None else {**given, name: radius})
         return resonant_operator(point, item, self.order + BEYOND, self.merge, flow), at
 
     def ends(
@@ -347,9 +332,8 @@ class _Problem:
         ends = self._detunings(operator, eps, delta)
         first = ends[0]
         if first == UNBOUNDED:
-            lowest = 0.0 if self.resonance.detuning == "speed" else -np.inf
-            return lowest, np.inf, True, np.inf
-        places = [np.array([self._turned(e.high, at), self._turned(e.low, at)]) for e in ends]
+            return 0.0, np.inf, True, np.inf
+        places = [np.array([_speed(e.high, at), _speed(e.low, at)]) for e in ends]
         moved = max(float(np.max(np.abs(other - places[0]))) for other in places[1:])
         moved = moved if np.isfinite(moved) else np.inf
         # The next two orders show the size of what is left out, not its exact amount.  Order 1 does
@@ -388,11 +372,10 @@ class _Problem:
                 out.append(several.ends(centre, half))
         return out[-1 - BEYOND :]
 
-    def _turned(self, sigma: complex, at: float) -> complex:
-        """Return the speed, or the detuned parameter, at a detuning."""
-        if not np.isfinite(sigma):
-            return sigma
-        return at / (1 + sigma) if self.resonance.detuning == "speed" else at * (1 + sigma)
+
+def _speed(sigma: complex, at: float) -> complex:
+    """Return the speed at a detuning."""
+    return at / (1 + sigma) if np.isfinite(sigma) else sigma
 
 
 # ---------------------------------------------------------------- checks
@@ -456,8 +439,7 @@ class TongueChecks:
         if not np.all(np.isfinite([low, high, error])):
             centre, half = expected(operator.polynomials(eps, 0.0, 1))
             sigma = np.array([centre - half, centre + half])
-            speed = self.tongue.resonance.detuning == "speed"
-            low, high = np.sort(at / (1 + sigma) if speed else at * (1 + sigma)).tolist()
+            low, high = np.sort(at / (1 + sigma)).tolist()
             error = 0.0
         within = np.linspace(low - error, high + error, 101)
         return np.concatenate([[(low + high) / 2], within])
@@ -483,15 +465,12 @@ class TongueChecks:
 
     def _modulus(self, place: int, at: Array) -> tuple[Array, Array]:
         """Return the largest modulus of the multipliers that the series has, and its error."""
-        given: dict[str, float | Array] = dict(self.problem.parameters)
+        given = dict(self.problem.parameters)
         if self.tongue.parameter:
             given[self.tongue.parameter] = float(self.places.values.ravel()[place])
-        speed: Array = at
-        if self.tongue.resonance.detuning != "speed":
-            speed, given[self.tongue.resonance.detuning] = np.full(len(at), self.problem.speed), at
         factor = float(self.places.damping.ravel()[place])
         damped = self.problem.system.with_changed_terms(partial(_damped, factor=factor))
-        exact = floquet_multipliers(damped, speed, rtol=1e-11, **given)
+        exact = floquet_multipliers(damped, at, rtol=1e-11, **given)
         series = self._multipliers(place, at)
         nearest = np.argmin(np.abs(series[:, :, None] - exact.multipliers[:, None, :]), axis=-1)
         modulus = np.take_along_axis(np.abs(exact.multipliers), nearest, axis=-1)
@@ -504,8 +483,7 @@ class TongueChecks:
         operator, centre, eps = self._operator(place)
         delta = float(self.places.damping.ravel()[place])
         matrices = operator.polynomials(eps, delta, operator.order)
-        sigma = centre / at - 1 if self.tongue.resonance.detuning == "speed" else at / centre - 1
-        powers = sigma[:, None] ** np.arange(len(matrices))
+        powers = (centre / at - 1)[:, None] ** np.arange(len(matrices))
         values = operator.centre + np.linalg.eigvals(np.tensordot(powers, matrices, axes=1))
         return np.asarray(np.exp(values * self.problem.system.period))
 

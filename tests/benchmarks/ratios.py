@@ -32,7 +32,7 @@ from typing import Any
 
 import elastolink as el
 import numpy as np
-from elastolink.runtime.stability.invariants import characteristic
+from elastolink.runtime.stability.invariants import weighed_characteristic
 from peers import TOLERANCES, Solve, equation, flows, one_thread, peers_of, shortened
 from scipy.integrate import solve_ivp
 
@@ -253,7 +253,7 @@ def chart(made: Case) -> Problem:
         at = (made.system.with_geometry if geometry else made.system.with_parameters)(**change)
         points.append(equation(at, float(x[1][column]), forced=False))
     matrices = np.stack([flows(point, 1.0, 1)[-1].astype(float) for point in points])
-    truth = characteristic(matrices, reduced=True)
+    truth, _ = weighed_characteristic(matrices, made.system.size)
     size = np.maximum(1.0, np.max(np.abs(truth), axis=-1, keepdims=True))
     unit, ends = np.eye(2 * made.system.size), np.array([0.0, points[0].period])
 
@@ -263,7 +263,7 @@ def chart(made: Case) -> Problem:
             # Of one mode a chart keeps half the trace.
             value = -2.0 * value if made.system.size == 1 else value
         else:
-            value = characteristic(value, reduced=True)
+            value, _ = weighed_characteristic(value, made.system.size)
         return float(np.max(np.abs(value - truth) / size))
 
     def ours(_: float) -> Work:

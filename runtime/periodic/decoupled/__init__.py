@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .exponents import SlowMultipliers, characteristic_exponents
-from .reduced import SlowSystem, slow_system
+from .slow_modes import SlowModes
+from .slow_system import SlowSystem, slow_system
 
-__all__ = ["SlowMultipliers", "SlowSystem", "characteristic_exponents", "slow_system"]
+__all__ = ["SlowModes", "SlowSystem", "slow_system"]

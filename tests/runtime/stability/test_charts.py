@@ -5,7 +5,6 @@ from __future__ import annotations
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.stability.invariants import characteristic, largest_modulus
 
 RIG = "smith_1972_5152_sixteenth_inch"
 SPEEDS = np.linspace(40.0, 99.0, 61)
@@ -91,20 +90,6 @@ def test_two_modes_agree_with_multipliers():
     assert np.allclose(chart.largest[clear], largest[clear], rtol=1e-5)
 
 
-def test_reduced_polynomial_gives_the_multipliers():
-    """Hand case: multipliers exp(+-i a), r exp(+-i b)/... of a block-diagonal symplectic matrix."""
-    turn = np.array([[np.cos(0.7), np.sin(0.7)], [-np.sin(0.7), np.cos(0.7)]])
-    grow = np.diag([1.3, 1 / 1.3])
-    third = np.array([[np.cos(2.0), np.sin(2.0)], [-np.sin(2.0), np.cos(2.0)]])
-    matrix = np.zeros((6, 6))
-    matrix[:2, :2], matrix[2:4, 2:4], matrix[4:, 4:] = turn, grow, third
-    largest, stable, _ = largest_modulus(characteristic(matrix, reduced=True), reduced=True)
-    assert largest == pytest.approx(1.3, rel=1e-12)
-    assert not stable
-    full, _, _ = largest_modulus(characteristic(matrix, reduced=False), reduced=False)
-    assert full == pytest.approx(1.3, rel=1e-12)
-
-
 @pytest.mark.parametrize(
     ("x", "y", "words"),
     [
@@ -127,12 +112,6 @@ def test_picture_shows_what_it_promises(undamped, tmp_path):
     assert {"exact boundary (Hill matrix)", "first-order boundary"} <= labels
     assert any("error of the discriminant" in text.get_text() for text in axes.texts)
     assert "rpm" in axes.get_xlabel()
-
-
-def test_dictionary_holds_the_boundaries(undamped):
-    table = undamped.to_dict()
-    assert table["exact"]["regions"] == list(undamped.exact.regions)
-    assert len(table["exact"]["lower"]) == len(undamped.exact.regions)
 
 
 def test_picture_names_the_frequency_and_the_error_of_several_modes():

@@ -60,23 +60,6 @@ def test_the_mean_inertia_shifts_them_and_divergence_ends_them():
     assert near[0].frequencies[0] - near[0].frequencies[1] == pytest.approx(near[0].speed)
 
 
-def test_a_parameter_may_be_detuned():
-    found = resonances(
-        _beam(), (0.0, 6.0), detuning="pull", speed=2.0, highest=2, kinds=("principal",)
-    )
-    # 9/4 - pull = n^2/4 and 49/4 - pull = n^2/4.
-    assert [(item.label, item.detuning) for item in found] == [
-        ("2 w1 = w", "pull"),
-        ("2 w1 = 2 w", "pull"),
-    ]
-    np.testing.assert_allclose([item.speed for item in found], [2.0, 1.25])
-    ends = tongue(_beam(), found[0], parameter=("load", 0.2), speed=2.0, order=3)
-    assert ends.passed, dict(ends.checks)
-    # Half the width is half the amplitude of the load over w^2, to first order.
-    assert ends.width == pytest.approx(0.2 / 4, rel=0.01)
-    assert ends.plot().get_xlabel() == "pull"
-
-
 def test_no_values_no_ends():
     system = _beam()
     resonance = resonances(system, (9.0, 11.0))[0]
@@ -105,8 +88,6 @@ def test_same_input_same_bytes():
         ((1.0, 5.0), {"kinds": ("sums",)}, "sums"),
         ((1.0, 5.0), {"kinds": None}, "kinds"),
         ((1.0, 5.0), {"push": 1.0}, "push"),
-        ((1.0, 5.0), {"detuning": "push"}, "push"),
-        ((1.0, 5.0), {"detuning": "pull", "speed": -1.0}, "speed"),
     ],
 )
 def test_bad_input(span, changes, words):

@@ -71,16 +71,6 @@ def test_ends_are_where_the_multipliers_leave_the_circle(rod, curves):
         assert np.all(np.abs(0.5 * (inside + outside) - ends) < 1e-5 * width)
 
 
-def test_principal_ends_are_those_of_fouriers_method(rod, curves):
-    for column, ratio in ((0, 0.02), (2, 0.1)):
-        system = rod.with_geometry(crank_ratio=ratio)
-        found = el.speed_boundaries(system, -1, speed_range=(1400.0, 1730.0))
-        row = curves.labels.index("2 w1 = w")
-        for ends in (curves.lower, curves.upper):
-            gap = np.min(np.abs(found.speed - ends[row, column]))
-            assert gap <= curves.error[row, column] + np.max(found.error)
-
-
 def test_growth_is_that_of_the_multipliers(rod, curves):
     system = rod.with_geometry(crank_ratio=0.1)
     for row in range(len(curves.labels)):

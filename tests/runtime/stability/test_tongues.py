@@ -12,7 +12,6 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.boundaries import hill_boundaries
-from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.stability import resonances, speed_boundaries, tongue
 from periodic_systems import is_growing, named, wave
 
@@ -158,8 +157,6 @@ def test_checks_pass_and_say_what_was_compared(name):
 
 
 def test_a_wrong_end_fails_the_checks():
-    from dataclasses import replace
-
     system, label, damping = CASES["sum"]
     found = _series(system, label, 3, damping)
     checks = found.checks._make
@@ -255,8 +252,8 @@ def test_a_single_mode_gives_the_boundaries_of_hill_s_equation(n, damping):
     values = {"lam2": 1.0, "mu": 0.0, "drag": 0.0}
     system = LinearPeriodic(1, terms, values, named(values))
     label = f"2 w1 = {n} w" if n > 1 else "2 w1 = w"
-    resonance = _resonance(system, label, (0.01, 4.0), detuning="lam2")
-    assert resonance.speed == pytest.approx(n * n / 4, rel=1e-13)
+    resonance = _resonance(system, label, (0.3, 4.0))
+    assert resonance.speed == pytest.approx(2 / n, rel=1e-13)
     # Without a coefficient c_n damping of first order closes the region.
     drag = 0.0 if n == 3 else damping
     mu = np.array([-0.04, 0.02, 0.04])
@@ -270,7 +267,9 @@ def test_a_single_mode_gives_the_boundaries_of_hill_s_equation(n, damping):
             damping_factor=np.abs(mu),
         )
         exact = hill_boundaries(f, mu, (n,), damping=drag * np.abs(mu))
-        gap = np.maximum(np.abs(found.lower - exact.lower[0]), np.abs(found.upper - exact.upper[0]))
+        # In the angle lam2 is 1/w^2.
+        lower, upper = exact.upper[0] ** -0.5, exact.lower[0] ** -0.5
+        gap = np.maximum(np.abs(found.lower - lower), np.abs(found.upper - upper))
         assert np.all(found.open)
         assert np.all(gap <= found.error)
         assert np.all(found.error <= 30 * gap + 1e-14)
@@ -304,25 +303,6 @@ def test_truncations_keep_the_pairs_of_a_conservative_system():
     stable = values[np.abs(sigma - np.mean(ends)) > 0.6 * np.ptp(ends)]
     assert 10 < len(stable) < 41
     np.testing.assert_allclose(stable.real, 0.0, atol=1e-13)
-
-
-def test_exponents_of_the_operator_approach_the_exact_ones():
-    damping = {"c": 0.3}
-    resonance = _resonance(_whole(), "w1 + w2 = w")
-    errors = []
-    for size in (0.2, 0.1, 0.05):
-        found = tongue(
-            _whole(), resonance, parameter=("eps", size), order=1, damping_factor=size, **damping
-        )
-        operator, sigma = found.operators[0], 0.3 * size
-        matrix = sum(sigma**k * value for k, value in enumerate(operator.polynomials(1, size, 3)))
-        told = np.exp(2 * np.pi * (operator.centre + np.linalg.eigvals(matrix)))
-        exact = floquet_multipliers(
-            _whole(), found.centres[0] / (1 + sigma), eps=size, c=0.3 * size
-        ).multipliers
-        errors.append(np.max(np.min(np.abs(told[:, None] - exact), axis=1)))
-    slopes = np.log2(np.array(errors[:-1]) / errors[1:])
-    np.testing.assert_allclose(slopes, 4.0, atol=0.25)
 
 
 def test_a_parameter_beside_other_periodic_parts_expands_about_the_mean():
@@ -378,8 +358,6 @@ def test_bad_input(changes, words):
 
 
 def test_a_resonance_that_does_not_fit_is_refused():
-    from dataclasses import replace
-
     resonance = _resonance(FULL, "w1 + w2 = w")
     with pytest.raises(BadInput, match="modes"):
         tongue(FULL, replace(resonance, modes=(1, 3)), parameter=("eps", 0.1))
@@ -441,20 +419,15 @@ def test_units_of_mass_and_coordinates_do_not_matter(units):
     np.testing.assert_allclose(found.upper, expected.upper, rtol=1e-11)
 
 
-def _system(squares, wave, damping):
-    """Return y'' + C y' + (diag(squares) + eps wave cos theta) y = 0."""
+def _system(squares, pull, damping):
+    """Return y'' + C y' + (diag(squares) + eps pull cos theta) y = 0."""
     terms = (
         Term("M", None, np.eye(2)),
         Term("K", None, np.diag(squares)),
-        Term("K", "eps", lambda theta: np.cos(theta)[:, None, None] * np.array(wave)),
+        Term("K", "eps", wave(pull)),
         Term("C", "c", np.diag(damping)),
     )
-    return LinearPeriodic(
-        2,
-        terms,
-        {"eps": 0.0, "c": 1.0},
-        lambda values: {name: np.asarray(values[name], dtype=float) for name in ("eps", "c")},
-    )
+    return LinearPeriodic(2, terms, {"eps": 0.0, "c": 1.0}, named(["eps", "c"]))
 
 
 def _near(second, damping):
@@ -514,103 +487,6 @@ def test_a_series_out_of_its_depth_does_not_pass_a_closed_range():
     assert np.isnan(found.lower)
     assert is_growing(system, 1 + np.sqrt(5.3), 1e-3, eps=5.0)
     assert not found.passed
-
-
-def _waves(rng, size, symmetric=True):
-    """Return two harmonics with random matrices as a function of angle."""
-    parts = []
-    for harmonic in (1, 2):
-        for phase in (0.0, np.pi / 2):
-            matrix = rng.normal(size=(size, size)) / (2 * harmonic)
-            parts.append((harmonic, phase, (matrix + matrix.T) / 2 if symmetric else matrix))
-    return lambda theta: sum(
-        np.cos(harmonic * theta - phase)[:, None, None] * matrix
-        for harmonic, phase, matrix in parts
-    )
-
-
-def _definite(rng, size):
-    root = np.eye(size) + 0.2 * rng.normal(size=(size, size))
-    return root @ root.T
-
-
-def _random(seed: int, size: int = 2) -> LinearPeriodic:
-    """Every array of the family periodic in proportion to eps, with damping."""
-    rng = np.random.default_rng(seed)
-    turn = np.linalg.qr(rng.normal(size=(size, size)))[0]
-    stiffness = turn @ np.diag(np.sort(rng.uniform(1.0, 12.0, size))) @ turn.T
-    terms = (
-        Term("M", None, _definite(rng, size)),
-        Term("M", "eps", _waves(rng, size)),
-        Term("A", None, 0.1 * rng.normal(size=(size, size))),
-        Term("A", "eps", _waves(rng, size, symmetric=False)),
-        Term("B", None, 0.05 * np.diag(rng.normal(size=size))),
-        Term("B", "eps", _waves(rng, size)),
-        Term("K", None, stiffness),
-        Term("K", "eps", _waves(rng, size)),
-        Term("C", "c", _definite(rng, size)),
-    )
-    return LinearPeriodic(size, terms, {"eps": 0.0, "c": 0.0}, named(["eps", "c"]))
-
-
-def _count(system, speed, limit, **parameters):
-    """Return how many multipliers are outside the unit circle, so that tongues may overlap."""
-    values = floquet_multipliers(system, speed, rtol=1e-13, **parameters).multipliers
-    return np.sum(np.abs(values) > 1 + limit, axis=-1)
-
-
-# Small enough that neighbouring tongues do not touch.
-SMALL = np.array([0.02, 0.01, 0.005])
-
-
-def _ratios(system, resonance, order, drag):
-    """Return actual errors over the figures, at all ends that are known to half a width."""
-    found = tongue(
-        system,
-        resonance,
-        parameter=("eps", SMALL),
-        order=order,
-        c=drag,
-        damping_factor=SMALL / SMALL[0],
-    )
-    kept = np.flatnonzero(found.open & (2 * found.error < found.width))
-    if not len(kept):
-        return []
-    eps, error = SMALL[kept], found.error[kept]
-    given = {"eps": eps, "c": drag * eps / SMALL[0]}
-    # Undamped, round-off of a double multiplier is magnified by the square root.
-    limit = 0.0 if drag else 1e-8
-    ratios = []
-    for end, side in ((found.lower[kept], -1.0), (found.upper[kept], 1.0)):
-        inner, outer = end - 2 * side * error, end + 2 * side * error
-        beyond = _count(system, outer, limit, **given)
-        covered = _count(system, inner, limit, **given) > beyond
-        for _ in range(14):
-            trial = (inner + outer) / 2
-            grows = _count(system, trial, limit, **given) > beyond
-            inner, outer = np.where(grows, trial, inner), np.where(grows, outer, trial)
-        actual = np.abs((inner + outer) / 2 - end)
-        ratios += np.where(covered, actual / error, np.inf)[error > 1e-10].tolist()
-    return ratios
-
-
-def _sample(seeds):
-    ratios = []
-    for seed in seeds:
-        system = _random(seed)
-        for place, resonance in enumerate(resonances(system, (0.9, 9.0), highest=2)):
-            if resonance.opens:
-                drag = 0.0 if (seed + place) % 2 else 0.0015
-                ratios += _ratios(system, resonance, 1 + (seed + place) % 3, drag)
-    return np.array(ratios)
-
-
-@pytest.mark.slow
-def test_error_estimates_of_random_systems():
-    ratios = _sample(range(100, 109))
-    assert len(ratios) >= 200
-    assert np.mean(ratios <= 1) >= 0.99
-    assert np.median(ratios) > 1e-3
 
 
 # ---------------------------------------------------------------- Smith's 1/16 inch rig

@@ -10,13 +10,9 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.stability import speed_boundaries, stability_edges
+from periodic_systems import named, wave
 
-RIG = "smith_1972_5152_sixteenth_inch"
 LOW, HIGH = 1.0, 2.3
-
-
-def _scales(values):
-    return {name: np.asarray(value, dtype=float) for name, value in values.items()}
 
 
 def _pair(pull=0.02, own=0.0, damping=(0.0, 0.0)) -> LinearPeriodic:
@@ -25,12 +21,12 @@ def _pair(pull=0.02, own=0.0, damping=(0.0, 0.0)) -> LinearPeriodic:
     terms = (
         Term("M", None, np.eye(2)),
         Term("K", None, np.diag([LOW**2, HIGH**2])),
-        Term("Kg", "pull", lambda theta: np.cos(theta)[:, None, None] * matrix),
+        Term("Kg", "pull", wave(matrix)),
         Term("C", "c1", np.diag([1.0, 0.0])),
         Term("C", "c2", np.diag([0.0, 1.0])),
     )
     values = {"pull": pull, "c1": damping[0], "c2": damping[1]}
-    return LinearPeriodic(2, terms, values, _scales)
+    return LinearPeriodic(2, terms, values, named(values))
 
 
 # First order ---------------------------------------------------------------------------------
@@ -163,10 +159,6 @@ def test_damped_principal_regions_are_those_of_the_fourier_matrix():
 # Random systems against a dense line of multipliers ---------------------------------------------
 
 
-def _wave(matrix, harmonic, phase):
-    return lambda theta: np.cos(harmonic * theta + phase)[:, None, None] * matrix
-
-
 def _random(seed, strength) -> LinearPeriodic:
     """Two modes with gyroscopic terms, a periodic mass and two harmonics of stiffness."""
     rng = np.random.default_rng(seed)
@@ -178,12 +170,12 @@ def _random(seed, strength) -> LinearPeriodic:
     bulge, skew = symmetric(1.0), rng.normal(size=(2, 2)) * 0.3
     terms = (
         Term("M", None, np.eye(2) + 0.1 * bulge @ bulge),
-        Term("M", None, _wave(symmetric(0.05 * strength), 1, 0.3)),
+        Term("M", None, wave(symmetric(0.05 * strength), 1, 0.3)),
         Term("A", None, skew - skew.T),
-        Term("B", None, _wave(symmetric(0.1 * strength), 1, rng.uniform(0, 6))),
+        Term("B", None, wave(symmetric(0.1 * strength), 1, rng.uniform(0, 6))),
         Term("K", None, np.diag(rng.uniform(1, 20, 2)) + symmetric(0.5)),
-        Term("Kg", None, _wave(symmetric(strength), 1, rng.uniform(0, 6))),
-        Term("Kg", None, _wave(symmetric(strength), 2, rng.uniform(0, 6))),
+        Term("Kg", None, wave(symmetric(strength), 1, rng.uniform(0, 6))),
+        Term("Kg", None, wave(symmetric(strength), 2, rng.uniform(0, 6))),
     )
     return LinearPeriodic(2, terms, {}, lambda values: {})
 
@@ -196,7 +188,7 @@ def _whirl(pull) -> LinearPeriodic:
         Term("A", None, np.array([[0.0, -1.0], [1.0, 0.0]])),
         Term("B", None, np.eye(2)),
         Term("K", None, 2.0 * np.eye(2)),
-        Term("Kg", None, _wave(matrix, 1, 0.2)),
+        Term("Kg", None, wave(matrix, 1, 0.2)),
     )
     return LinearPeriodic(2, terms, {}, lambda values: {})
 
@@ -237,7 +229,7 @@ def test_a_mode_of_negative_energy_makes_a_difference_region():
         Term("A", None, gyro),
         Term("B", None, whirl),
         Term("K", None, stiff),
-        Term("Kg", None, _wave(cross, 1, 0.0)),
+        Term("Kg", None, wave(cross, 1, 0.0)),
     )
     system = LinearPeriodic(3, terms, {}, lambda values: {})
     found = stability_edges(system, (2.6, 2.8))
@@ -262,17 +254,7 @@ def test_boundaries_without_modes_are_paired():
     assert found.upper[at] == pytest.approx(np.sqrt(2.3), rel=1e-12)
 
 
-# One mode, traces, records -----------------------------------------------------------------------
-
-
-def test_one_mode_gives_its_principal_regions():
-    system = el.load_scene(RIG).system()
-    found = stability_edges(system, (40.0, 90.0))
-    ends = speed_boundaries(system, speed_range=(40.0, 90.0)).speed
-    assert set(found.kind) == {"principal"}
-    assert found.modes.min() == found.modes.max() == 1
-    inside = [e for e in (*found.lower, *found.upper) if 40.0 <= e <= 90.0]
-    np.testing.assert_allclose(np.sort(inside), ends, rtol=1e-12)
+# Records -----------------------------------------------------------------------
 
 
 def test_result_draws_and_saves(tmp_path):
@@ -297,7 +279,10 @@ def test_circulatory_forces_are_refused():
         ({"speed_range": (0.0, 1.0)}, "speed_range"),
         ({"speed_range": (1e-4, 1.0)}, "speed_range"),
         ({"rtol": 1.0}, "rtol"),
+        ({"rtol": None}, "rtol"),
         ({"margin": 1.0}, "margin"),
+        ({"margin": "a"}, "margin"),
+        ({"margin": [2.0]}, "margin"),
         ({"mass": 1.0}, "mass"),
     ],
 )

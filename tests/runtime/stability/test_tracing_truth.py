@@ -160,24 +160,3 @@ def test_damping_that_feeds_energy_is_refused():
     system = _system([1.0, 4.0], [(1, 0.1 * SWAP, NONE)], -0.01 * np.eye(2))
     with pytest.raises(BadInput, match="feeds energy"):
         stability_edges(system, (0.9, 1.1))
-
-
-@pytest.mark.parametrize("options", [{"margin": "a"}, {"rtol": None}, {"margin": [2.0]}])
-def test_options_that_are_no_numbers_are_refused(options):
-    with pytest.raises(BadInput, match=next(iter(options))):
-        stability_edges(_system([1.0], []), (0.9, 1.1), **options)
-
-
-def test_chart_holds_the_end_of_region_0():
-    """Mathieu's a_0 = -mu^2/2 + ... at lam2 + mu cos: lam2 = -mu^2/2 to second order."""
-    chart = el.stability_chart(
-        el.load_scene("mathieu").system(),
-        ("lam2", np.linspace(-0.5, 2.0, 11)),
-        ("mu", np.array([0.05, 0.1])),
-        order=2,
-    )
-    at = chart.exact.regions.index(0)
-    assert np.all(np.isnan(chart.exact.lower[at]))
-    gap = np.abs(chart.exact.upper[at] - chart.perturbation.upper[at])
-    assert np.all(chart.exact.upper[at] < 0)
-    assert np.all(gap <= chart.perturbation.error[at] + chart.exact.error[at])

@@ -6,24 +6,23 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ...core.errors import BadInput, bad
 from ...core.families import DAMPING, LinearPeriodic, Term
-from ...core.inputs import speed_span
-from ...core.trigonometric import even_angles
-from ..equation import at_geometry
-from ..first_order import CanonicalForm, canonical_form
-from .blocks import modal_arrays, slow_part
-from .exponents import decoupling_error, integrated
-from .fourier import Part, PeriodicSeries
-from .frames import Frames, gap_choices, held_modes, moving_frames
+from ...core.inputs import numbers, require_whole, speed_span
+from ...core.trigonometric import interpolated
+from ..equation import Equation, SampledSystem, at_geometry, sampled
+from ..reduced import projections
+from .riccati import Frames, moving_frames, plain_equation, slow_part
+from .slow_modes import decoupling_error, frozen_frequencies, gap_choices, integrated
 
 Array = NDArray[np.float64]
 
-# Degrees in the speed squared that are tried, and the part of an array left out that is enough.
+# Degrees in the speed squared that are tried, the part of an array left out that is enough, and
+# that from which more degrees show round-off alone.
 _DEGREES = (1, 2, 3, 4, 6, 8)
-_SMALL = 1e-11
+_SMALL, _ROUND_OFF = 1e-11, 1e-9
 # Change of a monodromy matrix that ends the search for a gap, that ends it where better ones are
 # dearer, and the largest that will do.
 _PRECISE, _ENOUGH, _MOST = 1e-9, 1e-6, 1e-3
@@ -32,6 +31,8 @@ _DEARER = 10.0
 # Gap above the slow modes, in turns a period, from which decoupling is worth a try.
 _WORTH = 4.0
 _FEWEST = 4
+# Amplitude over the largest of its kind up to which a harmonic is round-off.
+_NOISE = 4 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
@@ -101,33 +102,31 @@ def slow_system(
         polynomials in the speed squared.
     """
     low, high = speed_span(speed_range)
-    system, changed = at_geometry(system, parameters)
-    calm = system.without(*DAMPING)
-    top = canonical_form(calm, np.array([high]), changed)
-    if not top.conservative:
+    system, values = at_geometry(system, parameters)
+    changed = {name: float(numbers(name, value)) for name, value in values.items()}
+    calm = sampled(system.without(*DAMPING))
+    top = plain_equation(calm, high, changed)
+    if top.damped:
         raise bad(
             "system",
             "stiffness or centrifugal terms that are not symmetric",
             "a system conservative but for damping",
-            "use characteristic_exponents",
+            "use floquet_multipliers or stability_chart",
         )
     chosen = _chosen(top, modes)
-    frames = chosen.frames
     degree, coefficients, fit = _fitted(calm, chosen, (low, high), changed)
     terms = _terms(coefficients, system.period, high)
-    damped = canonical_form(system, np.array([high]), changed)
-    if damped.damped:
-        terms += _damping(damped, frames)
+    terms += _damping(system, chosen.frames, high, changed)
     reduced = LinearPeriodic(
-        frames.modes,
+        chosen.frames.modes,
         tuple(terms),
         {},
         _no_scales,
         period=system.period,
-        labels=tuple(f"slow {i + 1}" for i in range(frames.modes)),
+        labels=tuple(f"slow {i + 1}" for i in range(chosen.frames.modes)),
         provenance=system.changed_provenance(**changed),
     )
-    return SlowSystem(reduced, frames.modes, (low, high), fit, chosen.change, degree)
+    return SlowSystem(reduced, chosen.frames.modes, (low, high), fit, chosen.change, degree)
 
 
 def _no_scales(values: object) -> dict[str, Array]:
@@ -143,33 +142,30 @@ class _Choice:
     passes: int
 
 
-def _chosen(form: CanonicalForm, modes: int | None) -> _Choice:
-    """Return the basis for the one speed of a form, the highest."""
-    n = form.system.size
+def _chosen(top: Equation, modes: int | None) -> _Choice:
+    """Return the basis for the highest speed."""
+    frequency = frozen_frequencies(top)
     if modes is not None:
-        if modes != int(modes) or not 1 <= modes < n:
-            raise bad("modes", modes, f"a whole number from 1 to {n - 1}", "correct it")
-        return _tried(form, int(modes))
-    best = _searched(form)
+        return _tried(top, require_whole("modes", modes, 1, top.size - 1), frequency)
+    best = _searched(top, frequency)
     if best is None or not best.change < _MOST:
         found = "no gap of the natural frequencies is wide enough to leave the modes above it out"
         if best is not None:
             found += f" (best: {best.frames.modes} modes, relative change {best.change:.1e})"
         raise bad(
             "speed_range",
-            f"up to {float(form.speed[0]):.4g} rad/s, where {found}",
+            f"up to {float(top.speed[0]):.4g} rad/s, where {found}",
             "speeds far below a gap of the natural frequencies",
             "lower the speeds or use the whole system",
         )
     return best
 
 
-def _searched(form: CanonicalForm) -> _Choice | None:
+def _searched(top: Equation, frequency: Array) -> _Choice | None:
     """Return the best choice that is not dear without need; None where there is none."""
-    n, period = form.system.size, form.system.period
-    frequency = held_modes(form, even_angles(period, 256))[0]
+    n = top.size
     work = np.max(frequency, axis=0) * np.arange(1, n + 1) ** 3.0
-    least = _WORTH * 2 * np.pi / period * float(form.speed[0])
+    least = _WORTH * 2 * np.pi / top.period * float(top.speed[0])
     best: _Choice | None = None
     dearest = np.inf
     for k, gap in gap_choices(frequency, min(_FEWEST, n - 1)):
@@ -178,7 +174,7 @@ def _searched(form: CanonicalForm) -> _Choice | None:
         if gap < least:
             continue
         try:
-            found = _tried(form, k)
+            found = _tried(top, k, frequency)
         except BadInput:
             continue
         if best is None or found.change < best.change:
@@ -190,29 +186,25 @@ def _searched(form: CanonicalForm) -> _Choice | None:
     return best
 
 
-def _tried(form: CanonicalForm, modes: int) -> _Choice:
+def _tried(top: Equation, modes: int, frequency: Array) -> _Choice:
     """Return the basis for a number of modes and what it costs."""
-    frames = moving_frames(form, modes)
-    slow, period = slow_part(form, frames), form.system.period
-    rate = float(np.max(frames.slow) / form.speed[0])
-    found = integrated(slow, frames.modes, period, rate, 1e-9)
-    change = min(decoupling_error(slow, found, period), found.residual)
-    return _Choice(frames, change, int(slow.passes[0]))
+    frames = moving_frames(top, modes)
+    slow = slow_part(top, frames)
+    rate = float(np.max(frequency[:, modes - 1]) / top.speed[0])
+    found = integrated(slow, top.period, rate, 1e-9)
+    change = min(decoupling_error(slow, found, top.period), found.residual)
+    return _Choice(frames, change, slow.passes)
 
 
-def _arrays(
-    system: LinearPeriodic, chosen: _Choice, speed: Array, changed: Mapping[str, ArrayLike]
-) -> dict[str, Array]:
-    """Return M, A and R = K + Kg - w^2 B of the slow modes, each ``(ns, nt, k, k)``."""
-    form = canonical_form(system, speed, changed)
-    slow, k = slow_part(form, chosen.frames, chosen.passes), chosen.frames.modes
-    scale = slow.scale[:, None, :k]
-    size = np.concatenate([scale, 1.0 / scale], axis=-1)
-    plain = slow.generator * size[..., :, None] / size[..., None, :]
+def _arrays(equation: Equation, chosen: _Choice) -> dict[str, Array]:
+    """Return M, A and R = K + Kg - w^2 B of the slow modes at one speed, each ``(nt, k, k)``."""
+    slow, k = slow_part(equation, chosen.frames, chosen.passes), chosen.frames.modes
+    size = np.concatenate([slow.scale[:k], 1.0 / slow.scale[:k]])
+    plain = slow.generator * size[:, None] / size
     mass = np.linalg.inv(plain[..., :k, k:])
     gyro = -mass @ plain[..., :k, :k]
     push = plain[..., k:, :k] + np.swapaxes(gyro, -1, -2) @ plain[..., :k, k:] @ gyro
-    rest = -(speed[:, None, None, None] ** 2) * push
+    rest = -(equation.speed[0] ** 2) * push
     return {
         "M": 0.5 * (mass + np.swapaxes(mass, -1, -2)),
         "A": gyro,
@@ -221,10 +213,10 @@ def _arrays(
 
 
 def _fitted(
-    system: LinearPeriodic,
+    known: SampledSystem,
     chosen: _Choice,
     span: tuple[float, float],
-    changed: Mapping[str, ArrayLike],
+    changed: Mapping[str, float],
 ) -> tuple[int, dict[str, list[Array]], float]:
     """Return the degree, the coefficients by powers of the speed squared, and the error."""
     low, high = (value**2 for value in span)
@@ -234,7 +226,11 @@ def _fitted(
         nodes = np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1))
         extra = np.array([-1.0, 0.37, 1.0])
         places = 0.5 * (low + high) + 0.5 * (high - low) * np.concatenate([nodes, extra])
-        found = _arrays(system, chosen, np.sqrt(places), changed)
+        each = [
+            _arrays(plain_equation(known, float(speed), changed), chosen)
+            for speed in np.sqrt(places)
+        ]
+        found = {name: np.stack([arrays[name] for arrays in each]) for name in each[0]}
         unit = places / high
         vander = np.vander(unit, degree + 1, increasing=True)
         inverse = np.linalg.inv(vander[: degree + 1])
@@ -246,16 +242,18 @@ def _fitted(
             error = max(error, float(gap / np.max(np.abs(flat))))
             shape = values.shape[1:]
             coefficients[name] = [(row / high**j).reshape(shape) for j, row in enumerate(own)]
-        if best is None or error < 0.5 * best[2]:
+        better = best is None or error < 0.5 * best[2]
+        if better:
             best = degree, coefficients, error
-        if error < _SMALL:
+        # Enough is a hundredth of what decoupling leaves; a small error that stays is round-off.
+        if error < max(_SMALL, 0.01 * chosen.change) or (not better and error < _ROUND_OFF):
             break
     if best is None or not best[2] < _MOST:
         raise bad(
             "system",
             "slow modes whose arrays are no polynomials in the speed squared",
             "terms with even powers of the speed, and speeds far below a gap of the frequencies",
-            "lower the speeds or use characteristic_exponents",
+            "lower the speeds or use the whole system",
         )
     return best
 
@@ -269,23 +267,27 @@ def _terms(coefficients: Mapping[str, list[Array]], period: float, high: float) 
         name: max(float(np.max(np.abs(v))) * high**p for n, p, v in named if n == name)
         for name in ("M", "A", "K", "B")
     }
-    # Small beside the largest of its kind at the highest speed, a harmonic does not count.
-    sizes = [max(largest[name], 1e-300) / high**power for name, power, _ in named]
-    stacked = np.stack([v / size for (_, _, v), size in zip(named, sizes, strict=True)], axis=1)
-    series = PeriodicSeries.of(stacked, period)
-    return [
-        Term(name, None, Part(series, i, size), power=power)
-        for i, ((name, power, _), size) in enumerate(zip(named, sizes, strict=True))
-    ]
-
-
-def _damping(form: CanonicalForm, frames: Frames) -> list[Term]:
-    """Return the damping of the slow modes, without what the fast ones add by following."""
-    modal, k = modal_arrays(form, frames), frames.modes
-    shape = (len(frames.theta), k, k)
     terms = []
-    for name, values in (("C", modal.drag), ("D", modal.carried)):
-        if values is not None:
-            own = np.broadcast_to(values[0, :, :k, :k], shape) * form.speed[0]
-            terms.append(Term(name, None, PeriodicSeries.of(own, form.system.period)))
+    for name, power, values in named:
+        # Small beside the largest of its kind at the highest speed, a harmonic does not count.
+        top = float(np.max(np.abs(values))) * high**power
+        noise = _NOISE * largest[name] / top if top else 1.0
+        terms.append(Term(name, None, interpolated(values, period, noise), power=power))
     return terms
+
+
+def _damping(
+    system: LinearPeriodic, frames: Frames, speed: float, changed: Mapping[str, float]
+) -> list[Term]:
+    """Return the damping of the slow modes, without what the fast ones add by following."""
+    sums: dict[str, Array] = {}
+    basis, slope = (values[..., : frames.modes] for values in (frames.basis, frames.slope))
+    for array in DAMPING:
+        values = np.asarray(system.array(array, frames.theta, speed, **changed))
+        for name, part in projections(array, values, basis, slope):
+            sums[name] = sums[name] + part if name in sums else part
+    return [
+        Term(name, None, interpolated(values, system.period))
+        for name, values in sums.items()
+        if np.any(values)
+    ]

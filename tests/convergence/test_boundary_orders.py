@@ -208,23 +208,17 @@ def test_several_parameters_in_the_plane(n):
 def test_three_derivations_of_the_series_are_one(name, share):
     """Strained parameters, Bloch's operator and the expansion made here: number by number."""
     f = function(name)
-    for n in REGIONS:
+    for n in (0, *REGIONS):
         if closes(name, n, share):
             continue
         problem = curve((f,), n, SHARES[share], highest=6)
         centre, root, square = problem.expansion(6)
-        strained = strained_boundaries(f, n, 6, problem.drag[0])
         direction = (1, *problem.drag) if problem.damped else (1,)
         bloch = exact_series(problem.operator(), direction)
-        for branch, ends, sign in zip(
-            strained.branches, (bloch.upper, bloch.lower), (1, -1), strict=True
-        ):
-            ours = [
-                Surd(c) + Surd.root(square) * (sign * r)
-                for c, r in zip(centre[1:], root[1:], strict=True)
-            ]
-            assert list(branch.alpha) == ours
-            assert list(ends) == ours
+        assert strained_boundaries(f, n, 6, problem.drag[0]) == bloch
+        for ends, sign in ((bloch.upper, 1), (bloch.lower, -1)):
+            pairs = zip(centre[1:], root[1:], strict=True)
+            assert list(ends) == [Surd(c) + Surd.root(square) * (sign * r) for c, r in pairs]
 
 
 def test_several_parameters_are_their_combination():

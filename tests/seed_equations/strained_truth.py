@@ -1,9 +1,6 @@
-"""Published series of Mathieu's characteristic numbers, and random exact functions."""
+"""Published series of Mathieu's characteristic numbers."""
 
-import random
 from fractions import Fraction
-
-from smith_chapter_8.surd import ExactHarmonics
 
 # DLMF 28.6.1-28.6.13 and Abramowitz & Stegun 20.2.25: a_r, b_r of y'' + (a - 2 q cos 2x) y = 0 less
 # r^2, coefficients of q, q^2, ... as far as they are printed there (exact rational numbers).
@@ -27,15 +24,3 @@ PUBLISHED = {
 def published(name):
     """Return the published coefficients of one characteristic number."""
     return [Fraction(x) for x in PUBLISHED[name].split()]
-
-
-def random_function(seed, count=3, mean=True, denominator=10):
-    """Return a function, neither even nor odd, of small random rational coefficients."""
-    rng = random.Random(seed)
-
-    def row():
-        return [
-            Fraction(rng.choice((-1, 1)) * rng.randint(1, 9), denominator) for _ in range(count)
-        ]
-
-    return ExactHarmonics.of(Fraction(rng.randint(1, 9), 10) if mean else 0, row(), row())

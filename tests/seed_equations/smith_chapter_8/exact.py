@@ -15,25 +15,20 @@ common multiple of the level distances, ``Omega_k = W_k / (d L)^k`` and
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 from itertools import combinations_with_replacement
-from operator import add, mul, sub
+from operator import add, mul
 from typing import TypeAlias
 
+import numpy as np
 from elastolink.generated import hill_recursion
 
 from .surd import ExactHarmonics, Surd
 
 Exponents: TypeAlias = tuple[int, ...]
 Gaussian: TypeAlias = tuple[Fraction, Fraction]
-# Real and imaginary part of a row of Gaussian integers; None stands for zeros.
-_Part: TypeAlias = list[int] | None
-_Row: TypeAlias = tuple[_Part, _Part]
-_Pair: TypeAlias = tuple[int, int]
-_Couple: TypeAlias = dict[Exponents, tuple[_Pair, _Pair]]
 
 
 @dataclass(frozen=True)
@@ -45,9 +40,7 @@ class ExactOperator:
     coefficients of A and of B, likewise.
     """
 
-    n: int
     order: int
-    damped: bool
     exponents: tuple[tuple[Exponents, ...], ...]
     diagonal: tuple[tuple[Gaussian, ...], ...]
     coupling: tuple[tuple[Gaussian, ...], ...]
@@ -57,13 +50,13 @@ class ExactOperator:
     ) -> tuple[tuple[Gaussian, ...], tuple[Gaussian, ...]]:
         """Return the homogeneous components A_k, B_k, k = 1 ... order, at rational parameters."""
         values = [Fraction(value) for value in parameters]
-        a, b = (
-            tuple(
-                _weighted(row, [_monomial(values, e) for e in exponents])
-                for row, exponents in zip(rows, self.exponents, strict=True)
-            )
-            for rows in (self.diagonal, self.coupling)
-        )
+        weights = [[math.prod(map(pow, values, e)) for e in row] for row in self.exponents]
+
+        def weighted(coefficients: tuple[Gaussian, ...], row: list[Fraction]) -> Gaussian:
+            real, imaginary = (sum(map(mul, part, row)) for part in zip(*coefficients, strict=True))
+            return real, imaginary
+
+        a, b = (tuple(map(weighted, rows, weights)) for rows in (self.diagonal, self.coupling))
         return a, b
 
 
@@ -80,71 +73,53 @@ class ExactSeries:
     lower: tuple[Surd, ...]
 
 
-def _monomial(values: Sequence[Fraction], exponents: Exponents) -> Fraction:
-    return math.prod((v**e for v, e in zip(values, exponents, strict=True)), start=Fraction(1))
-
-
-def run(algebra, order):
-    """Return the values of the emitted recursion by name (``h1``, ``omega1``, ...)."""
-    calls = (algebra.act, algebra.resolve, algebra.project, algebra.combine)
-    found = getattr(hill_recursion, f"order_{order}")(algebra.start, *calls)
-    pairs = zip(("h", "omega"), found, strict=True)
-    return {f"{name}{k}": value for name, values in pairs for k, value in enumerate(values, 1)}
-
-
-def _weighted(row: Iterable[Gaussian], weights: Sequence[Fraction]) -> Gaussian:
-    pairs = list(zip(row, weights, strict=True))
-    zero = Fraction(0)
-    return sum((c[0] * w for c, w in pairs), zero), sum((c[1] * w for c, w in pairs), zero)
-
-
 def exact_operator(
     parts: Sequence[ExactHarmonics], n: int, order: int, damped: bool = False
 ) -> ExactOperator:
     """Return A and B of region n exactly, up to a total degree; where damped, K comes last."""
     algebra = _Algebra(parts, n, order // 2, damped)
-    values = run(algebra, order)
-    exponents = tuple(tuple(monomials(algebra.count, k)) for k in range(1, order + 1))
+    calls = (algebra.act, algebra.resolve, algebra.project, algebra.combine)
+    operators, _ = getattr(hill_recursion, f"order_{order}")(algebra.start, *calls)
+    exponents = tuple(_monomials(algebra.count, k) for k in range(1, order + 1))
     diagonal: list[list[Gaussian]] = []
     coupling: list[list[Gaussian]] = []
-    for k, row in enumerate(exponents, start=1):
-        h: _Couple = values[f"h{k}"]
+    for k, (row, h) in enumerate(zip(exponents, operators, strict=True), start=1):
         scale = algebra.denominator**k * algebra.multiple ** (k - 1)
-        for which, into in ((0, diagonal), (1, coupling)):
-            pairs = [h.get(e, ((0, 0), (0, 0)))[which] for e in row]
-            into.append([(Fraction(x, scale), Fraction(y, scale)) for x, y in pairs])
+        pairs = [h.get(e, np.zeros((2, 2), dtype=object)) for e in row]
+        diagonal.append([(Fraction(x, scale), Fraction(y, scale)) for (x, _), (y, _) in pairs])
+        coupling.append([(Fraction(x, scale), Fraction(-y, scale)) for (_, x), (_, y) in pairs])
     # The mean of f commutes with everything: it moves lam2 and nothing else.
     for place, part in enumerate(parts):
         real, imaginary = diagonal[0][place]
         diagonal[0][place] = (real - part.mean, imaginary)
-    return ExactOperator(
-        n, order, damped, exponents, tuple(map(tuple, diagonal)), tuple(map(tuple, coupling))
-    )
+    return ExactOperator(order, exponents, tuple(map(tuple, diagonal)), tuple(map(tuple, coupling)))
 
 
-def monomials(count: int, degree: int) -> list[Exponents]:
+def _monomials(count: int, degree: int) -> tuple[Exponents, ...]:
     """Return the exponents of all monomials of a degree, the highest power of the first first."""
     chosen = combinations_with_replacement(range(count), degree)
-    return [tuple(map(factors.count, range(count))) for factors in chosen]
+    return tuple(tuple(map(factors.count, range(count))) for factors in chosen)
 
 
-class _Column:
-    """A homogeneous component of a column of Omega: rows of Gaussian integers by monomial."""
+class _Polynomial(dict[Exponents, np.ndarray]):
+    """Arrays of Gaussian integers by exponents; real and imaginary part along the first axis."""
 
-    def __init__(self, rows: dict[Exponents, _Row]) -> None:
-        self.rows = rows
+    def accumulate(self, exponents: Exponents, value: np.ndarray) -> None:
+        self[exponents] = self[exponents] + value if exponents in self else value
 
-    def _with(self, other: _Column, sign: int) -> _Column:
-        rows = dict(self.rows)
-        for exponents, row in other.rows.items():
-            rows[exponents] = _sum(rows.get(exponents, (None, None)), row, sign)
-        return _Column(rows)
+    def __add__(self, other: _Polynomial) -> _Polynomial:
+        out = _Polynomial(self)
+        for exponents, value in other.items():
+            out.accumulate(exponents, value)
+        return out
 
-    def __add__(self, other: _Column) -> _Column:
-        return self._with(other, 1)
+    def __sub__(self, other: _Polynomial) -> _Polynomial:
+        return self + _Polynomial({exponents: -value for exponents, value in other.items()})
 
-    def __sub__(self, other: _Column) -> _Column:
-        return self._with(other, -1)
+
+def _times(x: Sequence, y: np.ndarray) -> np.ndarray:
+    """Return the product of a Gaussian integer, or an array of them, and an array of them."""
+    return np.stack([x[0] * y[0] - x[1] * y[1], x[0] * y[1] + x[1] * y[0]])
 
 
 class _Algebra:
@@ -155,121 +130,61 @@ class _Algebra:
     """
 
     def __init__(self, parts: Sequence[ExactHarmonics], n: int, reach: int, damped: bool) -> None:
-        width = max(len(part.cosine) for part in parts)
-        self.n, self.damped, self.count = n, damped, len(parts) + damped
-        radius = reach * width
-        self.numbers = range(-radius, n + radius + 1)
-        self.own, self.other = radius + n, radius
+        self.n, self.count = n, len(parts) + damped
+        self.width = max(len(part.cosine) for part in parts)
+        radius = reach * self.width
+        numbers = np.array(range(-radius, n + radius + 1), dtype=object)
+        self.resonant = [radius + n, radius]
         halves = [x / 2 for part in parts for x in (*part.cosine, *part.sine)]
         self.denominator = math.lcm(*(x.denominator for x in halves))
-        self.taps = [self._taps(part, width) for part in parts]
-        levels = [m * (m - n) for m in self.numbers]
+        self.taps = [self._taps(part) for part in parts]
+        self.drag = (0, (n - 2 * numbers) * self.denominator) if damped else None
+        levels = numbers * (numbers - n)
         self.multiple = math.lcm(*(level for level in levels if level))
-        self.inverses = [-self.multiple // level if level else 0 for level in levels]
-        first = [0] * len(levels)
-        first[self.own] = 1
-        self.start = _Column({(0,) * self.count: (first, None)})
+        self.inverses = np.array([-self.multiple // k if k else 0 for k in levels], dtype=object)
+        first = np.zeros((2, len(levels)), dtype=object)
+        first[0, radius + n] = 1
+        self.start = _Polynomial({(0,) * self.count: first})
 
-    def _taps(self, part: ExactHarmonics, width: int) -> _Row:
-        """Return ``-c_m d`` for m = width ... -width, the order in which a window meets them."""
-        pairs = [part.harmonic(m) for m in range(width, 0, -1)]
-        real = [int(-a / 2 * self.denominator) for a, _ in pairs]
-        imaginary = [int(b / 2 * self.denominator) for _, b in pairs]
-        full = [*real, 0, *real[::-1]]
-        turned = [*imaginary, 0, *(-x for x in imaginary[::-1])]
-        return (full if any(full) else None), (turned if any(turned) else None)
+    def _taps(self, part: ExactHarmonics) -> dict[int, tuple[int, int]]:
+        """Return ``-c_m d`` of the harmonics m that a function has."""
+        taps = {}
+        for m in range(1, len(part.cosine) + 1):
+            a, b = (int(-x / 2 * self.denominator) for x in part.harmonic(m))
+            if a or b:
+                taps |= {m: (a, -b), -m: (a, b)}
+        return taps
 
-    @cached_property
-    def drag(self) -> list[int]:
-        """Imaginary part of ``-2 i k d``."""
-        return [-(2 * m - self.n) * self.denominator for m in self.numbers]
+    def act(self, column: _Polynomial) -> _Polynomial:
+        out, width = _Polynomial(), self.width
+        edge = np.zeros((2, width), dtype=object)
+        for exponents, row in column.items():
+            apart = np.hstack([edge, row, edge])
+            raised = [tuple(map(add, exponents, unit)) for unit in _monomials(self.count, 1)]
+            for place, taps in zip(raised, self.taps, strict=False):
+                for m, c in taps.items():
+                    out.accumulate(place, _times(c, apart[:, width - m :][:, : row.shape[1]]))
+            if self.drag:
+                out.accumulate(raised[-1], _times(self.drag, row))
+        return out
 
-    def act(self, column: _Column) -> _Column:
-        rows: dict[Exponents, _Row] = {}
-        for exponents, row in column.rows.items():
-            for place in range(self.count):
-                if place < len(self.taps):
-                    moved = _convolved(self.taps[place], row)
-                else:
-                    moved = _scaled(row[1], self.drag, -1), _scaled(row[0], self.drag)
-                raised = (*exponents[:place], exponents[place] + 1, *exponents[place + 1 :])
-                rows[raised] = _sum(rows.get(raised, (None, None)), moved)
-        return _Column(rows)
+    def project(self, column: _Polynomial) -> _Polynomial:
+        """Return the resonant entries; for n = 0 there is one."""
+        kept = np.array([1, int(self.n > 0)], dtype=object)
+        return _Polynomial({e: row[:, self.resonant] * kept for e, row in column.items()})
 
-    def project(self, column: _Column) -> _Couple:
-        if self.n == 0:
-            return {e: ((_at(x, self.own), 0), (0, 0)) for e, (x, _) in column.rows.items()}
-        return {
-            e: (
-                (_at(x, self.own), _at(y, self.own)),
-                (_at(x, self.other), -_at(y, self.other)),
-            )
-            for e, (x, y) in column.rows.items()
-        }
+    def resolve(self, column: _Polynomial) -> _Polynomial:
+        return _Polynomial({e: row * self.inverses for e, row in column.items()})
 
-    def resolve(self, column: _Column) -> _Column:
-        return _Column(
-            {
-                e: (_scaled(x, self.inverses), _scaled(y, self.inverses))
-                for e, (x, y) in column.rows.items()
-            }
-        )
-
-    def combine(self, column: _Column, couple: _Couple) -> _Column:
+    def combine(self, column: _Polynomial, h: _Polynomial) -> _Polynomial:
         """Return ``Omega_j h_i``; the mirror of the column stands for the column of m = 0."""
-        rows: dict[Exponents, _Row] = {}
-        for first, (x, y) in column.rows.items():
-            mirror = (x and x[::-1], y and [-value for value in reversed(y)])
-            for second, (a, b) in couple.items():
-                product = _sum(_times((x, y), a), _times(mirror, (b[0], -b[1])))
-                place = tuple(map(add, first, second))
-                rows[place] = _sum(rows.get(place, (None, None)), product)
-        return _Column(rows)
-
-
-def _at(part: _Part, place: int) -> int:
-    return part[place] if part else 0
-
-
-def _plus(x: _Part, y: _Part, sign: int = 1) -> _Part:
-    if y is None:
-        return x
-    if x is None:
-        return y if sign > 0 else [-value for value in y]
-    return list(map(add if sign > 0 else sub, x, y))
-
-
-def _sum(x: _Row, y: _Row, sign: int = 1) -> _Row:
-    return _plus(x[0], y[0], sign), _plus(x[1], y[1], sign)
-
-
-def _scaled(part: _Part, factors: Iterable[int], sign: int = 1) -> _Part:
-    if part is None:
-        return None
-    return [sign * value for value in map(mul, part, factors)]
-
-
-def _times(row: _Row, factor: _Pair) -> _Row:
-    """Return a row times a Gaussian integer."""
-    (x, y), (a, b) = row, factor
-
-    def times(part: _Part, number: int) -> _Part:
-        return [value * number for value in part] if part and number else None
-
-    return _plus(times(x, a), times(y, b), -1), _plus(times(y, a), times(x, b))
-
-
-def _convolved(taps: _Row, row: _Row) -> _Row:
-    (a, b), (x, y) = taps, row
-    return _plus(_folded(a, x), _folded(b, y), -1), _plus(_folded(a, y), _folded(b, x))
-
-
-def _folded(taps: _Part, part: _Part) -> _Part:
-    if taps is None or part is None:
-        return None
-    width = len(taps) // 2
-    apart = [0] * width + part + [0] * width
-    return [sum(map(mul, taps, apart[i : i + len(taps)])) for i in range(len(part))]
+        out = _Polynomial()
+        for first, row in column.items():
+            mirror = np.stack([row[0, ::-1], -row[1, ::-1]])
+            for second, pair in h.items():
+                product = _times(pair[:, 0], row) + _times(pair[:, 1], mirror)
+                out.accumulate(tuple(map(add, first, second)), product)
+        return out
 
 
 def exact_series(operator: ExactOperator, direction: Sequence[Fraction | int]) -> ExactSeries:

@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
 from fractions import Fraction
 
+from .exact import ExactSeries
 from .surd import ExactHarmonics, Surd, combine
 
 Pair = tuple[Surd, Surd]
@@ -67,33 +67,6 @@ def resolved(wave: Wave, n: int) -> Wave:
     return Wave({p: tuple(x * k for x in wave[p]) for p, k in divisors.items()})
 
 
-@dataclass(frozen=True)
-class StrainedBranch:
-    """One boundary: alpha_1 ... alpha_N of (7.12), and its periodic solution y_0, y_1, ..."""
-
-    alpha: tuple[Surd, ...]
-    solutions: tuple[Wave, ...]
-
-    def conjugate(self) -> StrainedBranch:
-        """Return the boundary with the other sign of an irrational root."""
-        waves = ({p: tuple(x.conjugate() for x in pair) for p, pair in y.items()}
-                 for y in self.solutions)  # fmt: skip
-        return StrainedBranch(tuple(x.conjugate() for x in self.alpha), tuple(map(Wave, waves)))
-
-
-@dataclass(frozen=True)
-class StrainedBoundaries:
-    """Both boundaries of a region, with the positive and the negative root of (7.37).
-
-    ``split`` is the order at which they part: 1 unless c_n = 0, None where they agree through the
-    last order and for region 0.  A_0 = 1 and A_k = 0 afterwards; where a boundary has A_0 = 0, for
-    which (7.24) fails, B_0 = 1 and B_k = 0.
-    """
-
-    split: int | None
-    branches: tuple[StrainedBranch, StrainedBranch]
-
-
 class _Expansion:
     """The solutions that belong to a fixed resonant harmonic, order by order.
 
@@ -104,8 +77,8 @@ class _Expansion:
     harmonic at order k; its rows are the cosine and the sine condition.
     """
 
-    def __init__(self, f: ExactHarmonics, n: int, rates: tuple[Fraction, ...], unit: int) -> None:
-        self.f, self.n, self.rates, self.unit = f, n, rates, unit
+    def __init__(self, f: ExactHarmonics, n: int, rates: tuple[Fraction, ...]) -> None:
+        self.f, self.n, self.rates = f, n, rates
         self.alpha: list[Surd] = []
         self.secular: list[tuple[Pair, Pair]] = []
         kinds = ((_ONE, _ZERO), (_ZERO, _ONE)) if n else ((_ONE, _ZERO),)
@@ -138,24 +111,13 @@ class _Expansion:
         alpha = self.alpha[k - 1] if k <= len(self.alpha) else _ZERO
         return (a + alpha) * v[0] + b * v[1], c * v[0] + (d + alpha) * v[1]
 
-    def branch(self, constants: list[Pair]) -> StrainedBranch:
-        """Return the boundary whose constants are v_0, v_1, ..."""
-        parts = [Fraction(1, self.unit**k) for k in range(len(self.alpha) + 1)]
-        solutions = []
-        for k in range(len(constants)):
-            pairs = [(v[i] * parts[k], y[k - j]) for j, v in enumerate(constants[: k + 1])
-                     for i, y in enumerate(self.columns)]  # fmt: skip
-            solutions.append(total(*pairs))
-        alpha = (x * part for x, part in zip(self.alpha, parts[1:], strict=True))
-        return StrainedBranch(tuple(alpha), tuple(solutions))
-
 
 def strained_boundaries(
     f: ExactHarmonics,
     region: int,
     order: int,
     damping: Fraction | int | Iterable[Fraction | int] = 0,
-) -> StrainedBoundaries:
+) -> ExactSeries:
     """Return the boundaries of a region to any order, Smith (7.12)-(7.37), (7.41)-(7.49).
 
     ``damping`` is beta of ``K = beta mu``; several numbers mean ``K = beta_1 mu + beta_2 mu^2 +
@@ -165,7 +127,7 @@ def strained_boundaries(
     # With mu over the common denominator the function has whole coefficients.
     unit = math.lcm(*(x.denominator for x in (f.mean, *f.cosine, *f.sine)))
     whole = combine([f], [unit])
-    arguments = whole, region, tuple(Fraction(x) * unit**j for j, x in enumerate(rates, 1)), unit
+    arguments = whole, region, tuple(Fraction(x) * unit**j for j, x in enumerate(rates, 1))
     expansion = _Expansion(*arguments)
     (a, b), (c, d) = expansion.conditions()
     while not (b or c or a != d) and len(expansion.secular) < order:
@@ -173,9 +135,8 @@ def strained_boundaries(
         (a, b), (c, d) = expansion.conditions()
     if not (b or c or a != d):
         expansion.advance(-a)
-        kinds = ((_ONE, _ZERO), (_ZERO, _ONE) if region else (_ONE, _ZERO))
-        nothing = [(_ZERO, _ZERO)] * (order - 1)
-        return StrainedBoundaries(None, tuple(expansion.branch([v, *nothing]) for v in kinds))
+        both = tuple(x * Fraction(1, unit**k) for k, x in enumerate(expansion.alpha, 1))
+        return ExactSeries(None, both, both)
     # The determinant of (7.22), (7.45) is a quadratic in alpha.
     square = ((a - d) * (a - d) + 4 * b * c).rational / 4
     if square <= 0:
@@ -183,14 +144,14 @@ def strained_boundaries(
             f"damping: closes region {region}, or is critical: found a root of {square}"
         )
     split, middle, half = len(expansion.secular), -(a + d) / 2, Surd.root(square)
-    upper = _branch(arguments, split, middle + half, order)
-    lower = (
-        upper.conjugate() if half.irrational else _branch(arguments, split, middle - half, order)
+    branches = [_branch(arguments, split, alpha, order) for alpha in (middle + half, middle - half)]
+    upper, lower = (
+        tuple(x * Fraction(1, unit**k) for k, x in enumerate(alphas, 1)) for alphas in branches
     )
-    return StrainedBoundaries(split, (upper, lower))
+    return ExactSeries(split, upper, lower)
 
 
-def _branch(arguments, split: int, alpha: Surd, order: int) -> StrainedBranch:
+def _branch(arguments, split: int, alpha: Surd, order: int) -> list[Surd]:
     """Go on from the order where the boundaries part, with one of the two alphas."""
     own = _Expansion(*arguments)
     for _ in range(split):
@@ -211,4 +172,4 @@ def _branch(arguments, split: int, alpha: Surd, order: int) -> StrainedBranch:
         x = (known[1] * start[0] - known[0] * start[1]) / determinant
         own.advance((other[1] * known[0] - other[0] * known[1]) / determinant)
         constants.append((_ZERO, x) if free else (x, _ZERO))
-    return own.branch(constants)
+    return own.alpha

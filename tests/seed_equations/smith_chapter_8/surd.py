@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import zip_longest
 
-_SMALL_SQUARES = 1000
-
 
 @dataclass(frozen=True, eq=False)
 class Surd:
@@ -28,7 +26,7 @@ class Surd:
     def root(cls, square: Fraction) -> Surd:
         """Return the root of a rational number that is at least zero."""
         inside, outside = square.numerator * square.denominator, Fraction(1, square.denominator)
-        for factor in range(2, _SMALL_SQUARES):
+        for factor in range(2, 1000):
             while inside % (factor * factor) == 0 and inside:
                 inside //= factor * factor
                 outside *= factor
@@ -36,10 +34,6 @@ class Surd:
         if whole * whole == inside:
             return cls(whole * outside)
         return cls(Fraction(0), outside, inside)
-
-    def conjugate(self) -> Surd:
-        """Return the number with the other sign of the root."""
-        return Surd(self.rational, -self.irrational, self.radicand)
 
     def _field(self, other: Surd) -> int:
         if self.irrational and other.irrational and self.radicand != other.radicand:
@@ -86,9 +80,6 @@ class Surd:
         if not isinstance(other, Surd | int | Fraction):
             return NotImplemented
         return self._parts() == Surd.of(other)._parts()
-
-    def __hash__(self) -> int:
-        return hash(self._parts() if self.irrational else self.rational)
 
     def __float__(self) -> float:
         """Return the nearest double, or one beside it, free of cancellation."""

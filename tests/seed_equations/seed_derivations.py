@@ -1,7 +1,7 @@
-"""Machine derivations of this ledger: loop closure, beam in a moving frame, projection, Hill.
+"""Machine derivations of this ledger: loop closure, and an element of the moving coupler.
 
-SymPy starts from the closure of the four bars, from the position of an element of the coupler and
-from trigonometric products; no printed formula enters.  Tests compare both with numeric truth.
+SymPy starts from the closure of the four bars and from the position of an element; no printed
+formula enters.  Tests compare both with numeric truth.
 """
 
 from __future__ import annotations
@@ -119,70 +119,3 @@ def element_acceleration():
         for part in _components(position.diff(t, 2), unit, normal)
     )
     return components, (y_t, y_tt)
-
-
-@cache
-def linear_beam():
-    """Return mu*y_tt minus all other forces per length, from Hamilton's principle.
-
-    The element moves by y across and by -u along the coupler, u = 1/2 int_0^x y_x^2 dx.  The
-    first variation by u, at y = 0, is the axial inertia force; with the end load F_x it gives the
-    tension N, and the action density becomes 1/2 mu (v^2)_2 - 1/2 N y_x^2 - 1/2 EI y_xx^2.
-    """
-    deflection, shortening = sp.Function("y")(t), sp.Function("u")(t)
-    position, unit, normal = _position(x - shortening, deflection)
-    along, across = _components(position.diff(t), unit, normal)
-    kinetic = sp.expand(mu / 2 * (along**2 + across**2))
-    y_t, y_tt = sp.symbols("y_t y_tt", real=True)
-    plain = {sp.diff(deflection, t, 2): y_tt, sp.diff(deflection, t): y_t, deflection: y}
-    variations = []
-    for field in (shortening, deflection):
-        rate = sp.diff(field, t)
-        variation = sp.diff(kinetic, field) - sp.diff(sp.diff(kinetic, rate), t)
-        variation = variation.subs(shortening, 0).doit().subs(plain)
-        variations.append(sp.trigsimp(sp.expand(_still(variation, _moving()).subs(alpha2, 0))))
-    axial = variations[0].subs({y: 0, y_t: 0, y_tt: 0})
-    place = sp.Symbol("xi", real=True)
-    tension = force_x - sp.integrate(sp.expand(axial.subs(x, place)), (place, x, l3))
-    y_x, y_xx, y_xxxx = sp.symbols("y_x y_xx y_xxxx", real=True)
-    restoring = tension * y_xx + sp.diff(tension, x) * y_x - EI * y_xxxx
-    return {
-        "tension": sp.collect(sp.expand(tension), mu),
-        "equation": sp.expand(-variations[1] - restoring),
-        "symbols": (y_x, y_xx, y_xxxx, y_t, y_tt),
-    }
-
-
-@cache
-def _moment(power, trig, number):
-    """Return the integral of u^power trig(number pi u) over u from 0 to 1."""
-    u = sp.Symbol("u", positive=True)
-    if number < 0:
-        return _moment(power, trig, -number) * (1 if trig is sp.cos else -1)
-    return sp.integrate(u**power * trig(number * sp.pi * u), (u, 0, 1))
-
-
-@cache
-def projected(m, n):
-    """Project the linear beam on sin(m pi x/l3) with deflection Y_n sin(n pi x/l3).
-
-    Returns the coefficients of Y_n'' and Y_n and the right-hand side, divided by mu l3 / 2.
-    """
-    beam = linear_beam()
-    Y, Y_tt, sine, cosine = sp.symbols("Y Y_tt s c", real=True)
-    k = n * sp.pi / l3
-    y_x, y_xx, y_xxxx, y_t, y_tt = beam["symbols"]
-    values = {y_tt: Y_tt * sine, y_t: 0, y: Y * sine, y_x: Y * k * cosine}
-    values |= {y_xx: -Y * k**2 * sine, y_xxxx: Y * k**4 * sine}
-    total = sp.S.Zero
-    for (power, s, c), factor in sp.Poly(beam["equation"].subs(values), x, sine, cosine).terms():
-        if s:  # sin(m) sin(n) = (cos(m - n) - cos(m + n))/2
-            integral = (_moment(power, sp.cos, m - n) - _moment(power, sp.cos, m + n)) / 2
-        elif c:
-            integral = (_moment(power, sp.sin, m - n) + _moment(power, sp.sin, m + n)) / 2
-        else:
-            integral = _moment(power, sp.sin, m)
-        total += factor * integral * l3 ** (power + 1)
-    total = sp.expand(total * 2 / (mu * l3))
-    rest = sp.collect(total.coeff(Y), (force_x, omega3))
-    return total.coeff(Y_tt), rest, sp.expand(-total.subs({Y: 0, Y_tt: 0}))

@@ -328,7 +328,7 @@ def hold_derived(entry: Entry, *points: object, tol: float = 1e-9) -> None:
     """Assert the same of the machine's own forms, their symbols being names of the points."""
     names, symbols, function = _compiled(entry.derived)
     for point in _all(points):
-        values = {_plain(name): value for name, value in point.items()}
+        values = {plain(name): value for name, value in point.items()}
         derived = function(*(values[symbol] for symbol in symbols))
         for name, value in zip(names, derived, strict=True):
             if name is None:
@@ -345,13 +345,13 @@ def _compiled(derived: Callable[[], object]) -> tuple[list[object], list[str], C
     forms = derived()
     names: list[object] = [None] * len(forms)
     if isinstance(forms, Mapping):
-        names = [Formula(n) if isinstance(n, str) else _plain(str(n)) for n in forms]
+        names = [Formula(n) if isinstance(n, str) else plain(str(n)) for n in forms]
         forms = forms.values()
     symbols = sorted(set().union(*(form.free_symbols for form in forms)), key=str)
-    return names, [_plain(str(s)) for s in symbols], sp.lambdify(symbols, list(forms))
+    return names, [plain(str(s)) for s in symbols], sp.lambdify(symbols, list(forms))
 
 
-def _plain(name: str) -> str:
+def plain(name: str) -> str:
     """Return a name without what only LaTeX needs."""
     return re.sub(r"[^A-Za-z0-9]", "", name.replace("ell_", "l"))
 

@@ -1,7 +1,7 @@
 """Numeric truth that no printed formula enters: loop closure by search, derivatives by FFT.
 
-Angles and derivatives come from the closure of the four bars alone, forces from the motion of
-point masses, boundaries from the Fourier matrix of Hill's equation.
+Angles and derivatives come from the closure of the four bars alone, boundaries from the Fourier
+matrix of Hill's equation.
 """
 
 from __future__ import annotations
@@ -103,34 +103,16 @@ def named(lengths):
     return dict(zip(("l1", "l2", "l3", "l4"), lengths, strict=True))
 
 
+def turning(lengths, m, speed=1.0):
+    """Return lengths and angles, speeds and accelerations of a motion at a crank speed, by name."""
+    powers = {"theta": 0, "omega": 1, "alpha": 2}
+    return named(lengths) | {name: speed ** powers[name[:5]] * v for name, v in vars(m).items()}
+
+
 def vectors(lengths, angles):
     """Return the links as complex numbers by their names; the frame lies along 0."""
     units = (1.0, *(np.exp(1j * angle) for angle in angles))
     return {f"l{k + 1}_vec": lengths[k] * units[k] for k in range(4)}
-
-
-def pin_force_on_coupler(lengths, inertia4, masses, places, speed=1.0, assembly="open"):
-    """Return the force (complex, fixed axes) that the follower exerts on the coupler at C.
-
-    The coupler consists of point masses at the given distances from B.  Its moment about B and
-    the follower's moment about D are the only equations used.
-    """
-    _, l2, l3, l4 = lengths
-    m = motion(lengths, assembly)
-    crank_pin = l2 * np.exp(1j * m.theta2)
-    along = np.exp(1j * m.theta3)
-    moment = np.zeros(m.theta2.size)
-    for mass, place in zip(masses, places, strict=True):
-        position = crank_pin + place * along
-        acceleration = spectral_derivative(position.real, 2) + 1j * spectral_derivative(
-            position.imag, 2
-        )
-        moment += mass * speed**2 * np.imag(np.conj(place * along) * acceleration)
-    arm3, arm4 = l3 * along, l4 * np.exp(1j * m.theta4)
-    matrix = np.stack([[-arm3.imag, arm3.real], [arm4.imag, -arm4.real]]).transpose(2, 0, 1)
-    right = np.stack([moment, inertia4 * speed**2 * m.alpha4], axis=-1)
-    solution = np.linalg.solve(matrix, right[..., None])[..., 0]
-    return solution[:, 0] + 1j * solution[:, 1], m
 
 
 def coupler_functions(m):

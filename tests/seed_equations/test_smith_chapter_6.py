@@ -9,6 +9,7 @@ import sympy as sp
 from seed_derivations import element_acceleration
 from seed_formula import Formula
 from seed_ledger import Ledger, hold, hold_derived, holds, latex, plain, quoted, same
+from seed_rigid import Link, forces
 from seed_rigs import RIGS, Rig, linkage_function, parts, speeds
 from seed_truth import (
     CRANK_ROCKERS,
@@ -17,8 +18,7 @@ from seed_truth import (
     boundaries,
     coupler_functions,
     motion,
-    named,
-    pin_force_on_coupler,
+    turning,
 )
 
 row = Ledger("Smith", __file__)
@@ -356,26 +356,29 @@ def euler_load(entry):
         assert rest == pytest.approx(0.0, abs=1e-12 * load)
 
 
-MASSES, PLACES = (0.2, 0.5, 0.3), (0.3, 1.1, 1.9)
 INERTIA4, SPEED = 0.4, 3.0
+
+
+def pin_force(lengths, coupler, inertia4, m, speed=1.0, assembly="open"):
+    """Return the force of the follower on the coupler in fixed axes and in the coupler's."""
+    links = (Link(1.0, 0.0, 1.0), coupler, Link(1.0, 0.0, inertia4))
+    force = -forces(lengths, links, speed, assembly).f34
+    return force, force * np.exp(-1j * m.theta3)
 
 
 @cache
 def newton():
-    """Return the true force at C in fixed axes and in the coupler's, for coupler and follower."""
+    """Return the true force at C, by Newton and Euler."""
     points = []
     for lengths in CRANK_ROCKERS.values():
         for assembly in ("open", "crossed"):
-            places = [place * lengths[2] / 2 for place in PLACES]
-            force, m = pin_force_on_coupler(lengths, INERTIA4, MASSES, places, SPEED, assembly)
-            turned = force * np.exp(-1j * m.theta3)
-            first = sum(a * b for a, b in zip(MASSES, places, strict=True))
-            second = sum(a * b**2 for a, b in zip(MASSES, places, strict=True))
+            coupler = Link(1.0, 0.65 * lengths[2], 0.6 * lengths[2] ** 2)
+            m = motion(lengths, assembly)
+            force, turned = pin_force(lengths, coupler, INERTIA4, m, SPEED, assembly)
             point = {"X43": force.real, "Y43": force.imag, "F_x": turned.real, "F_y": turned.imag}
-            point |= {"I3": second, "I4": INERTIA4, "m3": 0.7, "r3": first / 0.7, "m3r3": first}
-            rates = {"alpha3": SPEED**2 * m.alpha3, "alpha4": SPEED**2 * m.alpha4}
-            angles = {"theta2": m.theta2, "theta3": m.theta3, "theta4": m.theta4}
-            points.append({**named(lengths), **point, **rates, **angles, "omega2": SPEED})
+            point |= {"I3": coupler.inertia, "I4": INERTIA4, "m3r3": coupler.along}
+            point |= {"m3": 0.7, "r3": coupler.along / 0.7}
+            points.append({**turning(lengths, m, SPEED), **point})
     return points
 
 
@@ -396,22 +399,20 @@ def rig_points(m=2):
 
     The coupler is uniform, the crank turns at unit speed.
     """
-    places, weights = np.polynomial.legendre.leggauss(3)
     points = []
     for name, rig in RIGS.items():
-        mu, coupler = rig.mass_per_length, rig.lengths[2]
-        masses, at = mu * coupler / 2 * weights, coupler / 2 * (1 + places)
+        mu, length = rig.mass_per_length, rig.lengths[2]
+        coupler, turn = Link.bar(mu * length, length), motion(rig.lengths)
         for inertia4 in rig.inertias:
-            force, turn = pin_force_on_coupler(rig.lengths, inertia4, masses, at)
-            along = np.real(force * np.exp(-1j * turn.theta3))
+            along = pin_force(rig.lengths, coupler, inertia4, turn)[1].real
             functions = coupler_functions(turn)[1:]
-            term = along * np.pi**2 / (mu * coupler**2)
+            term = along * np.pi**2 / (mu * length**2)
             eps, *_ = np.linalg.lstsq(np.array(functions).T, term, rcond=None)
             assert np.abs(eps @ np.array(functions) - term).max() < 1e-8 * np.abs(term).max()
-            point = {**named(rig.lengths), **vars(turn), "F_x": along, "mu": mu, "m": m}
+            point = {**turning(rig.lengths, turn), "F_x": along, "mu": mu, "m": m}
             point |= dict(zip(("eps1", "eps2", "eps3"), eps, strict=True))
-            point |= {"I3": masses @ at**2, "r3": coupler / 2, "k3": coupler / np.sqrt(3)}
-            point |= {"I4": inertia4, "M3": mu * coupler, "M4": 0.02, "rig": name}
+            point |= {"I3": coupler.inertia, "r3": length / 2, "k3": length / np.sqrt(3)}
+            point |= {"I4": inertia4, "M3": coupler.mass, "M4": 0.02, "rig": name}
             points.append(point | {"k4": np.sqrt(inertia4 / 0.02)})
     return points
 
@@ -425,16 +426,8 @@ def force_of_the_follower_alone(entry):
 
 @row("6.2.2 F_x term of the coefficient")
 def term_of_the_coefficient(entry):
-    fast = [
-        {
-            **p,
-            "omega2": 2.0,
-            "alpha3": 4 * p["alpha3"],
-            "alpha4": 4 * p["alpha4"],
-            "F_x": 4 * p["F_x"],
-        }
-        for p in rig_points()
-    ]
+    quick = {"omega2": 2.0}
+    fast = [p | quick | {k: 4 * p[k] for k in ("alpha3", "alpha4", "F_x")} for p in rig_points()]
     hold(entry.corrected, *fast, tol=1e-8)
     hold(
         entry.printed,
@@ -495,8 +488,8 @@ def sizes_of_the_parameters(entry):
 def turns():
     """Return a turn of each crank-rocker at unit crank speed, with the coupler speed squared."""
     kinds = (*CRANK_ROCKERS.values(), LONG_CRANK)
-    moved = [(lengths, motion(lengths, count=1024)) for lengths in kinds]
-    return [{**named(k), **vars(m), "phi": m.omega3**2} for k, m in moved]
+    points = [turning(lengths, motion(lengths, count=1024)) for lengths in kinds]
+    return [{**point, "phi": point["omega3"] ** 2} for point in points]
 
 
 row("6.2.2 phi", check=holds(turns, tol=1e-8))

@@ -237,6 +237,11 @@ def derivative(order: int, value: object) -> Callable[..., object]:
     return lambda _, __, times: value if times == order else 0.7317
 
 
+def order_of(error: Callable[[float], float], size: float) -> float:
+    """Return the power at which an error falls where its parameter is halved from a size."""
+    return float(np.log2(error(size) / error(size / 2)))
+
+
 def quoted(value: object, *numbers: str) -> None:
     """Compare values with quoted numbers, to half a unit of the last digit that is quoted."""
     values = np.atleast_1d(np.asarray(value, dtype=complex))

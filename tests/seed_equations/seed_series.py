@@ -30,10 +30,11 @@ def _name(letter, powers):
 
 
 @cache
-def rows(parameters, names, order=2):
+def rows(parameters, names, order=2, drag=0):
     """Return the equations of y'' + {lambda^2 + sum of parameter times function} y by powers.
 
-    With them, the letters of a formula: functions of theta under their names, alpha_ij, y_ij.
+    ``drag`` adds twice its product with the first parameter, times y'.  With them, the letters of
+    a formula: functions of theta under their names, alpha_ij, y_ij.
     """
     powers = [k for k in product(range(order + 1), repeat=len(parameters)) if sum(k) <= order]
     functions = {name: sp.Function(name)(theta) for name in names}
@@ -48,7 +49,9 @@ def rows(parameters, names, order=2):
 
     lam2 = n**2 / sp.Integer(4) + sum(alpha[k] * monomial(k) for k in powers if sum(k))
     y = sum(part[k] * monomial(k) for k in powers)
-    left = sp.Poly(sp.expand(sp.diff(y, theta, 2) + (lam2 + coefficient) * y), *parameters)
+    left = sp.diff(y, theta, 2) + (lam2 + coefficient) * y
+    left += 2 * drag * parameters[0] * sp.diff(y, theta)
+    left = sp.Poly(sp.expand(left), *parameters)
     letters = {"theta": theta, "n": n, "psi_n": psi, **functions}
     letters |= {f"alpha_{''.join(map(str, k))}": v for k, v in alpha.items()}
     letters |= {f"y_{''.join(map(str, k))}": v for k, v in part.items()}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
+from seed_truth import fourier
 
 COUNT = 256
 THETA = 4 * np.pi * np.arange(COUNT) / COUNT
@@ -51,6 +52,14 @@ def function(a, b):
     return sum(a[m] * np.cos(m * THETA) + b.get(m, 0.0) * np.sin(m * THETA) for m in a)
 
 
+def harmonics(samples):
+    """Return the coefficients of a function given by samples over one turn."""
+    c = fourier(samples)[: HARMONICS + 1]
+    a, b = (Coefficients(enumerate(w)) for w in (2 * c.real, -2 * c.imag))
+    a[0] = c[0].real
+    return a, b
+
+
 def resonance(f, n, damping=0.0):
     """Return both alpha1, upper first, and A0, B0 of each: no resonant part is left in (7.17).
 
@@ -69,10 +78,10 @@ def case(n, sign, seed=0):
     rng = np.random.default_rng([n, sign + 1, seed])
     a, b = (Coefficients(enumerate(rng.normal(size=7))) for _ in "ab")
     b[0] = 0.0
-    return region(a, b, n, sign, A1=rng.normal(), B1=rng.normal(), scale=rng.normal())
+    return hill_region(a, b, n, sign, A1=rng.normal(), B1=rng.normal(), scale=rng.normal())
 
 
-def region(a, b, n, sign, A1=0.0, B1=0.0, scale=1.0):
+def hill_region(a, b, n, sign, A1=0.0, B1=0.0, scale=1.0):
     """Return f, its resonance and its first solution; with A1, B1 left to choose."""
     f = function(a, b)
     alpha1, (A0, B0) = resonance(f, n)[(1 - sign) // 2]

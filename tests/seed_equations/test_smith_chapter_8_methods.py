@@ -14,6 +14,7 @@ from seed_waves import (
     THETA,
     Coefficients,
     function,
+    hill_region,
     parts,
     resonance,
     second_order,
@@ -21,7 +22,6 @@ from seed_waves import (
     solved,
 )
 from seed_waves import derivative as wave_derivative
-from seed_waves import region as hill_region
 
 row = Ledger("Smith", __file__)
 ONE, TWO = TWO_FUNCTIONS

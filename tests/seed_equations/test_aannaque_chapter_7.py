@@ -8,7 +8,7 @@ import sympy as sp
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm, logm
 from scipy.special import mathieu_a, mathieu_b
-from seed_ledger import Ledger, hold, holds, quoted, same, truths
+from seed_ledger import Ledger, hold, holds, point_by_point, quoted, same, truths
 from seed_truth import normalised_solutions
 
 row = Ledger("Aannaque", __file__)
@@ -127,22 +127,26 @@ def variation():
     def h(t):
         return np.concatenate([np.zeros(2), -load(t)])
 
-    def integral(body, low, high, _):
-        nodes, weights = np.polynomial.legendre.leggauss(20)
-        half = 0.5 * (high - low)
-        return half * sum(
-            w * body(low + half * (1 + s)) for s, w in zip(nodes, weights, strict=True)
-        )
-
     rates = lambda t, y: state_matrix(t) @ y + h(t)  # noqa: E731
     start = np.array([0.1, 0.0, -0.2, 0.3])
     whole = transition(PERIOD)
-    pushed = integral(lambda t: transition(PERIOD, float(t)) @ h(t), 0.0, PERIOD, False)
+    pushed = point_by_point(lambda t: transition(PERIOD, float(t)) @ h(t), 0.0, PERIOD)
     periodic = np.linalg.solve(np.eye(4) - whole, pushed)
     np.testing.assert_allclose(solved(rates, periodic, PERIOD), periodic, atol=1e-9)
     y = {0.0: start, PERIOD: solved(rates, start, PERIOD)}
-    names = {"psi": lambda a, b: transition(float(a), float(b)), "E": np.eye(4), "Int": integral}
-    names |= {"y": lambda t: y[t], "t": PERIOD, "t_0": 0.0, "z": np.zeros(2), "T": PERIOD}
+    names = {
+        "psi": lambda a, b: transition(float(a), float(b)),
+        "E": np.eye(4),
+        "Int": point_by_point,
+    }
+    names |= {
+        "Int": point_by_point,
+        "y": lambda t: y[t],
+        "t": PERIOD,
+        "t_0": 0.0,
+        "z": np.zeros(2),
+        "T": PERIOD,
+    }
     return {**names, "qr_ddot": load, "h": h, "periodic": periodic}
 
 

@@ -10,7 +10,7 @@ from elastolink.derive.models import beam_elements as elements
 from elastolink.derive.models.beam_shapes import t, u, v
 from elastolink.derive.variational import hamilton
 from seed_elements import EA, EI, L, arrays, letters, rho, shape_rows, x, zeta
-from seed_ledger import Ledger, hold, holds, quoted, same
+from seed_ledger import Ledger, hold, holds, point_by_point, quoted, same
 
 row = Ledger("Aannaque", __file__)
 AXIAL, BENT = slice(0, 2), slice(2, 6)
@@ -34,13 +34,6 @@ def derived(kind):
     return numbers
 
 
-def matrix_integral(body, low, high, _):
-    """Integrate a matrix by Gauss points."""
-    nodes, weights = np.polynomial.legendre.leggauss(8)
-    half = (high - low) / 2
-    return half * sum(w * body(low + half * (1 + s)) for s, w in zip(nodes, weights, strict=True))
-
-
 @cache
 def cubic():
     """Return places of a beam in the document's letters, for free nodal values."""
@@ -55,7 +48,7 @@ def cubic():
         "N2": lambda s: d["v", 0](s)[:, BENT],
         "N2_pp": lambda s: d["v", 2](s)[:, BENT],
         **{"K": stiffness, "K1": stiffness[AXIAL, AXIAL], "K2": stiffness[BENT, BENT]},
-        **{"q1": q[AXIAL], "q2": q[BENT], "U_int": q @ stiffness @ q / 2, "Int": matrix_integral},
+        **{"q1": q[AXIAL], "q2": q[BENT], "U_int": q @ stiffness @ q / 2, "Int": point_by_point},
         **{"L": LENGTH, "EA": SIZES[EA], "EI_z": SIZES[EI]},
     }
     return [

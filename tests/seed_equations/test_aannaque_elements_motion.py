@@ -1,6 +1,6 @@
 """Aannaque (2.1), (4.15)-(4.41): the moving element, ground axes, assembly, damping, stiffening."""
 
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ from elastolink.runtime.linkages import FourBar
 from scipy.integrate import solve_ivp
 from seed_elements import L, arrays
 from seed_formula import Formula
-from seed_ledger import Ledger, hold, holds, quoted, same, table
+from seed_ledger import Ledger, by_differences, hold, holds, point_by_point, quoted, same, table
 
 row = Ledger("Aannaque", __file__)
 LENGTH, DENSITY = 0.4, 0.7
@@ -57,12 +57,9 @@ def path(t):
     return origin, angle, 1e-2 * np.sin(np.arange(1, 7) + np.arange(2, 8) * t)
 
 
-def derivative(function, t=TIME, order=1, h=1e-3):
-    """Return a derivative by central differences of sixth order."""
-    weights = {1: [-1, 9, -45, 0, 45, -9, 1], 2: [2, -27, 270, -490, 270, -27, 2]}[order]
-    scale = {1: 60.0, 2: 180.0}[order]
-    values = [w * function(t + k * h) for w, k in zip(weights, range(-3, 4), strict=True)]
-    return sum(values) / (scale * h**order)
+def derivative(function, t=TIME, order=1):
+    """Return a derivative by the time."""
+    return by_differences(function, t, order)
 
 
 def still(place, t):
@@ -84,13 +81,6 @@ def rigid(t, order):
     return rigid_field("cubic", *ends, derivative(lambda s: path(s)[1], t, order))
 
 
-def matrix_integral(body, low, high, _):
-    """Integrate a number or a matrix by Gauss points."""
-    nodes, weights = np.polynomial.legendre.leggauss(6)
-    half = (high - low) / 2
-    return half * sum(w * body(low + half * (1 + s)) for s, w in zip(nodes, weights, strict=True))
-
-
 @cache
 def moving():
     """Return the moving element in the document's letters, all rates by differences."""
@@ -110,7 +100,7 @@ def moving():
         return DENSITY * force @ shapes(place)
 
     names = {"T": T, "T_dot": T_dot, "T_ddot": T_ddot, "N": shapes, "rhoA": DENSITY, "L": LENGTH}
-    names |= {"q": q, "q_dot": q_dot, "q_ddot": q_ddot, "theta": angle, "Int": matrix_integral}
+    names |= {"q": q, "q_dot": q_dot, "q_ddot": q_ddot, "theta": angle, "Int": point_by_point}
     names |= {
         "qr_dot": velocity,
         "a_r": acceleration,
@@ -119,8 +109,8 @@ def moving():
     }
     names |= {"M": m, "M_c": w * c, "M_a": wd * c - w**2 * m, "theta_dot": w, "theta_ddot": wd}
     names |= {"qr_ddot": derivative(lambda s: rigid(s, 1))}
-    names |= {"p": matrix_integral(push, 0.0, LENGTH, False) + ELEMENT.stiffness @ q}
-    speed = matrix_integral(lambda s: ground_speed(s) @ ground_speed(s), 0.0, LENGTH, False)
+    names |= {"p": point_by_point(push, 0.0, LENGTH, False) + ELEMENT.stiffness @ q}
+    speed = point_by_point(lambda s: ground_speed(s) @ ground_speed(s), 0.0, LENGTH, False)
     return names | {"E_kin": DENSITY * speed / 2}
 
 
@@ -290,7 +280,7 @@ def family():
     changes = {"mesh.elements": 2, "model.drop": ["geometric_stiffness"], "damping.ratio": 0.0}
     system = load_scene("aannaque_1996_table_4_1", overrides=changes).system()
     structure = AngleArrays(system.structure)
-    theta, speed, acceleration, h = 0.7, 3.0, -5.0, 1e-4
+    theta, speed, acceleration = 0.7, 3.0, -5.0
     motion = system.structure.configuration(np.array([theta]))
     M_c, M_a = np.zeros((2, structure.count, structure.count))
     for placed, own in structure.local:
@@ -308,14 +298,15 @@ def family():
         M_c[at] += found["M_gc"]
         M_a[at] += found["M_ga"]
     free = np.ix_(structure.free, structure.free)
-    angles = theta + h * np.arange(-3, 4)
-    weights = np.array([-1, 9, -45, 0, 45, -9, 1]) / (60 * h)
-    mass, drift = (system.array(name, angles) for name in ("M", "A"))
-    slope, changing = (np.einsum("t,tij->ij", weights, k) for k in (mass, drift))
-    a, b = drift[3], system.array("B", [theta])[0]
+
+    def array(name, angle=theta):
+        return system.array(name, [angle])[0]
+
+    slope, changing = (by_differences(partial(array, name), theta, h=1e-4) for name in "MA")
+    a, b = array("A"), array("B")
     gyroscopic = speed * (slope + a - a.T)
     rest = speed**2 * (changing - b) + acceleration * a
-    return mass[3], gyroscopic, rest, M_c[free], M_a[free]
+    return array("M"), gyroscopic, rest, M_c[free], M_a[free]
 
 
 @row("2.1")
@@ -484,11 +475,10 @@ def geometric_stiffness(entry):
     """The derived matrix; and the load of Euler from above, 12 instead of pi^2 with one element."""
     slope = arrays("cubic")["geometric_0"][2:, 2:]
     numbers = np.array(slope.subs(L, LENGTH), dtype=float)
-    values = {"L": LENGTH, "f_a": 1.7, "K_n": 1.7 * numbers, "Int": matrix_integral}
+    values = {"L": LENGTH, "f_a": 1.7, "K_n": 1.7 * numbers, "Int": point_by_point}
 
     def B_n(place):
-        step = 1e-3
-        row_ = derivative(lambda s: shapes(s)[1], place, h=step)
+        row_ = by_differences(lambda s: shapes(s)[1], place, h=1e-4)
         return row_[None, [1, 2, 4, 5]]
 
     hold(entry.printed or entry.corrected, {**values, "B_n": B_n}, tol=1e-8)

@@ -1,6 +1,6 @@
 """Beale & Scott (1)-(11), (16): the rod's action, its equation, and Galerkin's method."""
 
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import sympy as sp
@@ -22,7 +22,7 @@ from elastolink.derive.variational import hamilton, linearise, quadratic_action
 from elastolink.runtime.linkages import QuickReturn
 from elastolink.runtime.systems.rod import OverhangBasis, rod_system
 from rod_newton import PlainBasis
-from seed_ledger import Ledger, hold, holds, is_zero, quoted, same
+from seed_ledger import Ledger, by_differences, hold, holds, is_zero, quoted, same
 
 row = Ledger("Beale & Scott", __file__)
 WHOLE = ModelSpec("quick_return", "moving_basis", flexible=("rod",))
@@ -215,11 +215,6 @@ def conditions_at_pin_block_and_tip(entry):
 COUNT, STEP = 4, 2e-3
 BASIS = OverhangBasis(COUNT)
 SYSTEM = rod_system(OverhangBasis(3), **FLEXIBLE, crank_ratio=RATIO, drop=("frame", "tension"))
-WEIGHTS = {
-    0: {0: 1.0},
-    1: {1: 3 / 4, 2: -3 / 20, 3: 1 / 60, -1: -3 / 4, -2: 3 / 20, -3: -1 / 60},
-    2: {0: -49 / 18} | {s * k: c for k, c in ((1, 1.5), (2, -0.15), (3, 1 / 90)) for s in (1, -1)},
-}
 
 
 def place(theta):
@@ -232,13 +227,13 @@ def modes(theta, order=0):
 
     def rate(side, k):
         def value(at):
-            moved = {j: np.array([place(theta + j * STEP)]) for j in WEIGHTS[order]}
-            values = sum(
-                c * BASIS.shapes(np.ravel(at), moved[j])[0, :, k - 1]
-                for j, c in WEIGHTS[order].items()
-            )
-            inside = np.ravel(at) <= xi if side == 1 else np.ravel(at) >= xi
-            return np.where(inside, values / STEP**order, 0.0)
+            at = np.ravel(at)
+
+            def shape(angle):
+                return BASIS.shapes(at, np.array([place(angle)]))[0, :, k - 1]
+
+            values = by_differences(shape, theta, order, STEP) if order else shape(theta)
+            return np.where(at <= xi if side == 1 else at >= xi, values, 0.0)
 
         return value
 
@@ -360,9 +355,8 @@ def second_order_motion():
     def at(name, angle=theta):
         return SYSTEM.array(name, np.array([angle]))[0]
 
-    def slope(name, h=5e-3):
-        pairs = ((1, 4 / 5), (2, -1 / 5), (3, 4 / 105), (4, -1 / 280))
-        return sum(c * (at(name, theta + k * h) - at(name, theta - k * h)) for k, c in pairs) / h
+    def slope(name):
+        return by_differences(partial(at, name), theta, h=5e-3)
 
     damping = slope("M") + at("A") - at("A").T
     stiffness = at("K") / rate**2 + slope("A") - at("B")

@@ -134,19 +134,9 @@ def variation():
     periodic = np.linalg.solve(np.eye(4) - whole, pushed)
     np.testing.assert_allclose(solved(rates, periodic, PERIOD), periodic, atol=1e-9)
     y = {0.0: start, PERIOD: solved(rates, start, PERIOD)}
-    names = {
-        "psi": lambda a, b: transition(float(a), float(b)),
-        "E": np.eye(4),
-        "Int": point_by_point,
-    }
-    names |= {
-        "Int": point_by_point,
-        "y": lambda t: y[t],
-        "t": PERIOD,
-        "t_0": 0.0,
-        "z": np.zeros(2),
-        "T": PERIOD,
-    }
+    names = {"psi": lambda a, b: transition(float(a), float(b)), "E": np.eye(4)}
+    names |= {"y": lambda t: y[t], "t": PERIOD, "t_0": 0.0, "z": np.zeros(2), "T": PERIOD}
+    names["Int"] = point_by_point
     return {**names, "qr_ddot": load, "h": h, "periodic": periodic}
 
 

@@ -7,8 +7,7 @@ from functools import cache
 
 import numpy as np
 import sympy as sp
-from seed_derivations import l2, l3, omega2, omega3, theta2, theta3
-from seed_machine import projected
+from seed_derivations import l2, l3, omega2, omega3, projected, theta2, theta3
 from seed_truth import (
     CRANK_ROCKERS,
     TURN,

@@ -5,11 +5,21 @@ from functools import cache
 import numpy as np
 import pytest
 import sympy as sp
-from seed_derivations import alpha3, alpha4, closure_rows, omega3, omega4, rates
+from seed_derivations import (
+    FREUDENSTEIN,
+    TURNS,
+    alpha3,
+    alpha4,
+    closure_rows,
+    freudenstein,
+    half_angle_quadratic,
+    omega3,
+    omega4,
+    rates,
+)
 from seed_formula import Formula
 from seed_ledger import Ledger, hold, hold_derived, holds, latex, quoted, table
 from seed_rigid import TABLE_3_2, Link, centres, forces, motion, rate
-from seed_rigid_derivations import FREUDENSTEIN, TURNS, freudenstein, half_angle_quadratic
 from seed_truth import CRANK_ROCKERS, DRAG_LINK, LONG_CRANK, TURN, closure
 
 row = Ledger("Aannaque", __file__)

@@ -4,9 +4,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from seed_derivations import l1, l2, l3, l4
+from seed_derivations import bd, c, clearance_series, cosine_change, l1, l2, l3, l4, phi
 from seed_ledger import Ledger, hold, holds, latex, quoted
-from seed_rigid_derivations import bd, c, clearance_series, cosine_change, phi
 from seed_truth import CRANK_ROCKERS, LONG_CRANK, TURN, closure, named
 
 row = Ledger("Smith", __file__)

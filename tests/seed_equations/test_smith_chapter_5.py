@@ -6,6 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
+from seed_derivations import K, L, M, balanced_bar, balanced_bar_inertia, delta, h, rho
 from seed_ledger import Ledger, hold, holds, latex, quoted, same
 from seed_rigid import (
     GRAVITY,
@@ -18,7 +19,6 @@ from seed_rigid import (
     rate,
     smith_links,
 )
-from seed_rigid_derivations import K, L, M, balanced_bar, balanced_bar_inertia, delta, h, rho
 from seed_truth import CRANK_ROCKERS, DRAG_LINK
 
 row = Ledger("Smith", __file__)

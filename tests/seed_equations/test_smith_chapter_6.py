@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-import seed_machine as machine
+import seed_derivations as machine
 import sympy as sp
 from seed_derivations import element_acceleration
 from seed_formula import Formula

@@ -20,9 +20,9 @@ from dataclasses import dataclass
 from functools import cache, reduce
 from numbers import Number
 
-import mpmath
 import numpy as np
 import sympy as sp
+from scipy import linalg
 
 _RELATIONS = {
     "=": "=",
@@ -57,19 +57,9 @@ def _function(name: str):
     def apply(value):
         if isinstance(value, sp.Basic):
             return getattr(sp, name)(value)
-        if isinstance(value, (mpmath.mpf, mpmath.mpc)):
-            return getattr(mpmath, name)(value)
         return getattr(np, plain)(value)
 
     return apply
-
-
-def _absolute(value):
-    return abs(value)
-
-
-def _cot(value):
-    return 1 / _FUNCTIONS["tan"](value)
 
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(40)
@@ -86,12 +76,12 @@ def _integral(body, low, high, symbolic):
 
 _ELEMENTARY = ("sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh", "asin", "acos")
 _FUNCTIONS = {name: _function(name) for name in (*_ELEMENTARY, "atan")} | {
-    "abs": _absolute,
-    "cot": _cot,
+    "abs": abs,
+    "cot": lambda value: 1 / _FUNCTIONS["tan"](value),
     "where": np.where,
     "inv": lambda m: m.inv() if isinstance(m, sp.MatrixBase) else np.linalg.inv(m),
     "sym": None,
-    "diag": lambda one, other: _diagonal(one, other),
+    "diag": lambda one, other: linalg.block_diag(one, other),
     "det": lambda m: m.det() if isinstance(m, sp.MatrixBase) else np.linalg.det(m),
     "tr": lambda m: m.trace() if isinstance(m, sp.MatrixBase) else np.trace(m),
     "max": np.max,
@@ -103,15 +93,6 @@ _FUNCTIONS = {name: _function(name) for name in (*_ELEMENTARY, "atan")} | {
 _CONSTANTS = {"dots": 0, "pi": np.pi, "deg": np.pi / 180.0, "I": 1j}
 
 
-def _diagonal(one, other):
-    """Return two square blocks along the diagonal."""
-    if isinstance(one, sp.MatrixBase):
-        return sp.diag(one, other)
-    one, other = np.atleast_2d(one), np.atleast_2d(other)
-    corner = np.zeros((len(one), len(other)))
-    return np.block([[one, corner], [corner.T, other]])
-
-
 def _symmetric(rows):
     """Return a symmetric matrix from the rows of its upper triangle."""
     n = len(rows)
@@ -120,13 +101,10 @@ def _symmetric(rows):
 
 def _matrix(rows):
     """Return a list as a vector, a list of lists as a matrix, of SymPy where an entry is."""
-    nested = all(isinstance(row, list) for row in rows)
-    flat = [v for row in rows for v in row] if nested else rows
+    flat = [v for row in rows for v in (row if isinstance(row, list) else [row])]
     if any(isinstance(v, sp.Basic) for v in flat):
         return sp.Matrix(rows)
-    if any(np.ndim(v) for v in flat):
-        return np.block(rows)
-    return np.array(rows)
+    return np.block(rows) if any(np.ndim(v) for v in flat) else np.array(rows)
 
 
 class _Names(dict):
@@ -136,15 +114,9 @@ class _Names(dict):
         super().__init__(values)
         kinds = list(values.values())
         symbolic = any(isinstance(v, (sp.Basic, sp.MatrixBase)) for v in kinds)
-        digits = any(isinstance(v, (mpmath.mpf, mpmath.mpc)) for v in kinds)
-        self.number = sp.nsimplify if symbolic else mpmath.mpf if digits else lambda v: v
+        self.number = sp.nsimplify if symbolic else lambda v: v
         exact = {"dots": 0, "pi": sp.pi, "deg": sp.pi / 180, "I": sp.I}
-        many = (
-            {"dots": 0, "pi": mpmath.pi(), "deg": mpmath.pi() / 180, "I": mpmath.j}
-            if digits
-            else {}
-        )
-        self.constants = exact if symbolic else many or _CONSTANTS
+        self.constants = exact if symbolic else _CONSTANTS
 
     def __missing__(self, name):
         if name in self.constants:
@@ -389,10 +361,6 @@ class _Printer:
             case "where", [condition, one, other]:
                 cases = rf"{one} & \text{{if }} {condition} \\ {other} & \text{{otherwise}}"
                 return rf"\begin{{cases}} {cases} \end{{cases}}", _ATOM
-            case (("dot" | "ddot" | "bar" | "vec" | "ang"), [inside]):
-                return _ACCENTS[name] % inside, _ATOM
-            case "prime", [inside, *order]:
-                return inside + "'" * int(order[0] if order else 1), _ATOM
         return (_NAMED.get(name) or self.name(name)) + _brackets(", ".join(texts)), _ATOM
 
 
@@ -573,8 +541,6 @@ def _size(node: ast.expr, names: _Names) -> float:
             return _size(left, names) * greatest(1 / _evaluate(right, names))
         case ast.UnaryOp(operand=inside):
             return _size(inside, names)
-        case ast.Call(func=ast.Name(id="O")):
-            return 0.0
         case ast.Call(func=ast.Name(id="where"), args=[condition, one, other]):
             if not np.ndim(chosen := _evaluate(condition, names)):
                 return _size(one if chosen else other, names)
@@ -585,8 +551,6 @@ def _size(node: ast.expr, names: _Names) -> float:
             ends = [int(_evaluate(end, names)) for end in (low, high)]
             terms = range(ends[0], ends[1] + 1)
             return max((_size(body, names.with_index(index, k)) for k in terms), default=0.0)
-        case ast.Call(func=ast.Name(id="Sum"), args=[body, ast.Name(id=index)]):
-            return max(_size(body, names.with_index(index, k)) for k in names[index])
         case ast.Call(func=ast.Name(id="Int"), args=[body, ast.Name(id=index), low, high]) if (
             "Int" not in names
         ):

@@ -7,8 +7,10 @@ from functools import cache
 import numpy as np
 import sympy as sp
 from elastolink.derive.models import beam_frequency_functions as ff
-from elastolink.derive.models.beam_frequency_problem import Z
+from elastolink.derive.models import beam_frequency_problem as problem
+from elastolink.derive.records import ActionDensity
 from elastolink.derive.series import taylor
+from elastolink.derive.variational import hamilton
 from elastolink.runtime.beams import element_arrays
 from elastolink.runtime.frequencies import (
     dynamic_stiffness,
@@ -18,30 +20,54 @@ from elastolink.runtime.frequencies import (
 from frame_truth import portal
 from scipy.linalg import eigvalsh
 from seed_formula import Formula
-from seed_frequency import (
-    INERTIA,
-    A,
-    E,
-    L,
-    axial,
-    bending,
-    beta,
-    end_force,
-    field_equations,
-    lam,
-    omega,
-    rho,
-    t,
-    u,
-    v,
-    x,
-)
 from seed_ledger import Ledger, hold, holds, quoted, same, table
 
 row = Ledger("Aannaque", __file__)
+x, t = problem.X, problem.TIME
+E, INERTIA, A, rho, L = sp.symbols("E I A rho L", positive=True)
+lam, beta, omega = sp.symbols("lambda beta omega", positive=True)
+v, u = problem.DEFLECTION, problem.STRETCH
 PHASE = sp.Symbol("varphi", real=True)
 C = sp.symbols("c1:7", real=True)
 WAVES = (sp.sin(lam * x), sp.cos(lam * x), sp.sinh(lam * x), sp.cosh(lam * x))
+
+
+@cache
+def field_equations():
+    """Return Hamilton's equations of the beam of length L, bending and stretching."""
+    density = rho * A * (v.diff(t) ** 2 + u.diff(t) ** 2) / 2
+    density -= E * INERTIA * v.diff(x, 2) ** 2 / 2 + E * A * u.diff(x) ** 2 / 2
+    return hamilton(ActionDensity(x, t, L, (u, v), density))
+
+
+def end_force(field, order, position):
+    """Return the force at an end that goes with a field or its slope, in the running x."""
+    (found,) = (
+        condition.expression
+        for condition in field_equations().natural
+        if (condition.field, condition.order) == (field, order)
+        and sp.simplify(condition.position - position) == 0
+    )
+    return -found
+
+
+@cache
+def bending():
+    """Return F1 to F6 of a beam of length 1, in lambda."""
+    above, divisor = ff.numerators()
+    return {name: (above[name] / divisor).subs(problem.Z, lam) for name in above}
+
+
+@cache
+def axial():
+    """Return F7 and F8 of a beam of length 1, in beta."""
+    steps, functions, _ = ff.axial()
+    found = {}
+    for name, form in functions.items():
+        for symbol, value in reversed(steps.steps):
+            form = form.xreplace({symbol: value})
+        found[name] = form.subs(problem.B, beta)
+    return found
 
 
 @cache
@@ -241,9 +267,11 @@ def power_series(entry):
     """The series begins with the cubic element."""
     z = sp.Symbol("z", positive=True)
     above, divisor = ff.numerators()
-    below = taylor(divisor, Z, 4).value
+    below = taylor(divisor, problem.Z, 4).value
     series = {
-        name: sp.series((taylor(form, Z, 4).value / below).subs(Z, z), z, 0, 9).removeO()
+        name: sp.series(
+            (taylor(form, problem.Z, 4).value / below).subs(problem.Z, z), z, 0, 9
+        ).removeO()
         for name, form in above.items()
     }
     hold(entry.corrected, {"z": z, "F6": series["F6"]})

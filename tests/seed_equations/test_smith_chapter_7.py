@@ -9,7 +9,6 @@ from scipy.integrate import solve_ivp
 from seed_formula import Formula
 from seed_ledger import Ledger, hold, holds, order_of, quoted, same, table
 from seed_rigs import RIGS, critical, linkage_function
-from seed_series import rows, theta
 from seed_truth import TURN, boundaries, fourier, normalised_solutions
 from seed_waves import (
     HARMONICS,
@@ -21,9 +20,11 @@ from seed_waves import (
     harmonics,
     hill_region,
     resonance,
+    rows,
     second,
     second_order,
     solved,
+    theta,
 )
 
 row = Ledger("Smith", __file__)

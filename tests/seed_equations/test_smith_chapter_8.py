@@ -8,16 +8,20 @@ import pytest
 import sympy as sp
 from seed_ledger import Ledger, derivative, hold, holds, order_of, quoted, same
 from seed_rigs import RIGS
-from seed_series import TWO_FUNCTIONS, couplings, delta, eps, rows
 from seed_truth import CRANK_ROCKERS, boundaries, coupler_functions, fourier, motion, turning
 from seed_waves import (
     THETA,
+    TWO_FUNCTIONS,
     Coefficients,
+    couplings,
+    delta,
+    eps,
     function,
     harmonics,
     hill_region,
     parts,
     resonance,
+    rows,
     second_order,
     series,
     solved,

@@ -28,6 +28,7 @@ HERE = Path(__file__).resolve().parent
 TARGET = HERE.parents[1] / "docs" / "equations.md"
 Verdict = Literal["agrees", "slip", "approximation", "not legible"]
 VERDICTS = ("agrees", "slip", "approximation", "not legible")
+FORMULAS = ("printed", "corrected")
 DOCUMENTS = ("Smith", "Aannaque", "Beale & Scott")
 _NUMBERED = re.compile(r"(\d+|[A-Z])\.\d+|\d+")
 # What a falsified formula ends in: a check that does not hold, or numbers that cannot be formed.
@@ -119,7 +120,7 @@ class Entry:
 
     def changed(self) -> Iterable[Entry]:
         """Yield the entry with its printed, then its corrected formula changed in each place."""
-        for name in ("printed", "corrected"):
+        for name in FORMULAS:
             form = getattr(self, name)
             for mutant in form.mutants() if form else ():
                 yield replace(self, **{name: mutant})
@@ -158,6 +159,10 @@ class Ledger:
         self.document, self.file = document, Path(file).name
         self.entries: list[Entry] = []
 
+    def cell(self, label: str, name: str = "printed") -> Formula:
+        """Return the printed or the corrected formula of a row of the document."""
+        return Formula(table(self.document)[label][name], table(self.document)["letters"])
+
     def __call__(
         self,
         *labels: str,
@@ -175,9 +180,7 @@ class Ledger:
 
     def _entry(self, label, check, derived, slow) -> Entry:
         letters, cells = table(self.document)["letters"], dict(table(self.document)[label])
-        for name in ("printed", "corrected"):
-            if name in cells:
-                cells[name] = Formula(cells[name], letters)
+        cells |= {name: self.cell(label, name) for name in cells.keys() & set(FORMULAS)}
         if derived:
             cells["derived"] = derived
         place = f"{self.file}::test_row[{label}]"

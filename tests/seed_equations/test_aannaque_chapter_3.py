@@ -18,8 +18,7 @@ from seed_derivations import (
     omega4,
     rates,
 )
-from seed_formula import Formula
-from seed_ledger import Ledger, hold, hold_derived, holds, latex, quoted, table, truths
+from seed_ledger import Ledger, hold, hold_derived, holds, latex, quoted, truths
 from seed_rigid import TABLE_3_2, Link, centres, forces, motion, rate, sweeps, turning_letters
 from seed_truth import CRANK_ROCKERS, DRAG_LINK, LONG_CRANK, TURN, closure
 
@@ -378,7 +377,7 @@ def constants(lengths, assembly):
     """Return a turn with K1 to K5, as defined below (3.5) and (3.7)."""
     point = placed(lengths, assembly)
     for label in ("3.5", "3.7"):
-        values = Formula(table("Aannaque")[label]["printed"]).values(**point)
+        values = row.cell(label).values(**point)
         point = {**point, **values}
     return point
 

@@ -19,8 +19,7 @@ from elastolink.runtime.frequencies import (
 )
 from frame_truth import portal
 from scipy.linalg import eigvalsh
-from seed_formula import Formula
-from seed_ledger import Ledger, hold, holds, quoted, same, table
+from seed_ledger import Ledger, hold, holds, quoted, same
 
 row = Ledger("Aannaque", __file__)
 x, t = problem.X, problem.TIME
@@ -436,7 +435,7 @@ def natural_frequencies(entry):
 @row("Table 5.1.b relative errors in percent")
 def relative_errors(entry):
     """Those of row 4 belong to the wrong frequency 4; two decimals or three are printed."""
-    wrong = Formula(table("Aannaque")[TABLE_5_1]["printed"]).values()["f"]
+    wrong = row.cell(TABLE_5_1).values()["f"]
     for form, base in ((entry.printed, wrong), (entry.corrected, columns()["f"])):
         for name, errors in form.values().items():
             model = columns()[name.replace("e_", "f_")]

@@ -7,8 +7,7 @@ import pytest
 import sympy as sp
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
-from seed_formula import Formula
-from seed_ledger import Ledger, hold, holds, quoted, same, table, truths
+from seed_ledger import Ledger, hold, holds, quoted, same, truths
 
 row = Ledger("Aannaque", __file__)
 
@@ -337,11 +336,6 @@ def push(theta):
     return np.array([np.exp(np.cos(theta)), np.cos(2 * theta)])
 
 
-def cells(label):
-    """Return the printed formula of another row."""
-    return Formula(table("Aannaque")[label]["printed"], table("Aannaque")["letters"])
-
-
 @cache
 def exact(count=64):
     """Return the periodic motion of the two freedoms at even angles, by integration."""
@@ -649,7 +643,7 @@ def table_6_2(entry):
     assert lines.shape == (8, 9)
     for (N, n, n_c), line in zip(cases, lines, strict=True):
         assert tuple(line[:3]) == (N, n, n_c)
-        formulas = cells("Table 6.1 operations of three algorithms").values(N=N, n=n, n_c=n_c)
+        formulas = row.cell("Table 6.1 operations of three algorithms").values(N=N, n=n, n_c=n_c)
         for name, entry_ in zip(COLUMNS, line[3:], strict=True):
             assert digits(formulas[name] / 1e6, entry_), (N, n, n_c, name)
 
@@ -678,8 +672,8 @@ def table_6_3(entry):
     off = []
     for (N, N_h, n), line, mended in zip(cases, lines, right, strict=True):
         assert tuple(line[:3]) == tuple(mended[:3]) == (N, N_h, n)
-        first = cells("Table 6.1 operations of three algorithms").values(N=N, n=n, n_c=1)["F_1"]
-        series_ = cells("6.8 operations of the Fourier series").value(N=N, n=n, N_h=N_h)
+        first = row.cell("Table 6.1 operations of three algorithms").values(N=N, n=n, n_c=1)["F_1"]
+        series_ = row.cell("6.8 operations of the Fourier series").value(N=N, n=n, N_h=N_h)
         assert digits(first / 1e6, line[4]) and mended[4] == line[4]
         assert digits(series_ / 1e6, mended[3])
         off += [] if digits(series_ / 1e6, line[3]) else [line[3]]

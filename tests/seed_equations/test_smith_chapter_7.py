@@ -7,7 +7,7 @@ import pytest
 import sympy as sp
 from scipy.integrate import solve_ivp
 from seed_formula import Formula
-from seed_ledger import Ledger, hold, holds, order_of, quoted, same, table
+from seed_ledger import Ledger, hold, holds, order_of, quoted, same
 from seed_rigs import RIGS, critical, linkage_function
 from seed_truth import TURN, boundaries, fourier, normalised_solutions
 from seed_waves import (
@@ -320,7 +320,7 @@ def sums(point):
     """Return the point with the sums of (7.31), (7.32) without their minus signs, sigma and tau."""
     more = {}
     for name, label in (("Sigma_31", "7.31"), ("Sigma_32", "7.32")):
-        form = Formula(table("Smith")[label]["printed"])
+        form = row.cell(label)
         bare = {f"{name}{k}": 0.0 for k in (0, 1) for name in "AB"} | {"T": Coefficients()}
         more[name] = -form.sides(**{**point, **bare})[0][0]
     x = point["alpha1"] + point["a0"]
@@ -345,7 +345,7 @@ def abbreviations(entry):
 @row("7.34")
 def simultaneous_equations(entry):
     """With sigma and tau of the mended (7.33)."""
-    definitions = Formula(table("Smith")["7.33"]["corrected"])
+    definitions = row.cell("7.33", "corrected")
     for point in second_order_cases():
         with_sums = {k: v for k, v in sums(point).items() if k not in ("sigma", "tau")}
         hold(entry.printed, {**with_sums, **definitions.values(**with_sums)}, tol=1e-8)

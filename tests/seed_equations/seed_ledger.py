@@ -327,7 +327,7 @@ def holds(*points: Points, tol: float = 1e-9) -> Callable[[Entry], None]:
     def check(entry: Entry) -> None:
         for form in filter(None, (entry.printed, entry.corrected)):
             hold(form, *points, tol=tol)
-        if callable(entry.derived):
+        if callable(entry.derived) and not isinstance(entry.derived(), str):
             hold_derived(entry, *points, tol=tol)
 
     return check

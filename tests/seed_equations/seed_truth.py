@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -80,10 +81,12 @@ def spectral_derivative(samples, order=1, growth=0.0):
     if order % 2:
         number[count // 2] = 0.0
     periodic = np.fft.fft(samples - growth * time)
-    result = np.fft.ifft((1j * number) ** order * periodic).real
+    result = np.fft.ifft((1j * number) ** order * periodic)
+    result = result if np.iscomplexobj(samples) else result.real
     return result + growth if order == 1 else result
 
 
+@cache
 def motion(lengths, assembly="open", count=512, unsteady=0.0):
     """Return one turn of the linkage; theta2 = t + unsteady * sin(t), t sampled evenly."""
     time = TURN * np.arange(count) / count

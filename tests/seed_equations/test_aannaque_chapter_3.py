@@ -19,8 +19,16 @@ from seed_derivations import (
     rates,
 )
 from seed_ledger import Ledger, hold, hold_derived, holds, latex, quoted, truths
-from seed_rigid import TABLE_3_2, Link, centres, forces, motion, rate, sweeps, turning_letters
-from seed_truth import CRANK_ROCKERS, DRAG_LINK, LONG_CRANK, TURN, closure
+from seed_rigid import TABLE_3_2, Link, centres, forces, sweeps, turning_letters
+from seed_truth import (
+    CRANK_ROCKERS,
+    DRAG_LINK,
+    LONG_CRANK,
+    TURN,
+    closure,
+    motion,
+    spectral_derivative,
+)
 
 row = Ledger("Aannaque", __file__)
 
@@ -487,7 +495,10 @@ def rates_hold(entry):
 def table_forces(unsteady=0.0):
     """Return the true forces of Table 3.2's uniform bars near 1 rad/s in the letters of 3.7."""
     f, m = forces(TABLE_3_2, BARS, unsteady=unsteady), motion(TABLE_3_2, unsteady=unsteady)
-    inertia = [-k.mass * rate(p, 2) for k, p in zip(BARS, centres(TABLE_3_2, BARS, m), strict=True)]
+    inertia = [
+        -k.mass * spectral_derivative(p, 2)
+        for k, p in zip(BARS, centres(TABLE_3_2, BARS, m), strict=True)
+    ]
     pins = {"F_01": f.f12, "F_12": f.f23, "F_23": f.f34, "F_03": -f.f41, "F_21": -f.f23}
     pins |= {f"F_{k}": v for k, v in enumerate(inertia, 1)} | {"F_32": -f.f34}
     point = letters(TABLE_3_2) | {"C": f.torque, "omega1": m.omega2, "dE": f.energy_rate}
@@ -545,7 +556,10 @@ def joint_accelerations():
     """Return Table 3.2 at 2 rad/s with the accelerations of the joints by differentiation."""
     m = motion(TABLE_3_2)
     pin_a = TABLE_3_2[1] * np.exp(1j * m.theta2)
-    a, b = rate(pin_a, 2), rate(pin_a + TABLE_3_2[2] * np.exp(1j * m.theta3), 2)
+    a, b = (
+        spectral_derivative(pin_a, 2),
+        spectral_derivative(pin_a + TABLE_3_2[2] * np.exp(1j * m.theta3), 2),
+    )
     found = {"q_Ax": a.real, "q_Ay": a.imag, "q_Bx": b.real, "q_By": b.imag, "q_t1": m.alpha2}
     found |= {"q_t2": m.alpha3, "q_t3": m.alpha4}
     speeds = {"omega1": 2 * m.omega2, "omega2": 2 * m.omega3, "t1": m.theta2, "t2": m.theta3}

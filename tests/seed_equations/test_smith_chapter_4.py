@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from seed_derivations import PINS, T, centre_accelerations, newton_euler, solution, substituted
 from seed_ledger import Ledger, hold, holds
-from seed_rigid import GRAVITY, SMITH_LENGTHS, Link, centres, forces, motion, rate, smith_links
-from seed_truth import CRANK_ROCKERS, DRAG_LINK, LONG_CRANK, turning
+from seed_rigid import GRAVITY, SMITH_LENGTHS, Link, centres, forces, smith_links
+from seed_truth import CRANK_ROCKERS, DRAG_LINK, LONG_CRANK, motion, spectral_derivative, turning
 
 row = Ledger("Smith", __file__)
 SPEED, UNSTEADY, COUNT = 10.0, 0.2, 1024
@@ -33,7 +33,7 @@ def moving():
         point = turning(lengths, m, SPEED)
         for i in (2, 3, 4):
             link = LINKS[i - 2]
-            place = rate(centres(lengths, LINKS, m)[i - 2], 2) * SPEED**2
+            place = spectral_derivative(centres(lengths, LINKS, m)[i - 2], 2) * SPEED**2
             point |= {f"M{i}": link.mass, f"m{i}": link.mass, f"r{i}": link.along / link.mass}
             point |= {f"a_{i}x": place.real, f"a_{i}y": place.imag, f"r{i}_dot": point[f"r{i}"]}
         point |= {"alpha_4x": point["a_4x"], "alpha_4y": point["a_4y"]}

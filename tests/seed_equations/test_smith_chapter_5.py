@@ -8,18 +8,8 @@ import pytest
 import sympy as sp
 from seed_derivations import K, L, M, balanced_bar, balanced_bar_inertia, delta, h, rho
 from seed_ledger import Ledger, hold, holds, latex, quoted, same
-from seed_rigid import (
-    GRAVITY,
-    SMITH_LENGTHS,
-    Link,
-    balanced,
-    centres,
-    forces,
-    motion,
-    rate,
-    smith_links,
-)
-from seed_truth import CRANK_ROCKERS, DRAG_LINK
+from seed_rigid import GRAVITY, SMITH_LENGTHS, Link, balanced, centres, forces, smith_links
+from seed_truth import CRANK_ROCKERS, DRAG_LINK, motion, spectral_derivative
 
 row = Ledger("Smith", __file__)
 SPEED = 10.0
@@ -83,7 +73,7 @@ def fig_20():
         for case in CASES:
             links = balanced(case, GENERAL, lengths, (2.0, 1.5, 2.5))
             f = forces(lengths, links, SPEED, unsteady=0.2, count=1024)
-            a3 = rate(centres(lengths, links, m)[1], 2) * SPEED**2
+            a3 = spectral_derivative(centres(lengths, links, m)[1], 2) * SPEED**2
             point[case] = (links, f, {"M3": links[1].mass, "a3_vec": a3})
         points.append(point)
     return points

@@ -86,14 +86,6 @@ def follower_quadratic():
     }
 
 
-@cache
-def follower_cosine():
-    """Solve A c + B + C s = 0, c^2 + s^2 = 1 for the cosine, both roots."""
-    A, B, C, cosine = sp.symbols("A B C c", real=True)
-    quadratic = sp.expand((A * cosine + B) ** 2 - C**2 * (1 - cosine**2))
-    return sp.solve(quadratic, cosine), (A, B, C)
-
-
 def _position(along, across):
     """Return fixed-axes coordinates of an element, and the unit vectors along and across BC."""
     crank, coupler, _ = _moving()
@@ -284,13 +276,15 @@ def freudenstein():
 
 @cache
 def half_angle_quadratic(coupler):
-    """Return the coefficients of u^2, u, 1 for u = tan(t/2) of the follower or the coupler."""
+    """Return the quadratic in tan(t/2) of the follower or the coupler."""
     u = sp.Symbol("u", real=True)
     angle = TURNS[1] if coupler else TURNS[2]
     halves = {sp.cos(angle): (1 - u**2) / (1 + u**2), sp.sin(angle): 2 * u / (1 + u**2)}
     rest = sp.expand(sp.expand(freudenstein()[coupler]).subs(halves) * (1 + u**2))
     parts = sp.Poly(sp.cancel(sp.together(rest)), u).all_coeffs()
-    return tuple(sp.collect(sp.expand(part), sp.cos(TURNS[0])) for part in parts)
+    parts = (sp.collect(sp.expand(part), sp.cos(TURNS[0])) for part in parts)
+    half = sp.tan(angle / 2)
+    return sum(part * half**power for power, part in zip((2, 1, 0), parts, strict=True))
 
 
 # What the package itself derives, in the same symbols: coupler, end load, modes.

@@ -328,13 +328,6 @@ def stationary():
     ]
 
 
-def test_projection_of_the_stationary_coupler():
-    still = {"omega2": 0, "omega3": 0, "F_x": 0}
-    for point in stationary():
-        square = numeric(machine.projected(point["m"], point["m"])[1], **still)(0)
-        assert square == pytest.approx(point["Omega_m"] ** 2, rel=4e-4)
-
-
 row("6.12", check=holds(stationary, tol=4e-4))
 row("6.13", check=holds(stationary, tol=2e-4))
 

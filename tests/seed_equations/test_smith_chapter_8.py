@@ -1,7 +1,6 @@
 """Smith chapter 8: several parameters by the standard, the modified and the alternative method."""
 
 from functools import cache
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -641,23 +640,6 @@ def rays():
 
 
 row("8.39", "8.40", "8.42", check=holds(rays))
-
-
-def test_orders_of_the_alternative_method():
-    """Every order of chapter 7 applies along the ray."""
-    e1, e2 = 0.02, -1 / 70
-    h = [
-        Coefficients({k: x[k] + e2 / e1 * y.get(k, 0.0) for k in x})
-        for x, y in zip(ONE, TWO, strict=True)
-    ]
-    exact = boundaries(e1 * function(*h)[TURN], 2)
-    alphas = [series(*h, 2, sign, 4)[0] for sign in (-1, 1)]
-    errors = [
-        max(abs(1 + sum(x * e1 ** (k + 1) for k, x in enumerate(alpha[:order])) - limit)
-            for alpha, limit in zip(alphas, exact, strict=True))
-        for order in (1, 2, 3, 4)
-    ]  # fmt: skip
-    assert all(later < 0.2 * sooner for sooner, later in pairwise(errors))
 
 
 test_row, test_falsified_row = row.tests()

@@ -19,18 +19,14 @@ from boundary_cases import (
     REGIONS,
     SHARES,
     SYMMETRIC,
-    closes,
     curve,
     function,
     rest,
     slow,
-    slow1,
 )
 from boundary_truth import MP
+from exact_hill import ExactHarmonics, combine
 from omitted_orders import FORMS, Curve, real
-from smith_chapter_8.exact import exact_series
-from smith_chapter_8.strained import strained_boundaries
-from smith_chapter_8.surd import ExactHarmonics, Surd, combine
 
 # So small that the next power changes a slope by 1e-5 at most, near critical damping too.
 SMALL = Fraction(1, 2**20)
@@ -160,10 +156,6 @@ def test_beyond_critical_damping_no_route_has_a_real_end(name, share):
             assert problem.truth(side, SMALL) is None
             for order in ORDERS:
                 assert problem.approximation("uniform", order, side, SMALL) is None
-        with pytest.raises(ValueError, match="damping"):
-            exact_series(problem.operator(), (1, *problem.drag))
-        with pytest.raises(ValueError, match="damping"):
-            strained_boundaries(problem.functions[0], n, 2, problem.drag[0])
 
 
 SEVERAL_FAST = [("two mixed", 1, "damped"), ("one harmonic each", 3, "undamped")]
@@ -199,26 +191,6 @@ def test_several_parameters_in_the_plane(n):
             for order in (1, 2, 4, 6):
                 agrees(problem, "uniform", order, side)
                 agrees(problem, "series", order, side)
-
-
-@pytest.mark.parametrize("share", SHARES)
-@pytest.mark.parametrize(
-    "name", ["mixed", "odd", *slow1(MIXED[1:]), *slow1(("sine", "odd harmonics", "(5,1,5,2)"))]
-)
-def test_three_derivations_of_the_series_are_one(name, share):
-    """Strained parameters, Bloch's operator and the expansion made here: number by number."""
-    f = function(name)
-    for n in (0, *REGIONS):
-        if closes(name, n, share):
-            continue
-        problem = curve((f,), n, SHARES[share], highest=6)
-        centre, root, square = problem.expansion(6)
-        direction = (1, *problem.drag) if problem.damped else (1,)
-        bloch = exact_series(problem.operator(), direction)
-        assert strained_boundaries(f, n, 6, problem.drag[0]) == bloch
-        for ends, sign in ((bloch.upper, 1), (bloch.lower, -1)):
-            pairs = zip(centre[1:], root[1:], strict=True)
-            assert list(ends) == [Surd(c) + Surd.root(square) * (sign * r) for c, r in pairs]
 
 
 def test_several_parameters_are_their_combination():

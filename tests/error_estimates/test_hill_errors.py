@@ -15,10 +15,10 @@ from elastolink.runtime.hill import (
     discriminant,
     hill_boundaries,
 )
+from exact_hill import ExactHarmonics
 from half_trace_truth import half_traces
 from honesty import verdict
-from smith_chapter_8.exact import exact_operator, exact_series
-from smith_chapter_8.surd import ExactHarmonics
+from omitted_orders import Curve
 
 scenes = pytest.mark.parametrize("scenes", [20, pytest.param(200, marks=pytest.mark.slow)])
 extended = pytest.mark.skipif(
@@ -206,18 +206,16 @@ def test_least_parameters(scenes):
 
 @scenes
 def test_coefficients_of_boundaries(scenes):
-    """Against the same series in rational numbers and square roots of them."""
+    """Against the same series to 90 digits."""
     rng, ratios = np.random.default_rng(83), []
     for _ in range(scenes):
         f, region = waves(rng, 2), int(rng.integers(0, 4))
         found = boundary_series(f, region, 3)
         cosine, sine = ([Fraction(float(v)) for v in part[1:]] for part in (f.a, f.b))
         exact = ExactHarmonics(Fraction(0), tuple(cosine), tuple(sine))
-        series = exact_series(exact_operator([exact], region, 3), [1])
-        for ours, error, theirs in zip(
-            (found.lower, found.upper), found.error, (series.lower, series.upper), strict=True
-        ):
-            truth = np.array([float(v) for v in theirs])
+        curve = Curve((exact,), (Fraction(1),), (), region, 3)
+        for ours, error, side in zip((found.lower, found.upper), found.error, (-1, 1), strict=True):
+            truth = np.array([float(v) for v in curve.coefficients(side)])
             gaps = np.abs(ours - truth)
             # What is zero in both is known.
             known = (gaps > 0.0) | (error > 0.0)

@@ -15,20 +15,73 @@ common multiple of the level distances, ``Omega_k = W_k / (d L)^k`` and
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import combinations_with_replacement
+from itertools import combinations_with_replacement, zip_longest
 from operator import add, mul
 from typing import TypeAlias
 
 import numpy as np
 from elastolink.generated import hill_recursion
 
-from .surd import ExactHarmonics, Surd
-
 Exponents: TypeAlias = tuple[int, ...]
 Gaussian: TypeAlias = tuple[Fraction, Fraction]
+
+
+@dataclass(frozen=True)
+class ExactHarmonics:
+    """A periodic function, Smith (7.20): a_0 without a half, a_1, a_2, ... and b_1, b_2, ..."""
+
+    mean: Fraction
+    cosine: tuple[Fraction, ...]
+    sine: tuple[Fraction, ...]
+
+    @classmethod
+    def of(
+        cls,
+        mean: Fraction | int | str = 0,
+        cosine: Iterable[Fraction | int | str] = (),
+        sine: Iterable[Fraction | int | str] = (),
+    ) -> ExactHarmonics:
+        """Return the function from numbers of any rational kind; a float is taken as it is stored.
+
+        The shorter row is filled up with zeros.
+        """
+        pairs = [tuple(map(Fraction, p)) for p in zip_longest(cosine, sine, fillvalue=0)]
+        return cls(Fraction(mean), tuple(a for a, _ in pairs), tuple(b for _, b in pairs))
+
+    def harmonic(self, m: int) -> tuple[Fraction, Fraction]:
+        """Return (a_m, b_m); (a_0, 0) for the mean."""
+        if m == 0:
+            return self.mean, Fraction(0)
+        if m > len(self.cosine):
+            return Fraction(0), Fraction(0)
+        return self.cosine[m - 1], self.sine[m - 1]
+
+    def without(self, m: int) -> ExactHarmonics:
+        """Return the function less its m-th harmonic, m >= 1."""
+
+        def cut(row: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
+            return tuple(Fraction(0) if i == m else x for i, x in enumerate(row, 1))
+
+        return ExactHarmonics(self.mean, cut(self.cosine), cut(self.sine))
+
+
+def combine(
+    functions: Iterable[ExactHarmonics], weights: Iterable[Fraction | int]
+) -> ExactHarmonics:
+    """Return the weighted sum of functions: a direction in the space of several parameters.
+
+    Smith (8.39), (8.42) with the weights 1 and eps2/eps1.
+    """
+    pairs = [(f, Fraction(w)) for f, w in zip(functions, weights, strict=True)]
+    count = max(len(f.cosine) for f, _ in pairs)
+    rows = [
+        [sum(w * f.harmonic(m)[kind] for f, w in pairs) for m in range(1, count + 1)]
+        for kind in (0, 1)
+    ]
+    return ExactHarmonics.of(sum(w * f.mean for f, w in pairs), *rows)
 
 
 @dataclass(frozen=True)
@@ -58,19 +111,6 @@ class ExactOperator:
 
         a, b = (tuple(map(weighted, rows, weights)) for rows in (self.diagonal, self.coupling))
         return a, b
-
-
-@dataclass(frozen=True)
-class ExactSeries:
-    """Boundaries ``lam2 = n^2/4 + sum_k alpha_k t^k`` on a ray through the origin.
-
-    ``split`` is the order at which they part, None where they agree to the last order; ``upper``
-    and ``lower`` hold alpha_1 ... alpha_N with the positive and the negative root.
-    """
-
-    split: int | None
-    upper: tuple[Surd, ...]
-    lower: tuple[Surd, ...]
 
 
 def exact_operator(
@@ -185,38 +225,3 @@ class _Algebra:
                 product = _times(pair[:, 0], row) + _times(pair[:, 1], mirror)
                 out.accumulate(tuple(map(add, first, second)), product)
         return out
-
-
-def exact_series(operator: ExactOperator, direction: Sequence[Fraction | int]) -> ExactSeries:
-    """Expand both boundaries in powers of t with the parameters ``t * direction``.
-
-    ``lam2 = n^2/4 + Re A +- sqrt(S)``, ``S = |B|^2 - (Im A)^2``.  ValueError where damping closes
-    the region at first, or the ray goes through the tip of the tongue so that S begins with an odd
-    power: there is no real power series then.
-    """
-    order = operator.order
-    a, b = operator.components(direction)
-    centre = [Surd(real) for real, _ in a]
-    square = [Fraction(0)] * (2 * order + 1)
-    for i in range(order):
-        for j in range(order):
-            square[i + j + 2] += b[i][0] * b[j][0] + b[i][1] * b[j][1] - a[i][1] * a[j][1]
-    first = next((k for k in range(2, 2 * order + 1) if square[k]), None)
-    # Where B or the drag begins; the square is complete up to this degree more than the order.
-    starts = [k for k, (x, y) in enumerate(zip(a, b, strict=True), 1) if x[1] or any(y)]
-    if first is None and not starts:
-        return ExactSeries(None, tuple(centre), tuple(centre))
-    if first != 2 * starts[0] or square[first] < 0:
-        raise ValueError(
-            f"found S = {square[first] if first else 0} t^{first} + ...; expected a positive "
-            "even leading term; damping closes the region, or the ray meets its tip"
-        )
-    root = Surd.root(square[first])
-    ratios = [value / square[first] for value in square[first:]]
-    roots = [Fraction(1)]
-    for k in range(1, order - starts[0] + 1):
-        roots.append((ratios[k] - sum(roots[i] * roots[k - i] for i in range(1, k))) / 2)
-    parted = [Surd(Fraction(0))] * (starts[0] - 1) + [root * value for value in roots]
-    upper = tuple(c + p for c, p in zip(centre, parted, strict=True))
-    lower = tuple(c - p for c, p in zip(centre, parted, strict=True))
-    return ExactSeries(starts[0], upper, lower)

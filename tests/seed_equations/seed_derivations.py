@@ -298,31 +298,18 @@ first_moment, inertia3, inertia4, mode = (
 
 def _plain(expression):
     """Replace the package's symbols and functions of time, at constant crank speed."""
-    th2, th3, t, place = coupler.th2, coupler.th3, coupler.t, coupler.x
-    field = coupler.y
-    table = {
-        sp.diff(th2, t, 2): alpha2,
-        sp.diff(th3, t, 2): alpha3,
-        sp.diff(th2, t): omega2,
-        sp.diff(th3, t): omega3,
-        th2: theta2,
-        th3: theta3,
-        coupler.end_load: force_x,
-        sp.diff(field, place, 4): y_xxxx,
-        sp.diff(field, place, 2): y_xx,
-        sp.diff(field, place): y_x,
-        sp.diff(field, t, 2): y_tt,
-        sp.diff(field, t): y_t,
-        field: y,
-        coupler.crank: l2,
-        coupler.coupler: l3,
-        coupler.follower: l4,
-        coupler.stiffness: EI,
-        coupler.density: mu,
-        coupler.damping: 0,
-        place: x,
-    }
-    return sp.expand(sp.sympify(expression).xreplace(table).subs(alpha2, 0).doit())
+    time, place, field = coupler.t, coupler.x, coupler.y
+    table = {coupler.end_load: force_x, coupler.stiffness: EI, coupler.density: mu, place: x}
+    table |= {coupler.crank: l2, coupler.coupler: l3, coupler.follower: l4}
+    table |= {coupler.damping: sp.S.Zero, field: y}
+    for angle, names in (
+        (coupler.th2, (theta2, omega2, sp.S.Zero)),
+        (coupler.th3, (theta3, omega3, alpha3)),
+    ):
+        table |= {angle.diff(time, order): name for order, name in enumerate(names)}
+    table |= {field.diff(place, order): name for order, name in ((1, y_x), (2, y_xx), (4, y_xxxx))}
+    table |= {field.diff(time, order): name for order, name in ((1, y_t), (2, y_tt))}
+    return sp.expand(sp.sympify(expression).xreplace(table).doit())
 
 
 @cache

@@ -24,15 +24,8 @@ import numpy as np
 import sympy as sp
 from scipy import linalg
 
-_RELATIONS = {
-    "=": "=",
-    "~": r"\approx",
-    "<": "<",
-    "<=": r"\le",
-    ">": ">",
-    ">=": r"\ge",
-    "->": r"\to",
-}
+_RELATIONS = {"=": "=", "<": "<", ">": ">", "<=": r"\le", ">=": r"\ge"}
+_RELATIONS |= {"~": r"\approx", "->": r"\to"}
 _OPERATIONS = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,

@@ -413,14 +413,8 @@ class Part:
 
     document: str
     chapter: str
-    numbered: tuple[str, ...]
-    unnumbered: tuple[str, ...]
+    labels: tuple[str, ...]
     scan: dict[str, str]
-
-    @property
-    def labels(self) -> tuple[str, ...]:
-        """All labels in the order of the inventory."""
-        return self.numbered + self.unnumbered
 
 
 def entries() -> tuple[Entry, ...]:
@@ -451,11 +445,10 @@ def inventory() -> tuple[Part, ...]:
     table = tomllib.loads((HERE / "inventory.toml").read_text(encoding="utf-8"))
     return tuple(
         Part(
-            document=row["document"],
-            chapter=row["chapter"],
-            numbered=_numbers(row.get("numbered", ())),
-            unnumbered=tuple(row.get("unnumbered", ())),
-            scan=dict(row.get("scan", {})),
+            row["document"],
+            row["chapter"],
+            (*_numbers(row.get("numbered", ())), *row.get("unnumbered", ())),
+            row.get("scan", {}),
         )
         for row in table["part"]
     )

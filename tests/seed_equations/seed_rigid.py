@@ -6,7 +6,7 @@ equations a link, moments about each link's centre of mass, solved together.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 from seed_truth import TURN, motion, spectral_derivative
@@ -37,12 +37,7 @@ class Link:
 
     def __add__(self, other):
         """Return both bodies fixed to each other."""
-        return Link(
-            self.mass + other.mass,
-            self.along + other.along,
-            self.inertia + other.inertia,
-            self.across + other.across,
-        )
+        return Link(*(a + b for a, b in zip(astuple(self), astuple(other), strict=True)))
 
     @property
     def centre(self):

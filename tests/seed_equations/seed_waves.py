@@ -161,15 +161,12 @@ n = sp.Symbol("n", integer=True, positive=True)
 eps = sp.symbols("epsilon_1 epsilon_2", real=True)
 delta, psi = sp.symbols("delta_n psi_n", real=True)
 # Two functions, neither even nor odd, for counterexamples in numbers (n = 2): a, b of each.
-TWO_FUNCTIONS = (
-    (
-        Coefficients({0: 0.9, 1: 0.1, 2: 0.4, 3: -0.5, 4: 0.4}),
-        Coefficients({1: 0.7, 2: 0.3, 3: -0.4, 4: -0.9}),
-    ),
-    (
-        Coefficients({0: 0.8, 1: -0.8, 2: 0.2, 3: 0.3, 4: -0.2}),
-        Coefficients({1: 0.5, 2: -0.6, 3: 0.9, 4: -0.7}),
-    ),
+TWO_FUNCTIONS = tuple(
+    (Coefficients(enumerate(a)), Coefficients(enumerate(b, 1)))
+    for a, b in (
+        ((0.9, 0.1, 0.4, -0.5, 0.4), (0.7, 0.3, -0.4, -0.9)),
+        ((0.8, -0.8, 0.2, 0.3, -0.2), (0.5, -0.6, 0.9, -0.7)),
+    )
 )
 
 

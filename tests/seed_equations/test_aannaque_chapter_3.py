@@ -537,12 +537,8 @@ def joint_accelerations():
     found |= {"q_t2": m.alpha3, "q_t3": m.alpha4}
     speeds = {"omega1": 2 * m.omega2, "omega2": 2 * m.omega3, "t1": m.theta2, "t2": m.theta3}
     spins = {"alpha2": 4 * m.alpha3, "alpha3": 4 * m.alpha4}
-    return {
-        **letters(TABLE_3_2),
-        **{f"{k}_ddot": 4 * v for k, v in found.items()},
-        **speeds,
-        **spins,
-    }
+    found = {f"{name}_ddot": 4 * value for name, value in found.items()}
+    return {**letters(TABLE_3_2), **found, **speeds, **spins}
 
 
 @row("3.13")

@@ -278,13 +278,8 @@ row(
 )
 
 
-ELEMENT = element_arrays(
-    "cubic",
-    length=LENGTH,
-    mass_per_length=DENSITY,
-    axial_stiffness=2e5,
-    bending_stiffness=9.0,
-)
+STIFFNESSES = {"axial_stiffness": 2e5, "bending_stiffness": 9.0}
+ELEMENT = element_arrays("cubic", length=LENGTH, mass_per_length=DENSITY, **STIFFNESSES)
 J = np.array([[0.0, -1.0], [1.0, 0.0]])
 # The document's order: both axial displacements first.
 ORDER = np.array([0, 3, 1, 2, 4, 5])
@@ -361,12 +356,8 @@ def moving():
 
     names = {"T": T, "T_dot": T_dot, "T_ddot": T_ddot, "N": shapes, "rhoA": DENSITY, "L": LENGTH}
     names |= {"q": q, "q_dot": q_dot, "q_ddot": q_ddot, "theta": angle, "Int": point_by_point}
-    names |= {
-        "qr_dot": velocity,
-        "a_r": acceleration,
-        "r_dot": ground_speed,
-        "K": ELEMENT.stiffness,
-    }
+    names |= {"qr_dot": velocity, "a_r": acceleration, "r_dot": ground_speed}
+    names["K"] = ELEMENT.stiffness
     names |= {"M": m, "M_c": w * c, "M_a": wd * c - w**2 * m, "theta_dot": w, "theta_ddot": wd}
     names |= {"qr_ddot": derivative(lambda s: rigid(s, 1))}
     names |= {"p": point_by_point(push, 0.0, LENGTH, False) + ELEMENT.stiffness @ q}

@@ -151,17 +151,10 @@ def scheme(entry):
 def recurrence_for_constant_matrices(entry):
     p = constant()
     named = {"M": p["M"], "C": p["C"], "K": p["K"], "beta": 0.21, "dt": 0.2, "E": np.eye(3)}
-    start = {
-        "q0": p["q"][0],
-        "q1": p["q"][1],
-        "q0_dot": p["v"][0],
-        "f0": p["f"][0],
-        "f1": p["f"][1],
-    }
+    start = {f"{x}{k}": p[x][k] for x in "qf" for k in (0, 1)} | {"q0_dot": p["v"][0]}
     for k in (1, 2):
-        around = {
-            f"{x}_k{s}": p[x][k + n] for x in "qf" for s, n in (("", 0), ("1", 1), ("m1", -1))
-        }
+        near = {"k": 0, "k1": 1, "km1": -1}
+        around = {f"{x}_{name}": p[x][k + n] for x in "qf" for name, n in near.items()}
         hold(entry.printed, {**named, **start, **around}, tol=1e-10)
     # One freedom whose mass grows: M q'' + M' q' + q = 1.
     one, push = np.ones((1, 1)), np.ones((3, 1))
@@ -443,14 +436,9 @@ def load_of_the_rigid_motion(entry):
     hold(entry.corrected, point)
     hold(entry.printed, {**point, "qr_ddot": -qr_ddot})
     # A mass on a spring of stiffness 4 whose foot moves as cos t: (4 - 1) q = 1.
-    one = {
-        "Z": np.zeros((1, 1)),
-        "E": np.eye(1),
-        "M": np.eye(1),
-        "K": 4 * np.eye(1),
-        "z": np.zeros(1),
-    }
-    one |= {"C": np.zeros((1, 1)), "qr_ddot": -np.ones(1), "y_dot": 0, "y": np.zeros(2)}
+    one = {"Z": np.zeros((1, 1)), "E": np.eye(1), "M": np.eye(1), "C": np.zeros((1, 1))}
+    one |= {"K": 4 * np.eye(1), "z": np.zeros(1), "qr_ddot": -np.ones(1)}
+    one |= {"y_dot": 0, "y": np.zeros(2)}
     for form, sign in ((entry.corrected, 1), (entry.printed, -1)):
         answer = form.sides(**one)[0][1][1] / (4 - 1)
         assert answer == pytest.approx(sign / 3)
@@ -501,13 +489,8 @@ row("6.21", check=holds(lambda: [ring()]))
 row("6.20", check=holds(lambda: numbered()[1:]))
 row("6.23", check=holds(numbered, tol=1e-8))
 row("6.25", check=holds(lambda: numbered()[:4], tol=1e-8))
-row(
-    "6.26",
-    "6.27",
-    "6.28",
-    "6.29",
-    check=holds(lambda: [{**ring(), "y_1": ring()["y"][1]}], tol=1e-7),
-)
+last = holds(lambda: [{**ring(), "y_1": ring()["y"][1]}], tol=1e-7)
+row("6.26", "6.27", "6.28", "6.29", check=last)
 
 
 @row("6.22")

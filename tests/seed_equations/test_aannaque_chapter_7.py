@@ -230,18 +230,11 @@ def meissner():
             levels = (T * v[:count] / (2.0 * np.pi)) ** 2
             phases = T * v[:count] * share / (2.0 * np.pi)
             letters = {"theta": {k: w for k, w in enumerate(share, 1)}}
-            letters |= {
-                "C": {},
-                "S": {},
-                "V": {},
-                "count": count,
-                f"J{count}": half_trace(levels, share),
-            }
-            for k in range(count):
-                letters["C"][k + 1], letters["S"][k + 1] = np.cos(phases[k]), np.sin(phases[k])
-                letters["V"] |= {
-                    (i + 1, k + 1): (v[i] / v[k] + v[k] / v[i]) / 2 for i in range(count)
-                }
+            letters |= {"count": count, f"J{count}": half_trace(levels, share)}
+            letters["C"], letters["S"] = (dict(enumerate(f(phases), 1)) for f in (np.cos, np.sin))
+            numbers = [(i, k) for i in range(count) for k in range(count)]
+            ratios = {(i + 1, k + 1): v[i] / v[k] for i, k in numbers}
+            letters["V"] = {(i, k): (ratios[i, k] + ratios[k, i]) / 2 for i, k in ratios}
             points.append({**point, **letters, "i": 1, "k": 2})
     return points
 

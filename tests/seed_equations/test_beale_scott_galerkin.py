@@ -149,18 +149,11 @@ def quantities_without_dimension(entry):
     system = rod_system(PlainBasis(2), **numbers)
     (elastic,) = [term.scale for term in system.terms if term.array == "K"]
     linkage = QuickReturn(frame=0.59997, crank=0.25 * 0.59997, rod=1.3)
-    point = {
-        "G": 0.25 * 0.59997,
-        "a_x": 0.59997,
-        "eps": 0.25,
-        "x_1": float(linkage.motion(1.1).slide),
-        "L": 1.3,
-        "l_bar": 0.59997 / 1.3 * np.sqrt(1 + 2 * 0.25 * np.cos(1.1) + 0.25**2),
-        "EI": numbers["bending_stiffness"],
-        "m_bar": 7.15,
-        "lam": np.sqrt(system.scale_values()[elastic]),
-        **{"theta_dot": 1.0, "t": 1.0, "v": 1.0, "x": 1.0},
-    }
+    point = {"G": 0.25 * 0.59997, "a_x": 0.59997, "eps": 0.25, "L": 1.3, "m_bar": 7.15}
+    point |= {"x_1": float(linkage.motion(1.1).slide), "EI": numbers["bending_stiffness"]}
+    point["l_bar"] = 0.59997 / 1.3 * np.sqrt(1 + 2 * 0.25 * np.cos(1.1) + 0.25**2)
+    point["lam"] = np.sqrt(system.scale_values()[elastic])
+    point |= {"theta_dot": 1.0, "t": 1.0, "v": 1.0, "x": 1.0}
     hold(entry.printed, point)
 
 

@@ -57,18 +57,12 @@ def scaled(lengths):
 def deviations(lengths):
     """Return largest errors of omega3, alpha3, omega4, alpha4, theta3 [deg] and theta4 [deg]."""
     m = motion(lengths, count=720)
+    angles = np.degrees([m.theta3, m.theta4])
+    true = np.array([m.omega3, m.alpha3, m.omega4, m.alpha4, *angles])
     worst = np.zeros(6)
     for th2, d3, m3, omega3, alpha3, d4, m4, omega4, alpha4 in forbar2(*scaled(lengths)):
-        i = 2 * (th2 % 360)
-        errors = (
-            omega3 - m.omega3[i],
-            alpha3 - m.alpha3[i],
-            omega4 - m.omega4[i],
-            alpha4 - m.alpha4[i],
-            d3 + m3 / 60 - np.degrees(m.theta3[i]),
-            d4 + m4 / 60 - np.degrees(m.theta4[i]),
-        )
-        worst = np.maximum(worst, np.abs(errors))
+        found = (omega3, alpha3, omega4, alpha4, d3 + m3 / 60, d4 + m4 / 60)
+        worst = np.maximum(worst, np.abs(found - true[:, 2 * (th2 % 360)]))
     return worst
 
 

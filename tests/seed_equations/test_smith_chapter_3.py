@@ -105,13 +105,8 @@ def each_small_movement(entry):
     point = fig_10(0.5, np.pi)
     true, printed = entry.printed.sides(**point)[0]
     quoted([true, printed], "0.03126", "0.03202")
-    quoted(
-        np.ravel(entry.printed.sides(**played(FIVE, 1.0, 0.5))),
-        "0.1419",
-        "0.1446",
-        "0.1345",
-        "0.1309",
-    )
+    printed = np.ravel(entry.printed.sides(**played(FIVE, 1.0, 0.5)))
+    quoted(printed, "0.1419", "0.1446", "0.1345", "0.1309")
     first, second, third = (part.subs(numbers(point)) for part in clearance_series())
     quoted([first * 0.5], "0.03186")
     quoted([first * 0.5 * (1 + 0.5 / (4 * point["l3"]))], "0.03226")

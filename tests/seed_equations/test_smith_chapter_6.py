@@ -559,15 +559,8 @@ def definitions(entry):
         same(values["g"], right)
         still = {**{k: FAST[k] for k in ("EI", "mu", "l3", "omega2")}, "m": m}
         square = still["EI"] / still["mu"] * (m * np.pi / 15.0) ** 4 / 90.0**2
-        left = entry.printed[0].sides(
-            **still,
-            lam=values["lam"],
-            U=1.0,
-            U_pp=0.5,
-            phi=0,
-            g=0,
-            **dict.fromkeys(("eps1", "eps2", "eps3", "f1", "f2", "f3"), 0),
-        )[0][0]
+        still |= dict.fromkeys(("eps1", "eps2", "eps3", "f1", "f2", "f3", "phi", "g"), 0)
+        left = entry.printed[0].sides(**still, lam=values["lam"], U=1.0, U_pp=0.5)[0][0]
         same(left, square + 0.5)
 
 

@@ -291,15 +291,8 @@ def nth_harmonics_in_one(entry):
 
 @row("8.2 delta_n for proportional harmonics")
 def proportional_harmonics(entry):
-    point = {
-        "a": {1: 2.0},
-        "b": {1: 3.0},
-        "c": {1: 4.0},
-        "d": {1: 6.0},
-        "n": 1,
-        "eps1": 1,
-        "eps2": 1,
-    }
+    point = {"a": {1: 2.0}, "b": {1: 3.0}, "c": {1: 4.0}, "d": {1: 6.0}}
+    point |= {"n": 1, "eps1": 1, "eps2": 1}
     for e2 in (1.0, -0.8):
         hold(entry.corrected, {**point, "eps2": e2, "delta_n": np.hypot(2 + 4 * e2, 3 + 6 * e2)})
     quoted([np.hypot(6, 9), entry.printed.values(**point)["delta_n"]], "10.8", "9.0")
@@ -531,12 +524,8 @@ def first_order_boundaries(entry):
 @row("8.4 width EF")
 def width_of_both(entry):
     p = both_parameters()
-    for region, quote, true in zip(
-        (1, 2, 3, 4),
-        ("2.21", "0.91", "0.63", "0.22"),
-        ("2.66", "0.68", "0.23", "0.16"),
-        strict=True,
-    ):
+    quotes = (("2.21", "2.66"), ("0.91", "0.68"), ("0.63", "0.23"), ("0.22", "0.16"))
+    for region, (quote, true) in enumerate(quotes, 1):
         point = letters(region)
         hold(entry.printed, {**point, "EF": point["delta_n"]})
         low, high = exact(region, p["eps1"], p["eps2"])

@@ -79,11 +79,8 @@ def follower_quadratic():
     equation = sp.expand(equation.subs(sine**2, 1 - cosine**2))
     equation = sp.expand(equation.subs(sp.sin(theta2) ** 2, 1 - sp.cos(theta2) ** 2))
     linear = sp.Poly(equation, cosine, sine)
-    return {
-        "A": sp.factor(linear.coeff_monomial(cosine)),
-        "B": linear.coeff_monomial(1),
-        "C": sp.factor(linear.coeff_monomial(sine)),
-    }
+    coefficients = zip("ABC", (cosine, 1, sine), strict=True)
+    return {name: sp.factor(linear.coeff_monomial(term)) for name, term in coefficients}
 
 
 def _position(along, across):
@@ -334,24 +331,14 @@ def equation():
 
 def _named(expression, **more):
     """Replace the package's symbols by their names; a name that is not known is an error."""
-    table = {
-        "theta2_rate": omega2,
-        "theta2_acceleration": 0,
-        "crank": l2,
-        "coupler": l3,
-        "follower": l4,
-        "bending_stiffness": EI,
-        "mass_per_length": mu,
-        "sin23": sp.sin(theta2 - theta3),
-        "cos23": sp.cos(theta2 - theta3),
-        "sine_transmission": -sp.sin(theta3 - theta4),
-        "cosine_transmission": sp.cos(theta3 - theta4),
-        # The package's rates are per crank speed.
-        "omega3": omega3 / omega2,
-        "alpha3": alpha3 / omega2**2,
-        "alpha4": alpha4 / omega2**2,
-        **more,
-    }
+    table = {"crank": l2, "coupler": l3, "follower": l4, "bending_stiffness": EI}
+    table |= {"mass_per_length": mu, "theta2_rate": omega2, "theta2_acceleration": 0}
+    table |= {"sin23": sp.sin(theta2 - theta3), "cos23": sp.cos(theta2 - theta3)}
+    table |= {"sine_transmission": -sp.sin(theta3 - theta4)}
+    table |= {"cosine_transmission": sp.cos(theta3 - theta4)}
+    # The package's rates are per crank speed.
+    table |= {"omega3": omega3 / omega2, "alpha3": alpha3 / omega2**2, "alpha4": alpha4 / omega2**2}
+    table |= more
     found = {symbol: table[symbol.name] for symbol in expression.free_symbols}
     return sp.expand(expression.subs(found, simultaneous=True))
 
@@ -359,11 +346,8 @@ def _named(expression, **more):
 @cache
 def pin_force():
     """Return the force on the coupler at C, along and across it, at constant crank speed."""
-    inertias = {
-        "coupler_inertia": inertia3,
-        "coupler_first_moment": first_moment,
-        "follower_inertia": inertia4,
-    }
+    names = ("coupler_inertia", "coupler_first_moment", "follower_inertia")
+    inertias = dict(zip(names, (inertia3, first_moment, inertia4), strict=True))
     steady = (part.subs(coupler.acceleration, 0) for part in coupler.pin_force(SPEC))
     return tuple(_named(part, **inertias) for part in steady)
 

@@ -509,12 +509,9 @@ class Formula:
                 twice = ast.BinOp(ast.Constant(2), ast.Mult(), side)
                 for wrong in [twice] * place if double else _mutated(side):
                     sides = (*relation.sides[:place], wrong, *relation.sides[place + 1 :])
-                    mutant = copy.copy(self)
-                    mutant.relations = (
-                        *self.relations[:number],
-                        Relation(sides, relation.signs),
-                        *self.relations[number + 1 :],
-                    )
+                    changed, mutant = list(self.relations), copy.copy(self)
+                    changed[number] = Relation(sides, relation.signs)
+                    mutant.relations = tuple(changed)
                     yield mutant
 
 
@@ -561,14 +558,9 @@ def _mutated(side: ast.expr) -> Iterator[ast.expr]:
     uses |= {n.value.id: "table" for n in nodes if isinstance(n, ast.Subscript)}
     uses |= {_called(n): "function" for n in nodes if isinstance(n, ast.Call)}
     # (-1)^(j + k) is (-1)^(j - k).
-    parity = {
-        inner
-        for node in nodes
-        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow)
-        if isinstance(node.left, ast.UnaryOp)
-        for inner in ast.walk(node.right)
-        if isinstance(inner, ast.BinOp)
-    }
+    powers = (n for n in nodes if isinstance(n, ast.BinOp) and isinstance(n.op, ast.Pow))
+    exponents = [n.right for n in powers if isinstance(n.left, ast.UnaryOp)]
+    parity = {n for part in exponents for n in ast.walk(part) if isinstance(n, ast.BinOp)}
     for position, node in enumerate(nodes):
         for wrong in () if node in rest | parity else _wrong(node, uses):
             new = copy.deepcopy(side)
@@ -610,10 +602,7 @@ def _wrong(node: ast.AST, uses: Mapping[str, str]) -> Iterator[ast.expr]:
             yield ast.Subscript(table, ast.BinOp(index, ast.Add(), ast.Constant(1)))
         case ast.Name(id=name):
             base = re.sub(r"\d", "", name)
-            others = [
-                n
-                for n, use in uses.items()
-                if n != name and use == uses[name] and re.sub(r"\d", "", n) == base
-            ]
+            alike = (n for n, use in uses.items() if n != name and use == uses[name])
+            others = [n for n in alike if re.sub(r"\d", "", n) == base]
             if others:
                 yield ast.Name(min(others, key=lambda n: (n < name, n)))

@@ -90,10 +90,8 @@ def waves():
     bend = sum(c * wave for c, wave in zip(C[:4], WAVES, strict=True))
     stretch = C[4] * sp.sin(beta * x) + C[5] * sp.cos(beta * x)
     fields = {"V": lambda s: bend.subs(x, s), "U": lambda s: stretch.subs(x, s)}
-    fields |= {
-        "v": lambda s, _: bend.subs(x, s) * swing,
-        "u": lambda s, _: stretch.subs(x, s) * swing,
-    }
+    waves_of = {"v": fields["V"], "u": fields["U"]}
+    fields |= {name: lambda s, _, wave=wave: wave(s) * swing for name, wave in waves_of.items()}
     symbols = {"E": E, "A": A, "II": INERTIA, "rho": rho, "x": x, "t": t, "omega": omega}
     symbols |= {f"c{k}": c for k, c in enumerate(C, 1)}
     return {**fields, **symbols, "lam": lam, "beta": beta, "varphi": PHASE}
@@ -117,10 +115,8 @@ def wave_numbers(entry):
     lam4, minus_beta2 = separated()
     names = {**waves(), "lam": lam4 ** sp.Rational(1, 4), "beta": sp.sqrt(-minus_beta2)}
     positive = {s: sp.Symbol(s.name, positive=True) for s in (E, A, INERTIA, rho, omega)}
-    hold(
-        entry.printed,
-        {k: w.subs(positive) if isinstance(w, sp.Basic) else w for k, w in names.items()},
-    )
+    symbols = {k: w.subs(positive) if isinstance(w, sp.Basic) else w for k, w in names.items()}
+    hold(entry.printed, symbols)
 
 
 def test_waves_are_solutions_of_the_separated_equations():
@@ -182,12 +178,8 @@ def matrices_of_the_ends(entry):
 @row("5.15")
 def end_forces(entry):
     values = end_values(CONSTANTS)
-    bend, stretch = (
-        waves()[name](x).subs(
-            {lam: POINT["lam"], beta: POINT["beta"], **dict(zip(C, CONSTANTS, strict=True))}
-        )
-        for name in "VU"
-    )
+    numbers = {lam: POINT["lam"], beta: POINT["beta"], **dict(zip(C, CONSTANTS, strict=True))}
+    bend, stretch = (waves()[name](x).subs(numbers) for name in "VU")
     names = {"U_p": (stretch, 1), "V_pp": (bend, 2), "V_ppp": (bend, 3)}
     shapes = {k: sp.lambdify(x, form.diff(x, n)) for k, (form, n) in names.items()}
     hold(entry.corrected, {**values, **shapes, "f_T": values["f"]})
@@ -254,11 +246,8 @@ row("5.17", "5.18", "5.19", check=holds(unit_beams, tol=1e-8))
 def theorem_of_richards_and_leung(entry):
     for p in unit_beams():
         slope = dynamic(p["square"] + 1e-30j).imag / 1e-30
-        hold(
-            entry.printed,
-            {"M": p["M"], "D_w": 0, "omega_sq": 0, "D": lambda *_, s=slope: s},
-            tol=1e-9,
-        )
+        point = {"M": p["M"], "D_w": 0, "omega_sq": 0, "D": lambda *_, s=slope: s}
+        hold(entry.printed, point, tol=1e-9)
 
 
 @row("5.2.2 power series of the matrices")
@@ -267,12 +256,8 @@ def power_series(entry):
     z = sp.Symbol("z", positive=True)
     above, divisor = ff.numerators()
     below = taylor(divisor, problem.Z, 4).value
-    series = {
-        name: sp.series(
-            (taylor(form, problem.Z, 4).value / below).subs(problem.Z, z), z, 0, 9
-        ).removeO()
-        for name, form in above.items()
-    }
+    ratios = {name: taylor(form, problem.Z, 4).value / below for name, form in above.items()}
+    series = {k: sp.series(r.subs(problem.Z, z), z, 0, 9).removeO() for k, r in ratios.items()}
     hold(entry.corrected, {"z": z, "F6": series["F6"]})
     unit = {"mass_per_length": 1.0, "axial_stiffness": 1.0, "bending_stiffness": 1.0}
     cubic = element_arrays("cubic", length=1.0, **unit)
@@ -364,11 +349,8 @@ def count_of_wittrick_and_williams(entry):
     for trial in np.linspace(1.0, 300.0, 40):
         if np.abs(reference - trial).min() > 1e-3 * trial:
             negative = int(np.sum(np.linalg.eigvalsh(problem.stiffness(trial)) < 0))
-            names = {
-                "J": lambda _, n=trial: np.sum(reference < n),
-                "omega0": trial,
-                "D_w": lambda _: 0,
-            }
+            names = {"J": lambda _, n=trial: np.sum(reference < n), "omega0": trial}
+            names |= {"D_w": lambda _: 0}
             names |= {"J0": problem.poles, "s": lambda _, n=negative: n}
             hold(entry.printed, names)
     fourth = found.frequencies[3]

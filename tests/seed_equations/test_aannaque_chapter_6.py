@@ -36,10 +36,8 @@ def velocity_and_displacement(entry):
         functions = {k: lambda at, n=n, q=q: q.diff(tau, n).subs(tau, at) for k, n in names.items()}
         ends = {"t_k": sp.Integer(1), "t_k1": 1 + h, "dt": h}
         for name, n in {"q": 0, "q_dot": 1}.items():
-            ends |= {
-                f"{name}_k": q.diff(tau, n).subs(tau, 1),
-                f"{name}_k1": q.diff(tau, n).subs(tau, 1 + h),
-            }
+            rate = q.diff(tau, n)
+            ends |= {f"{name}_k": rate.subs(tau, 1), f"{name}_k1": rate.subs(tau, 1 + h)}
         hold(entry.corrected, {**functions, **ends})
         hold(entry.printed[0], {**functions, **ends})
         if q == tau**3:
@@ -84,11 +82,8 @@ def acceleration_of_the_ends(entry):
     """Exact for a motion of fourth degree."""
     q = 3 * tau**4 - tau**3 + 2 * tau**2
     names = {"t_k": sp.Integer(2), "tau": tau, "q3": q.diff(tau, 3), "q4": q.diff(tau, 4)}
-    accelerations = {
-        "q_ddot_k": q.diff(tau, 2).subs(tau, 2),
-        "q_ddot": lambda at: q.diff(tau, 2).subs(tau, at),
-    }
-    hold(entry.printed, {**names, **accelerations})
+    second = lambda at: q.diff(tau, 2).subs(tau, at)  # noqa: E731
+    hold(entry.printed, {**names, "q_ddot_k": second(2), "q_ddot": second})
 
 
 def ends():
@@ -535,14 +530,10 @@ def after_some_cycles(entry):
     for m in range(1, 5):
         for k in range(1, 6):
             state = -p["G"][k] @ state + p["f"][k]
-        hold(
-            entry.corrected,
-            {**p, "m": m, "y_1": state, "power": np.linalg.matrix_power, "R_inv": R_inv},
-            tol=1e-7,
-        )
-        early = {**p, "m": m - 1, "y_1": state, "power": np.linalg.matrix_power, "R_inv": R_inv}
-        hold(entry.printed, early, tol=1e-7)
-        left, right = entry.printed.sides(**{**early, "m": m})[0]
+        now = {**p, "m": m, "y_1": state, "power": np.linalg.matrix_power, "R_inv": R_inv}
+        hold(entry.corrected, now, tol=1e-7)
+        hold(entry.printed, {**now, "m": m - 1}, tol=1e-7)
+        left, right = entry.printed.sides(**now)[0]
         assert not np.allclose(left, right, rtol=1e-3)
 
 

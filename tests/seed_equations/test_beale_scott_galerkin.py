@@ -30,12 +30,8 @@ PRINTED = WHOLE.with_(drop=("frame", "tension"))
 x, t, v, phi, block, L = rod.x, rod.t, rod.v, rod.phi, rod.block, rod.length
 m, EI = rod.density, rod.stiffness
 eps, eta, speed = sp.symbols("epsilon eta Omega", positive=True)
-FLEXIBLE = {
-    "frame": 0.59997,
-    "length": 1.0,
-    "bending_stiffness": 0.7e11 * 0.5208e-6,
-    "mass_per_length": 7.15,
-}
+FLEXIBLE = {"frame": 0.59997, "length": 1.0, "mass_per_length": 7.15}
+FLEXIBLE["bending_stiffness"] = 0.7e11 * 0.5208e-6
 RATIO = 0.3
 LINKAGE = QuickReturn(frame=0.59997, crank=RATIO * 0.59997, rod=1.0)
 

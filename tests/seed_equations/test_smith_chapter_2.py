@@ -157,9 +157,14 @@ row("2.2.2 lambda and psi", check=holds(opened))
 row("2.2.2 theta3 and theta4", check=holds(lambda: map(same_turn, places(assemblies=("open",)))))
 
 
+def solved(*unknowns):
+    """Return what derives speeds or accelerations."""
+    return lambda: {name: rates()[name] for name in unknowns}
+
+
 row("2.5", check=holds(motions))
 row("2.6", check=holds(motions), derived=lambda: closure_rows(1))
-row("2.7", check=holds(motions), derived=lambda: {name: rates()[name] for name in (omega3, omega4)})
+row("2.7", check=holds(motions), derived=solved(omega3, omega4))
 
 
 @row("Fig. 5 instantaneous centre")
@@ -177,11 +182,7 @@ def instantaneous_centre(entry):
 
 row("2.8", check=holds(motions, tol=1e-6))
 row("2.9", check=holds(motions, tol=1e-6), derived=lambda: closure_rows(2))
-row(
-    "2.10",
-    check=holds(motions, tol=1e-7),
-    derived=lambda: {name: rates()[name] for name in (alpha3, alpha4)},
-)
+row("2.10", check=holds(motions, tol=1e-7), derived=solved(alpha3, alpha4))
 
 
 @row("2.5 limits of the crank length")
@@ -214,10 +215,8 @@ def coupler_angle(entry):
         cosine, sine = (side / point["l3"] for _, side in entry.printed.sides(**point))
         hold(entry.printed, point)
         assert np.abs(cosine + 1j * sine - np.exp(1j * point["theta3"])).max() < 1e-12
-        assert (
-            np.abs(np.abs(point["sin_theta4"]) - np.sqrt(1 - np.cos(point["theta4"]) ** 2)).max()
-            < 1e-7
-        )
+        sine4 = np.sqrt(1 - np.cos(point["theta4"]) ** 2)
+        assert np.abs(np.abs(point["sin_theta4"]) - sine4).max() < 1e-7
 
 
 @cache

@@ -50,10 +50,8 @@ def played(lengths, theta2, clearance):
     theta3, theta4 = (angle[0] for angle in closure(lengths, theta2))
     phi = abs(np.angle(pin * np.exp(-1j * theta4)))
     low, high = movement(lengths, theta2, clearance)
-    reached = {
-        "BC_p": abs(pin - l4 * np.exp(1j * (theta4 + low))),
-        "BC_pp": abs(pin - l4 * np.exp(1j * (theta4 + high))),
-    }
+    reached = {"BC_p": abs(pin - l4 * np.exp(1j * (theta4 + low)))}
+    reached["BC_pp"] = abs(pin - l4 * np.exp(1j * (theta4 + high)))
     changes = {"dphi_p": -low, "dphi_pp": high, "dphi": high - low}
     angles = {"phi": phi, "phi_p": phi - low, "phi_pp": phi - high}
     mu = abs(np.angle(np.exp(1j * (theta4 - theta3))))

@@ -160,11 +160,8 @@ def modal():
     mu = LOADS["mu"]
     load = numeric(-beam, **still)
     tension, slope = numeric(tension), numeric(tension.diff(machine.x))
-    functions = {
-        "f1": lambda x: tension(x) / mu,
-        "f2": lambda x: -slope(x) / mu,
-        "f3": lambda x: load(x) / mu,
-    }
+    forms = {"f1": tension, "f2": lambda x: -slope(x), "f3": load}
+    functions = {name: lambda x, form=form: form(x) / mu for name, form in forms.items()}
     points = []
     for place in (0.7, 1.9, 3.1):
         k = {n: n * np.pi / POINT["l3"] for n in Y}
@@ -422,11 +419,8 @@ def term_of_the_coefficient(entry):
     quick = {"omega2": 2.0}
     fast = [p | quick | {k: 4 * p[k] for k in ("alpha3", "alpha4", "F_x")} for p in rig_points()]
     hold(entry.corrected, *fast, tol=1e-8)
-    hold(
-        entry.printed,
-        *({**p, "I3": p["r3"], "alpha3": p["alpha3"] * p["I3"] / p["r3"]} for p in fast),
-        tol=1e-8,
-    )
+    literal = [p | {"I3": p["r3"], "alpha3": p["alpha3"] * p["I3"] / p["r3"]} for p in fast]
+    hold(entry.printed, *literal, tol=1e-8)
     point = rig_points()[0]
     quoted([point["I3"], np.pi**2 * point["I3"] * point["l2"] / 15.0**2], "0.0139", "0.0018")
     one, other = entry.printed.sides(**point)[0]

@@ -414,12 +414,7 @@ def _split(text: str) -> Relation:
 class Formula:
     """A formula in the notation of this module.
 
-    Parameters
-    ----------
-    text : str
-        The relations.
-    letters : mapping, optional
-        LaTeX of names that the rules of the notation do not give.
+    ``letters`` is the LaTeX of names that the rules of the notation do not give.
     """
 
     def __init__(self, text: str, letters: Mapping[str, str] | None = None):

@@ -54,31 +54,13 @@ def _mathematics(form: str) -> str:
 class Entry:
     """One equation: what is printed, what is derived, and the check of the verdict.
 
-    Attributes
-    ----------
-    document, label : str
-        Where it stands; the label is that of the inventory.
-    printed : Formula or None
-        The printed formula; None where the document prints ``prose`` that is no expression.
-    verdict : str
-        ``agrees``, ``slip``, ``approximation`` or ``not legible``.
-    corrected : Formula or None
-        The right form, tested like the printed one.
-    derived : str or callable
-        The derived cell where it is no ``corrected`` formula: LaTeX, or a function that returns
-        the machine's own forms by their names, or a list of forms that vanish, or LaTeX.
-    prose, reason : str
-        What is printed instead of a formula, in LaTeX, and why it cannot be one.
-    remark : str
-        What is wrong or dropped, with a number; sentences of our own.
-    check : callable
-        Called with the entry; raises AssertionError where the verdict does not hold.
-    place : str
-        The test that runs the check.
-    slow : bool
-        Whether the check runs in the second stage only.
-    letters : dict
-        LaTeX of names, for the derived cell.
+    The label is that of the inventory.  ``printed`` is None where the document prints ``prose``
+    (LaTeX) that is no expression, for a ``reason``; ``corrected`` is the right form, tested like
+    the printed one.  ``derived`` is the derived cell where it is no ``corrected`` formula: LaTeX,
+    or a function that returns the machine's own forms by their names, or a list of forms that
+    vanish, or LaTeX.  The remark says what is wrong or dropped, with a number.  ``check`` is called
+    with the entry and raises AssertionError where the verdict does not hold; ``place`` is the test
+    that runs it, in the second stage only where ``slow``.
     """
 
     document: str
@@ -145,15 +127,7 @@ def table(document: str) -> dict[str, dict[str, str]]:
 
 
 class Ledger:
-    """The rows of one document that one file proves; call it to add the check of one.
-
-    Parameters
-    ----------
-    document : str
-        The document of the rows.
-    file : str
-        ``__file__`` of the test file.
-    """
+    """The rows of one document that one test file proves; call it to add the check of one."""
 
     def __init__(self, document: str, file: str):
         self.document, self.file = document, Path(file).name

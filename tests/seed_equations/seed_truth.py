@@ -121,12 +121,8 @@ def vectors(lengths, angles):
 def coupler_functions(m):
     """Return phi, f1, f2, f3 by their definitions from a motion at unit crank speed."""
     between = m.theta3 - m.theta4
-    return (
-        m.omega3**2,
-        -m.alpha3 / np.tan(between),
-        np.sin(m.theta2 - m.theta3) / np.tan(between),
-        -m.alpha4 / np.sin(between),
-    )
+    sine, tangent = np.sin(m.theta2 - m.theta3), np.tan(between)
+    return m.omega3**2, -m.alpha3 / tangent, sine / tangent, -m.alpha4 / np.sin(between)
 
 
 def fourier(samples):

@@ -6,13 +6,9 @@ from functools import cache
 import numpy as np
 import pytest
 from seed_derivations import (
-    alpha3,
-    alpha4,
     closure_rows,
     freudenstein,
     half_angle_quadratic,
-    omega3,
-    omega4,
     rates,
 )
 from seed_ledger import Ledger, hold, hold_derived, holds, quoted, truths
@@ -79,10 +75,7 @@ PRINTED_ROWS = {
     ("<", "s", 1): ("crank-rocker-crank", "CRR"),
     ("<", "s", 2): ("rocker-crank-rocker", "RCR"),
     ("<", "s", 3): ("rocker-rocker-crank", "RRC"),
-    (">", "l", 0): ("rocker-rocker-rocker", "RRR"),
-    (">", "l", 1): ("rocker-rocker-rocker", "RRR"),
-    (">", "l", 2): ("rocker-rocker-rocker", "RRR"),
-    (">", "l", 3): ("rocker-rocker-rocker", "RRR"),
+    **{(">", "l", k): ("rocker-rocker-rocker", "RRR") for k in range(4)},
     ("=", "s", 0): ("crank-crank-crank", "CCC"),
     ("=", "s", 1): ("crank-rocker-rocker", "CRR"),
     ("=", "s", 2): ("rocker-crank-rocker", "RCR"),
@@ -458,7 +451,7 @@ def motions():
     return points
 
 
-@row("3.11", derived=lambda: {name: rates()[name] for name in (omega3, omega4, alpha3, alpha4)})
+@row("3.11", derived=rates)
 def rates_hold(entry):
     hold(entry.printed, motions, tol=1e-7)
     hold_derived(entry, *(point["smith"] for point in motions()), tol=1e-7)
@@ -468,10 +461,8 @@ def rates_hold(entry):
 def table_forces(unsteady=0.0):
     """Return the true forces of Table 3.2's uniform bars near 1 rad/s in the letters of 3.7."""
     f, m = forces(TABLE_3_2, BARS, unsteady=unsteady), motion(TABLE_3_2, unsteady=unsteady)
-    inertia = [
-        -k.mass * spectral_derivative(p, 2)
-        for k, p in zip(BARS, centres(TABLE_3_2, BARS, m), strict=True)
-    ]
+    pairs = zip(BARS, centres(TABLE_3_2, BARS, m), strict=True)
+    inertia = [-bar.mass * spectral_derivative(place, 2) for bar, place in pairs]
     pins = {"F_01": f.f12, "F_12": f.f23, "F_23": f.f34, "F_03": -f.f41, "F_21": -f.f23}
     pins |= {f"F_{k}": v for k, v in enumerate(inertia, 1)} | {"F_32": -f.f34}
     point = letters(TABLE_3_2) | {"C": f.torque, "omega1": m.omega2, "dE": f.energy_rate}
@@ -529,10 +520,8 @@ def joint_accelerations():
     """Return Table 3.2 at 2 rad/s with the accelerations of the joints by differentiation."""
     m = motion(TABLE_3_2)
     pin_a = TABLE_3_2[1] * np.exp(1j * m.theta2)
-    a, b = (
-        spectral_derivative(pin_a, 2),
-        spectral_derivative(pin_a + TABLE_3_2[2] * np.exp(1j * m.theta3), 2),
-    )
+    pin_b = pin_a + TABLE_3_2[2] * np.exp(1j * m.theta3)
+    a, b = spectral_derivative(pin_a, 2), spectral_derivative(pin_b, 2)
     found = {"q_Ax": a.real, "q_Ay": a.imag, "q_Bx": b.real, "q_By": b.imag, "q_t1": m.alpha2}
     found |= {"q_t2": m.alpha3, "q_t3": m.alpha4}
     speeds = {"omega1": 2 * m.omega2, "omega2": 2 * m.omega3, "t1": m.theta2, "t2": m.theta3}

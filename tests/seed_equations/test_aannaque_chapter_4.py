@@ -117,10 +117,10 @@ def cubic():
         **{"q1": q[AXIAL], "q2": q[BENT], "U_int": q @ stiffness @ q / 2, "Int": point_by_point},
         **{"L": LENGTH, "EA": SIZES[EA], "EI_z": SIZES[EI]},
     }
-    return [
-        {**common, "x": s, "u": (d["u", 0](s) @ q)[0], "eps": (d["u", 1](s) @ q)[0]}
-        for s in (0.1, 0.33)
+    there = [
+        {"x": s, "u": (d["u", 0](s) @ q)[0], "eps": (d["u", 1](s) @ q)[0]} for s in (0.1, 0.33)
     ]
+    return [common | place for place in there]
 
 
 def polynomial(count, item, first=1):
@@ -240,10 +240,8 @@ def stiffness_with_an_inner_node(entry):
     mass, right = (
         np.array(arrays("internal_node")[k].subs(unit), dtype=float) for k in ("mass", "stiffness")
     )
-    squares = [
-        scipy.linalg.eigvalsh(stiffness[kept], mass[kept])[0]
-        for stiffness in (right, entry.printed.value(L=1, EI=1))
-    ]
+    both = (right, entry.printed.value(L=1, EI=1))
+    squares = [scipy.linalg.eigvalsh(stiffness[kept], mass[kept])[0] for stiffness in both]
     quoted(np.sqrt(squares), "9.8725", "9.5705")
 
 
@@ -758,10 +756,8 @@ def free_vibration(entry):
 def characteristic_equation(entry):
     """The determinant changes its sign at each frequency."""
     for point in free():
-        signs = [
-            np.subtract(*entry.corrected.sides(**{**point, "omega": f * point["omega"]})[0])
-            for f in (0.999, 1.001)
-        ]
+        near = [{**point, "omega": factor * point["omega"]} for factor in (0.999, 1.001)]
+        signs = [np.subtract(*entry.corrected.sides(**at)[0]) for at in near]
         assert signs[0] * signs[1] < 0
 
 

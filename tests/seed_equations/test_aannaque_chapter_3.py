@@ -24,8 +24,6 @@ from seed_truth import (
 )
 
 row = Ledger("Aannaque", __file__)
-
-
 # Lengths stand here in the order frame, input, coupler, output: L4, L1, L2, L3 of the text.
 WHOLE_NUMBERS = [
     lengths

@@ -19,8 +19,6 @@ from scipy.integrate import solve_ivp
 from seed_ledger import Ledger, by_differences, hold, holds, point_by_point, quoted, same
 
 row = Ledger("Aannaque", __file__)
-
-
 x, L = beam_shapes.x, beam_shapes.length
 zeta = sp.Symbol("zeta", real=True)
 rho, EA, EI = elements.density, elements.axial, beam_shapes.bending

@@ -28,8 +28,6 @@ from seed_waves import (
 from seed_waves import derivative as wave_derivative
 
 row = Ledger("Smith", __file__)
-
-
 RIG = RIGS["5,1,5,2"]
 
 

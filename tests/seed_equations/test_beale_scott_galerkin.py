@@ -5,17 +5,7 @@ from functools import cache, partial
 import numpy as np
 import sympy as sp
 from elastolink.derive.models import flexible_rod as rod
-from elastolink.derive.models.overhang_integrals import (
-    DRIFT,
-    MODE,
-    Ends,
-    gap_step,
-    in_roots,
-    pair_integral,
-    single_integral,
-    square_integral,
-)
-from elastolink.derive.models.overhang_integrals import eta as position
+from elastolink.derive.models import overhang_integrals as overhang
 from elastolink.derive.models.quick_return import crank, frame, kinematics, theta2
 from elastolink.derive.spec import ModelSpec
 from elastolink.derive.variational import hamilton, linearise, quadratic_action
@@ -200,6 +190,8 @@ def conditions_at_pin_block_and_tip(entry):
     assert held == {"3": essential, "4": natural}[entry.label]
 
 
+MODE, DRIFT = (overhang.MODE, 0), (overhang.DRIFT, 0)
+PAIR = (overhang.Ends.of("_k"), overhang.Ends.of("_n"))
 # Galerkin's method: four modes with an overhang, three of them in the sums.
 COUNT, STEP = 4, 2e-3
 BASIS = OverhangBasis(COUNT)
@@ -298,22 +290,20 @@ def integrals(entry, tol):
 @row("8")
 def squares_of_the_modes(entry):
     integrals(entry, 1e-12)
-    pair = (Ends.of("_k"), Ends.of("_n"))
-    assert pair_integral(sp.S.One, (MODE, 0), (MODE, 0), pair) == 0
-    one = Ends.of()
+    assert overhang.pair_integral(sp.S.One, MODE, MODE, PAIR) == 0
+    one = overhang.Ends.of()
     slope, reaction, tip = sp.symbols("slope reaction tip", real=True)
     at = sp.Symbol("place", positive=True)
     closed = tip**2 / 4 + at * reaction * slope / (2 * one.beta**4)
-    assert sp.expand(square_integral((MODE, 0), (MODE, 0), 0, one) - closed) == 0
+    assert sp.expand(overhang.square_integral(MODE, MODE, 0, one) - closed) == 0
 
 
 @row("9", slow=True)
 def drift_of_the_modes(entry):
     integrals(entry, 1e-8)
-    pair = (Ends.of("_k"), Ends.of("_n"))
-    closed = in_roots(pair_integral(sp.S.One, (MODE, 0), (DRIFT, 0), pair), pair)
+    closed = overhang.in_roots(overhang.pair_integral(sp.S.One, MODE, DRIFT, PAIR), PAIR)
     s, r = sp.symbols("slope_k slope_n", real=True), sp.symbols("reaction_k reaction_n", real=True)
-    assert sp.expand(closed - (r[0] * s[1] + r[1] * s[0]) / gap_step(pair)[0]) == 0
+    assert sp.expand(closed - (r[0] * s[1] + r[1] * s[0]) / overhang.gap_step(PAIR)[0]) == 0
 
 
 @row("10", slow=True)
@@ -332,9 +322,10 @@ def second_drift_of_the_modes(entry):
 @row("11")
 def moments_of_the_modes(entry):
     integrals(entry, 1e-12)
-    one = Ends.of()
+    one = overhang.Ends.of()
     at, reaction = sp.Symbol("place", positive=True), sp.Symbol("reaction", real=True)
-    assert sp.expand(single_integral(position, 0, one) + at * reaction / one.beta**4) == 0
+    closed = -at * reaction / one.beta**4
+    assert sp.expand(overhang.single_integral(overhang.eta, 0, one) - closed) == 0
 
 
 def second_order_motion():

@@ -35,13 +35,16 @@ def _still(expression, angles):
     return expression
 
 
+def _unit(angle):
+    return sp.Matrix([sp.cos(angle), sp.sin(angle)])
+
+
 @cache
 def closure_rows(order):
     """Return the horizontal and vertical closure, differentiated ``order`` times by time."""
     angles = _moving()
     crank, coupler, follower = (
-        sp.Matrix([length * sp.cos(a), length * sp.sin(a)])
-        for length, a in zip((l2, l3, l4), angles, strict=True)
+        length * _unit(a) for length, a in zip((l2, l3, l4), angles, strict=True)
     )
     frame = sp.Matrix([l1, 0])
     rows = (crank + coupler - frame - follower).diff(t, order)
@@ -83,35 +86,23 @@ def follower_quadratic():
     return {name: sp.factor(linear.coeff_monomial(term)) for name, term in coefficients}
 
 
-def _position(along, across):
-    """Return fixed-axes coordinates of an element, and the unit vectors along and across BC."""
-    crank, coupler, _ = _moving()
-    unit = sp.Matrix([sp.cos(coupler), sp.sin(coupler)])
-    normal = sp.Matrix([-sp.sin(coupler), sp.cos(coupler)])
-    pin = l2 * sp.Matrix([sp.cos(crank), sp.sin(crank)])
-    return pin + along * unit + across * normal, unit, normal
-
-
-def _components(vector, unit, normal):
-    """Return the components of a vector along and across the undeflected coupler."""
-    return [sp.trigsimp(sp.expand(vector.dot(axis))) for axis in (unit, normal)]
-
-
 @cache
 def element_acceleration():
     """Return the acceleration of the element at (x, y) along and across the undeflected coupler.
 
     The crank turns at constant speed; y is a function of time alone.
     """
+    crank, angle, _ = _moving()
+    unit, normal = _unit(angle), _unit(angle + sp.pi / 2)
     deflection = sp.Function("y")(t)
-    position, unit, normal = _position(x, deflection)
+    position = l2 * _unit(crank) + x * unit + deflection * normal
     y_t, y_tt = sp.symbols("y_t y_tt", real=True)
     plain = {sp.diff(deflection, t, 2): y_tt, sp.diff(deflection, t): y_t, deflection: y}
-    components = tuple(
-        sp.trigsimp(_still(part.subs(plain), _moving()).subs(alpha2, 0))
-        for part in _components(position.diff(t, 2), unit, normal)
-    )
-    return components, (y_t, y_tt)
+    components = []
+    for axis in (unit, normal):
+        component = sp.trigsimp(sp.expand(position.diff(t, 2).dot(axis)))
+        components.append(sp.trigsimp(_still(component.subs(plain), _moving()).subs(alpha2, 0)))
+    return tuple(components), (y_t, y_tt)
 
 
 # Rigid links.
@@ -124,10 +115,6 @@ X12, Y12, X23, Y23, X34, Y34, X41, Y41 = PINS
 T = sp.Symbol("T", real=True)
 phi, bd, c, delta = sp.symbols("phi BD c delta", positive=True)
 K = sp.Symbol("K", positive=True)
-
-
-def _unit(angle):
-    return sp.Matrix([sp.cos(angle), sp.sin(angle)])
 
 
 @cache

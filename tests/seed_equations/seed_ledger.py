@@ -307,6 +307,17 @@ def holds(*points: Points, tol: float = 1e-9) -> Callable[[Entry], None]:
     return check
 
 
+def is_difference(form_and_letters: Callable[[], tuple]) -> Callable[[Entry], None]:
+    """Return the check that left less right side is a form of the machine."""
+
+    def check(entry: Entry) -> None:
+        form, letters = form_and_letters()
+        one, other = entry.printed.sides(**letters)[0]
+        same(one - other, form)
+
+    return check
+
+
 def _all(sources: Iterable[object]) -> Iterable[Mapping[str, object]]:
     """Yield points, given one by one or by functions that return many."""
     for source in sources:

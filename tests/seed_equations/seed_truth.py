@@ -130,29 +130,29 @@ def fourier(samples):
     return np.fft.fft(samples) / samples.size
 
 
-def boundaries(samples, region, harmonics=40):
-    """Return both values of lambda^2 that bound a region of y'' + (lambda^2 + f) y = 0.
+def fourier_matrix(samples, region, damping=0.0, harmonics=40):
+    """Return the matrix of -y'' - 2 damping y' - f y by even samples of f over 2 pi.
 
-    ``samples`` are even samples of f over 2 pi.  Eigenvalues of the Fourier matrix of -y'' - f y
-    over the periodic (even region) or antiperiodic (odd region) exponentials.
+    Over the periodic exponentials for an even region, the antiperiodic ones for an odd region.
     """
-    shift = 0.5 * (region % 2)
-    number = np.arange(-harmonics, harmonics + 1) + shift
-    coefficients = fourier(samples)
+    number = np.arange(-harmonics, harmonics + 1) + 0.5 * (region % 2)
     index = np.arange(number.size)
     difference = (index[:, None] - index[None, :]) % samples.size
-    matrix = np.diag(number**2).astype(complex) - coefficients[difference]
-    values = np.sort(np.linalg.eigvalsh(matrix))
-    first = region - 1
-    return values[first], values[first + 1]
+    return np.diag(number**2 - 2j * damping * number) - fourier(samples)[difference]
 
 
-def normalised_solutions(coefficient: Callable[[float], float], end):
-    """Return [[y1, y2], [y1', y2']] at ``end`` of y'' + coefficient(x) y = 0."""
+def boundaries(samples, region, harmonics=40):
+    """Return both values of lambda^2 that bound a region of y'' + (lambda^2 + f) y = 0."""
+    values = np.sort(np.linalg.eigvalsh(fourier_matrix(samples, region, 0.0, harmonics)))
+    return values[region - 1], values[region]
+
+
+def normalised_solutions(coefficient: Callable[[float], float], end, damping=0.0):
+    """Return [[y1, y2], [y1', y2']] at an end of y'' + 2 damping y' + coefficient(x) y = 0."""
 
     def rates(x, state):
-        factor = -coefficient(x)
-        return [state[2], state[3], factor * state[0], factor * state[1]]
+        y, slope = state[:2], state[2:]
+        return np.concatenate([slope, -2 * damping * slope - coefficient(x) * y])
 
     solution = solve_ivp(
         rates, (0.0, end), [1.0, 0.0, 0.0, 1.0], method="DOP853", rtol=1e-12, atol=1e-13

@@ -7,9 +7,9 @@ import pytest
 import sympy as sp
 from scipy.integrate import solve_ivp
 from seed_formula import Formula
-from seed_ledger import Ledger, hold, holds, order_of, quoted, same
+from seed_ledger import Ledger, hold, holds, is_difference, order_of, quoted, same
 from seed_rigs import RIGS, critical, linkage_function
-from seed_truth import TURN, boundaries, fourier, normalised_solutions
+from seed_truth import TURN, boundaries, fourier, fourier_matrix, normalised_solutions
 from seed_waves import (
     HARMONICS,
     THETA,
@@ -215,19 +215,15 @@ def substituted(entry):
         same(powers.coeff(mu, power), orders[power])
 
 
-def powers_of_mu(number):
-    """Return the check that left less right side is the machine's row."""
-
-    def check(entry):
-        orders, letters = expansion()
-        one, other = entry.printed.sides(**letters)[0]
-        same(one - other, orders[number])
-
-    return check
+def power_of_mu(number):
+    """Return the equation of a power of mu, and the letters."""
+    orders, letters = expansion()
+    return orders[number], letters
 
 
 for number, label in enumerate(("7.16", "7.17", "7.18")):
-    row(label, check=powers_of_mu(number), derived=lambda k=number: [expansion()[0][k]])
+    check = is_difference(partial(power_of_mu, number))
+    row(label, check=check, derived=lambda k=number: [expansion()[0][k]])
 
 
 def cases():
@@ -436,18 +432,6 @@ def f(x):
     return 0.1 + np.cos(x) + 0.6 * np.sin(x) + 0.5 * np.cos(2 * x) - 0.3 * np.sin(3 * x)
 
 
-def damped_matrix(lam, amplitude, damping):
-    """Return the monodromy matrix of (7.38) in y, y' by direct integration."""
-
-    def rates(x, s):
-        factor = lam + amplitude * f(x)
-        return [s[2], s[3], *(-2 * damping * s[2 + i] - factor * s[i] for i in (0, 1))]
-
-    start = [1.0, 0.0, 0.0, 1.0]
-    end = solve_ivp(rates, (0.0, TURN), start, method="DOP853", rtol=1e-12, atol=1e-13)
-    return end.y[:, -1].reshape(2, 2)
-
-
 @cache
 def symbols():
     """Return letters of the damped equation, y being exp(-K theta) u."""
@@ -491,7 +475,8 @@ def floquet_form(entry):
     nu = np.log(np.abs(roots[k])) / TURN
     quoted([nu], "0.134")
     for damping, root in ((0.12, 1.09), (0.15, 0.91)):
-        matrix = damped_matrix(base + damping**2, amplitude, damping)
+        lam2 = base + damping**2
+        matrix = normalised_solutions(lambda x, lam2=lam2: lam2 + amplitude * f(x), TURN, damping)
         slope = vectors[1, k] / vectors[0, k] - damping
         start = np.array([1.0, slope])
         growth = matrix @ start
@@ -546,12 +531,7 @@ row("7.43", "7.44", "7.45", "7.46", "7.47", check=holds(damped_cases))
 
 def damped_ends(samples, region, damping):
     """Return the ends of a damped region: real eigenvalues of the Fourier matrix, or None."""
-    harmonics = 40
-    number = np.arange(-harmonics, harmonics + 1) + 0.5 * (region % 2)
-    index = np.arange(number.size)
-    difference = (index[:, None] - index[None, :]) % samples.size
-    matrix = np.diag(number**2 - 2j * damping * number) - fourier(samples)[difference]
-    values = np.linalg.eigvals(matrix)
+    values = np.linalg.eigvals(fourier_matrix(samples, region, damping))
     low, high = boundaries(samples, region)
     real = values.real[np.abs(values.imag) < 1e-7]
     slack = 1e-9

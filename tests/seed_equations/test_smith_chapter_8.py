@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 import sympy as sp
-from seed_ledger import Ledger, derivative, hold, holds, order_of, quoted, same
+from seed_ledger import Ledger, derivative, hold, holds, is_difference, order_of, quoted, same
 from seed_rigs import RIGS
 from seed_truth import CRANK_ROCKERS, boundaries, coupler_functions, fourier, motion, turning
 from seed_waves import (
@@ -52,14 +52,8 @@ def harmonics_of_both():
 
 def coefficient(entry, **more):
     """Return the periodic part of the printed coefficient: y = 1, y'' = 0, no lambda."""
-    left, _ = entry.printed.sides(**{**rig(), **more, "lam": 0.0, "y": 1.0}, D=_flat, g=0, theta=0)[
-        0
-    ]
-    return left
-
-
-def _flat(*_):
-    return 0.0
+    still = {"lam": 0.0, "y": 1.0, "D": lambda *_: 0.0, "g": 0, "theta": 0}
+    return entry.printed.sides(**{**rig(), **more, **still})[0][0]
 
 
 def definition(entry):
@@ -167,12 +161,11 @@ def no_series_of_the_solution(entry):
 def is_row(parameters, names, key):
     """Return the check that left less right side is the machine's equation of one power."""
 
-    def check(entry):
+    def row_and_letters():
         equations, letters = rows(parameters, names)
-        one, other = entry.printed.sides(**letters)[0]
-        same(one - other, equations[key])
+        return equations[key], letters
 
-    return check
+    return is_difference(row_and_letters)
 
 
 PAIR = (eps, ("f1", "f2"))

@@ -431,13 +431,17 @@ class Formula:
     def latex(self) -> str:
         """The formula as the page shows it."""
         out = _Printer(self.letters, self._partial())
-        chains = []
+        return r",\; ".join(self._chains(out.text, _RELATIONS.__getitem__))
+
+    def __str__(self) -> str:
+        return "; ".join(self._chains(ast.unparse, str))
+
+    def _chains(self, text, sign) -> Iterator[str]:
+        """Yield each relation, its sides and its signs written by functions."""
         for relation in self.relations:
-            chain = out.text(relation.sides[0])
-            for sign, side in zip(relation.signs, relation.sides[1:], strict=True):
-                chain += f" {_RELATIONS[sign]} {out.text(side)}"
-            chains.append(chain)
-        return r",\; ".join(chains)
+            pairs = zip(relation.signs, relation.sides[1:], strict=True)
+            rest = (f" {sign(s)} {text(side)}" for s, side in pairs)
+            yield text(relation.sides[0]) + "".join(rest)
 
     def _partial(self) -> bool:
         """Return whether the formula differentiates by more than one variable."""
@@ -445,15 +449,6 @@ class Formula:
         calls = [n for s in sides for n in ast.walk(s) if isinstance(n, ast.Call)]
         by = {call.args[1].id for call in calls if _called(call) == "D"}
         return len(by) > 1
-
-    def __str__(self) -> str:
-        def chain(relation):
-            texts = [ast.unparse(side) for side in relation.sides]
-            return texts[0] + "".join(
-                f" {s} {t}" for s, t in zip(relation.signs, texts[1:], strict=True)
-            )
-
-        return "; ".join(chain(r) for r in self.relations)
 
     def _defined(self, values: Mapping[str, object]) -> tuple[_Names, tuple[Relation, ...]]:
         """Add the names that the formula defines; return what is left to hold."""

@@ -71,18 +71,12 @@ _ELEMENTARY = ("sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh"
 _FUNCTIONS = {name: _function(name) for name in (*_ELEMENTARY, "atan")} | {
     "abs": abs,
     "cot": lambda value: 1 / _FUNCTIONS["tan"](value),
-    "where": np.where,
     "inv": lambda m: m.inv() if isinstance(m, sp.MatrixBase) else np.linalg.inv(m),
-    "sym": None,
-    "diag": lambda one, other: linalg.block_diag(one, other),
+    "diag": linalg.block_diag,
     "det": lambda m: m.det() if isinstance(m, sp.MatrixBase) else np.linalg.det(m),
     "tr": lambda m: m.trace() if isinstance(m, sp.MatrixBase) else np.trace(m),
-    "max": np.max,
-    "min": np.min,
-    "re": np.real,
-    "im": np.imag,
-    "O": None,
 }
+_FUNCTIONS |= {"max": np.max, "min": np.min, "re": np.real, "im": np.imag}
 _CONSTANTS = {"dots": 0, "pi": np.pi, "deg": np.pi / 180.0, "I": 1j}
 
 

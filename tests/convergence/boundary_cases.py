@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import hill_boundaries
+from exact_hill import ExactHarmonics, combine
 from hill_functions import functions
 from omitted_orders import Curve
-from smith_chapter_8.surd import ExactHarmonics, combine
 
 ORDERS = (1, 2, 3, 4, 5, 6)
 REGIONS = (1, 2, 3, 4, 5, 6)

@@ -14,7 +14,7 @@ from fractions import Fraction
 from functools import cache
 
 from boundary_truth import DIGITS, MP, boundary
-from smith_chapter_8.exact import exact_operator
+from exact_hill import exact_operator
 
 ZERO = Fraction(0)
 FORMS = ("series", "uniform")
@@ -122,6 +122,12 @@ class Curve:
 
     def level(self):
         return real(Fraction(self.n * self.n, 4))
+
+    def coefficients(self, side):
+        """Return those of t, t^2, ... of one end, to 90 digits."""
+        centre, root, square = self.expansion(self.highest)
+        width = side * MP.sqrt(real(square))
+        return [real(c) + width * real(r) for c, r in zip(centre[1:], root[1:], strict=True)]
 
     def omitted(self, form, order, side):
         """Return (p, coefficient): what ``approximation - truth`` tends to, over t^p.

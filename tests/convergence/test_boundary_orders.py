@@ -24,8 +24,8 @@ from boundary_cases import (
     slow,
 )
 from boundary_truth import MP
+from exact_hill import ExactHarmonics
 from omitted_orders import FORMS, Curve, real
-from smith_chapter_8.surd import ExactHarmonics
 
 # So small that the next power changes a slope by 1e-5 at most, near critical damping too.
 SMALL = Fraction(1, 2**20)

@@ -15,10 +15,10 @@ from elastolink.runtime.hill import (
     discriminant,
     hill_boundaries,
 )
+from exact_hill import ExactHarmonics
 from half_trace_truth import half_traces
 from honesty import over_scenes
-from smith_chapter_8.exact import exact_operator, exact_series
-from smith_chapter_8.surd import ExactHarmonics
+from omitted_orders import Curve
 
 extended = pytest.mark.skipif(
     np.finfo(np.longdouble).eps > 1e-18, reason="the reference needs a long double of 80 bits"
@@ -185,13 +185,13 @@ def test_least_parameters(rng):
 
 @over_scenes(83)
 def test_coefficients_of_boundaries(rng):
-    """Against the same series in rational numbers and square roots of them."""
+    """Against the same series to 90 digits."""
     f, region = waves(rng, 2), int(rng.integers(0, 4))
     found = boundary_series(f, region, 3)
     cosine, sine = ([Fraction(float(v)) for v in part[1:]] for part in (f.a, f.b))
     exact = ExactHarmonics(Fraction(0), tuple(cosine), tuple(sine))
-    series = exact_series(exact_operator([exact], region, 3), [1])
-    truth = np.array([[float(v) for v in end] for end in (series.lower, series.upper)])
+    curve = Curve((exact,), (Fraction(1),), (), region, 3)
+    truth = np.array([[float(v) for v in curve.coefficients(side)] for side in (-1, 1)])
     gaps = np.abs(np.array([found.lower, found.upper]) - truth)
     errors = np.asarray(found.error)
     # What is zero in both is known.

@@ -9,7 +9,7 @@ import pytest
 from boundary_truth import MP, boundary
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import hill_boundaries, perturbation_boundaries
-from smith_chapter_8.surd import ExactHarmonics
+from exact_hill import ExactHarmonics
 
 POINTS = 6
 

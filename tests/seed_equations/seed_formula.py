@@ -20,19 +20,12 @@ from dataclasses import dataclass
 from functools import cache, reduce
 from numbers import Number
 
-import mpmath
 import numpy as np
 import sympy as sp
+from scipy import linalg
 
-_RELATIONS = {
-    "=": "=",
-    "~": r"\approx",
-    "<": "<",
-    "<=": r"\le",
-    ">": ">",
-    ">=": r"\ge",
-    "->": r"\to",
-}
+_RELATIONS = {"=": "=", "<": "<", ">": ">", "<=": r"\le", ">=": r"\ge"}
+_RELATIONS |= {"~": r"\approx", "->": r"\to"}
 _OPERATIONS = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
@@ -57,19 +50,9 @@ def _function(name: str):
     def apply(value):
         if isinstance(value, sp.Basic):
             return getattr(sp, name)(value)
-        if isinstance(value, (mpmath.mpf, mpmath.mpc)):
-            return getattr(mpmath, name)(value)
         return getattr(np, plain)(value)
 
     return apply
-
-
-def _absolute(value):
-    return abs(value)
-
-
-def _cot(value):
-    return 1 / _FUNCTIONS["tan"](value)
 
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(40)
@@ -86,30 +69,15 @@ def _integral(body, low, high, symbolic):
 
 _ELEMENTARY = ("sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh", "asin", "acos")
 _FUNCTIONS = {name: _function(name) for name in (*_ELEMENTARY, "atan")} | {
-    "abs": _absolute,
-    "cot": _cot,
-    "where": np.where,
+    "abs": abs,
+    "cot": lambda value: 1 / _FUNCTIONS["tan"](value),
     "inv": lambda m: m.inv() if isinstance(m, sp.MatrixBase) else np.linalg.inv(m),
-    "sym": None,
-    "diag": lambda one, other: _diagonal(one, other),
+    "diag": linalg.block_diag,
     "det": lambda m: m.det() if isinstance(m, sp.MatrixBase) else np.linalg.det(m),
     "tr": lambda m: m.trace() if isinstance(m, sp.MatrixBase) else np.trace(m),
-    "max": np.max,
-    "min": np.min,
-    "re": np.real,
-    "im": np.imag,
-    "O": None,
 }
+_FUNCTIONS |= {"max": np.max, "min": np.min, "re": np.real, "im": np.imag}
 _CONSTANTS = {"dots": 0, "pi": np.pi, "deg": np.pi / 180.0, "I": 1j}
-
-
-def _diagonal(one, other):
-    """Return two square blocks along the diagonal."""
-    if isinstance(one, sp.MatrixBase):
-        return sp.diag(one, other)
-    one, other = np.atleast_2d(one), np.atleast_2d(other)
-    corner = np.zeros((len(one), len(other)))
-    return np.block([[one, corner], [corner.T, other]])
 
 
 def _symmetric(rows):
@@ -120,13 +88,10 @@ def _symmetric(rows):
 
 def _matrix(rows):
     """Return a list as a vector, a list of lists as a matrix, of SymPy where an entry is."""
-    nested = all(isinstance(row, list) for row in rows)
-    flat = [v for row in rows for v in row] if nested else rows
+    flat = [v for row in rows for v in (row if isinstance(row, list) else [row])]
     if any(isinstance(v, sp.Basic) for v in flat):
         return sp.Matrix(rows)
-    if any(np.ndim(v) for v in flat):
-        return np.block(rows)
-    return np.array(rows)
+    return np.block(rows) if any(np.ndim(v) for v in flat) else np.array(rows)
 
 
 class _Names(dict):
@@ -136,15 +101,9 @@ class _Names(dict):
         super().__init__(values)
         kinds = list(values.values())
         symbolic = any(isinstance(v, (sp.Basic, sp.MatrixBase)) for v in kinds)
-        digits = any(isinstance(v, (mpmath.mpf, mpmath.mpc)) for v in kinds)
-        self.number = sp.nsimplify if symbolic else mpmath.mpf if digits else lambda v: v
+        self.number = sp.nsimplify if symbolic else lambda v: v
         exact = {"dots": 0, "pi": sp.pi, "deg": sp.pi / 180, "I": sp.I}
-        many = (
-            {"dots": 0, "pi": mpmath.pi(), "deg": mpmath.pi() / 180, "I": mpmath.j}
-            if digits
-            else {}
-        )
-        self.constants = exact if symbolic else many or _CONSTANTS
+        self.constants = exact if symbolic else _CONSTANTS
 
     def __missing__(self, name):
         if name in self.constants:
@@ -389,10 +348,6 @@ class _Printer:
             case "where", [condition, one, other]:
                 cases = rf"{one} & \text{{if }} {condition} \\ {other} & \text{{otherwise}}"
                 return rf"\begin{{cases}} {cases} \end{{cases}}", _ATOM
-            case (("dot" | "ddot" | "bar" | "vec" | "ang"), [inside]):
-                return _ACCENTS[name] % inside, _ATOM
-            case "prime", [inside, *order]:
-                return inside + "'" * int(order[0] if order else 1), _ATOM
         return (_NAMED.get(name) or self.name(name)) + _brackets(", ".join(texts)), _ATOM
 
 
@@ -453,12 +408,7 @@ def _split(text: str) -> Relation:
 class Formula:
     """A formula in the notation of this module.
 
-    Parameters
-    ----------
-    text : str
-        The relations.
-    letters : mapping, optional
-        LaTeX of names that the rules of the notation do not give.
+    ``letters`` is the LaTeX of names that the rules of the notation do not give.
     """
 
     def __init__(self, text: str, letters: Mapping[str, str] | None = None):
@@ -475,13 +425,17 @@ class Formula:
     def latex(self) -> str:
         """The formula as the page shows it."""
         out = _Printer(self.letters, self._partial())
-        chains = []
+        return r",\; ".join(self._chains(out.text, _RELATIONS.__getitem__))
+
+    def __str__(self) -> str:
+        return "; ".join(self._chains(ast.unparse, str))
+
+    def _chains(self, text, sign) -> Iterator[str]:
+        """Yield each relation, its sides and its signs written by functions."""
         for relation in self.relations:
-            chain = out.text(relation.sides[0])
-            for sign, side in zip(relation.signs, relation.sides[1:], strict=True):
-                chain += f" {_RELATIONS[sign]} {out.text(side)}"
-            chains.append(chain)
-        return r",\; ".join(chains)
+            pairs = zip(relation.signs, relation.sides[1:], strict=True)
+            rest = (f" {sign(s)} {text(side)}" for s, side in pairs)
+            yield text(relation.sides[0]) + "".join(rest)
 
     def _partial(self) -> bool:
         """Return whether the formula differentiates by more than one variable."""
@@ -489,15 +443,6 @@ class Formula:
         calls = [n for s in sides for n in ast.walk(s) if isinstance(n, ast.Call)]
         by = {call.args[1].id for call in calls if _called(call) == "D"}
         return len(by) > 1
-
-    def __str__(self) -> str:
-        def chain(relation):
-            texts = [ast.unparse(side) for side in relation.sides]
-            return texts[0] + "".join(
-                f" {s} {t}" for s, t in zip(relation.signs, texts[1:], strict=True)
-            )
-
-        return "; ".join(chain(r) for r in self.relations)
 
     def _defined(self, values: Mapping[str, object]) -> tuple[_Names, tuple[Relation, ...]]:
         """Add the names that the formula defines; return what is left to hold."""
@@ -548,12 +493,9 @@ class Formula:
                 twice = ast.BinOp(ast.Constant(2), ast.Mult(), side)
                 for wrong in [twice] * place if double else _mutated(side):
                     sides = (*relation.sides[:place], wrong, *relation.sides[place + 1 :])
-                    mutant = copy.copy(self)
-                    mutant.relations = (
-                        *self.relations[:number],
-                        Relation(sides, relation.signs),
-                        *self.relations[number + 1 :],
-                    )
+                    changed, mutant = list(self.relations), copy.copy(self)
+                    changed[number] = Relation(sides, relation.signs)
+                    mutant.relations = tuple(changed)
                     yield mutant
 
 
@@ -573,8 +515,6 @@ def _size(node: ast.expr, names: _Names) -> float:
             return _size(left, names) * greatest(1 / _evaluate(right, names))
         case ast.UnaryOp(operand=inside):
             return _size(inside, names)
-        case ast.Call(func=ast.Name(id="O")):
-            return 0.0
         case ast.Call(func=ast.Name(id="where"), args=[condition, one, other]):
             if not np.ndim(chosen := _evaluate(condition, names)):
                 return _size(one if chosen else other, names)
@@ -585,8 +525,6 @@ def _size(node: ast.expr, names: _Names) -> float:
             ends = [int(_evaluate(end, names)) for end in (low, high)]
             terms = range(ends[0], ends[1] + 1)
             return max((_size(body, names.with_index(index, k)) for k in terms), default=0.0)
-        case ast.Call(func=ast.Name(id="Sum"), args=[body, ast.Name(id=index)]):
-            return max(_size(body, names.with_index(index, k)) for k in names[index])
         case ast.Call(func=ast.Name(id="Int"), args=[body, ast.Name(id=index), low, high]) if (
             "Int" not in names
         ):
@@ -604,14 +542,9 @@ def _mutated(side: ast.expr) -> Iterator[ast.expr]:
     uses |= {n.value.id: "table" for n in nodes if isinstance(n, ast.Subscript)}
     uses |= {_called(n): "function" for n in nodes if isinstance(n, ast.Call)}
     # (-1)^(j + k) is (-1)^(j - k).
-    parity = {
-        inner
-        for node in nodes
-        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow)
-        if isinstance(node.left, ast.UnaryOp)
-        for inner in ast.walk(node.right)
-        if isinstance(inner, ast.BinOp)
-    }
+    powers = (n for n in nodes if isinstance(n, ast.BinOp) and isinstance(n.op, ast.Pow))
+    exponents = [n.right for n in powers if isinstance(n.left, ast.UnaryOp)]
+    parity = {n for part in exponents for n in ast.walk(part) if isinstance(n, ast.BinOp)}
     for position, node in enumerate(nodes):
         for wrong in () if node in rest | parity else _wrong(node, uses):
             new = copy.deepcopy(side)
@@ -653,10 +586,7 @@ def _wrong(node: ast.AST, uses: Mapping[str, str]) -> Iterator[ast.expr]:
             yield ast.Subscript(table, ast.BinOp(index, ast.Add(), ast.Constant(1)))
         case ast.Name(id=name):
             base = re.sub(r"\d", "", name)
-            others = [
-                n
-                for n, use in uses.items()
-                if n != name and use == uses[name] and re.sub(r"\d", "", n) == base
-            ]
+            alike = (n for n, use in uses.items() if n != name and use == uses[name])
+            others = [n for n in alike if re.sub(r"\d", "", n) == base]
             if others:
                 yield ast.Name(min(others, key=lambda n: (n < name, n)))

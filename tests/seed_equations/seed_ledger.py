@@ -28,6 +28,7 @@ HERE = Path(__file__).resolve().parent
 TARGET = HERE.parents[1] / "docs" / "equations.md"
 Verdict = Literal["agrees", "slip", "approximation", "not legible"]
 VERDICTS = ("agrees", "slip", "approximation", "not legible")
+FORMULAS = ("printed", "corrected")
 DOCUMENTS = ("Smith", "Aannaque", "Beale & Scott")
 _NUMBERED = re.compile(r"(\d+|[A-Z])\.\d+|\d+")
 # What a falsified formula ends in: a check that does not hold, or numbers that cannot be formed.
@@ -53,31 +54,13 @@ def _mathematics(form: str) -> str:
 class Entry:
     """One equation: what is printed, what is derived, and the check of the verdict.
 
-    Attributes
-    ----------
-    document, label : str
-        Where it stands; the label is that of the inventory.
-    printed : Formula or None
-        The printed formula; None where the document prints ``prose`` that is no expression.
-    verdict : str
-        ``agrees``, ``slip``, ``approximation`` or ``not legible``.
-    corrected : Formula or None
-        The right form, tested like the printed one.
-    derived : str or callable
-        The derived cell where it is no ``corrected`` formula: LaTeX, or a function that returns
-        the machine's own forms by their names, or a list of forms that vanish, or LaTeX.
-    prose, reason : str
-        What is printed instead of a formula, in LaTeX, and why it cannot be one.
-    remark : str
-        What is wrong or dropped, with a number; sentences of our own.
-    check : callable
-        Called with the entry; raises AssertionError where the verdict does not hold.
-    place : str
-        The test that runs the check.
-    slow : bool
-        Whether the check runs in the second stage only.
-    letters : dict
-        LaTeX of names, for the derived cell.
+    The label is that of the inventory.  ``printed`` is None where the document prints ``prose``
+    (LaTeX) that is no expression, for a ``reason``; ``corrected`` is the right form, tested like
+    the printed one.  ``derived`` is the derived cell where it is no ``corrected`` formula: LaTeX,
+    or a function that returns the machine's own forms by their names, or a list of forms that
+    vanish, or LaTeX.  The remark says what is wrong or dropped, with a number.  ``check`` is called
+    with the entry and raises AssertionError where the verdict does not hold; ``place`` is the test
+    that runs it, in the second stage only where ``slow``.
     """
 
     document: str
@@ -119,7 +102,7 @@ class Entry:
 
     def changed(self) -> Iterable[Entry]:
         """Yield the entry with its printed, then its corrected formula changed in each place."""
-        for name in ("printed", "corrected"):
+        for name in FORMULAS:
             form = getattr(self, name)
             for mutant in form.mutants() if form else ():
                 yield replace(self, **{name: mutant})
@@ -144,19 +127,15 @@ def table(document: str) -> dict[str, dict[str, str]]:
 
 
 class Ledger:
-    """The rows of one document that one file proves; call it to add the check of one.
-
-    Parameters
-    ----------
-    document : str
-        The document of the rows.
-    file : str
-        ``__file__`` of the test file.
-    """
+    """The rows of one document that one test file proves; call it to add the check of one."""
 
     def __init__(self, document: str, file: str):
         self.document, self.file = document, Path(file).name
         self.entries: list[Entry] = []
+
+    def cell(self, label: str, name: str = "printed") -> Formula:
+        """Return the printed or the corrected formula of a row of the document."""
+        return Formula(table(self.document)[label][name], table(self.document)["letters"])
 
     def __call__(
         self,
@@ -175,9 +154,7 @@ class Ledger:
 
     def _entry(self, label, check, derived, slow) -> Entry:
         letters, cells = table(self.document)["letters"], dict(table(self.document)[label])
-        for name in ("printed", "corrected"):
-            if name in cells:
-                cells[name] = Formula(cells[name], letters)
+        cells |= {name: self.cell(label, name) for name in cells.keys() & set(FORMULAS)}
         if derived:
             cells["derived"] = derived
         place = f"{self.file}::test_row[{label}]"
@@ -235,6 +212,25 @@ def assert_current(entry: Entry) -> None:
 def derivative(order: int, value: object) -> Callable[..., object]:
     """Return ``D`` for an equation that holds one derivative; any other order is another number."""
     return lambda _, __, times: value if times == order else 0.7317
+
+
+def by_differences(function: Callable, at: float, order: int = 1, h: float = 1e-3):
+    """Return the first or second derivative of anything by central differences of sixth order."""
+    weights = {1: (-1, 9, -45, 0, 45, -9, 1), 2: (2, -27, 270, -490, 270, -27, 2)}[order]
+    values = (w * function(at + k * h) for k, w in enumerate(weights, -3))
+    return sum(values) / ({1: 60, 2: 180}[order] * h**order)
+
+
+def point_by_point(body: Callable, low: float, high: float, _: bool = False):
+    """Return the integral of a number or a matrix, which takes one place at a time."""
+    nodes, weights = np.polynomial.legendre.leggauss(20)
+    half = (high - low) / 2
+    return half * sum(w * body(low + half * (1 + s)) for s, w in zip(nodes, weights, strict=True))
+
+
+def order_of(error: Callable[[float], float], size: float) -> float:
+    """Return the power at which an error falls where its parameter is halved from a size."""
+    return float(np.log2(error(size) / error(size / 2)))
 
 
 def quoted(value: object, *numbers: str) -> None:
@@ -305,8 +301,19 @@ def holds(*points: Points, tol: float = 1e-9) -> Callable[[Entry], None]:
     def check(entry: Entry) -> None:
         for form in filter(None, (entry.printed, entry.corrected)):
             hold(form, *points, tol=tol)
-        if callable(entry.derived):
+        if callable(entry.derived) and not isinstance(entry.derived(), str):
             hold_derived(entry, *points, tol=tol)
+
+    return check
+
+
+def is_difference(form_and_letters: Callable[[], tuple]) -> Callable[[Entry], None]:
+    """Return the check that left less right side is a form of the machine."""
+
+    def check(entry: Entry) -> None:
+        form, letters = form_and_letters()
+        one, other = entry.printed.sides(**letters)[0]
+        same(one - other, form)
 
     return check
 
@@ -328,7 +335,7 @@ def hold_derived(entry: Entry, *points: object, tol: float = 1e-9) -> None:
     """Assert the same of the machine's own forms, their symbols being names of the points."""
     names, symbols, function = _compiled(entry.derived)
     for point in _all(points):
-        values = {_plain(name): value for name, value in point.items()}
+        values = {plain(name): value for name, value in point.items()}
         derived = function(*(values[symbol] for symbol in symbols))
         for name, value in zip(names, derived, strict=True):
             if name is None:
@@ -345,13 +352,13 @@ def _compiled(derived: Callable[[], object]) -> tuple[list[object], list[str], C
     forms = derived()
     names: list[object] = [None] * len(forms)
     if isinstance(forms, Mapping):
-        names = [Formula(n) if isinstance(n, str) else _plain(str(n)) for n in forms]
+        names = [Formula(n) if isinstance(n, str) else plain(str(n)) for n in forms]
         forms = forms.values()
     symbols = sorted(set().union(*(form.free_symbols for form in forms)), key=str)
-    return names, [_plain(str(s)) for s in symbols], sp.lambdify(symbols, list(forms))
+    return names, [plain(str(s)) for s in symbols], sp.lambdify(symbols, list(forms))
 
 
-def _plain(name: str) -> str:
+def plain(name: str) -> str:
     """Return a name without what only LaTeX needs."""
     return re.sub(r"[^A-Za-z0-9]", "", name.replace("ell_", "l"))
 
@@ -391,14 +398,8 @@ class Part:
 
     document: str
     chapter: str
-    numbered: tuple[str, ...]
-    unnumbered: tuple[str, ...]
+    labels: tuple[str, ...]
     scan: dict[str, str]
-
-    @property
-    def labels(self) -> tuple[str, ...]:
-        """All labels in the order of the inventory."""
-        return self.numbered + self.unnumbered
 
 
 def entries() -> tuple[Entry, ...]:
@@ -429,11 +430,10 @@ def inventory() -> tuple[Part, ...]:
     table = tomllib.loads((HERE / "inventory.toml").read_text(encoding="utf-8"))
     return tuple(
         Part(
-            document=row["document"],
-            chapter=row["chapter"],
-            numbered=_numbers(row.get("numbered", ())),
-            unnumbered=tuple(row.get("unnumbered", ())),
-            scan=dict(row.get("scan", {})),
+            row["document"],
+            row["chapter"],
+            (*_numbers(row.get("numbered", ())), *row.get("unnumbered", ())),
+            row.get("scan", {}),
         )
         for row in table["part"]
     )

@@ -67,11 +67,11 @@ class Fourier:
     intervals: int
 
 
-def fousim(x, y, f: Callable[[float], float], M, eps, repair: Collection[str] = ()):
+def fousim(x, y, f: Callable[[float], float], M, eps, repair: Collection[str] = ("last",), room=0):
     """Appendix 3: Fourier coefficients by Simpson's rule, the interval halved until it stops.
 
-    Repair ``stop`` tests every coefficient.  Its last lines are left out where they write beyond
-    the arrays (``m > M`` after the loop).
+    Repair ``stop`` tests every coefficient, ``last`` leaves out the statement after the last loop,
+    when m is M + 1; the arrays a and b have ``room`` for more than M + 1 elements.
     """
     A, B, C, D = (np.zeros(M + 1) for _ in range(4))
     m = np.arange(M + 1)
@@ -100,7 +100,10 @@ def fousim(x, y, f: Callable[[float], float], M, eps, repair: Collection[str] = 
         A, C = A + B, C + D
         B, D = np.zeros(M + 1), np.zeros(M + 1)
         h, n = h / 2, 2 * n
-    a, b = I2 / PI, J2 / PI
+    a, b = np.full((2, M + 1 + room), np.nan)
+    a[: M + 1], b[: M + 1] = I2 / PI, J2 / PI
+    if "last" not in repair:
+        a[M + 1] = b[M + 1] = 0
     a[0] = a[0] / 2
     return Fourier(a, b, 2 * n)
 

@@ -6,22 +6,14 @@ equations a link, moments about each link's centre of mass, solved together.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import astuple, dataclass
 
 import numpy as np
-import seed_truth
-from seed_truth import TURN, spectral_derivative
+from seed_truth import TURN, motion, spectral_derivative
 
 GRAVITY = 386.09
 SMITH_LENGTHS = (12.0, 6.0, 12.0, 12.0)
 TABLE_3_2 = (0.547, 0.170, 0.328, 0.525)
-
-
-@cache
-def motion(lengths, assembly="open", count=512, unsteady=0.0):
-    """Return ``seed_truth.motion``, kept for the next test."""
-    return seed_truth.motion(lengths, assembly, count, unsteady)
 
 
 @dataclass(frozen=True)
@@ -45,12 +37,7 @@ class Link:
 
     def __add__(self, other):
         """Return both bodies fixed to each other."""
-        return Link(
-            self.mass + other.mass,
-            self.along + other.along,
-            self.inertia + other.inertia,
-            self.across + other.across,
-        )
+        return Link(*(a + b for a, b in zip(astuple(self), astuple(other), strict=True)))
 
     @property
     def centre(self):
@@ -87,11 +74,6 @@ def centres(lengths, links, m):
     ]
 
 
-def rate(samples, order=1):
-    """Differentiate periodic complex samples of one turn."""
-    return spectral_derivative(samples.real, order) + 1j * spectral_derivative(samples.imag, order)
-
-
 def cross(arm, vector):
     """Return the moment of a vector on an arm, both complex."""
     return np.imag(np.conj(arm) * vector)
@@ -114,7 +96,8 @@ def forces(lengths, links, speed=1.0, assembly="open", unsteady=0.0, count=512):
     matrix, right = np.zeros((count, 9, 9)), np.zeros((count, 9))
     momentum, energy = np.zeros(count), np.zeros(count)
     for i, (link, place, spin) in enumerate(zip(links, places, spins, strict=True)):
-        velocity, acceleration = rate(place) * speed, rate(place, 2) * speed**2
+        velocity = spectral_derivative(place) * speed
+        acceleration = spectral_derivative(place, 2) * speed**2
         for sign, joint in ((1.0, i), (-1.0, i + 1)):
             arm = joints[joint] - place
             matrix[:, 3 * i, 2 * joint] = sign
@@ -161,21 +144,13 @@ def balanced(case, links, lengths=SMITH_LENGTHS, offsets=(6.0, 6.0, 6.0), radius
 
     if case == "a":
         return links
-    if case == "b":
-        return (
-            crank + weight(crank.along, offsets[0]),
-            coupler,
-            follower + weight(follower.along, offsets[2]),
-        )
+    at_b = at_c = 0.0
     if case == "c":
         coupler = coupler + weight(coupler.along, offsets[1])
-        return (
-            crank + weight(crank.along + coupler.mass * l2, offsets[0]),
-            coupler,
-            follower + weight(follower.along, offsets[2]),
-        )
-    at_c = coupler.along / l3
-    at_b = coupler.mass - at_c
+        at_b = coupler.mass
+    elif case == "d":
+        at_c = coupler.along / l3
+        at_b = coupler.mass - at_c
     return (
         crank + weight(crank.along + at_b * l2, offsets[0]),
         coupler,

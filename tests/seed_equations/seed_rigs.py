@@ -41,17 +41,11 @@ class Rig:
         """Return (epsilon1, epsilon2, epsilon3) of a uniform coupler, by their dimensions."""
         _, l2, l3, l4 = self.lengths
         scale = np.pi**2 / l3**2
-        return (
-            scale * l3**2 / 3.0,
-            scale * (l3 / 2.0) * l2,
-            scale * inertia4 / (self.mass_per_length * l4),
-        )
+        follower = inertia4 / (self.mass_per_length * l4)
+        return scale * l3**2 / 3.0, scale * (l3 / 2.0) * l2, scale * follower
 
 
-RIGS = {
-    "5,1,5,2": Rig((15.0, 3.0, 15.0, 6.0)),
-    "10,1,10,4": Rig((15.0, 1.5, 15.0, 6.0)),
-}
+RIGS = {"5,1,5,2": Rig((15.0, 3.0, 15.0, 6.0)), "10,1,10,4": Rig((15.0, 1.5, 15.0, 6.0))}
 
 
 def thinner(name, sixty_fourths):

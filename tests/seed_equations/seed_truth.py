@@ -1,13 +1,14 @@
 """Numeric truth that no printed formula enters: loop closure by search, derivatives by FFT.
 
-Angles and derivatives come from the closure of the four bars alone, forces from the motion of
-point masses, boundaries from the Fourier matrix of Hill's equation.
+Angles and derivatives come from the closure of the four bars alone, boundaries from the Fourier
+matrix of Hill's equation.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -80,10 +81,12 @@ def spectral_derivative(samples, order=1, growth=0.0):
     if order % 2:
         number[count // 2] = 0.0
     periodic = np.fft.fft(samples - growth * time)
-    result = np.fft.ifft((1j * number) ** order * periodic).real
+    result = np.fft.ifft((1j * number) ** order * periodic)
+    result = result if np.iscomplexobj(samples) else result.real
     return result + growth if order == 1 else result
 
 
+@cache
 def motion(lengths, assembly="open", count=512, unsteady=0.0):
     """Return one turn of the linkage; theta2 = t + unsteady * sin(t), t sampled evenly."""
     time = TURN * np.arange(count) / count
@@ -103,45 +106,23 @@ def named(lengths):
     return dict(zip(("l1", "l2", "l3", "l4"), lengths, strict=True))
 
 
+def turning(lengths, m, speed=1.0):
+    """Return lengths and angles, speeds and accelerations of a motion at a crank speed, by name."""
+    powers = {"theta": 0, "omega": 1, "alpha": 2}
+    return named(lengths) | {name: speed ** powers[name[:5]] * v for name, v in vars(m).items()}
+
+
 def vectors(lengths, angles):
     """Return the links as complex numbers by their names; the frame lies along 0."""
     units = (1.0, *(np.exp(1j * angle) for angle in angles))
     return {f"l{k + 1}_vec": lengths[k] * units[k] for k in range(4)}
 
 
-def pin_force_on_coupler(lengths, inertia4, masses, places, speed=1.0, assembly="open"):
-    """Return the force (complex, fixed axes) that the follower exerts on the coupler at C.
-
-    The coupler consists of point masses at the given distances from B.  Its moment about B and
-    the follower's moment about D are the only equations used.
-    """
-    _, l2, l3, l4 = lengths
-    m = motion(lengths, assembly)
-    crank_pin = l2 * np.exp(1j * m.theta2)
-    along = np.exp(1j * m.theta3)
-    moment = np.zeros(m.theta2.size)
-    for mass, place in zip(masses, places, strict=True):
-        position = crank_pin + place * along
-        acceleration = spectral_derivative(position.real, 2) + 1j * spectral_derivative(
-            position.imag, 2
-        )
-        moment += mass * speed**2 * np.imag(np.conj(place * along) * acceleration)
-    arm3, arm4 = l3 * along, l4 * np.exp(1j * m.theta4)
-    matrix = np.stack([[-arm3.imag, arm3.real], [arm4.imag, -arm4.real]]).transpose(2, 0, 1)
-    right = np.stack([moment, inertia4 * speed**2 * m.alpha4], axis=-1)
-    solution = np.linalg.solve(matrix, right[..., None])[..., 0]
-    return solution[:, 0] + 1j * solution[:, 1], m
-
-
 def coupler_functions(m):
     """Return phi, f1, f2, f3 by their definitions from a motion at unit crank speed."""
     between = m.theta3 - m.theta4
-    return (
-        m.omega3**2,
-        -m.alpha3 / np.tan(between),
-        np.sin(m.theta2 - m.theta3) / np.tan(between),
-        -m.alpha4 / np.sin(between),
-    )
+    sine, tangent = np.sin(m.theta2 - m.theta3), np.tan(between)
+    return m.omega3**2, -m.alpha3 / tangent, sine / tangent, -m.alpha4 / np.sin(between)
 
 
 def fourier(samples):
@@ -149,29 +130,29 @@ def fourier(samples):
     return np.fft.fft(samples) / samples.size
 
 
-def boundaries(samples, region, harmonics=40):
-    """Return both values of lambda^2 that bound a region of y'' + (lambda^2 + f) y = 0.
+def fourier_matrix(samples, region, damping=0.0, harmonics=40):
+    """Return the matrix of -y'' - 2 damping y' - f y by even samples of f over 2 pi.
 
-    ``samples`` are even samples of f over 2 pi.  Eigenvalues of the Fourier matrix of -y'' - f y
-    over the periodic (even region) or antiperiodic (odd region) exponentials.
+    Over the periodic exponentials for an even region, the antiperiodic ones for an odd region.
     """
-    shift = 0.5 * (region % 2)
-    number = np.arange(-harmonics, harmonics + 1) + shift
-    coefficients = fourier(samples)
+    number = np.arange(-harmonics, harmonics + 1) + 0.5 * (region % 2)
     index = np.arange(number.size)
     difference = (index[:, None] - index[None, :]) % samples.size
-    matrix = np.diag(number**2).astype(complex) - coefficients[difference]
-    values = np.sort(np.linalg.eigvalsh(matrix))
-    first = region - 1
-    return values[first], values[first + 1]
+    return np.diag(number**2 - 2j * damping * number) - fourier(samples)[difference]
 
 
-def normalised_solutions(coefficient: Callable[[float], float], end):
-    """Return [[y1, y2], [y1', y2']] at ``end`` of y'' + coefficient(x) y = 0."""
+def boundaries(samples, region, harmonics=40):
+    """Return both values of lambda^2 that bound a region of y'' + (lambda^2 + f) y = 0."""
+    values = np.sort(np.linalg.eigvalsh(fourier_matrix(samples, region, 0.0, harmonics)))
+    return values[region - 1], values[region]
+
+
+def normalised_solutions(coefficient: Callable[[float], float], end, damping=0.0):
+    """Return [[y1, y2], [y1', y2']] at an end of y'' + 2 damping y' + coefficient(x) y = 0."""
 
     def rates(x, state):
-        factor = -coefficient(x)
-        return [state[2], state[3], factor * state[0], factor * state[1]]
+        y, slope = state[:2], state[2:]
+        return np.concatenate([slope, -2 * damping * slope - coefficient(x) * y])
 
     solution = solve_ivp(
         rates, (0.0, end), [1.0, 0.0, 0.0, 1.0], method="DOP853", rtol=1e-12, atol=1e-13

@@ -1,10 +1,16 @@
-"""Functions of period 4 pi on a grid: derivatives by FFT, the parts in cos and sin(h theta/2)."""
+"""Hill's equation on a grid of period 4 pi, and sorted by powers of its parameters by machine.
+
+Derivatives by FFT, the parts in cos and sin(h theta/2).
+"""
 
 from __future__ import annotations
 
 from functools import cache
+from itertools import product
 
 import numpy as np
+import sympy as sp
+from seed_truth import fourier
 
 COUNT = 256
 THETA = 4 * np.pi * np.arange(COUNT) / COUNT
@@ -51,6 +57,14 @@ def function(a, b):
     return sum(a[m] * np.cos(m * THETA) + b.get(m, 0.0) * np.sin(m * THETA) for m in a)
 
 
+def harmonics(samples):
+    """Return the coefficients of a function given by samples over one turn."""
+    c = fourier(samples)[: HARMONICS + 1]
+    a, b = (Coefficients(enumerate(w)) for w in (2 * c.real, -2 * c.imag))
+    a[0] = c[0].real
+    return a, b
+
+
 def resonance(f, n, damping=0.0):
     """Return both alpha1, upper first, and A0, B0 of each: no resonant part is left in (7.17).
 
@@ -69,10 +83,10 @@ def case(n, sign, seed=0):
     rng = np.random.default_rng([n, sign + 1, seed])
     a, b = (Coefficients(enumerate(rng.normal(size=7))) for _ in "ab")
     b[0] = 0.0
-    return region(a, b, n, sign, A1=rng.normal(), B1=rng.normal(), scale=rng.normal())
+    return hill_region(a, b, n, sign, A1=rng.normal(), B1=rng.normal(), scale=rng.normal())
 
 
-def region(a, b, n, sign, A1=0.0, B1=0.0, scale=1.0):
+def hill_region(a, b, n, sign, A1=0.0, B1=0.0, scale=1.0):
     """Return f, its resonance and its first solution; with A1, B1 left to choose."""
     f = function(a, b)
     alpha1, (A0, B0) = resonance(f, n)[(1 - sign) // 2]
@@ -138,3 +152,65 @@ def series(a, b, n, sign, order):
         ys.append(newest + constant * across)
         alphas.append(alpha)
     return alphas, ys
+
+
+# Several small parameters, by SymPy.
+
+theta = sp.Symbol("theta", real=True)
+n = sp.Symbol("n", integer=True, positive=True)
+eps = sp.symbols("epsilon_1 epsilon_2", real=True)
+delta, psi = sp.symbols("delta_n psi_n", real=True)
+# Two functions, neither even nor odd, for counterexamples in numbers (n = 2): a, b of each.
+TWO_FUNCTIONS = tuple(
+    (Coefficients(enumerate(a)), Coefficients(enumerate(b, 1)))
+    for a, b in (
+        ((0.9, 0.1, 0.4, -0.5, 0.4), (0.7, 0.3, -0.4, -0.9)),
+        ((0.8, -0.8, 0.2, 0.3, -0.2), (0.5, -0.6, 0.9, -0.7)),
+    )
+)
+
+
+def _name(letter, powers):
+    return f"{letter}_{''.join(map(str, powers))}"
+
+
+@cache
+def rows(parameters, names, order=2, drag=0):
+    """Return the equations of y'' + {lambda^2 + sum of parameter times function} y by powers.
+
+    ``drag`` adds twice its product with the first parameter, times y'.  With them, the letters of
+    a formula: functions of theta under their names, alpha_ij, y_ij.
+    """
+    powers = [k for k in product(range(order + 1), repeat=len(parameters)) if sum(k) <= order]
+    functions = {name: sp.Function(name)(theta) for name in names}
+    if "wave" in functions:
+        functions["wave"] = sp.cos(n * theta - psi)
+    coefficient = sum(x * f for x, f in zip(parameters, functions.values(), strict=True))
+    alpha = {k: sp.Symbol(_name("alpha", k), real=True) for k in powers}
+    part = {k: sp.Function(_name("y", k))(theta) for k in powers}
+
+    def monomial(k):
+        return sp.prod([x**i for x, i in zip(parameters, k, strict=True)])
+
+    lam2 = n**2 / sp.Integer(4) + sum(alpha[k] * monomial(k) for k in powers if sum(k))
+    y = sum(part[k] * monomial(k) for k in powers)
+    left = sp.diff(y, theta, 2) + (lam2 + coefficient) * y
+    left += 2 * drag * parameters[0] * sp.diff(y, theta)
+    left = sp.Poly(sp.expand(left), *parameters)
+    letters = {"theta": theta, "n": n, "psi_n": psi, **functions}
+    letters |= {f"alpha_{''.join(map(str, k))}": v for k, v in alpha.items()}
+    letters |= {f"y_{''.join(map(str, k))}": v for k, v in part.items()}
+    return {k: left.coeff_monomial(monomial(k)) for k in powers}, letters
+
+
+@cache
+def couplings(n, one, other):
+    """Return w and W of two functions, over all harmonics but 0 and n, as the remark of 8.30."""
+
+    def c(k, m):
+        a, b = TWO_FUNCTIONS[k]
+        return complex(a[abs(m)], -b[m] if m > 0 else b[-m]) / 2 if abs(m) != n else 0.0
+
+    numbers = [m for m in range(-20, 21) if m not in (0, n)]
+    w = -sum((c(one, m).conjugate() * c(other, m)).real / (m * (m - n)) for m in numbers)
+    return w, sum(c(one, m) * c(other, n - m) / (m * (n - m)) for m in numbers)

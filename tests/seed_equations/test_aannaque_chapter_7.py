@@ -8,7 +8,7 @@ import sympy as sp
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm, logm
 from scipy.special import mathieu_a, mathieu_b
-from seed_ledger import Ledger, hold, holds, quoted, same, truths
+from seed_ledger import Ledger, hold, holds, point_by_point, quoted, same, truths
 from seed_truth import normalised_solutions
 
 row = Ledger("Aannaque", __file__)
@@ -127,22 +127,16 @@ def variation():
     def h(t):
         return np.concatenate([np.zeros(2), -load(t)])
 
-    def integral(body, low, high, _):
-        nodes, weights = np.polynomial.legendre.leggauss(20)
-        half = 0.5 * (high - low)
-        return half * sum(
-            w * body(low + half * (1 + s)) for s, w in zip(nodes, weights, strict=True)
-        )
-
     rates = lambda t, y: state_matrix(t) @ y + h(t)  # noqa: E731
     start = np.array([0.1, 0.0, -0.2, 0.3])
     whole = transition(PERIOD)
-    pushed = integral(lambda t: transition(PERIOD, float(t)) @ h(t), 0.0, PERIOD, False)
+    pushed = point_by_point(lambda t: transition(PERIOD, float(t)) @ h(t), 0.0, PERIOD)
     periodic = np.linalg.solve(np.eye(4) - whole, pushed)
     np.testing.assert_allclose(solved(rates, periodic, PERIOD), periodic, atol=1e-9)
     y = {0.0: start, PERIOD: solved(rates, start, PERIOD)}
-    names = {"psi": lambda a, b: transition(float(a), float(b)), "E": np.eye(4), "Int": integral}
+    names = {"psi": lambda a, b: transition(float(a), float(b)), "E": np.eye(4)}
     names |= {"y": lambda t: y[t], "t": PERIOD, "t_0": 0.0, "z": np.zeros(2), "T": PERIOD}
+    names["Int"] = point_by_point
     return {**names, "qr_ddot": load, "h": h, "periodic": periodic}
 
 
@@ -236,18 +230,11 @@ def meissner():
             levels = (T * v[:count] / (2.0 * np.pi)) ** 2
             phases = T * v[:count] * share / (2.0 * np.pi)
             letters = {"theta": {k: w for k, w in enumerate(share, 1)}}
-            letters |= {
-                "C": {},
-                "S": {},
-                "V": {},
-                "count": count,
-                f"J{count}": half_trace(levels, share),
-            }
-            for k in range(count):
-                letters["C"][k + 1], letters["S"][k + 1] = np.cos(phases[k]), np.sin(phases[k])
-                letters["V"] |= {
-                    (i + 1, k + 1): (v[i] / v[k] + v[k] / v[i]) / 2 for i in range(count)
-                }
+            letters |= {"count": count, f"J{count}": half_trace(levels, share)}
+            letters["C"], letters["S"] = (dict(enumerate(f(phases), 1)) for f in (np.cos, np.sin))
+            numbers = [(i, k) for i in range(count) for k in range(count)]
+            ratios = {(i + 1, k + 1): v[i] / v[k] for i, k in numbers}
+            letters["V"] = {(i, k): (ratios[i, k] + ratios[k, i]) / 2 for i, k in ratios}
             points.append({**point, **letters, "i": 1, "k": 2})
     return points
 

@@ -2,9 +2,9 @@
 
 from functools import cache
 
+import free_free_truth as truth
 import mpmath
 import numpy as np
-import seed_free_free as truth
 import sympy as sp
 from elastolink.derive.lagrange import euler_lagrange
 from elastolink.derive.models import free_free_modes as ff

@@ -1,28 +1,18 @@
 """Beale & Scott (1)-(11), (16): the rod's action, its equation, and Galerkin's method."""
 
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import sympy as sp
 from elastolink.derive.models import flexible_rod as rod
-from elastolink.derive.models.overhang_integrals import (
-    DRIFT,
-    MODE,
-    Ends,
-    gap_step,
-    in_roots,
-    pair_integral,
-    single_integral,
-    square_integral,
-)
-from elastolink.derive.models.overhang_integrals import eta as position
+from elastolink.derive.models import overhang_integrals as overhang
 from elastolink.derive.models.quick_return import crank, frame, kinematics, theta2
 from elastolink.derive.spec import ModelSpec
 from elastolink.derive.variational import hamilton, linearise, quadratic_action
 from elastolink.runtime.linkages import QuickReturn
 from elastolink.runtime.systems.rod import OverhangBasis, rod_system
 from rod_newton import PlainBasis
-from seed_ledger import Ledger, hold, holds, is_zero, quoted, same
+from seed_ledger import Ledger, by_differences, hold, holds, is_zero, quoted, same
 
 row = Ledger("Beale & Scott", __file__)
 WHOLE = ModelSpec("quick_return", "moving_basis", flexible=("rod",))
@@ -30,12 +20,8 @@ PRINTED = WHOLE.with_(drop=("frame", "tension"))
 x, t, v, phi, block, L = rod.x, rod.t, rod.v, rod.phi, rod.block, rod.length
 m, EI = rod.density, rod.stiffness
 eps, eta, speed = sp.symbols("epsilon eta Omega", positive=True)
-FLEXIBLE = {
-    "frame": 0.59997,
-    "length": 1.0,
-    "bending_stiffness": 0.7e11 * 0.5208e-6,
-    "mass_per_length": 7.15,
-}
+FLEXIBLE = {"frame": 0.59997, "length": 1.0, "mass_per_length": 7.15}
+FLEXIBLE["bending_stiffness"] = 0.7e11 * 0.5208e-6
 RATIO = 0.3
 LINKAGE = QuickReturn(frame=0.59997, crank=RATIO * 0.59997, rod=1.0)
 
@@ -149,18 +135,11 @@ def quantities_without_dimension(entry):
     system = rod_system(PlainBasis(2), **numbers)
     (elastic,) = [term.scale for term in system.terms if term.array == "K"]
     linkage = QuickReturn(frame=0.59997, crank=0.25 * 0.59997, rod=1.3)
-    point = {
-        "G": 0.25 * 0.59997,
-        "a_x": 0.59997,
-        "eps": 0.25,
-        "x_1": float(linkage.motion(1.1).slide),
-        "L": 1.3,
-        "l_bar": 0.59997 / 1.3 * np.sqrt(1 + 2 * 0.25 * np.cos(1.1) + 0.25**2),
-        "EI": numbers["bending_stiffness"],
-        "m_bar": 7.15,
-        "lam": np.sqrt(system.scale_values()[elastic]),
-        **{"theta_dot": 1.0, "t": 1.0, "v": 1.0, "x": 1.0},
-    }
+    point = {"G": 0.25 * 0.59997, "a_x": 0.59997, "eps": 0.25, "L": 1.3, "m_bar": 7.15}
+    point |= {"x_1": float(linkage.motion(1.1).slide), "EI": numbers["bending_stiffness"]}
+    point["l_bar"] = 0.59997 / 1.3 * np.sqrt(1 + 2 * 0.25 * np.cos(1.1) + 0.25**2)
+    point["lam"] = np.sqrt(system.scale_values()[elastic])
+    point |= {"theta_dot": 1.0, "t": 1.0, "v": 1.0, "x": 1.0}
     hold(entry.printed, point)
 
 
@@ -211,15 +190,12 @@ def conditions_at_pin_block_and_tip(entry):
     assert held == {"3": essential, "4": natural}[entry.label]
 
 
+MODE, DRIFT = (overhang.MODE, 0), (overhang.DRIFT, 0)
+PAIR = (overhang.Ends.of("_k"), overhang.Ends.of("_n"))
 # Galerkin's method: four modes with an overhang, three of them in the sums.
 COUNT, STEP = 4, 2e-3
 BASIS = OverhangBasis(COUNT)
 SYSTEM = rod_system(OverhangBasis(3), **FLEXIBLE, crank_ratio=RATIO, drop=("frame", "tension"))
-WEIGHTS = {
-    0: {0: 1.0},
-    1: {1: 3 / 4, 2: -3 / 20, 3: 1 / 60, -1: -3 / 4, -2: 3 / 20, -3: -1 / 60},
-    2: {0: -49 / 18} | {s * k: c for k, c in ((1, 1.5), (2, -0.15), (3, 1 / 90)) for s in (1, -1)},
-}
 
 
 def place(theta):
@@ -232,13 +208,13 @@ def modes(theta, order=0):
 
     def rate(side, k):
         def value(at):
-            moved = {j: np.array([place(theta + j * STEP)]) for j in WEIGHTS[order]}
-            values = sum(
-                c * BASIS.shapes(np.ravel(at), moved[j])[0, :, k - 1]
-                for j, c in WEIGHTS[order].items()
-            )
-            inside = np.ravel(at) <= xi if side == 1 else np.ravel(at) >= xi
-            return np.where(inside, values / STEP**order, 0.0)
+            at = np.ravel(at)
+
+            def shape(angle):
+                return BASIS.shapes(at, np.array([place(angle)]))[0, :, k - 1]
+
+            values = by_differences(shape, theta, order, STEP) if order else shape(theta)
+            return np.where(at <= xi if side == 1 else at >= xi, values, 0.0)
 
         return value
 
@@ -314,22 +290,20 @@ def integrals(entry, tol):
 @row("8")
 def squares_of_the_modes(entry):
     integrals(entry, 1e-12)
-    pair = (Ends.of("_k"), Ends.of("_n"))
-    assert pair_integral(sp.S.One, (MODE, 0), (MODE, 0), pair) == 0
-    one = Ends.of()
+    assert overhang.pair_integral(sp.S.One, MODE, MODE, PAIR) == 0
+    one = overhang.Ends.of()
     slope, reaction, tip = sp.symbols("slope reaction tip", real=True)
     at = sp.Symbol("place", positive=True)
     closed = tip**2 / 4 + at * reaction * slope / (2 * one.beta**4)
-    assert sp.expand(square_integral((MODE, 0), (MODE, 0), 0, one) - closed) == 0
+    assert sp.expand(overhang.square_integral(MODE, MODE, 0, one) - closed) == 0
 
 
 @row("9", slow=True)
 def drift_of_the_modes(entry):
     integrals(entry, 1e-8)
-    pair = (Ends.of("_k"), Ends.of("_n"))
-    closed = in_roots(pair_integral(sp.S.One, (MODE, 0), (DRIFT, 0), pair), pair)
+    closed = overhang.in_roots(overhang.pair_integral(sp.S.One, MODE, DRIFT, PAIR), PAIR)
     s, r = sp.symbols("slope_k slope_n", real=True), sp.symbols("reaction_k reaction_n", real=True)
-    assert sp.expand(closed - (r[0] * s[1] + r[1] * s[0]) / gap_step(pair)[0]) == 0
+    assert sp.expand(closed - (r[0] * s[1] + r[1] * s[0]) / overhang.gap_step(PAIR)[0]) == 0
 
 
 @row("10", slow=True)
@@ -348,9 +322,10 @@ def second_drift_of_the_modes(entry):
 @row("11")
 def moments_of_the_modes(entry):
     integrals(entry, 1e-12)
-    one = Ends.of()
+    one = overhang.Ends.of()
     at, reaction = sp.Symbol("place", positive=True), sp.Symbol("reaction", real=True)
-    assert sp.expand(single_integral(position, 0, one) + at * reaction / one.beta**4) == 0
+    closed = -at * reaction / one.beta**4
+    assert sp.expand(overhang.single_integral(overhang.eta, 0, one) - closed) == 0
 
 
 def second_order_motion():
@@ -360,9 +335,8 @@ def second_order_motion():
     def at(name, angle=theta):
         return SYSTEM.array(name, np.array([angle]))[0]
 
-    def slope(name, h=5e-3):
-        pairs = ((1, 4 / 5), (2, -1 / 5), (3, 4 / 105), (4, -1 / 280))
-        return sum(c * (at(name, theta + k * h) - at(name, theta - k * h)) for k, c in pairs) / h
+    def slope(name):
+        return by_differences(partial(at, name), theta, h=5e-3)
 
     damping = slope("M") + at("A") - at("A").T
     stiffness = at("K") / rate**2 + slope("A") - at("B")

@@ -38,13 +38,8 @@ def gamma(kind, m, n=1):
     """Return one entry of a matrix of (18), or of its right-hand side for kind 5."""
     total = sp.S.Zero
     for (lower, upper), one, other in zip(((0, x1), (x1, L)), mode(m), mode(n), strict=True):
-        density = {
-            1: one * other,
-            2: one * rate(other),
-            3: one * rate(rate(other)),
-            4: sp.diff(one, x, 2) * sp.diff(other, x, 2),
-            5: x * one,
-        }
+        density = {1: one * other, 2: one * rate(other), 3: one * rate(rate(other)), 5: x * one}
+        density[4] = sp.diff(one, x, 2) * sp.diff(other, x, 2)
         total += sp.integrate(sp.expand(density[kind]), (x, lower, upper))
     return sp.expand(total)
 

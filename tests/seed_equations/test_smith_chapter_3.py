@@ -4,9 +4,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from seed_derivations import l1, l2, l3, l4
+from seed_derivations import bd, c, clearance_series, cosine_change, l1, l2, l3, l4, phi
 from seed_ledger import Ledger, hold, holds, latex, quoted
-from seed_rigid_derivations import bd, c, clearance_series, cosine_change, phi
 from seed_truth import CRANK_ROCKERS, LONG_CRANK, TURN, closure, named
 
 row = Ledger("Smith", __file__)
@@ -51,10 +50,8 @@ def played(lengths, theta2, clearance):
     theta3, theta4 = (angle[0] for angle in closure(lengths, theta2))
     phi = abs(np.angle(pin * np.exp(-1j * theta4)))
     low, high = movement(lengths, theta2, clearance)
-    reached = {
-        "BC_p": abs(pin - l4 * np.exp(1j * (theta4 + low))),
-        "BC_pp": abs(pin - l4 * np.exp(1j * (theta4 + high))),
-    }
+    reached = {"BC_p": abs(pin - l4 * np.exp(1j * (theta4 + low)))}
+    reached["BC_pp"] = abs(pin - l4 * np.exp(1j * (theta4 + high)))
     changes = {"dphi_p": -low, "dphi_pp": high, "dphi": high - low}
     angles = {"phi": phi, "phi_p": phi - low, "phi_pp": phi - high}
     mu = abs(np.angle(np.exp(1j * (theta4 - theta3))))
@@ -106,13 +103,8 @@ def each_small_movement(entry):
     point = fig_10(0.5, np.pi)
     true, printed = entry.printed.sides(**point)[0]
     quoted([true, printed], "0.03126", "0.03202")
-    quoted(
-        np.ravel(entry.printed.sides(**played(FIVE, 1.0, 0.5))),
-        "0.1419",
-        "0.1446",
-        "0.1345",
-        "0.1309",
-    )
+    printed = np.ravel(entry.printed.sides(**played(FIVE, 1.0, 0.5)))
+    quoted(printed, "0.1419", "0.1446", "0.1345", "0.1309")
     first, second, third = (part.subs(numbers(point)) for part in clearance_series())
     quoted([first * 0.5], "0.03186")
     quoted([first * 0.5 * (1 + 0.5 / (4 * point["l3"]))], "0.03226")

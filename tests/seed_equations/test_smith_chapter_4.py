@@ -1,37 +1,14 @@
 """Smith chapter 4: accelerations, pin forces, torque, and what the linkage does to its frame."""
 
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
+from seed_derivations import PINS, T, centre_accelerations, newton_euler, solution, substituted
 from seed_ledger import Ledger, hold, holds
-from seed_rigid import (
-    GRAVITY,
-    SMITH_LENGTHS,
-    Link,
-    centres,
-    forces,
-    motion,
-    rate,
-    smith_links,
-)
-from seed_rigid_derivations import (
-    X12,
-    X23,
-    X34,
-    X41,
-    Y12,
-    Y23,
-    Y34,
-    Y41,
-    T,
-    centre_accelerations,
-    newton_euler,
-    solution,
-    substituted,
-)
-from seed_truth import CRANK_ROCKERS, DRAG_LINK, LONG_CRANK, named
+from seed_rigid import GRAVITY, SMITH_LENGTHS, Link, centres, forces, smith_links
+from seed_truth import CRANK_ROCKERS, DRAG_LINK, LONG_CRANK, motion, spectral_derivative, turning
 
 row = Ledger("Smith", __file__)
 SPEED, UNSTEADY, COUNT = 10.0, 0.2, 1024
@@ -53,12 +30,10 @@ def moving():
     points = []
     for lengths, assembly in KINDS:
         m = motion(lengths, assembly, COUNT, UNSTEADY)
-        point = {name: value for name, value in vars(m).items() if name.startswith("theta")}
+        point = turning(lengths, m, SPEED)
         for i in (2, 3, 4):
             link = LINKS[i - 2]
-            place = rate(centres(lengths, LINKS, m)[i - 2], 2) * SPEED**2
-            point |= {f"omega{i}": SPEED * getattr(m, f"omega{i}")}
-            point |= {f"alpha{i}": SPEED**2 * getattr(m, f"alpha{i}")}
+            place = spectral_derivative(centres(lengths, LINKS, m)[i - 2], 2) * SPEED**2
             point |= {f"M{i}": link.mass, f"m{i}": link.mass, f"r{i}": link.along / link.mass}
             point |= {f"a_{i}x": place.real, f"a_{i}y": place.imag, f"r{i}_dot": point[f"r{i}"]}
         point |= {"alpha_4x": point["a_4x"], "alpha_4y": point["a_4y"]}
@@ -69,13 +44,24 @@ def moving():
         point |= dict(zip(("I_2A", "I_3B", "I_4D"), (k.inertia for k in LINKS), strict=True))
         point |= {"T": f.torque, "dH": f.momentum_rate, "dE": f.energy_rate}
         frame = {"X_Frame": f.shaking_force.real, "Y_Frame": f.shaking_force.imag}
-        points.append({**named(lengths), **point, **frame, "M_Frame": -f.momentum_rate})
+        points.append({**point, **frame, "M_Frame": -f.momentum_rate})
     return points
 
 
-def solved(*unknowns):
-    """Return the machine's solution for some unknowns."""
-    return lambda: {name: solution()[name] for name in unknowns}
+def centre(k):
+    """Return the machine's acceleration of a centre of mass."""
+    return dict(zip((f"a_{k}x", f"a_{k}y"), centre_accelerations()[k - 2], strict=True))
+
+
+def pin_force(pin):
+    """Return the machine's solution for a pin."""
+    return {name: solution()[name] for name in PINS if name.name.endswith(pin)}
+
+
+def frame_force():
+    """Return the machine's force on the frame."""
+    pins = {s.name: substituted(s).expand() for s in PINS if s.name[-2:] in ("12", "41")}
+    return {f"{axis}_Frame": pins[f"{axis}_41"] - pins[f"{axis}_12"] for axis in "XY"}
 
 
 def close(ours, theirs):
@@ -84,31 +70,14 @@ def close(ours, theirs):
 
 
 true = holds(moving, tol=TIGHT)
-row(
-    "4.1",
-    check=true,
-    derived=lambda: dict(zip(("a_2x", "a_2y"), centre_accelerations()[0], strict=True)),
-)
-row(
-    "4.2",
-    check=true,
-    derived=lambda: dict(zip(("a_3x", "a_3y"), centre_accelerations()[1], strict=True)),
-)
-row(
-    "4.3",
-    check=true,
-    derived=lambda: dict(zip(("a_4x", "a_4y"), centre_accelerations()[2], strict=True)),
-)
-row("4.4", check=true, derived=lambda: newton_euler()[:3])
-row("4.5", check=true, derived=lambda: newton_euler()[3:6])
-row("4.6", check=true, derived=lambda: newton_euler()[6:])
-row("4.7", check=true, derived=solved(X34, Y34))
-row("4.8", check=true, derived=solved(X23, Y23))
-row("4.9", check=true, derived=solved(X12, Y12))
-row("4.10", check=true, derived=solved(X41, Y41))
+for k in (2, 3, 4):
+    row(f"4.{k - 1}", check=true, derived=partial(centre, k))
+    row(f"4.{k + 2}", check=true, derived=lambda k=k: newton_euler()[3 * k - 6 : 3 * k - 3])
+for label, pin in {"4.7": "34", "4.8": "23", "4.9": "12", "4.10": "41"}.items():
+    row(label, check=true, derived=partial(pin_force, pin))
 
 
-@row("4.11", derived=solved(T))
+@row("4.11", derived=lambda: {T: solution()[T]})
 def torque(entry):
     true(entry)
     assert all(close(p["T"] * p["omega2"], p["dE"]) for p in moving())
@@ -122,14 +91,7 @@ def action_and_reaction(_):
         assert close(p["X12"] - p["X41"] + 1j * (p["Y12"] - p["Y41"]), total)
 
 
-row(
-    "4.12",
-    check=true,
-    derived=lambda: {
-        f"{axis}_Frame": substituted(a).expand() - substituted(b).expand()
-        for axis, a, b in (("X", X41, X12), ("Y", Y41, Y12))
-    },
-)
+row("4.12", check=true, derived=frame_force)
 
 
 @row("4.13")

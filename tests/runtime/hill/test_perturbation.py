@@ -17,11 +17,10 @@ from elastolink.runtime.hill import (
     perturbation_boundaries,
 )
 from elastolink.runtime.hill.bloch import effective_operator
+from exact_hill import ExactHarmonics, exact_operator
 from hill_functions import functions, general
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from smith_chapter_8.exact import exact_operator
-from smith_chapter_8.surd import ExactHarmonics
 
 FUNCTIONS = functions()
 

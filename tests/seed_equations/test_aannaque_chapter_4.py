@@ -1,6 +1,6 @@
-"""Aannaque (2.1), (4.15)-(4.41): the moving element, ground axes, assembly, damping, stiffening."""
+"""Aannaque chapter 4 and appendix A: beam elements at rest and moving, assembled, stiffened."""
 
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -8,23 +8,274 @@ import scipy.linalg
 import sympy as sp
 from beam_reference import rigid_field
 from elastolink import load_scene
+from elastolink.derive.models import beam_elements as elements
+from elastolink.derive.models import beam_shapes
+from elastolink.derive.models.beam_shapes import t, u, v
+from elastolink.derive.variational import hamilton
 from elastolink.runtime.beams.assembly import AngleArrays
 from elastolink.runtime.beams.elements import element_arrays, shape_functions
 from elastolink.runtime.linkages import FourBar
 from scipy.integrate import solve_ivp
-from seed_elements import L, arrays
-from seed_formula import Formula
-from seed_ledger import Ledger, hold, holds, quoted, same, table
+from seed_ledger import Ledger, by_differences, hold, holds, point_by_point, quoted, same
 
 row = Ledger("Aannaque", __file__)
-LENGTH, DENSITY = 0.4, 0.7
-ELEMENT = element_arrays(
-    "cubic",
-    length=LENGTH,
-    mass_per_length=DENSITY,
-    axial_stiffness=2e5,
-    bending_stiffness=9.0,
+x, L = beam_shapes.x, beam_shapes.length
+zeta = sp.Symbol("zeta", real=True)
+rho, EA, EI = elements.density, elements.axial, beam_shapes.bending
+# Axial displacements first, then deflection and rotation node by node; the inner node between.
+ORDERS = {
+    "cubic": ("u1", "u2", "v1", "r1", "v2", "r2"),
+    "internal_node": ("v1", "r1", "v3", "r3", "v2", "r2"),
+    "curvature": ("v1", "r1", "k1", "v2", "r2", "k2"),
+}
+
+
+@cache
+def places(kind: str) -> list[int]:
+    """Return where the document's nodal values stand among those of the element."""
+    labels = [value.label for value in beam_shapes.nodal_values(kind)]
+    return [labels.index(name) for name in ORDERS[kind]]
+
+
+@cache
+def shape_rows(kind: str) -> tuple[sp.Matrix, sp.Matrix]:
+    """Return the derived shapes of u and v as rows, functions of zeta, in the document's order."""
+    found = beam_shapes.field_shapes(kind)
+    rows = []
+    for item in (beam_shapes.u, beam_shapes.v):
+        values = [sp.expand(sp.sympify(e).subs(x, zeta * L)) for e in found[item]]
+        rows.append(sp.Matrix([[values[i] for i in places(kind)]]))
+    return rows[0], rows[1]
+
+
+def integral(row: sp.Matrix, factor: sp.Expr) -> sp.Matrix:
+    """Return ``int_0^1 factor row^T row dzeta`` of a row of polynomials."""
+
+    def moments(product: sp.Expr) -> sp.Expr:
+        powers = sp.Poly(product, zeta).all_coeffs()[::-1]
+        return factor * sp.Add(*(c / (k + 1) for k, c in enumerate(powers)))
+
+    return (row.T * row).applyfunc(moments)
+
+
+@cache
+def arrays(kind: str) -> dict[str, sp.Matrix]:
+    """Return the matrices by name: energies of the derived shapes."""
+    along, across = shape_rows(kind)
+    strains = [row.diff(zeta, k) / L**k for row, k in ((along, 1), (across, 2), (across, 1))]
+    return {
+        "mass": integral(along, rho * L) + integral(across, rho * L),
+        "stiffness": integral(strains[0], EA * L) + integral(strains[1], EI * L),
+        "geometric_0": integral(strains[2], L),
+    }
+
+
+def letters(expression: object) -> str:
+    """Return LaTeX with the document's letters."""
+    names = {L: "L", rho: r"\rho A", EA: "EA", EI: "EI"}
+    names = {symbol: sp.Symbol(name) for symbol, name in names.items()}
+    return sp.latex(sp.sympify(expression).subs(names))
+
+
+AXIAL, BENT = slice(0, 2), slice(2, 6)
+SIZES = {L: 0.4, EA: 1.9, EI: 2.3, rho: 0.7}
+LENGTH, DENSITY = SIZES[L], SIZES[rho]
+
+
+@cache
+def derived(kind):
+    """Return the derived matrices in numbers, and the rows of shapes as functions of the place.
+
+    ``("v", 2)`` is the second derivative by x of the row of v.
+    """
+    forms = arrays(kind)
+    numbers = {k: np.array(forms[k].subs(SIZES), dtype=float) for k in ("mass", "stiffness")}
+    for name, part in zip("uv", shape_rows(kind), strict=True):
+        for order in range(3):
+            form = part.diff(zeta, order) / L**order if order else part
+            function = sp.lambdify(zeta, form.subs(SIZES))
+            numbers[name, order] = lambda s, f=function: np.array(f(s / LENGTH), dtype=float)
+    return numbers
+
+
+@cache
+def cubic():
+    """Return places of a beam in the document's letters, for free nodal values."""
+    d, q = derived("cubic"), np.array([0.3, -0.2, 0.5, 0.1, -0.4, 0.7])
+    stiffness = d["stiffness"]
+    common = {
+        "u_x": lambda s: (d["u", 1](s) @ q)[0],
+        "v": lambda s: (d["v", 0](s) @ q)[0],
+        "v_xx": lambda s: (d["v", 2](s) @ q)[0],
+        "B1": lambda s: d["u", 1](s)[:, AXIAL],
+        "B2": lambda s: d["v", 2](s)[:, BENT],
+        "N2": lambda s: d["v", 0](s)[:, BENT],
+        "N2_pp": lambda s: d["v", 2](s)[:, BENT],
+        **{"K": stiffness, "K1": stiffness[AXIAL, AXIAL], "K2": stiffness[BENT, BENT]},
+        **{"q1": q[AXIAL], "q2": q[BENT], "U_int": q @ stiffness @ q / 2, "Int": point_by_point},
+        **{"L": LENGTH, "EA": SIZES[EA], "EI_z": SIZES[EI]},
+    }
+    there = [
+        {"x": s, "u": (d["u", 0](s) @ q)[0], "eps": (d["u", 1](s) @ q)[0]} for s in (0.1, 0.33)
+    ]
+    return [common | place for place in there]
+
+
+def polynomial(count, item, first=1):
+    """Return the check of a polynomial: determined by the nodal values, and a solution at rest."""
+
+    def check(entry):
+        a = sp.symbols(f"a{first}:{first + count}")
+        names = {f"a{k}": c for k, c in enumerate(a, first)} | {"a": dict(enumerate(a, 1))}
+        trial = entry.printed.value(**names, n=sp.Integer(count), x=x)
+        same(trial, sum(c * x**k for k, c in enumerate(a)))
+        ends = [sp.diff(trial, x, k).subs(x, e * L) for e in (0, 1) for k in range(count // 2)]
+        assert sp.simplify(sp.Matrix(ends).jacobian(a).det()) != 0
+        still = {elements.turn: 0, **dict.fromkeys((*elements.forces, *elements.loads), 0)}
+        values = {u: trial, v: 0} if item is u else {u: 0, v: trial}
+        equation = hamilton(elements.beam_action("cubic")).equations[item]
+        assert sp.expand(equation.subs(values).doit().subs(still).doit()) == 0
+
+    return check
+
+
+def shape_check(kind, columns=slice(None), order=0):
+    """Return the check of printed shapes or their second derivatives, functions of zeta."""
+
+    def check(entry):
+        for s in (0.1, 0.3, 0.85):
+            true = derived(kind)["v", order](s * LENGTH)[0, columns] * LENGTH**order
+            same(np.ravel(entry.printed.value(L=LENGTH, zeta=s, xi=s, N_T=0, B_T=0)), true, 1e-9)
+
+    return check
+
+
+def latex_of(kind, name, rows=slice(None), columns=slice(None)):
+    """Return what shows a derived matrix."""
+    return lambda: letters(arrays(kind)[name][rows, columns])
+
+
+row("4.1", "4.2", check=polynomial(2, u))
+row("4.5", check=polynomial(4, v, first=3))
+row("4.3", derived=lambda: letters(shape_rows("cubic")[0][:, AXIAL]), check=holds(cubic))
+
+
+@row("4.4", derived=lambda: letters(shape_rows("cubic")[0][:, AXIAL].diff(zeta) / L))
+def strain(entry):
+    hold(entry.printed, *({k: v for k, v in p.items() if k != "B1"} for p in cubic()))
+
+
+row("4.6", "4.8", "4.9", "4.11", "4.14", check=holds(cubic))
+
+
+@row("4.10")
+def curvature(entry):
+    there = [{**p, **{k: p[k](p["x"]) for k in ("B2", "v_xx")}} for p in cubic()]
+    hold(entry.printed, *there)
+
+
+row(
+    "4.2.1 cubic shape functions",
+    derived=lambda: letters(shape_rows("cubic")[1][:, BENT]),
+    check=shape_check("cubic", BENT),
 )
+
+
+@row("4.7")
+def hamiltons_principle(_):
+    """A frame at rest, no axial force: the wave equation and the beam equation with loads."""
+    found = hamilton(elements.beam_action("cubic")).equations
+    rest = {elements.turn: 0, **dict.fromkeys(elements.forces, 0)}
+    s, loads = x / L, dict(zip(("px1", "px2", "py1", "py2"), elements.loads, strict=True))
+    rod = EA * u.diff(x, 2) - rho * u.diff(t, 2) + loads["px1"] * (1 - s) + loads["px2"] * s
+    beam = -EI * v.diff(x, 4) - rho * v.diff(t, 2) + loads["py1"] * (1 - s) + loads["py2"] * s
+    assert sp.simplify(found[u].subs(rest).doit() - rod) == 0
+    assert sp.simplify(found[v].subs(rest).doit() - beam) == 0
+
+
+@row("4.12", derived=latex_of("cubic", "stiffness", AXIAL, AXIAL))
+def lost_denominator(entry):
+    hold(entry.printed, *({**point, "hole": LENGTH} for point in cubic()))
+
+
+row("4.13", derived=latex_of("cubic", "stiffness", BENT, BENT), check=holds(cubic))
+
+# Appendix A: the elements of the p-version.
+
+
+def matrix(entry):
+    """Return a printed matrix at the sizes of the test."""
+    return entry.printed.value(L=LENGTH, rhoA=SIZES[rho], EI=SIZES[EI])
+
+
+row(
+    "A.1",
+    derived=lambda: letters(shape_rows("internal_node")[1]),
+    check=shape_check("internal_node"),
+)
+
+
+@row("A.2")
+def strains_by_zeta(entry):
+    shape_check("internal_node", order=2)(entry)
+    quoted([0.328**-2], "9.3")
+
+
+@row("A.3", derived=latex_of("internal_node", "mass"))
+def mass_with_an_inner_node(entry):
+    same(matrix(entry), derived("internal_node")["mass"], 1e-9)
+
+
+@row("A.4")
+def stiffness_with_an_inner_node(entry):
+    true, printed = derived("internal_node")["stiffness"], matrix(entry)
+    wrong = np.argwhere(np.abs(printed - true) > 1e-9 * np.abs(true).max())
+    assert wrong.tolist() == [[1, 1]]
+    hold(entry.corrected, {"EI": SIZES[EI], "L": LENGTH, "K_22": true[1, 1], "K_66": true[5, 5]})
+    turned = np.array([0, 1, LENGTH / 2, 1, LENGTH, 1])
+    assert turned @ printed @ turned / 2 == pytest.approx(-SIZES[EI] / (7 * LENGTH))
+    kept, unit = np.ix_([1, 2, 3, 5], [1, 2, 3, 5]), {L: 1, EI: 1, rho: 1}
+    mass, right = (
+        np.array(arrays("internal_node")[k].subs(unit), dtype=float) for k in ("mass", "stiffness")
+    )
+    both = (right, entry.printed.value(L=1, EI=1))
+    squares = [scipy.linalg.eigvalsh(stiffness[kept], mass[kept])[0] for stiffness in both]
+    quoted(np.sqrt(squares), "9.8725", "9.5705")
+
+
+def curvatures(name, quotes=()):
+    """Return the check of a repeated form: the one before to the letter, so not the right one.
+
+    ``quotes`` are entry (1, 1) of the right and of the printed matrix without L, rho A and EI.
+    """
+
+    def check(entry):
+        before = {"A.5": "A.1", "A.6": "A.2", "A.7": "A.3", "A.8": "A.4"}[entry.label]
+        assert str(entry.printed) == str(row.cell(before))
+        if quotes:
+            unit = entry.printed.value(L=1, rhoA=1, EI=1)[0, 0]
+            right = arrays("curvature")[name].subs({L: 1, EI: 1, rho: 1})[0, 0]
+            quoted([right, unit], *quotes)
+
+    return check
+
+
+row("A.5", check=curvatures("v"), derived=lambda: letters(shape_rows("curvature")[1]))
+row(
+    "A.6",
+    check=curvatures("v"),
+    derived=lambda: letters((shape_rows("curvature")[1].diff(zeta, 2) / L**2).applyfunc(sp.factor)),
+)
+row("A.7", check=curvatures("mass", ("0.392", "0.151")), derived=latex_of("curvature", "mass"))
+row(
+    "A.8",
+    check=curvatures("stiffness", ("17.1", "145.5")),
+    derived=latex_of("curvature", "stiffness"),
+)
+
+
+STIFFNESSES = {"axial_stiffness": 2e5, "bending_stiffness": 9.0}
+ELEMENT = element_arrays("cubic", length=LENGTH, mass_per_length=DENSITY, **STIFFNESSES)
 J = np.array([[0.0, -1.0], [1.0, 0.0]])
 # The document's order: both axial displacements first.
 ORDER = np.array([0, 3, 1, 2, 4, 5])
@@ -57,12 +308,9 @@ def path(t):
     return origin, angle, 1e-2 * np.sin(np.arange(1, 7) + np.arange(2, 8) * t)
 
 
-def derivative(function, t=TIME, order=1, h=1e-3):
-    """Return a derivative by central differences of sixth order."""
-    weights = {1: [-1, 9, -45, 0, 45, -9, 1], 2: [2, -27, 270, -490, 270, -27, 2]}[order]
-    scale = {1: 60.0, 2: 180.0}[order]
-    values = [w * function(t + k * h) for w, k in zip(weights, range(-3, 4), strict=True)]
-    return sum(values) / (scale * h**order)
+def derivative(function, t=TIME, order=1):
+    """Return a derivative by the time."""
+    return by_differences(function, t, order)
 
 
 def still(place, t):
@@ -84,13 +332,6 @@ def rigid(t, order):
     return rigid_field("cubic", *ends, derivative(lambda s: path(s)[1], t, order))
 
 
-def matrix_integral(body, low, high, _):
-    """Integrate a number or a matrix by Gauss points."""
-    nodes, weights = np.polynomial.legendre.leggauss(6)
-    half = (high - low) / 2
-    return half * sum(w * body(low + half * (1 + s)) for s, w in zip(nodes, weights, strict=True))
-
-
 @cache
 def moving():
     """Return the moving element in the document's letters, all rates by differences."""
@@ -110,17 +351,13 @@ def moving():
         return DENSITY * force @ shapes(place)
 
     names = {"T": T, "T_dot": T_dot, "T_ddot": T_ddot, "N": shapes, "rhoA": DENSITY, "L": LENGTH}
-    names |= {"q": q, "q_dot": q_dot, "q_ddot": q_ddot, "theta": angle, "Int": matrix_integral}
-    names |= {
-        "qr_dot": velocity,
-        "a_r": acceleration,
-        "r_dot": ground_speed,
-        "K": ELEMENT.stiffness,
-    }
+    names |= {"q": q, "q_dot": q_dot, "q_ddot": q_ddot, "theta": angle, "Int": point_by_point}
+    names |= {"qr_dot": velocity, "a_r": acceleration, "r_dot": ground_speed}
+    names["K"] = ELEMENT.stiffness
     names |= {"M": m, "M_c": w * c, "M_a": wd * c - w**2 * m, "theta_dot": w, "theta_ddot": wd}
     names |= {"qr_ddot": derivative(lambda s: rigid(s, 1))}
-    names |= {"p": matrix_integral(push, 0.0, LENGTH, False) + ELEMENT.stiffness @ q}
-    speed = matrix_integral(lambda s: ground_speed(s) @ ground_speed(s), 0.0, LENGTH, False)
+    names |= {"p": point_by_point(push, 0.0, LENGTH, False) + ELEMENT.stiffness @ q}
+    speed = point_by_point(lambda s: ground_speed(s) @ ground_speed(s), 0.0, LENGTH, False)
     return names | {"E_kin": DENSITY * speed / 2}
 
 
@@ -205,12 +442,7 @@ def grounded():
     names |= {"q_g_dot": derivative(values), "q_g_ddot": derivative(values, TIME, 2)}
     names |= {"qgr_ddot": derivative(undeformed, TIME, 2), "p_g": R.T @ moving()["p"]}
     names |= {k: moving()[k] for k in ("M", "K", "M_c", "M_a")}
-    return names | cells("4.28").values(**names)
-
-
-def cells(label, name="printed"):
-    """Return a formula of another row."""
-    return Formula(table("Aannaque")[label][name], table("Aannaque")["letters"])
+    return names | row.cell("4.28").values(**names)
 
 
 row("4.27", check=holds(lambda: [grounded()], tol=1e-7))
@@ -225,7 +457,7 @@ def matrices_along_fixed_axes(entry):
     given = {k: v for k, v in p.items() if k not in ("M_g", "K_g", "M_gc", "M_ga")}
     values = entry.printed.values(**given)
     same(values["M_gc"], slope + energy - energy.T, 1e-8)
-    hold(cells("4.27"), {**given, **values}, tol=1e-7)
+    hold(row.cell("4.27"), {**given, **values}, tol=1e-7)
     stretched = p["R"].T @ ELEMENT.stiffness @ p["R"]
     same(values["K_g"], stretched)
 
@@ -290,7 +522,7 @@ def family():
     changes = {"mesh.elements": 2, "model.drop": ["geometric_stiffness"], "damping.ratio": 0.0}
     system = load_scene("aannaque_1996_table_4_1", overrides=changes).system()
     structure = AngleArrays(system.structure)
-    theta, speed, acceleration, h = 0.7, 3.0, -5.0, 1e-4
+    theta, speed, acceleration = 0.7, 3.0, -5.0
     motion = system.structure.configuration(np.array([theta]))
     M_c, M_a = np.zeros((2, structure.count, structure.count))
     for placed, own in structure.local:
@@ -304,18 +536,19 @@ def family():
         given = {"R": rotation(angle), "R_dot": rate * turned, "M": own.mass, "K": own.stiffness}
         given |= {"R_ddot": hurry * turned - rate**2 * straight, "M_c": rate * own.coupling}
         given |= {"M_a": hurry * own.coupling - rate**2 * own.mass}
-        at, found = np.ix_(placed.indices, placed.indices), cells("4.28").values(**given)
+        at, found = np.ix_(placed.indices, placed.indices), row.cell("4.28").values(**given)
         M_c[at] += found["M_gc"]
         M_a[at] += found["M_ga"]
     free = np.ix_(structure.free, structure.free)
-    angles = theta + h * np.arange(-3, 4)
-    weights = np.array([-1, 9, -45, 0, 45, -9, 1]) / (60 * h)
-    mass, drift = (system.array(name, angles) for name in ("M", "A"))
-    slope, changing = (np.einsum("t,tij->ij", weights, k) for k in (mass, drift))
-    a, b = drift[3], system.array("B", [theta])[0]
+
+    def array(name, angle=theta):
+        return system.array(name, [angle])[0]
+
+    slope, changing = (by_differences(partial(array, name), theta, h=1e-4) for name in "MA")
+    a, b = array("A"), array("B")
     gyroscopic = speed * (slope + a - a.T)
     rest = speed**2 * (changing - b) + acceleration * a
-    return mass[3], gyroscopic, rest, M_c[free], M_a[free]
+    return array("M"), gyroscopic, rest, M_c[free], M_a[free]
 
 
 @row("2.1")
@@ -484,11 +717,10 @@ def geometric_stiffness(entry):
     """The derived matrix; and the load of Euler from above, 12 instead of pi^2 with one element."""
     slope = arrays("cubic")["geometric_0"][2:, 2:]
     numbers = np.array(slope.subs(L, LENGTH), dtype=float)
-    values = {"L": LENGTH, "f_a": 1.7, "K_n": 1.7 * numbers, "Int": matrix_integral}
+    values = {"L": LENGTH, "f_a": 1.7, "K_n": 1.7 * numbers, "Int": point_by_point}
 
     def B_n(place):
-        step = 1e-3
-        row_ = derivative(lambda s: shapes(s)[1], place, h=step)
+        row_ = by_differences(lambda s: shapes(s)[1], place, h=1e-4)
         return row_[None, [1, 2, 4, 5]]
 
     hold(entry.printed or entry.corrected, {**values, "B_n": B_n}, tol=1e-8)
@@ -522,10 +754,8 @@ def free_vibration(entry):
 def characteristic_equation(entry):
     """The determinant changes its sign at each frequency."""
     for point in free():
-        signs = [
-            np.subtract(*entry.corrected.sides(**{**point, "omega": f * point["omega"]})[0])
-            for f in (0.999, 1.001)
-        ]
+        near = [{**point, "omega": factor * point["omega"]} for factor in (0.999, 1.001)]
+        signs = [np.subtract(*entry.corrected.sides(**at)[0]) for at in near]
         assert signs[0] * signs[1] < 0
 
 

@@ -1,1 +1,0 @@
-"""Boundaries of Hill's equation as chapter 8 of Smith expands them, in exact numbers."""

@@ -8,8 +8,6 @@ Operations: an addition or a multiplication is one, a product of matrices ``(a, 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -18,38 +16,13 @@ from ..core.trigonometric import differentiated, even_angles
 from ..periodic.ring import solve_ring
 from .historic_steps import newmark_matrices
 
-# Tables 6.2 and 6.3 as printed, in millions: (N, n, cycles) to marching, algorithms 1 and 2 with
-# storage, the same without; (N, harmonics, n) to the Fourier series and algorithm 1.
-TABLE_6_2: Mapping[tuple[int, int, int], tuple[float, ...]] = {
-    (90, 10, 5): (2.43, 3.78, 5.93, 11.4, 7.71, 9.96),
-    (90, 10, 100): (6.02, 3.78, 5.93, 228, 7.71, 9.96),
-    (90, 50, 5): (259, 438, 707, 1270, 893, 1170),
-    (90, 50, 100): (345, 438, 707, 25500, 893, 1170),
-    (720, 10, 5): (19.5, 30.1, 47.4, 91.3, 61.8, 79.8),
-    (720, 10, 100): (48.2, 30.1, 47.4, 1830, 61.8, 79.8),
-    (720, 50, 5): (2070, 3490, 5650, 10200, 7160, 9340),
-    (720, 50, 100): (2760, 3490, 5650, 204000, 7160, 9340),
-}
-TABLE_6_3: Mapping[tuple[int, int, int], tuple[float, float]] = {
-    (90, 6, 10): (2.50, 3.78),
-    (90, 6, 50): (277, 438),
-    (90, 10, 10): (11.6, 3.78),
-    (90, 10, 50): (1200, 438),
-    (720, 6, 10): (2.59, 30.1),
-    (720, 6, 50): (277, 3490),
-    (720, 10, 10): (11.8, 30.1),
-    (720, 10, 50): (1200, 3490),
-    (720, 15, 10): (39.7, 30.1),
-    (720, 15, 50): (3920, 3490),
-}
-
 
 def printed_count(
     algorithm: str,
-    *,
     intervals: int,
     freedoms: int,
     cycles: int = 1,
+    *,
     harmonics: int = 1,
     storage: bool = True,
 ) -> int:
@@ -59,7 +32,8 @@ def printed_count(
     ``harmonic_balance`` (the Fourier series analysis); N intervals and n freedoms, n_c cycles
     marched, N_h harmonics; ``storage`` of the intervals' matrices or not.
     """
-    big, n, c, h = intervals, freedoms, cycles, harmonics
+    # Python's integers, as the numbers of operations may pass those of an array.
+    big, n, c, h = int(intervals), int(freedoms), int(cycles), harmonics
     tail = 14 * n**3 + 21 * n**2
     formulas = {
         ("time_marching", True): big * (22 * n**3 + (29 + 4 * c) * n**2 + (3 + 2 * c) * n),
@@ -206,7 +180,7 @@ def newmark_regions(gamma: Array, beta: Array) -> NDArray[np.int64]:
 
 
 def operation_count(
-    algorithm: str, *, intervals: int, freedoms: int, cycles: int = 1, storage: bool = True
+    algorithm: str, intervals: int, freedoms: int, cycles: int = 1, *, storage: bool = True
 ) -> int:
     """Return the operations of one of the algorithms but the last, counted from its steps.
 

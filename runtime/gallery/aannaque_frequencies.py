@@ -17,8 +17,9 @@ from ..frequencies import (
     wittrick_williams,
 )
 from .aannaque_models import FULL, ModelComparison, beams, compare_models
-from .drawing import COLOURS, crank_axis, legend_below, panel_title
+from .drawing import COLOURS, turn
 from .records import Drawn, Table, Value
+from .registry import contents
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,17 +43,12 @@ def comparison() -> ModelComparison:
 def elements(axes: Sequence[Axes], mode: int) -> Drawn:
     """Draw one natural frequency over the crank angle, five models (Fig. 4.6)."""
     ax, models = axes[0], comparison()
-    turned = np.degrees(np.append(models.theta, 2.0 * np.pi))
     for place, (name, style) in enumerate(
         zip(models.names, ("-", "-", "-", "--", "-."), strict=True)
     ):
         curve = models.frequency[place, :, mode - 1]
         label = f"{name}, {models.size[place]} freedoms"
-        ax.plot(turned, np.append(curve, curve[0]), style, color=COLOURS[place], label=label)
-    crank_axis(ax)
-    ax.set_xlabel("input angle $t_1$ [deg]")
-    ax.set_ylabel(f"{_ORDINALS[mode - 1]} natural frequency [rad/s]")
-    legend_below([ax], columns=3)
+        turn(ax, models.theta, curve, style, color=COLOURS[place], label=label)
     mean = dict(zip(models.names, models.frequency.mean(axis=1)[:, mode - 1], strict=True))
     size = dict(zip(models.names, models.size.tolist(), strict=True))
 
@@ -79,46 +75,8 @@ def elements(axes: Sequence[Axes], mode: int) -> Drawn:
     return Drawn([*values, size["3 elements"], size["p-version 2"]], tables=(table,))
 
 
-def _numbers(text: str) -> tuple[float, ...]:
-    return tuple(map(float, text.split()))
-
-
-# Table 5.1.a and, of the columns of elements, 5.1.b.
-_EXACT = _numbers(
-    "56.603 223.405 364.376 394.637 798.420 974.976 1128.133 1713.310 2021.214 2135.532 2984.904 "
-    "3321.571 3572.354 4596.701 5067.413 5273.455 6565.820 7062.693 7409.042 8874.718 9506.991"
-)
-_COLUMNS: dict[str, tuple[float, ...]] = {
-    "4 elements": _numbers(
-        "56.603 223.500 364.717 395.709 802.477 982.323 1138.522 1748.834 2065.320 2181.153 "
-        "3328.206 3777.526 4166.017 5381.377 6243.021 6824.710 8597.032 9864.527 11024.125 "
-        "12746.505 13849.266"
-    ),
-    "3 elements": _numbers(
-        "56.605 223.701 365.411 396.801 810.153 994.177 1148.601 1919.682 2343.157 2584.211 "
-        "3670.536 4431.450 5172.888 6614.060 7635.244"
-    ),
-    "2 elements": _numbers(
-        "56.612 224.831 368.517 401.590 908.950 1186.629 1490.239 2385.624 3195.329"
-    ),
-    "1 element": _numbers("56.706 267.346 577.263"),
-    "p-version 1": _numbers(
-        "56.603 223.529 365.388 396.538 806.043 994.282 1155.056 2724.169 3974.050"
-    ),
-}
-_ERRORS: dict[str, tuple[float, ...]] = {
-    "4 elements": _numbers(
-        "0.001 0.042 0.093 0.271 0.508 0.753 0.920 2.070 2.180 2.130 11.500 13.720 16.610 17.070 "
-        "23.199 29.416 30.936 39.670 48.792 43.627 45.674"
-    ),
-    "3 elements": _numbers(
-        "0.003 0.132 0.284 0.548 1.469 1.969 1.814 12.045 15.928 21.010 22.969 33.414 44.803 "
-        "43.887 50.673"
-    ),
-    "2 elements": _numbers("0.016 0.638 1.136 1.761 13.843 21.708 32.097 39.240 58.089"),
-    "1 element": _numbers("0.182 19.668 58.425"),
-    "p-version 1": _numbers("0.000 0.055 0.277 0.481 0.954 1.980 2.386 59.000 96.616"),
-}
+# Table 5.1 as printed.
+_TABLE = contents("aannaque")["table_5_1"]
 # Rows (from 1) whose exact value is wrong: both are of bars with clamped ends, q = 0 in (5.20).
 _WRONG = (4, 10)
 # sqrt(EI/(rho A))/L^2 [rad/s]: fits all printed frequencies but those two.
@@ -170,8 +128,7 @@ def figure_5_1(axes: Sequence[Axes]) -> Drawn:
     ]
     omega = np.unique(np.concatenate([np.linspace(low, high, 1500), *near]))
     omega = omega[(omega > low) & (omega < high)]
-    titles = ("one element for each bar", "two elements for each bar")
-    for pieces, (ax, title) in enumerate(zip(axes, titles, strict=True), start=1):
+    for pieces, ax in enumerate(axes, start=1):
         value = log_determinant(_problem(pieces), omega / _FACTOR)[0]
         for place, frequency in enumerate(inside, start=1):
             colour, width, label = ("0.7", 0.6, "natural frequency")
@@ -179,11 +136,6 @@ def figure_5_1(axes: Sequence[Axes]) -> Drawn:
                 colour, width, label = (COLOURS[1], 0.9, "nodes at rest")
             ax.axvline(frequency, ls=(0, (3, 2)), color=colour, lw=width, label=label)
         ax.plot(omega, value, color=COLOURS[0], lw=1.0, label=r"$\log_{10}|\det D|$")
-        panel_title(ax, title)
-        ax.set_ylabel(r"$\log_{10}|\det D|$")
-        ax.set_xlim(low, high)
-    axes[1].set_xlabel("frequency [rad/s]")
-    legend_below([axes[0]])
     orders = []
     for pieces in (1, 2):
         beside = known[3] / _FACTOR * (1.0 + np.array([1e-7, 1e-5]))
@@ -195,25 +147,22 @@ def figure_5_1(axes: Sequence[Axes]) -> Drawn:
 def table_5_1(axes: Sequence[Axes]) -> Drawn:
     """Draw the relative errors of Table 5.1.b, recomputed, with the printed ones."""
     ax, exact = axes[0], _exact()
-    for (column, printed), colour in zip(_ERRORS.items(), COLOURS, strict=False):
+    for (column, known), colour in zip(_TABLE["columns"].items(), COLOURS, strict=False):
+        printed = np.array(known["errors"])
         errors = 100.0 * (_elements(column) / exact[: len(printed)] - 1.0)
         numbers = np.arange(1, len(errors) + 1)
         ax.semilogy(numbers, errors, "-", color=colour, lw=1.0, label=column)
-        shown = np.array(printed) > 0.0
-        ax.plot(numbers[shown], np.array(printed)[shown], "o", color=colour, ms=3.5)
+        shown = printed > 0.0
+        ax.plot(numbers[shown], printed[shown], "o", color=colour, ms=3.5)
     ax.plot([], [], "o", color="0.4", ms=3.5, label="printed")
     ax.axvline(4, color="0.6", lw=0.7, ls=(0, (1, 3)))
     ax.set_xticks(range(1, 22, 2))
-    ax.set(xlabel="number of the frequency", ylabel="error of the frequency [%]")
-    legend_below([ax], columns=3)
     rows = []
     for i in range(21):
-        cells = [
-            f"{_elements(column)[i]:.3f}" if i < len(values) else ""
-            for column, values in _COLUMNS.items()
-        ]
-        rows.append((str(i + 1), f"{_EXACT[i]:.3f}", f"{exact[i]:.3f}", *cells))
-    header = ("number", "exact, printed", "exact", *_COLUMNS)
+        columns = (_elements(column) for column in _TABLE["columns"])
+        cells = (f"{values[i]:.3f}" if i < len(values) else "" for values in columns)
+        rows.append((str(i + 1), f"{_TABLE['exact'][i]:.3f}", f"{exact[i]:.3f}", *cells))
+    header = ("number", "exact, printed", "exact", *_TABLE["columns"])
     table = Table("Natural frequencies of the portal frame [rad/s]", header, tuple(rows))
     return Drawn([*_frequency_values(), *_error_values()], tables=(table,))
 
@@ -226,9 +175,10 @@ def _frequency_values() -> list[Value]:
         return np.asarray(np.abs(computed - printed) / (1e-3 + 2.5e-7 * printed))
 
     exact, wrong = _exact(), np.isin(np.arange(1, 22), _WRONG)
-    values: list[Value] = [np.max(gaps(exact, np.array(_EXACT))[~wrong])]
+    values: list[Value] = [np.max(gaps(exact, np.array(_TABLE["exact"]))[~wrong])]
     values += [exact[number - 1] for number in _WRONG]
-    values += [np.max(gaps(_elements(name), np.array(col))) for name, col in _COLUMNS.items()]
+    for name, known in _TABLE["columns"].items():
+        values.append(np.max(gaps(_elements(name), np.array(known["frequencies"]))))
     return values
 
 
@@ -236,8 +186,8 @@ def _error_values() -> list[Value]:
     """Return the worst gaps to the printed errors over their last digit, and the fourth errors."""
     values: list[Value] = []
     largest = 0.0
-    for column, printed in _ERRORS.items():
-        text = np.array(printed)
+    for column, known in _TABLE["columns"].items():
+        text = np.array(known["errors"])
         errors = 100.0 * (_elements(column) / _exact()[: len(text)] - 1.0)
         limit = np.where(np.round(text, 2) == text, 1e-2, 2e-3)
         others = np.arange(len(text)) != 3
@@ -259,19 +209,12 @@ def _linkage() -> ModelComparison:
 def exact_and_elements(axes: Sequence[Axes], mode: int) -> Drawn:
     """Draw one natural frequency, three elements and exact, and their gap (Fig. 5.3)."""
     models = _linkage()
-    turned = np.degrees(np.append(models.theta, 2.0 * np.pi))
     styles = ((COLOURS[0], "-", "3 elements"), (COLOURS[1], "--", "dynamic stiffness"))
     for frequencies, (colour, style, label) in zip(models.frequency, styles, strict=True):
         values = frequencies[:, mode - 1]
-        axes[0].plot(turned, np.append(values, values[0]), style, color=colour, label=label)
+        turn(axes[0], models.theta, values, style, color=colour, label=label)
     gaps = 100.0 * models.difference("3 elements")
     gap = gaps[:, mode - 1]
-    axes[1].plot(turned, np.append(gap, gap[0]), color=COLOURS[2], label="difference")
-    axes[0].set_ylabel(f"{_ORDINALS[mode - 1]} natural\nfrequency [rad/s]")
-    axes[1].set(ylabel="difference [%]", ylim=(0.0, 1.15 * float(np.max(gap))))
-    for ax in axes:
-        crank_axis(ax)
-    axes[0].set_xlabel("")
-    axes[1].set_xlabel("input angle $t_1$ [deg]")
-    legend_below(axes)
+    turn(axes[1], models.theta, gap, color=COLOURS[2], label="difference")
+    axes[1].set_ylim(0.0, 1.15 * float(np.max(gap)))
     return Drawn([np.min(gap), np.max(gaps if mode == 4 else gap)])

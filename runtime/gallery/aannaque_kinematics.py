@@ -23,9 +23,7 @@ from .drawing import (
     arc,
     bar,
     canvas,
-    crank_axis,
     four_bar,
-    legend_below,
     panel_title,
     pin,
     pivot,
@@ -158,11 +156,11 @@ def figure_3_5(axes: Sequence[Axes]) -> Drawn:
         plane.plot(ax)
         for text in ax.texts:
             text.set_fontsize(7.0)
-        ax.grid(visible=False)
         for axis in (ax.xaxis, ax.yaxis):
             axis.label.set_fontsize(8.0)
         panel_title(ax, f"${name}$: {plane.lam:.4g}")
         ax.set_title("")
+        ax.grid(visible=False)
     rows = tuple(
         (symbol, *(f"{plane.shares.get(symbol, 0.0):.4f}" for plane in planes))
         for symbol in SYMBOLS[1:9]
@@ -252,24 +250,14 @@ def _printed_angles(theta: float) -> list[list[float]]:
     return angles
 
 
-def _rates(ax: Axes, kind: str, label: str, *printed: Array) -> list[float]:
+def _rates(ax: Axes, kind: str, *printed: Array) -> list[float]:
     """Draw a rate of coupler and follower; return the largest gaps of the printed equations."""
     motion, gaps = cycle(), []
-    for number, link, colour, values in zip(
-        (3, 4), ("coupler", "follower"), COLOURS, printed, strict=False
-    ):
+    for number, link, values in zip((3, 4), ("coupler", "follower"), printed, strict=True):
         rate = getattr(motion, f"{kind}{number}")
-        ax.plot(np.degrees(motion.theta2), rate, color=colour, label=link)
+        ax.plot(np.degrees(motion.theta2), rate, label=link)
         gaps.append(float(np.max(np.abs(values - rate))))
-    _input_axes(ax, label)
-    legend_below([ax])
     return gaps
-
-
-def _input_axes(ax: Axes, label: str) -> None:
-    ax.axhline(0.0, color="0.6", lw=0.8, zorder=1)
-    crank_axis(ax)
-    ax.set(xlabel="input angle $t_1$ [deg]", ylabel=label)
 
 
 def figure_3_7(axes: Sequence[Axes]) -> Drawn:
@@ -279,7 +267,6 @@ def figure_3_7(axes: Sequence[Axes]) -> Drawn:
     gaps = _rates(
         axes[0],
         "omega",
-        "relative angular velocity",
         -bars.crank * np.sin(t3 - t1) / (bars.coupler * np.sin(t3 - t2)),
         -bars.crank * np.sin(t2 - t1) / (bars.follower * np.sin(t3 - t2)),
     )
@@ -302,7 +289,6 @@ def figure_3_8(axes: Sequence[Axes]) -> Drawn:
     gaps = _rates(
         axes[0],
         "alpha",
-        "relative angular acceleration",
         coupler / (l2 * np.sin(t3 - t2)),
         follower / (l3 * np.sin(t3 - t2)),
     )
@@ -325,10 +311,6 @@ def figure_3_9(axes: Sequence[Axes]) -> Drawn:
     ):
         ax.plot(angles, [degrees(value)] * len(angles), "o", color=COLOURS[1], ms=5)
         write(ax, (angles[0], degrees(value)), f"{name}: {degrees(value):.2f}°", shift)
-    crank_axis(ax)
-    ax.set(xlabel="input angle $t_1$ [deg]", ylabel=r"transmission angle $\gamma$ [deg]")
-    ax.set_ylim(30.0, 150.0)
-    legend_below([ax])
     values: list[Value] = []
     for angle, value, sign in (
         (mu.at_least, mu.least, 1.0),
@@ -418,8 +400,6 @@ def figure_7_12(axes: Sequence[Axes]) -> Drawn:
         greatest = degrees(float(np.max(motion.transmission_angle)))
         label = rf"$L_4$ = {frame:.3f} m, $\gamma_{{\max}}$ = {greatest:.0f}°"
         ax.plot(np.degrees(motion.theta2), speed**2 * motion.alpha4, label=label)
-    _input_axes(ax, "acceleration of the follower [rad/s$^2$]")
-    legend_below([ax], columns=3)
     pulses = np.array([pulses_of(frame) for frame in FRAMES])
     last = cycle(FRAMES[-1])
     later = last.theta2 > radians(90.0)

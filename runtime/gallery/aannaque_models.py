@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -11,11 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..beams import Structure
-from ..core.errors import LinearRangeWarning, bad
+from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic
 from ..frequencies import dynamic_stiffness, wittrick_williams
 from ..frequencies.held import held_frequencies
-from ..periodic import SteadyState, steady_state
 from ..recovery.stress_over_speed import StressCurve, stress_curve
 from ..scenes import load_scene
 
@@ -63,16 +61,7 @@ def structure_of(system: LinearPeriodic) -> Structure:
 
 def stresses(system: LinearPeriodic, speeds: Array, rtol: float = 1e-3) -> StressCurve:
     """Return the largest stresses over the speed, by the shapes as in the thesis."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", LinearRangeWarning)
-        return stress_curve(system, speeds, rtol=rtol, method="shape")
-
-
-def periodic(system: LinearPeriodic, speed: Array | float, rtol: float = 1e-5) -> SteadyState:
-    """Return steady states, whatever their deflections."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", LinearRangeWarning)
-        return steady_state(system, speed, rtol=rtol)
+    return stress_curve(system, speeds, rtol=rtol, method="shape")
 
 
 def midpoint(system: LinearPeriodic, link: str, theta: Array) -> Array:

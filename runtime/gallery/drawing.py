@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import pi
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+CRANK_ANGLE = r"crank angle $\theta_2$ [deg]"
 # Blue, orange, green, purple, grey, brown: distinct in print and by the colour-blind.
 COLOURS = ("#1f5a8c", "#c8641e", "#3a7d44", "#7a4a9c", "#5c5c5c", "#8c2d04", "#2a9d9d", "#b8a000")
 
@@ -36,31 +37,97 @@ SETTINGS: dict[str, Any] = {
 }
 
 
-def legend_below(axes: Sequence[Axes], columns: int = 4) -> None:
-    """Put one legend for all the axes under them, each label once."""
-    handles, labels = [], []
+def finish(
+    axes: Sequence[Axes],
+    columns: int,
+    common: Mapping[str, Any],
+    panels: Sequence[Mapping[str, Any]],
+    legend: int,
+) -> None:
+    """Give each panel its settings, and all of them one legend below with so many columns.
+
+    Labels that the panels share stand at the outer edges: below the last row, left of the first
+    column.
+    """
+    for place, ax in enumerate(axes):
+        look = dict(common)
+        if place < len(axes) - columns and look.keys() & {"crank", "xlabel"}:
+            look["xlabel"] = ""
+        if place % columns and "ylabel" in look:
+            look["ylabel"] = ""
+        dress(ax, {**look, **(panels[place] if panels else {})})
+    if legend:
+        legend_below(axes, legend)
+
+
+def dress(ax: Axes, settings: Mapping[str, Any]) -> None:
+    """Set properties of axes, as ``Axes.set`` does, and what the gallery's axes share.
+
+    ``crank``: turns of the crank along x, in degrees; ``title``: at the left; ``zero``: whether the
+    line y = 0 is drawn; ``grid``: whether a grid is; ``bottom``: the lower end of y alone.
+    """
+    rest = dict(settings)
+    turns = rest.pop("crank", 0)
+    if turns:
+        step = 60.0 if turns <= 1 else 180.0 if turns <= 4 else 360.0
+        ticks = [step * i for i in range(round(360.0 * turns / step) + 1)]
+        rest = {"xlim": (0.0, ticks[-1]), "xticks": ticks, "xlabel": CRANK_ANGLE, **rest}
+    if "title" in rest:
+        panel_title(ax, rest.pop("title"))
+    if rest.pop("zero", False):
+        ax.axhline(0.0, color="0.6", lw=0.8, zorder=1)
+    if "bottom" in rest:
+        ax.set_ylim(bottom=rest.pop("bottom"))
+    if not rest.pop("grid", True):
+        ax.grid(visible=False)
+    ax.set(**rest)
+
+
+def legend_below(axes: Sequence[Axes], columns: int) -> None:
+    """Put one legend for all the axes under them, each label once; none where there is no label."""
+    named: dict[str, Any] = {}
     for ax in axes:
         for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
-            if label not in labels:
-                handles.append(handle)
-                labels.append(label)
-    axes[0].figure.legend(
-        handles, labels, loc="outside lower center", ncols=min(columns, len(labels))
-    )
+            named.setdefault(label, handle)
+    if named:
+        axes[0].figure.legend(
+            named.values(), named.keys(), loc="outside lower center", ncols=min(columns, len(named))
+        )
 
 
-def crank_axis(ax: Axes, turns: float = 1.0) -> None:
-    """Label the horizontal axis as the crank angle in degrees."""
-    last = 360.0 * turns
-    step = 60.0 if turns <= 1 else 180.0 if turns <= 4 else 360.0
-    ax.set_xlim(0.0, last)
-    ax.set_xticks([step * i for i in range(round(last / step) + 1)])
-    ax.set_xlabel(r"crank angle $\theta_2$ [deg]")
+def outline(lower: Array, upper: Array, height: Array) -> tuple[Array, Array]:
+    """Return a region's outline as one line, closed at its tip where damping has blunted it."""
+    real = np.isfinite(lower) & np.isfinite(upper)
+    edge = np.concatenate([lower[real][::-1], upper[real]])
+    return edge, np.concatenate([height[real][::-1], height[real]])
+
+
+def mark_fractions(
+    ax: Axes, speed: float, orders: Iterable[int], name: str, ends: tuple[float, float], low: bool
+) -> None:
+    """Mark a speed over whole numbers within two ends; those up to the eighth are named."""
+    height, shift = (0.0, 3.0) if low else (1.0, -8.0)
+    place: dict[str, Any] = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points"}
+    for order in orders:
+        at = speed / order
+        if ends[0] < at < ends[1]:
+            ax.axvline(at, color="0.6", lw=0.7, ls=(0, (1, 3)), zorder=1)
+            if order <= 8:
+                text = name.format(order)
+                ax.annotate(
+                    text, (at, height), xytext=(2.0, shift), fontsize=7, color="0.4", **place
+                )
 
 
 def panel_title(ax: Axes, text: str) -> None:
     """Write a panel's title at its left."""
     ax.set_title(text, loc="left", fontsize=9)
+
+
+def turn(ax: Axes, theta: Array, values: Array, style: str = "-", **look: Any) -> None:
+    """Draw values at the angles [rad] of a turn over degrees, closed at its end."""
+    closed = np.degrees(np.append(theta, 2.0 * pi)), np.append(values, values[0])
+    ax.plot(*closed, style, **look)
 
 
 INK, GROUND = "#2b2b2b", "0.45"

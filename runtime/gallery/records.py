@@ -201,6 +201,12 @@ class FigureEntry:
         Width and height of the picture [in].
     projection : str or None
         Of the axes: ``"3d"`` for a picture in space.
+    axes : mapping
+        Settings of all panels, see :func:`~.drawing.dress`.
+    panel : sequence of mapping
+        Further settings of each panel.
+    legend : int
+        Columns of the legend below the panels; 0 for none.
     quoted : tuple of Quoted
         Numbers of the text that the figure bears on, not computed yet.
     notes : tuple of str
@@ -216,6 +222,9 @@ class FigureEntry:
     panels: tuple[int, int] = (1, 1)
     size: tuple[float, float] = (7.2, 4.6)
     projection: str | None = None
+    axes: Mapping[str, Any] = field(default_factory=dict)
+    panel: Sequence[Mapping[str, Any]] = ()
+    legend: int = 4
     quoted: tuple[Quoted, ...] = ()
     notes: tuple[str, ...] = ()
     page: Page | None = None

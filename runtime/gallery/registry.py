@@ -2,8 +2,9 @@
 
 A record holds the figure's label and title, the function that draws it (``draw``, a module and a
 name in it, with ``arguments`` after the axes), its panels and size, and the numbers that the text
-quotes; ``common`` holds what these share.  A note ``@name`` stands in the file's table ``notes``,
-and ``page`` is a document that its notes and tables make up.
+quotes; ``common`` holds what these share.  A record of a ``kind`` takes what it does not say from
+the file's table ``kind``; a note ``@name`` stands in its table ``notes``; ``page`` is a document
+that notes and tables make up.
 """
 
 from __future__ import annotations
@@ -28,14 +29,34 @@ def documents() -> Mapping[str, tuple[FigureEntry, ...]]:
     return {name: _read(name) for name in NAMES}
 
 
+@cache
+def contents(document: str) -> Mapping[str, Any]:
+    """Return a document's file of data: its records and what else stands printed in it."""
+    file = resources.files(__package__) / "data" / f"{document}.toml"
+    return tomllib.loads(file.read_text("utf-8"))
+
+
 def _read(document: str) -> tuple[FigureEntry, ...]:
-    content = (resources.files(__package__) / "data" / f"{document}.toml").read_text("utf-8")
-    data = tomllib.loads(content)
-    notes = data.get("notes", {})
-    return tuple(_entry(document, record, notes) for record in data["figure"])
+    data = contents(document)
+    notes, kinds = data.get("notes", {}), data.get("kind", {})
+    return tuple(
+        _entry(document, _merged(kinds.get(record.get("kind", ""), {}), record), notes)
+        for record in data["figure"]
+    )
+
+
+def _merged(kind: Mapping[str, Any], record: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a record with what its kind adds; tables in both are joined."""
+    tables = {
+        name: {**kind[name], **record[name]}
+        for name in kind.keys() & record.keys()
+        if isinstance(kind[name], dict)
+    }
+    return {**kind, **record, **tables}
 
 
 def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> FigureEntry:
+    record.pop("kind", None)
     common = record.pop("common", {})
     draw: Callable[[Sequence[Axes]], Drawn] = partial(
         _draw, record.pop("draw"), record.pop("arguments", ())

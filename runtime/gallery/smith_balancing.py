@@ -39,9 +39,7 @@ from .drawing import (
     Array,
     bar,
     canvas,
-    crank_axis,
     four_bar,
-    legend_below,
     panel_title,
     write,
 )
@@ -165,22 +163,17 @@ def figure_21(axes: Sequence[Axes]) -> Drawn:
             place = values[4 * angle]
             way = place / (np.hypot(*place) or 1.0)
             write(ax, place, f"{angle}°", 12.0 * way, color=colour, fontsize=7)
-    finish_polar(ax, "")
+    finish_polar(ax)
     return Drawn([peak(_forces("b").shaking_force)[0] / peak(_forces("a").shaking_force)[0]])
 
 
 def figure_22(axes: Sequence[Axes]) -> Drawn:
     """Draw the moment on the frame in the four cases, by (4.13) and complete."""
-    for ax, title in zip(axes, ("(4.13): $l_1 Y_{41}$", "with the drive's reaction"), strict=True):
+    for ax in axes:
         for case in CASES:
             label = f"({case}) {_NAMES[case]}"
             ax.plot(np.degrees(TURN), _moment(case, ax is axes[1]), label=label)
-        ax.axhline(0.0, color="0.6", lw=0.8, zorder=1)
-        crank_axis(ax)
-        ax.set_ylabel("moment on the frame about A [N m]")
-        panel_title(ax, title)
     axes[1].set_ylim(axes[0].get_ylim())
-    legend_below(axes[:1], columns=2)
 
     def growth(case: Case, complete: bool) -> tuple[float, float]:
         """Return that of the greatest size, and that of the range."""
@@ -210,7 +203,7 @@ def figure_23d(axes: Sequence[Axes]) -> Drawn:
         label = f"{name} offset {inches:g} in" if inches else name
         ax.plot(*force.T, color=colour, label=f"{label}: {peaks[inches]:.1f} N")
         ax.plot(*force[:-1:120].T, "o", color=colour, ms=2.6)
-    finish_polar(ax, "_{23}")
+    finish_polar(ax)
     thin, usual, thick = (_best_offset(part * INCH) for part in (0.25, 0.5, 1.0))
     rise = {inches: peaks[inches] - peaks[0.0] for inches in (1.0, 3.0, 6.0)}
     ratios = [peaks[inches] / peaks[0.0] for inches in rise]
@@ -305,9 +298,6 @@ def figure_23a(axes: Sequence[Axes]) -> Drawn:
         ax.plot([best, best, 0.0], [0.0, number, number], ":", color="0.6", lw=0.9)
         ax.plot(best, number, "o", color=COLOURS[1], ms=5)
         write(ax, (best, number), letter, (-10.0, 8.0))
-    ax.set(xlim=(0.0, 1.0), ylim=(0.0, 0.55))
-    ax.set_xlabel(r"offset $\delta=\ell/L$")
-    ax.set_ylabel(r"$K=\delta^3/(1+\delta^2)$")
     ends = [offset_function(0.0), offset_function(1.0), np.diff(offset_function(delta)).min()]
     return Drawn([*ends, optimal_offset(0.6), *_printed_equations(delta[1:])])
 
@@ -335,8 +325,6 @@ def _densities(ax: Axes, delta: Array, beside: float) -> None:
         least = float(BalancedLink(best, number).inertia)
         ax.plot(best, least, "o", color=colour, ms=4.5)
         write(ax, (best, least), letter, (beside, -10.0), color=colour)
-    ax.set(xlabel=r"offset $\delta=\ell/L$", ylabel=r"$I_G/(M L^2)$")
-    legend_below([ax], columns=6)
 
 
 def figure_23b(axes: Sequence[Axes]) -> Drawn:
@@ -345,7 +333,6 @@ def figure_23b(axes: Sequence[Axes]) -> Drawn:
     light = BalancedLink(delta, _number(_LIGHT))
     ax.plot(delta, light.inertia, "--", color="0.45", label=rf"$\rho$ = {_LIGHT:g}")
     _densities(ax, delta, 0.0)
-    ax.set(xlim=(0.0, 1.0), ylim=(0.3, 2.0))
     end = BalancedLink(1.0, _number(_LIGHT))
     offsets = [best for *_, best in _best()]
     pivoted = 2.0 * _MASS * (2.0 * _LENGTH) ** 2 / 12.0
@@ -371,7 +358,6 @@ def figure_23c(axes: Sequence[Axes]) -> Drawn:
     line = BalancedLink(delta, offset_function(delta))
     ax.plot(delta, line.inertia, "--", color="0.3", lw=1.3, label="minima of all densities")
     _densities(ax, delta, 6.0)
-    ax.set(xlim=(0.1, 1.0), ylim=(0.4, 0.85))
     # Each lettered offset beside the least of the sampled inertia: another route.
     fine, best = np.linspace(0.05, 1.0, 9501), _best()
     sampled = [fine[int(np.argmin(BalancedLink(fine, number).inertia))] for *_, number, _ in best]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
-from math import degrees, log, pi, radians
+from math import degrees, pi, radians
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +12,7 @@ import numpy as np
 from ..linkages import FourBar
 from ..rigid import Machine, MassDistribution, RigidForces, rigid_forces
 from ..scenes import load_scene
-from .drawing import COLOURS, Array, arrow, canvas, legend_below, pivot
+from .drawing import COLOURS, Array, arrow, canvas, pivot
 from .free_bodies import draw_body, free_bodies, round_force, scale_bar
 from .records import Drawn, Table
 
@@ -180,14 +180,11 @@ def polar_look(ax: Axes) -> None:
     ax.autoscale_view()
 
 
-def finish_polar(ax: Axes, name: str) -> None:
-    """Mark the origin, scale both axes alike, label them with a force [N]."""
+def finish_polar(ax: Axes) -> None:
+    """Mark the origin and scale both axes alike."""
     ax.plot(0.0, 0.0, "+", color="k")
     ax.set_aspect("equal", adjustable="datalim")
     polar_look(ax)
-    ax.set_xlabel(f"$X{name}$ [N]" if name else "X [N]")
-    ax.set_ylabel(f"$Y{name}$ [N]" if name else "Y [N]")
-    legend_below([ax], columns=2)
 
 
 def family(
@@ -195,38 +192,23 @@ def family(
 ) -> Drawn:
     """Draw the follower-frame force of linkages that differ in the crank [in], Figs. 17 to 19."""
     ax, peaks, accelerations = axes[0], [], []
+    machine, speed = example()
+    per_length = machine.mass("coupler").mass / machine.linkage.lengths["coupler"]
     for crank, colour in zip(cranks, COLOURS, strict=False):
-        forces, fastest = _family_forces(frame, crank, coupler, follower)
+        linkage = FourBar(INCH * frame, INCH * crank, INCH * coupler, INCH * follower)
+        masses = {
+            link: MassDistribution.uniform_bar(per_length * length, length)
+            for link, length in linkage.lengths.items()
+            if link != "frame"
+        }
+        forces = rigid_forces(Machine(linkage, masses), TURN, speed, outputs=("pins",)).f41
         peaks.append(peak(forces)[0])
-        accelerations.append(fastest)
+        accelerations.append(float(np.max(np.abs(linkage.motion(TURN).alpha4))))
         x, y = forces.T
         name = f"({frame:g}, {crank:g}, {coupler:g}, {follower:g})"
         ax.plot(x, y, color=colour, label=f"{name}: {peaks[-1]:.1f} N")
         ax.plot(x[:-1:120], y[:-1:120], "o", color=colour, ms=2.6)
         ax.plot(x[0], y[0], "o", mfc="w", mec=colour, ms=5.0)
-    finish_polar(ax, "_{41}")
-    return Drawn(
-        [
-            min(
-                log(b / a) / log(v / u)
-                for a, b, u, v in zip(values, values[1:], cranks, cranks[1:], strict=False)
-            )
-            for values in (accelerations, peaks)
-        ]
-    )
-
-
-def _family_forces(
-    frame: float, crank: float, coupler: float, follower: float
-) -> tuple[Array, float]:
-    """Return the follower-frame force over a turn and the follower's greatest acceleration."""
-    machine, speed = example()
-    per_length = machine.mass("coupler").mass / machine.linkage.lengths["coupler"]
-    linkage = FourBar(INCH * frame, INCH * crank, INCH * coupler, INCH * follower)
-    masses = {
-        link: MassDistribution.uniform_bar(per_length * length, length)
-        for link, length in linkage.lengths.items()
-        if link != "frame"
-    }
-    forces = rigid_forces(Machine(linkage, masses), TURN, speed, outputs=("pins",))
-    return forces.f41, float(np.max(np.abs(linkage.motion(TURN).alpha4)))
+    finish_polar(ax)
+    powers = np.diff(np.log([accelerations, peaks])) / np.diff(np.log(cranks))
+    return Drawn(list(np.min(powers, axis=1)))

@@ -15,7 +15,7 @@ from ..hill import discriminant
 from ..periodic import simulate
 from ..periodic.equation import equation_of
 from ..scenes import load_scene
-from .drawing import COLOURS, Array, crank_axis, legend_below, panel_title
+from .drawing import COLOURS, Array, panel_title
 from .historic_steps import de_vogelaere_maps, de_vogelaere_start, kutta_merson
 from .records import Drawn
 from .smith_linkages import f3_series, linkage_of
@@ -128,63 +128,38 @@ def _phase(run: _Run, turn: int) -> complex:
     return complex(np.sum(values * window * np.exp(-1j * _LAMBDA * theta)))
 
 
-def _lag(one: _Run, other: _Run, turn: int) -> float:
-    """Return the phase between two runs in degrees of the fast vibration, without sign."""
-    return float(abs(np.degrees(np.angle(_phase(one, turn) / _phase(other, turn)))))
-
-
-def _line(ax: Axes, run: _Run, colour: str, label: str, style: str = "-") -> None:
+def _line(ax: Axes, run: _Run, colour: str, label: str = "", style: str = "-") -> None:
     ax.plot(np.degrees(run.theta), 1e3 * run.q[:, 0], style, color=colour, lw=1.0, label=label)
-    ax.set_ylabel(r"$10^3\,U_1$")
 
 
 def figure_28(axes: Sequence[Axes]) -> Drawn:
     """Draw solutions with a step that is too long and one that is short enough."""
     for ax, step, colour in zip(axes, (2.0, 1.0, 0.1), COLOURS, strict=False):
-        _line(ax, _march(step, 2), colour, f"h = {step:g} deg")
-        crank_axis(ax, 2.0)
+        _line(ax, _march(step, 2), colour)
         panel_title(ax, f"step length {step:g} deg")
-    for ax in axes[:-1]:
-        ax.set_xlabel("")
-    waves = 360.0 / (20.0 * _LAMBDA), _remaining(2.0), _free_decay(2.0, 360.0 / 17.0)
-    return Drawn([*waves, _remaining(1.0), _remaining(0.1)])
-
-
-def _free_decay(step: float, waves: float) -> float:
-    """Return what a half step [deg] leaves of y'' = -waves^2 y after one turn."""
-    h = np.radians(step)
+    # What a half step of 2 degrees leaves of y'' = -(360/17)^2 y after one turn.
+    h, waves = np.radians(2.0), 360.0 / 17.0
     maps = de_vogelaere_maps(lambda t: np.full((len(t), 1, 1), -waves * waves), np.zeros(1), h)
-    return float(np.max(np.abs(np.linalg.eigvals(maps[0]))) ** (pi / h))
+    decay = float(np.max(np.abs(np.linalg.eigvals(maps[0]))) ** (pi / h))
+    left = [_remaining(step) for step in (2.0, 1.0, 0.1)]
+    return Drawn([360.0 / (20.0 * _LAMBDA), left[0], decay, *left[1:]])
 
 
-def _cycles(axes: Sequence[Axes]) -> None:
-    """Show the first and the fourth crank cycle."""
-    for ax, turn in zip(axes, (1, 4), strict=True):
-        ax.set_xlim(360.0 * (turn - 1), 360.0 * turn)
-        ax.set_xticks([360.0 * (turn - 1) + 60.0 * i for i in range(7)])
-        panel_title(ax, f"crank cycle {turn}")
-    axes[-1].set_xlabel(r"crank angle $\theta_2$ [deg]")
-    legend_below(axes[:1])
+def methods(axes: Sequence[Axes], other: str) -> Drawn:
+    """Draw the first and the fourth cycle of two solutions (Figs. 29 and 30).
 
-
-def figure_29(axes: Sequence[Axes]) -> Drawn:
-    """Draw the first and the fourth crank cycle with steps of 1 and 0.5 degrees."""
-    long, short = _march(1.0, 4), _march(0.5, 4)
+    De Vogelaere's with a half step of 0.5 degrees, beside another step or Kutta and Merson's.
+    """
+    usual, step = _march(0.5, 4), other == "1 deg"
+    looser = _march(1.0, 4) if step else _kutta_merson(4)
+    names = ("h = 0.5 deg", "h = 1 deg")
+    if not step:
+        names = ("de Vogelaere, h = 0.5 deg", "Kutta-Merson, variable step")
     for ax in axes:
-        _line(ax, long, COLOURS[1], "h = 1 deg", "--")
-        _line(ax, short, COLOURS[0], "h = 0.5 deg")
-    _cycles(axes)
-    return Drawn([_lag(long, short, 4)])
-
-
-def figure_30(axes: Sequence[Axes]) -> Drawn:
-    """Draw de Vogelaere's and the Kutta-Merson solution over four crank cycles."""
-    ours, other = _march(0.5, 4), _kutta_merson(4)
-    for ax in axes:
-        _line(ax, ours, COLOURS[0], "de Vogelaere, h = 0.5 deg")
-        _line(ax, other, COLOURS[1], "Kutta-Merson, variable step", "--")
-    _cycles(axes)
-    return Drawn([_lag(ours, other, 4)])
+        _line(ax, usual, COLOURS[0], names[0])
+        _line(ax, looser, COLOURS[1], names[1], "--")
+    # Phase in degrees of the fast vibration in the fourth cycle, without sign.
+    return Drawn([abs(np.degrees(np.angle(_phase(usual, 4) / _phase(looser, 4))))])
 
 
 def _fast_parts(q: Array) -> Array:
@@ -206,11 +181,8 @@ def figure_31(axes: Sequence[Axes]) -> Drawn:
     run = simulate(system, _speed(system), 1.0, samples=3240)
     for m, (ax, colour) in enumerate(zip(axes, COLOURS, strict=False), start=1):
         ax.plot(np.degrees(run.theta), 1e6 * run.q[:, m - 1], color=colour, lw=0.9)
-        crank_axis(ax)
-        ax.set_ylabel(rf"$10^6\,U_{m}$")
         panel_title(ax, f"mode {m}")
-    for ax in axes[:-1]:
-        ax.set_xlabel("")
+        ax.set_ylabel(rf"$10^6\,U_{m}$")
     fast = _fast_parts(run.q)
     size = np.sqrt(2.0 * np.nanmean(fast**2, axis=0))
     slow = np.nanmax(np.abs(run.q - fast), axis=0)
@@ -221,29 +193,18 @@ def figure_31(axes: Sequence[Axes]) -> Drawn:
 
 def figure_32(axes: Sequence[Axes]) -> Drawn:
     """Draw the forcing of the first and the second mode."""
-    ax, theta = axes[0], np.linspace(0.0, 2 * pi, 721)
+    theta = np.linspace(0.0, 2 * pi, 721)
     forcing = _system(3).array("f", theta)
     for m in (1, 2):
-        ax.plot(np.degrees(theta), forcing[:, m - 1], label=f"mode {m}: $g_{m}$")
-    crank_axis(ax)
-    ax.set_ylabel(r"forcing $g_m(\theta_2)$")
-    legend_below([ax])
-    peaks = np.max(np.abs(forcing), axis=0)
-    return Drawn(
-        [
-            np.max(np.abs(forcing[:, :2] - _right_side(theta))),
-            peaks[0] / peaks[2],
-            np.max(np.abs(forcing[:, 2] - forcing[:, 0] / 3.0)),
-        ]
-    )
-
-
-def _right_side(theta: Array) -> Array:
-    """Return the right sides of Smith (6.16) for the first two modes, shape ``(nt, 2)``."""
+        axes[0].plot(np.degrees(theta), forcing[:, m - 1], label=f"mode {m}: $g_{m}$")
+    # The right sides of (6.16) for the first two modes.
     linkage = linkage_of("(2,1,2,2)")
     motion = linkage.motion(theta)
     carried = 2.0 * linkage.crank / linkage.coupler * np.sin(motion.theta2 - motion.theta3)
-    return np.stack([2.0 / pi * (carried - motion.alpha3), motion.alpha3 / pi], axis=-1)
+    right = np.stack([2.0 / pi * (carried - motion.alpha3), motion.alpha3 / pi], axis=-1)
+    peaks = np.max(np.abs(forcing), axis=0)
+    odd = np.max(np.abs(forcing[:, 2] - forcing[:, 0] / 3.0))
+    return Drawn([np.max(np.abs(forcing[:, :2] - right)), peaks[0] / peaks[2], odd])
 
 
 def figure_33(axes: Sequence[Axes]) -> Drawn:
@@ -264,8 +225,4 @@ def figure_33(axes: Sequence[Axes]) -> Drawn:
         ax.plot(run.theta / (2 * pi), run.q[:, 0], color=COLOURS[1 - column], lw=1.0)
         kind = "unstable" if column == 0 else "stable"
         panel_title(ax, rf"$\lambda^2$ = {lam2:g}: {kind}")
-        ax.set_xlim(0.0, 6.0)
-        ax.set_ylabel("u")
-        if row == 2:
-            ax.set_xlabel("crank cycles")
     return Drawn(list(np.abs(half)))

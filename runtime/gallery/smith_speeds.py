@@ -13,8 +13,9 @@ import numpy as np
 from ..hill import discriminant, perturbation_boundaries
 from ..scenes import load_scene
 from ..stability.boundary_speeds import speed_boundaries
-from .drawing import COLOURS, Array, legend_below
+from .drawing import COLOURS, Array
 from .records import Drawn, Table
+from .registry import contents
 from .smith_linkages import (
     EQUATIONS,
     LBF_IN_S2,
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _REGIONS = (3, 4, 5, 6, 7, 8)
+_TURN = np.linspace(0.0, 2 * pi, 1441)
 _THESIS, _COMPLETE, _FILL = COLOURS[0], COLOURS[1], "#f7e3d3"
 _NAMES = {"reduced": "(6.18)", "printed": "(6.17)", "complete": "complete"}
 
@@ -86,31 +88,7 @@ class Observation:
         return min(EQUATIONS, key=lambda name: abs(self.predicted(name) - self.speed))
 
 
-_LEAST, _GREATEST = 0.0058, 0.0190
-_TEXT = "section 9.5.3 says the least, the list of figures 0.0069"
-_HIGHER = "'higher values': 0.0109 to 0.0190; 0.0149 taken"
-OBSERVATIONS = (
-    Observation("82", _LEAST, 6, 250.0, "resonance", "56", "third subharmonic, low inertia", _TEXT),
-    Observation(
-        "82", _GREATEST, 6, 220.0, "resonance", "61", "third subharmonic, greatest inertia"
-    ),
-    Observation("82", _LEAST, 5, 300.0, "resonance", "56", "small rise in amplitude", _TEXT),
-    Observation(
-        "82", 0.0149, 5, 270.0, "range", "58-61", "no period, from 260 to 280 rpm", _HIGHER, 10.0
-    ),
-    Observation("82", _GREATEST, 0, 230.0, "stable", "55", "stable at every inertia shown"),
-    Observation("83", _LEAST, 8, 300.0, "resonance", "75", "resonance"),
-    Observation("83", _LEAST, 6, 400.0, "resonance", "75", "resonance"),
-    Observation("83", _LEAST, 5, 500.0, "resonance", "75", "apparent resonance, softening"),
-    Observation("83", _LEAST, 4, 600.0, "resonance", "74", "unsymmetric resonance"),
-    Observation("84", _LEAST, 3, 900.0, "onset", "80", "unstable above"),
-    Observation("85", 0.0079, 4, 350.0, "resonance", "53", "resonance, printed inertia 0.00783"),
-    Observation("85", _LEAST, 4, 360.0, "resonance", "62", "resonance"),
-    Observation("85", 0.0079, 4, 360.0, "resonance", "65", "resonance"),
-    Observation("85", _LEAST, 3, 460.0, "resonance", "63", "vibration of period 4 pi"),
-    Observation("85", _LEAST, 3, 480.0, "end", "63", "stable again from here"),
-    Observation("85", 0.0079, 3, 450.0, "onset", "65", "unstable above"),
-)
+OBSERVATIONS = tuple(Observation(**row) for row in contents("smith")["observation"])
 _COMPARED = tuple(one for one in OBSERVATIONS if one.region)
 
 
@@ -123,8 +101,8 @@ def chart(axes: Sequence[Axes], figure: str) -> Drawn:
     _boundaries(ax, rig, inertia, high)
     seen = [one for one in OBSERVATIONS if one.chart == figure]
     _points(ax, seen)
-    _frame(ax, rig, inertia, (low, high))
-    legend_below([ax], columns=3)
+    _margins(ax, rig, (low, high))
+    ax.set(xlim=(1e3 * least, 1e3 * greatest), ylim=(low, high))
     compared = [one for one in seen if one.region]
     sizes = order_sizes(rig)
     values = [one.predicted("complete") for one in compared]
@@ -161,7 +139,6 @@ def _points(ax: Axes, seen: Sequence[Observation]) -> None:
         "end": ("v", "white", "stable again, quoted"),
         "stable": ("s", "white", "stable, quoted"),
     }
-    used = set()
     for one in seen:
         shape, face, label = marks[one.kind]
         ax.errorbar(
@@ -175,19 +152,14 @@ def _points(ax: Axes, seen: Sequence[Observation]) -> None:
             ecolor="black",
             capsize=3,
             zorder=5,
-            label=None if label in used else label,
+            label=label,
         )
-        used.add(label)
 
 
-def _frame(ax: Axes, rig: Rig, inertia: Array, window: tuple[float, float]) -> None:
-    """Set limits, the measured inertias along the top, fractions of the frequency at the right."""
-    ax.set(xlim=(1e3 * inertia[0], 1e3 * inertia[-1]), ylim=window)
-    ax.grid(visible=False)
+def _margins(ax: Axes, rig: Rig, window: tuple[float, float]) -> None:
+    """Set the measured inertias along the top, fractions of the frequency at the right."""
     for value in rig.inertias:
         ax.axvline(1e3 * value, color="0.85", lw=0.6, zorder=0)
-    ax.set_xlabel(r"follower inertia $I_4$ [10$^{-3}$ kg m$^2$]")
-    ax.set_ylabel(r"crank speed $\omega_2$ [rpm]")
     top, right = ax.secondary_xaxis("top"), ax.secondary_yaxis("right")
     names = [f"{value / LBF_IN_S2:.4f}" for value in rig.inertias]
     top.set_xticks(1e3 * rig.inertias, names, rotation=60, fontsize=7, ha="left")
@@ -221,19 +193,24 @@ def order_sizes(rig: Rig) -> dict[str, float]:
     Keys ``phi``, ``eps1 f1``, ``eps2 f2`` are the terms of (6.17); ``eps2 cos23`` and
     ``(pi^2/3 - 1/4) phi`` those that it leaves out of the first mode's equation.
     """
-    theta = np.linspace(0.0, 2 * pi, 1441)
-    linkage = linkage_of(rig.linkage)
-    parts = end_load(linkage, theta)
-    follower = float(np.max(np.abs(rig.function("reduced", float(rig.inertias[0]))(theta))))
-    eps1, eps2 = pi**2 / 3, pi**2 * linkage.crank / (2 * linkage.coupler)
-    terms = {
+    follower = _peak(rig.function("reduced", float(rig.inertias[0]))(_TURN))
+    return {name: _peak(term) / follower for name, term in _terms(rig.linkage, _TURN).items()}
+
+
+def _terms(linkage: str, theta: Array) -> dict[str, Array]:
+    links = linkage_of(linkage)
+    parts, eps2 = end_load(links, theta), pi**2 * links.crank / (2 * links.coupler)
+    return {
         "phi": parts.phi,
-        "eps1 f1": eps1 * parts.f1,
+        "eps1 f1": pi**2 / 3 * parts.f1,
         "eps2 f2": eps2 * parts.f2,
         "eps2 cos23": eps2 * parts.cos23,
         "(pi^2/3 - 1/4) phi": (pi**2 / 3 - 0.25) * parts.phi,
     }
-    return {name: float(np.max(np.abs(values))) / follower for name, values in terms.items()}
+
+
+def _peak(values: Array) -> float:
+    return float(np.max(np.abs(values)))
 
 
 def _claims(rig: Rig) -> list[float]:
@@ -246,8 +223,7 @@ def _claims(rig: Rig) -> list[float]:
 
     if rig.figure == "82":
         speed = 230.0 * RPM
-        least = float(min(load_scene(rig.scene).get("measured.log_decrement")))
-        ratio = least / (2 * pi) * rig.frequency / speed
+        ratio = rig.decrements[0] / (2 * pi) * rig.frequency / speed
         halves = [
             discriminant(rig.function("complete", i), (rig.frequency / speed) ** 2, 1.0, ratio)
             for i in rig.inertias
@@ -277,12 +253,10 @@ def equations_table(axes: Sequence[Axes]) -> Drawn:
     ]
     ax.set_yticks(places, names, fontsize=7)
     ax.invert_yaxis()
-    ax.set_xlabel("computed less quoted speed [% of the quoted]")
-    legend_below([ax])
-    tables = (_terms(), _shifts(), _observed(), _summary())
+    tables = (_peaks(), _shifts(), _observed(), _summary())
     left = [_parts(name) for name in _rig_linkages()]
     count = sum(one.nearest == "complete" for one in _COMPARED)
-    first, complete = _first_order_trend(), _trend("complete")
+    first, complete = _trend("first order"), _trend("complete")
     ratio = min(b / a for a, b in left)
     values = [_gap_of_two_routes(), ratio, count / len(_COMPARED)]
     return Drawn([*values, first[1] / first[0], complete[1] / complete[0]], _words(count), tables)
@@ -292,7 +266,7 @@ def _rig_linkages() -> list[str]:
     return list(dict.fromkeys(rig.linkage for rig in RIGS))
 
 
-def _terms() -> Table:
+def _peaks() -> Table:
     rows = [
         (rig.name, *(f"{size:.3f}" for size in order_sizes(rig).values()), _ratio(rig.linkage))
         for rig in RIGS
@@ -316,29 +290,20 @@ def _ratio(linkage: str) -> str:
 
 def _parts(linkage: str) -> tuple[float, float]:
     """Return the peaks of the coupler part that (6.17) keeps and of the one it leaves out."""
-    links, theta = linkage_of(linkage), np.linspace(0.0, 2 * pi, 1441)
-    parts = end_load(links, theta)
-    eps1, eps2 = pi**2 / 3, pi**2 * links.crank / (2 * links.coupler)
-    kept = eps1 * parts.f1 + eps2 * parts.f2 - parts.phi
-    return float(np.max(np.abs(kept))), float(np.max(np.abs(_left_out(linkage, theta))))
-
-
-def _left_out(linkage: str, theta: Array) -> Array:
-    links = linkage_of(linkage)
-    parts = end_load(links, theta)
-    tension = pi**2 * links.crank / (2 * links.coupler) * parts.cos23
-    return tension + (pi**2 / 3 - 0.25) * parts.phi
+    phi, f1, f2, tension, more = _terms(linkage, _TURN).values()
+    return _peak(f1 + f2 - phi), _peak(tension + more)
 
 
 def _gap_of_two_routes() -> float:
     """Return the largest difference of what (6.17) leaves out, by the modules and by hand."""
-    theta, gaps = np.linspace(0.0, 2 * pi, 181), []
+    gaps = []
     for rig in RIGS:
         complete, printed = (
-            rig.function(name, float(rig.inertias[0]))(theta) for name in ("complete", "printed")
+            rig.function(name, float(rig.inertias[0]))(_TURN) for name in ("complete", "printed")
         )
-        gaps.append(np.max(np.abs(complete - printed - _left_out(rig.linkage, theta))))
-    return float(max(gaps))
+        *_, tension, more = _terms(rig.linkage, _TURN).values()
+        gaps.append(_peak(complete - printed - tension - more))
+    return max(gaps)
 
 
 @dataclass(frozen=True)
@@ -445,7 +410,7 @@ def _summary() -> Table:
         )
         for name in EQUATIONS
     ]
-    rows.append(("(6.18), first order", "", "", "", *(f"{v:.1f}" for v in _first_order_trend())))
+    rows.append(("(6.18), first order", "", "", "", *(f"{v:.1f}" for v in _trend("first order"))))
     rows.append(("quoted", "", "", "", "250", "220"))
     header = (
         "equation",
@@ -462,14 +427,11 @@ def _summary() -> Table:
 def _trend(equation: str) -> Array:
     """Return the middles of Omega/3 [rpm] at the least and the greatest inertia."""
     rig = RIG["82"]
-    return np.asarray(np.mean(rig.ends(equation, rig.inertias[[0, -1]], (6,))[:, 0] / RPM, axis=0))
-
-
-def _first_order_trend() -> Array:
-    rig = RIG["82"]
+    ends = rig.inertias[[0, -1]]
+    if equation != "first order":
+        return np.asarray(np.mean(rig.ends(equation, ends, (6,))[:, 0] / RPM, axis=0))
     # The larger inertia is beyond what first order may be trusted with: as Smith did all the same.
-    f, ends = rig.function("reduced", 1.0), rig.inertias[[0, -1]]
-    bounds = perturbation_boundaries(f, ends, (6,), outside="value")
+    bounds = perturbation_boundaries(rig.function("reduced", 1.0), ends, (6,), outside="value")
     speeds = rig.frequency / np.sqrt(np.stack([bounds.lower[0], bounds.upper[0]])) / RPM
     return np.asarray(np.mean(speeds, axis=0))
 

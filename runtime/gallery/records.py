@@ -14,18 +14,26 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Relation = Literal["=", "<", ">"]
+Kind = Literal["printed", "words", "check"]
+
+# What each kind of expected number is called beside the computed one.
+KINDS: Mapping[Kind, str] = {
+    "printed": "printed",
+    "words": "by the text's words",
+    "check": "for a check",
+}
 
 
 @dataclass(frozen=True)
 class Quoted:
-    """One number that a document quotes, beside the one that is computed here.
+    """One statement of a document, as a number beside the one that is computed here.
 
     Attributes
     ----------
     number : str
-        What is quoted, in a few words.
-    printed : float
-        The value in the text; for words such as "an order of magnitude" the value they stand for.
+        What is compared, in a few words.
+    expected : float
+        The value that the computed one is held against.
     computed : float
         The value computed here; not a number in a record that was not drawn.
     tolerance : float
@@ -35,15 +43,19 @@ class Quoted:
     where : str
         Section of the document.
     relation : {"=", "<", ">"}
-        Whether the text says that the value is ``printed``, is below it, or is above it.
+        Whether the value should be as ``expected``, below it, or above it.
     unit : str
         Unit of the values; empty for a ratio.
     differs : str
         Why the two are known to differ; empty where they should agree.
+    kind : {"printed", "words", "check"}
+        Where ``expected`` comes from: the document prints it; words of the document such as "an
+        order of magnitude" are read as it; or it is no number of the document but that of another
+        route to an equation of the document or to a result of ours.
     """
 
     number: str
-    printed: float = nan
+    expected: float = nan
     computed: float = nan
     tolerance: float = 0.0
     meaning: str = ""
@@ -51,11 +63,12 @@ class Quoted:
     relation: Relation = "="
     unit: str = ""
     differs: str = ""
+    kind: Kind = "check"
 
     @property
     def deviation(self) -> float:
-        """Computed less printed; for an inequality, by how much it is missed."""
-        gap = self.computed - self.printed
+        """Computed less expected; for an inequality, by how much it is missed."""
+        gap = self.computed - self.expected
         if self.relation == "<":
             return max(gap, 0.0)
         if self.relation == ">":
@@ -93,8 +106,9 @@ class Quoted:
         return {
             "number": self.number,
             "where": self.where,
+            "kind": self.kind,
             "relation": self.relation,
-            "printed": float(self.printed),
+            "expected": float(self.expected),
             "computed": float(self.computed),
             "deviation": float(self.deviation),
             "tolerance": float(self.tolerance),
@@ -103,6 +117,25 @@ class Quoted:
             "agrees": self.agrees,
             "differs": self.differs,
         }
+
+
+def counts(rows: Sequence[Quoted]) -> list[str]:
+    """Return for each kind of comparison, in words, how many there are and how they come out."""
+    lines = []
+    for kind, what in (
+        ("printed", "numbers that the documents print"),
+        ("words", "statements in words, read as numbers"),
+        ("check", "checks of equations and of results"),
+    ):
+        chosen = [row for row in rows if row.kind == kind]
+        agree = sum(row.agrees for row in chosen)
+        known = sum(bool(row.differs) and not row.agrees for row in chosen)
+        if chosen:
+            lines.append(
+                f"{what}: {len(chosen)}, of which {agree} agree, {known} are known to differ and "
+                f"{len(chosen) - agree - known} differ without a reason"
+            )
+    return lines
 
 
 @dataclass(frozen=True)
@@ -141,7 +174,7 @@ class Drawn:
     ----------
     values : sequence
         The computed values of the record's quoted numbers, in their order; a tuple of computed,
-        printed and perhaps tolerance, where the printed value is that of a printed equation.
+        expected and perhaps tolerance, where the record does not hold the expected value.
     words : mapping
         What stands in the braces of the record's texts.
     tables : tuple of Table
@@ -245,7 +278,7 @@ class FigureEntry:
         words = drawn.words
         rows = []
         for row, value in zip(self.quoted, drawn.values, strict=True):
-            names = ("computed", "printed", "tolerance")
+            names = ("computed", "expected", "tolerance")
             given = value if isinstance(value, tuple) else (value,)
             changes: dict[str, Any] = {n: float(v) for n, v in zip(names, given, strict=False)}
             if words:
@@ -332,9 +365,10 @@ class Gallery(Result):
                 sign = "" if row.relation == "=" else f"{row.relation} "
                 unit = f" {row.unit}" if row.unit else ""
                 out.append(
-                    f"  {row.number}: {sign}{row.printed:.4g}{unit} printed, "
+                    f"  {row.number}: {sign}{row.expected:.4g}{unit} {KINDS[row.kind]}, "
                     f"{row.computed:.4g} computed: {row.verdict}"
                 )
+        out += ["", *counts([row for _, row in self.rows])]
         if self.folder:
             out += ["", f"{len(self.files)} files in {self.folder}, first index.html"]
         return out

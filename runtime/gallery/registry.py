@@ -1,10 +1,10 @@
 """The records of all figures, read from one file of data for each document.
 
 A record holds the figure's label and title, the function that draws it (``draw``, a module and a
-name in it, with ``arguments`` after the axes), its panels and size, and the numbers that the text
-quotes; ``common`` holds what these share.  A record of a ``kind`` takes what it does not say from
-the file's table ``kind``; a note ``@name`` stands in its table ``notes``; ``page`` is a document
-that notes and tables make up.
+name in it, with ``arguments`` after the axes), its panels and size, and what is compared, the
+expected value under the name of its kind; ``common`` holds what these share.  A record of a
+``kind`` takes what it does not say from the file's table ``kind``; a note ``@name`` stands in its
+table ``notes``; ``page`` is a document that notes and tables make up.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from functools import cache, partial
 from importlib import import_module, resources
 from typing import TYPE_CHECKING, Any
 
-from .records import Drawn, FigureEntry, Page, Quoted
+from .records import KINDS, Drawn, FigureEntry, Page, Quoted
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -68,12 +68,22 @@ def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> F
     return FigureEntry(
         document,
         draw=draw,
-        quoted=tuple(Quoted(**{**common, **row}) for row in record.pop("quoted", ())),
+        quoted=tuple(_quoted(common, row) for row in record.pop("quoted", ())),
         notes=tuple(
             notes[note[1:]] if note.startswith("@") else note for note in record.pop("notes", ())
         ),
         **record,
     )
+
+
+def _quoted(common: Mapping[str, Any], row: Mapping[str, Any]) -> Quoted:
+    """Return one comparison; the key of the expected value, if it has one here, is its kind."""
+    given = {**common, **row}
+    values = {kind: given.pop(kind) for kind in KINDS if kind in given}
+    kinds = [kind for kind in values if kind in row] or list(values)
+    if kinds:
+        given = {"kind": kinds[0], "expected": values[kinds[0]], **given}
+    return Quoted(**given)
 
 
 def _draw(place: str, arguments: Sequence[Any], axes: Sequence[Axes]) -> Drawn:

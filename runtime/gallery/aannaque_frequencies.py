@@ -10,13 +10,14 @@ import numpy as np
 
 from ..beams import Section, Structure, frame
 from ..core.families import Array
+from ..core.trigonometric import even_angles
 from ..frequencies import (
     dynamic_stiffness,
     element_matrices,
     log_determinant,
     wittrick_williams,
 )
-from .aannaque_models import FULL, ModelComparison, beams, compare_models
+from .aannaque_models import FULL, beams, exact_frequencies, held, structure_of
 from .drawing import COLOURS, turn
 from .records import Drawn, Table, Value
 from .registry import contents
@@ -28,8 +29,8 @@ _ORDINALS = ("first", "second", "third", "fourth")
 
 
 @lru_cache(maxsize=1)
-def comparison() -> ModelComparison:
-    """Return four frequencies of the five models at 120 crank angles."""
+def _models() -> dict[str, tuple[int, Array]]:
+    """Return freedoms and four frequencies of the five models at 120 crank angles."""
     models = {
         "1 element": beams(1, FULL),
         "2 elements": beams(2, FULL),
@@ -37,42 +38,38 @@ def comparison() -> ModelComparison:
         "p-version 1": beams(1, FULL, kind="internal_node_beams"),
         "p-version 2": beams(1, FULL, kind="curvature_beams"),
     }
-    return compare_models(models, np.radians(np.arange(0.0, 360.0, 3.0)), 4, exact=False)
+    theta = even_angles(2.0 * np.pi, 120)
+    return {name: (system.size, held(system, theta)) for name, system in models.items()}
 
 
 def elements(axes: Sequence[Axes], mode: int) -> Drawn:
     """Draw one natural frequency over the crank angle, five models (Fig. 4.6)."""
-    ax, models = axes[0], comparison()
-    for place, (name, style) in enumerate(
-        zip(models.names, ("-", "-", "-", "--", "-."), strict=True)
+    models, curves = _models(), {}
+    for (name, (size, frequencies)), style, colour in zip(
+        models.items(), ("-", "-", "-", "--", "-."), COLOURS, strict=False
     ):
-        curve = models.frequency[place, :, mode - 1]
-        label = f"{name}, {models.size[place]} freedoms"
-        turn(ax, models.theta, curve, style, color=COLOURS[place], label=label)
-    mean = dict(zip(models.names, models.frequency.mean(axis=1)[:, mode - 1], strict=True))
-    size = dict(zip(models.names, models.size.tolist(), strict=True))
-
-    def gaps(name: str, reference: str) -> Array:
-        """Frequencies of a model over those of another, less 1."""
-        return models.difference(name, reference)[:, mode - 1]
-
+        curve = curves[name] = frequencies[:, mode - 1]
+        label = f"{name}, {size} freedoms"
+        turn(axes[0], even_angles(2.0 * np.pi, 120), curve, style, color=colour, label=label)
+    one, two, three, p1, p2 = curves.values()
     values: list[Value] = [
-        float(np.max(gaps("3 elements", "2 elements"))),
-        float(np.max(gaps("p-version 2", "1 element"))) + 1.0,
-        mean["p-version 2"] / mean["p-version 1"],
-        mean["p-version 2"] / mean["3 elements"] - 1.0,
+        float(np.max(three / two)) - 1.0,
+        float(np.max(p2 / one)),
+        np.mean(p2) / np.mean(p1),
+        np.mean(p2) / np.mean(three) - 1.0,
     ]
     if mode in (1, 4):
-        values.insert(0, 100.0 * float(np.mean(gaps("1 element", "3 elements"))))
+        values.insert(0, 100.0 * (float(np.mean(one / three)) - 1.0))
     if mode > 1:
         return Drawn(values)
     rows = tuple(
-        (name, str(size[name]), *(f"{value:.2f}" for value in frequencies.mean(axis=0)))
-        for name, frequencies in zip(models.names, models.frequency, strict=True)
+        (name, str(size), *(f"{value:.2f}" for value in frequencies.mean(axis=0)))
+        for name, (size, frequencies) in models.items()
     )
     header = ("model", "freedoms", *(f"{nth} [rad/s]" for nth in _ORDINALS))
     table = Table("Mean natural frequencies over the cycle", header, rows)
-    return Drawn([*values, size["3 elements"], size["p-version 2"]], tables=(table,))
+    freedoms = [models[name][0] for name in ("3 elements", "p-version 2")]
+    return Drawn([*values, *freedoms], tables=(table,))
 
 
 # Table 5.1 as printed.
@@ -200,21 +197,19 @@ def _error_values() -> list[Value]:
 
 
 @lru_cache(maxsize=1)
-def _linkage() -> ModelComparison:
-    """Return three elements and the exact frequencies of the four-bar at 48 angles."""
-    angles = np.radians(np.arange(0.0, 360.0, 7.5))
-    return compare_models({"3 elements": beams(3, FULL)}, angles, 4)
+def _both() -> tuple[Array, Array, Array]:
+    """Return 48 crank angles, four frequencies there of three elements, and the exact ones."""
+    theta, system = even_angles(2.0 * np.pi, 48), beams(3, FULL)
+    return theta, held(system, theta), exact_frequencies(structure_of(system), theta, 4)
 
 
 def exact_and_elements(axes: Sequence[Axes], mode: int) -> Drawn:
     """Draw one natural frequency, three elements and exact, and their gap (Fig. 5.3)."""
-    models = _linkage()
-    styles = ((COLOURS[0], "-", "3 elements"), (COLOURS[1], "--", "dynamic stiffness"))
-    for frequencies, (colour, style, label) in zip(models.frequency, styles, strict=True):
-        values = frequencies[:, mode - 1]
-        turn(axes[0], models.theta, values, style, color=colour, label=label)
-    gaps = 100.0 * models.difference("3 elements")
+    theta, three, exact = _both()
+    turn(axes[0], theta, three[:, mode - 1], color=COLOURS[0], label="3 elements")
+    turn(axes[0], theta, exact[:, mode - 1], "--", color=COLOURS[1], label="dynamic stiffness")
+    gaps = 100.0 * (three / exact - 1.0)
     gap = gaps[:, mode - 1]
-    turn(axes[1], models.theta, gap, color=COLOURS[2], label="difference")
+    turn(axes[1], theta, gap, color=COLOURS[2], label="difference")
     axes[1].set_ylim(0.0, 1.15 * float(np.max(gap)))
     return Drawn([np.min(gap), np.max(gaps if mode == 4 else gap)])

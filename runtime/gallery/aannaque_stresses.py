@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core.families import Array, LinearPeriodic
+from ..core.trigonometric import resampled
 from ..frequencies import NaturalFrequencies, natural_frequencies
 from ..hill import Meissner, discriminant
 from ..periodic import floquet_multipliers, steady_state
 from ..periodic.reduced import reduced_system
 from ..recovery import recover, stress_operator
-from .aannaque_hybrid import fourier_sum, hybrid, hybrid_model
 from .aannaque_models import (
     CRITICAL,
     FRAMES,
@@ -23,6 +23,8 @@ from .aannaque_models import (
     LINKS,
     THESIS,
     beams,
+    hybrid,
+    hybrid_model,
     maxima,
     moved,
     nearest,
@@ -216,18 +218,6 @@ def damping(axes: Sequence[Axes], ratio: float) -> Drawn:
     return Drawn([*values, np.max((damped / base)[_WIDE > 20.0])])
 
 
-@lru_cache(maxsize=1)
-def _hybrid_curve() -> Array:
-    """Return the largest stress of all links [Pa] of the "exact" model, by cubic shapes."""
-    motion = steady_state(hybrid_model(), _FEWER, rtol=1e-3)
-    form = stress_operator(beams(1), motion.theta, 7, method="shape")[0]
-    largest = [
-        float(np.max(np.abs(form.values(float(speed), q, qd / speed))))
-        for speed, q, qd in zip(_FEWER, motion.q, motion.qd, strict=True)
-    ]
-    return np.array(largest)
-
-
 def figure_7_8(axes: Sequence[Axes]) -> Drawn:
     """Draw the largest stress over the speed for one, two and three elements, and "exact"."""
     ax, counts = axes[0], (1, 2, 3)
@@ -235,11 +225,17 @@ def figure_7_8(axes: Sequence[Axes]) -> Drawn:
     for count, values in zip(counts, largest, strict=True):
         label = f"{count} element{'s' if count > 1 else ''}"
         ax.semilogy(_WIDE, 1e-6 * values, label=label)
-    ax.semilogy(_FEWER, 1e-6 * _hybrid_curve(), "--", color="0.2", label='"exact"')
+    motion = steady_state(hybrid_model(), _FEWER, rtol=1e-3)
+    form = stress_operator(beams(1), motion.theta, 7, method="shape")[0]
+    exact = [
+        1e-6 * np.max(np.abs(form.values(float(speed), q, qd / speed)))
+        for speed, q, qd in zip(_FEWER, motion.q, motion.qd, strict=True)
+    ]
+    ax.semilogy(_FEWER, exact, "--", color="0.2", label='"exact"')
     second, third = (nearest(maxima(_WIDE, values), 23.5) for values in largest[1:])
     means = [float(natural_frequencies(beams(count), 0.0, 1).mean[0]) for count in counts]
-    exact = float(np.mean(hybrid(1e-10).first))
-    ratios = [means[0] / means[2], means[1] / means[2], means[2] / exact]
+    means.append(float(np.mean(hybrid(1e-10).first)))
+    ratios = [means[0] / means[2], means[1] / means[2], means[2] / means[3]]
     return Drawn([*ratios, second / third, np.max(hybrid(1e-3).iterations)])
 
 
@@ -271,24 +267,17 @@ def figure_7_9(axes: Sequence[Axes]) -> Drawn:
     for (name, (theta, values)), colour in zip(models.items(), (*COLOURS[:3], "0.2"), strict=True):
         style = "--" if "exact" in name else "-"
         ax.plot(np.degrees(theta), 1e-6 * values, style, color=colour, label=name)
-        half = np.fft.rfft(values) / len(values)
-        even.append(fourier_sum(half[:200], 0, 2.0 * np.pi * np.arange(512) / 512))
+        even.append(resampled(values, 512))
     one, two = (float(np.corrcoef(values, even[2])[0, 1]) for values in even[:2])
     peaks = [float(np.max(np.abs(values))) for values in even]
     return Drawn([two, one / two, peaks[1] / peaks[0], peaks[2] / peaks[1]])
-
-
-@lru_cache(maxsize=8)
-def midpoint_stress(frame: float) -> tuple[Array, Array]:
-    """Return angles and stress with three elements and another frame."""
-    return bending_at_midpoint(beams(3, frame=frame))
 
 
 def figure_7_13(axes: Sequence[Axes]) -> Drawn:
     """Draw the stress at the follower's midpoint over the cycle, six frames."""
     ax, pulses = axes[0], []
     for frame in FRAMES:
-        theta, values = midpoint_stress(frame)
+        theta, values = bending_at_midpoint(beams(3, frame=frame))
         turned, size = np.degrees(theta), np.abs(values)
         ax.plot(turned, 1e-6 * values, label=f"$L_4$ = {frame:.3f} m")
         # Before a quarter turn with the response after it, and about half a turn.

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import tempfile
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack, suppress
 from html import escape
 from pathlib import Path
 
@@ -116,66 +116,46 @@ def _table(table: Table) -> str:
 def write_together(folder: Path, contents: Mapping[str, bytes]) -> None:
     """Write files into a folder; on an error or an interrupt it is left as it was.
 
-    The files are written beside the folder first, then moved.  Other files in the folder stay.  A
-    folder that cannot be made or written is refused.
+    The files are written beside the folder's own first, then moved.  Other files in the folder
+    stay.  A folder that cannot be made or written is refused.
     """
-    made = _missing(folder)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        staging = Path(tempfile.mkdtemp(prefix=".gallery.", dir=folder))
-    except OSError as refusal:
-        _remove(made)
-        reason = refusal.strerror or "an error"
-        raise bad(
-            str(folder), reason, "a folder that can be written", "choose another"
-        ) from refusal
-    try:
-        _stage_and_move(folder, staging, contents)
-    except BaseException:
-        shutil.rmtree(staging, ignore_errors=True)
-        _remove(made)
-        raise
+    with ExitStack() as undo:
+        missing = [path for path in (folder, *folder.parents) if not path.exists()]
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            staging = Path(tempfile.mkdtemp(prefix=".gallery.", dir=folder))
+        except OSError as refusal:
+            _remove(missing)
+            reason = refusal.strerror or "an error"
+            raise bad(
+                str(folder), reason, "a folder that can be written", "choose another"
+            ) from refusal
+        undo.callback(_remove, missing)
+        undo.callback(shutil.rmtree, staging)
+        new, old = staging / "new", staging / "old"
+        new.mkdir()
+        old.mkdir()
+        for name, content in contents.items():
+            (new / name).write_bytes(content)
+        for name in contents:
+            undo.callback(_restore, folder / name, new / name, old / name)
+            if (folder / name).exists():
+                (folder / name).replace(old / name)
+            (new / name).replace(folder / name)
+        undo.pop_all()
     shutil.rmtree(staging)
 
 
-def _stage_and_move(folder: Path, staging: Path, contents: Mapping[str, bytes]) -> None:
-    mask = os.umask(0)
-    os.umask(mask)
-    new, old = staging / "new", staging / "old"
-    new.mkdir()
-    old.mkdir()
-    for name, content in contents.items():
-        (new / name).write_bytes(content)
-        (new / name).chmod(0o666 & ~mask)
-    moved: list[str] = []
-    try:
-        for name in contents:
-            target = folder / name
-            moved.append(name)
-            if target.exists():
-                target.replace(old / name)
-            (new / name).replace(target)
-    except BaseException:
-        for name in moved:
-            if (old / name).exists():
-                (old / name).replace(folder / name)
-            elif not (new / name).exists():
-                (folder / name).unlink(missing_ok=True)
-        raise
-
-
-def _missing(folder: Path) -> list[Path]:
-    """Return the folders that would have to be made, the innermost first."""
-    missing = []
-    while not folder.exists():
-        missing.append(folder)
-        folder = folder.parent
-    return missing
+def _restore(target: Path, new: Path, old: Path) -> None:
+    """Take back the move of a new file to its place, however far it came."""
+    if old.exists():
+        old.replace(target)
+    elif not new.exists():
+        target.unlink()
 
 
 def _remove(folders: list[Path]) -> None:
+    """Remove those of the folders, the innermost first, that are there and empty."""
     for folder in folders:
-        try:
+        with suppress(OSError):
             folder.rmdir()
-        except OSError:
-            return

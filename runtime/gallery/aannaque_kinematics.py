@@ -15,21 +15,9 @@ from ..linkages.classification import SYMBOLS, classify
 from ..linkages.curves import coupler_curve
 from ..linkages.transmission import transmission_angle
 from ..scenes import load_scene
+from . import sketch
 from .aannaque_models import FRAMES
-from .drawing import (
-    COLOURS,
-    LINK_COLOURS,
-    Array,
-    arc,
-    bar,
-    canvas,
-    four_bar,
-    panel_title,
-    pin,
-    pivot,
-    write,
-)
-from .free_bodies import draw_body, free_bodies, round_force, scale_bar
+from .drawing import COLOURS, Array, panel_title
 from .records import Drawn, Table, Value
 from .smith_linkages import four_bar_of
 
@@ -83,11 +71,13 @@ def figure_3_4(axes: Sequence[Axes]) -> Drawn:
     for i, axis in enumerate(np.eye(3)):
         ends = np.array([np.zeros(3), 1.25 * far * axis]) @ _VIEW.T
         ax.plot(*ends.T, color="0.3", lw=0.9, zorder=1)
-        write(ax, ends[1], rf"$\lambda_{i + 2}$", 8.0 * ends[1] / np.hypot(*ends[1]), fontsize=11)
+        sketch.write(
+            ax, ends[1], rf"$\lambda_{i + 2}$", 8.0 * ends[1] / np.hypot(*ends[1]), fontsize=11
+        )
     line = np.array([np.zeros(3), np.full(3, _SPACE_LAMBDA / sqrt(3.0))]) @ _VIEW.T
     ax.plot(*line.T, "--", color="0.2", lw=1.0, zorder=8)
     ax.plot(*line[1], "o", color="0.2", ms=3.5, zorder=8)
-    write(ax, line[1], r"$\lambda$", (8.0, 8.0), fontsize=11)
+    sketch.write(ax, line[1], r"$\lambda$", (8.0, 8.0), fontsize=11)
     inside, outside = (np.mean(classify(_linkages(_beside(step))) > 0) for step in (1e-6, -1e-6))
     gaps = np.abs(plane.outline @ _DIRECTIONS.T - 1.0)
     distance = np.abs(plane.outline @ np.full(3, 1.0 / sqrt(3.0)) - plane.lam)
@@ -201,25 +191,25 @@ def cycle(frame: float | None = None) -> FourBarMotion:
 def figure_3_6(axes: Sequence[Axes]) -> Drawn:
     """Draw both assemblies at one crank angle."""
     ax, bars = axes[0], linkage()
-    canvas(ax)
+    sketch.canvas(ax)
     other = FourBar(bars.frame, bars.crank, bars.coupler, bars.follower, assembly="crossed")
     both = [item.motion(_INPUT) for item in (bars, other)]
     a, b, d = (np.asarray(both[0].joints[name]) for name in "ABD")
     ax.plot(*np.transpose([b, d]), ":", color="0.4", lw=1.0)
     for motion, name, style in zip(both, ("B", "B'"), ("-", (0, (3, 1.2))), strict=True):
         c = np.asarray(motion.joints["C"])
-        bar(ax, b, c, LINK_COLOURS["coupler"], ls=style, zorder=3)
-        bar(ax, d, c, LINK_COLOURS["follower"], ls=style, zorder=3)
-        pin(ax, c)
-        write(ax, c, name, (12.0, 10.0 if name == "B" else -10.0), style="italic")
-    bar(ax, a, b, LINK_COLOURS["crank"], zorder=4)
+        sketch.bar(ax, b, c, sketch.LINK_COLOURS["coupler"], ls=style, zorder=3)
+        sketch.bar(ax, d, c, sketch.LINK_COLOURS["follower"], ls=style, zorder=3)
+        sketch.pin(ax, c)
+        sketch.write(ax, c, name, (12.0, 10.0 if name == "B" else -10.0), style="italic")
+    sketch.bar(ax, a, b, sketch.LINK_COLOURS["crank"], zorder=4)
     for place, name, shift in ((a, "O", -16.0), (d, "C", 16.0)):
-        pivot(ax, place, 0.1 * bars.frame)
-        write(ax, place, name, (shift, 4.0), style="italic")
-    pin(ax, b)
-    write(ax, b, "A", (-10.0, 10.0), style="italic")
+        sketch.pivot(ax, place, 0.1 * bars.frame)
+        sketch.write(ax, place, name, (shift, 4.0), style="italic")
+    sketch.pin(ax, b)
+    sketch.write(ax, b, "A", (-10.0, 10.0), style="italic")
     ax.plot([0.0, 0.12 * bars.frame], [0.0, 0.0], color="0.35", lw=0.8)
-    arc(ax, a, 0.07 * bars.frame, (0.0, _INPUT), "$t_1$")
+    sketch.arc(ax, a, 0.07 * bars.frame, (0.0, _INPUT), "$t_1$")
     follower, coupler = _printed_angles(_INPUT)
     gammas = [degrees(float(m.transmission_angle)) for m in both]
 
@@ -310,7 +300,7 @@ def figure_3_9(axes: Sequence[Axes]) -> Drawn:
         ([180.0], mu.greatest, "greatest", (0.0, 10.0)),
     ):
         ax.plot(angles, [degrees(value)] * len(angles), "o", color=COLOURS[1], ms=5)
-        write(ax, (angles[0], degrees(value)), f"{name}: {degrees(value):.2f}°", shift)
+        sketch.write(ax, (angles[0], degrees(value)), f"{name}: {degrees(value):.2f}°", shift)
     values: list[Value] = []
     for angle, value, sign in (
         (mu.at_least, mu.least, 1.0),
@@ -330,7 +320,7 @@ def figure_3_9(axes: Sequence[Axes]) -> Drawn:
 def figure_3_10(axes: Sequence[Axes]) -> Drawn:
     """Draw the mechanism at several positions, and the paths of some points of its coupler."""
     ax, bars = axes[0], linkage()
-    canvas(ax)
+    sketch.canvas(ax)
     length, start = bars.coupler, radians(70.0)
     points = {
         "A": (0.0, 0.0),
@@ -344,8 +334,8 @@ def figure_3_10(axes: Sequence[Axes]) -> Drawn:
     for k in range(1, 8):
         joints = bars.motion(start + k * pi / 4.0).joints
         for ends, link in (("AB", "crank"), ("BC", "coupler"), ("DC", "follower")):
-            colour = LINK_COLOURS[link]
-            bar(ax, joints[ends[0]], joints[ends[1]], colour, lw=1.6, alpha=0.22, zorder=2)
+            colour = sketch.LINK_COLOURS[link]
+            sketch.bar(ax, joints[ends[0]], joints[ends[1]], colour, lw=1.6, alpha=0.22, zorder=2)
     for (name, curve), colour in zip(curves.items(), ("0.35", "0.35", *COLOURS[3:]), strict=False):
         closed = np.vstack([curve.position, curve.position[:1]])
         ax.plot(*closed.T, color=colour, lw=1.4, ls="--" if name in "AB" else "-", zorder=4)
@@ -355,10 +345,10 @@ def figure_3_10(axes: Sequence[Axes]) -> Drawn:
         at = now.point("coupler", *points[name]).position
         if name in "RS":
             lines = np.array([joints["B"], at, joints["C"]])
-            ax.plot(*lines.T, color=LINK_COLOURS["coupler"], lw=1.0, zorder=4)
+            ax.plot(*lines.T, color=sketch.LINK_COLOURS["coupler"], lw=1.0, zorder=4)
         ax.plot(*at, "o", color="0.15", ms=4.0, zorder=8)
-        write(ax, at, name, (8.0, 8.0), style="italic")
-    four_bar(ax, joints, 0.07 * bars.frame, "OABC")
+        sketch.write(ax, at, name, (8.0, 8.0), style="italic")
+    sketch.four_bar(ax, joints, 0.07 * bars.frame, "OABC")
     swing = transmission_angle(bars).swing or 0.0
     pins = (("A", np.zeros(2), bars.crank), ("B", np.array([bars.frame, 0.0]), bars.follower))
     off = [np.abs(np.hypot(*(curves[n].position - at).T) - r).max() for n, at, r in pins]
@@ -370,17 +360,17 @@ def free_body(axes: Sequence[Axes], link: str) -> Drawn:
     """Draw one link cut free (Fig. 3.11)."""
     ax, scene = axes[0], load_scene(_SCENE)
     machine, speed = scene.machine(), scene["operation"]["speed"]
-    body = free_bodies(machine, radians(105.0), speed)[0][link]
+    body = sketch.free_bodies(machine, radians(105.0), speed)[0][link]
     letters, names = _BODIES[link]
     largest = max(float(np.hypot(*force)) for force in body.forces)
     length = float(np.hypot(*(body.places[1] - body.places[0])))
     scale = 0.55 * length / largest
-    canvas(ax)
-    draw_body(ax, body, letters, names, scale)
+    sketch.canvas(ax)
+    sketch.draw_body(ax, body, letters, names, scale)
     heads = np.array(body.places) + scale * np.array(body.forces)
     low = np.min([*body.places, *heads], axis=0) - 0.22 * length
-    scale_bar(ax, low, scale, round_force(largest))
-    whole = free_bodies(machine, np.linspace(0.0, 2.0 * pi, 361), speed)[0][link]
+    sketch.scale_bar(ax, low, scale, sketch.round_force(largest))
+    whole = sketch.free_bodies(machine, np.linspace(0.0, 2.0 * pi, 361), speed)[0][link]
     values = [whole.unbalanced_force, whole.unbalanced_moment]
     if link == "crank":
         values.append(float(np.min(whole.torque)))

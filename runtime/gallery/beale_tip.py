@@ -17,16 +17,8 @@ from ..periodic.equation import equation_of
 from ..periodic.transition import method, segments_of
 from ..scenes import load_scene
 from ..systems.rod import FreeFreeRod
-from .drawing import (
-    COLOURS,
-    INK,
-    LINK_COLOURS,
-    bar,
-    canvas,
-    pin,
-    pivot,
-    write,
-)
+from . import sketch
+from .drawing import COLOURS
 from .records import Drawn, Table
 
 if TYPE_CHECKING:
@@ -193,7 +185,7 @@ def _draw_linkage(ax: Axes) -> None:
     """Draw the mechanism to scale [cm], one position full and the others pale."""
     linkage, cm, shown = _linkage(), 100.0, 60.0
     centre = np.array([linkage.frame, 0.0]) * cm
-    canvas(ax)
+    sketch.canvas(ax)
     around = np.linspace(0.0, 2.0 * np.pi, 181)
     circle = centre[:, None] + linkage.crank * cm * np.array([np.cos(around), np.sin(around)])
     ax.plot(*circle, color="0.75", lw=0.7, ls=(0, (4, 3)))
@@ -203,20 +195,22 @@ def _draw_linkage(ax: Axes) -> None:
         tip = linkage.rod * cm * np.array([np.cos(direction), np.sin(direction)])
         block = centre + linkage.crank * cm * np.array([np.cos(theta), np.sin(theta)])
         alpha = 1.0 if degrees == shown else 0.25
-        bar(ax, (0.0, 0.0), tip, LINK_COLOURS["coupler"], alpha=alpha, lw=2.6, zorder=2)
-        bar(ax, centre, block, LINK_COLOURS["crank"], alpha=alpha, lw=2.6, zorder=3)
+        sketch.bar(
+            ax, (0.0, 0.0), tip, sketch.LINK_COLOURS["coupler"], alpha=alpha, lw=2.6, zorder=2
+        )
+        sketch.bar(ax, centre, block, sketch.LINK_COLOURS["crank"], alpha=alpha, lw=2.6, zorder=3)
         away = 11.0 * (block - centre) / np.hypot(*(block - centre))
-        write(ax, block, f"{degrees:.0f}°", away, fontsize=7, color="0.3")
+        sketch.write(ax, block, f"{degrees:.0f}°", away, fontsize=7, color="0.3")
         if degrees == shown:
             box = np.array([[-0.9, -0.5], [0.9, -0.5], [0.9, 0.5], [-0.9, 0.5]])
             turn = np.array([[tip[0], tip[1]], [-tip[1], tip[0]]]) / np.hypot(*tip)
-            ax.fill(*(block + box @ turn).T, facecolor="w", edgecolor=INK, lw=1.0, zorder=5)
-            pin(ax, block)
-            write(ax, tip, "tip", (6.0, 9.0), style="italic")
-    pivot(ax, (0.0, 0.0), 1.0)
-    pivot(ax, centre, 1.0)
-    write(ax, centre, "$C$", (0.0, -20.0))
-    write(ax, (0.0, 0.0), "O", (-10.0, 5.0), style="italic")
+            ax.fill(*(block + box @ turn).T, facecolor="w", edgecolor=sketch.INK, lw=1.0, zorder=5)
+            sketch.pin(ax, block)
+            sketch.write(ax, tip, "tip", (6.0, 9.0), style="italic")
+    sketch.pivot(ax, (0.0, 0.0), 1.0)
+    sketch.pivot(ax, centre, 1.0)
+    sketch.write(ax, centre, "$C$", (0.0, -20.0))
+    sketch.write(ax, (0.0, 0.0), "O", (-10.0, 5.0), style="italic")
 
 
 def lean(scene: str) -> float:

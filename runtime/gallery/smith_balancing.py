@@ -32,17 +32,8 @@ from ..rigid import (
     with_counterweights,
 )
 from ..rigid.counterweights import CASES, Case
-from .drawing import (
-    COLOURS,
-    INK,
-    LINK_COLOURS,
-    Array,
-    bar,
-    canvas,
-    four_bar,
-    panel_title,
-    write,
-)
+from . import sketch
+from .drawing import COLOURS, Array, panel_title
 from .records import Drawn, Table
 from .smith_forces import INCH, TURN, example, example_forces, finish_polar, peak
 
@@ -86,13 +77,13 @@ def figure_20(axes: Sequence[Axes]) -> Drawn:
     motion = linkage.motion(radians(60.0))
     rows = []
     for ax, case in zip(axes, CASES, strict=True):
-        canvas(ax)
+        sketch.canvas(ax)
         panel_title(ax, f"({case}) {_NAMES[case]}")
         for link, weight in _weights(case).items():
             _draw_weight(ax, motion, weight)
             mass, offset = f"{weight.mass / _POUND_MASS:.4f}", f"{weight.offset / INCH:.3f}"
             rows.append((f"({case})", link, mass, offset, f"{weight.disc_radius / INCH:.3f}"))
-        four_bar(ax, motion.joints, 0.1 * linkage.lengths["frame"])
+        sketch.four_bar(ax, motion.joints, 0.1 * linkage.lengths["frame"])
     _same_limits(axes)
     header = ("case", "link", "mass [lb]", "offset [in]", "radius [in]")
     table = Table("Counterweights", header, tuple(rows))
@@ -102,11 +93,11 @@ def figure_20(axes: Sequence[Axes]) -> Drawn:
 def _draw_weight(ax: Axes, motion: Motion, weight: Counterweight) -> None:
     from matplotlib.patches import Circle
 
-    colour, radius = LINK_COLOURS[weight.link], weight.disc_radius
+    colour, radius = sketch.LINK_COLOURS[weight.link], weight.disc_radius
     start = motion.point(weight.link, 0.0).position
     centre = motion.point(weight.link, weight.along, weight.across).position
-    bar(ax, start, centre, colour, lw=2.2, zorder=2)
-    look: dict[str, Any] = {"facecolor": colour, "alpha": 0.45, "edgecolor": INK, "lw": 0.9}
+    sketch.bar(ax, start, centre, colour, lw=2.2, zorder=2)
+    look: dict[str, Any] = {"facecolor": colour, "alpha": 0.45, "edgecolor": sketch.INK, "lw": 0.9}
     ax.add_patch(Circle((float(centre[0]), float(centre[1])), radius, zorder=2, **look))
     ax.update_datalim([centre - radius, centre + radius])
 
@@ -162,7 +153,7 @@ def figure_21(axes: Sequence[Axes]) -> Drawn:
         for angle in (0, 60, 120, 180, 240, 300):
             place = values[4 * angle]
             way = place / (np.hypot(*place) or 1.0)
-            write(ax, place, f"{angle}°", 12.0 * way, color=colour, fontsize=7)
+            sketch.write(ax, place, f"{angle}°", 12.0 * way, color=colour, fontsize=7)
     finish_polar(ax)
     return Drawn([peak(_forces("b").shaking_force)[0] / peak(_forces("a").shaking_force)[0]])
 
@@ -297,7 +288,7 @@ def figure_23a(axes: Sequence[Axes]) -> Drawn:
     for letter, _, number, best in _best():
         ax.plot([best, best, 0.0], [0.0, number, number], ":", color="0.6", lw=0.9)
         ax.plot(best, number, "o", color=COLOURS[1], ms=5)
-        write(ax, (best, number), letter, (-10.0, 8.0))
+        sketch.write(ax, (best, number), letter, (-10.0, 8.0))
     ends = [offset_function(0.0), offset_function(1.0), np.diff(offset_function(delta)).min()]
     return Drawn([*ends, optimal_offset(0.6), *_printed_equations(delta[1:])])
 
@@ -324,7 +315,7 @@ def _densities(ax: Axes, delta: Array, beside: float) -> None:
         ax.plot(delta, link.inertia, color=colour, label=rf"$\rho$ = {density:g}")
         least = float(BalancedLink(best, number).inertia)
         ax.plot(best, least, "o", color=colour, ms=4.5)
-        write(ax, (best, least), letter, (beside, -10.0), color=colour)
+        sketch.write(ax, (best, least), letter, (beside, -10.0), color=colour)
 
 
 def figure_23b(axes: Sequence[Axes]) -> Drawn:

@@ -12,8 +12,8 @@ import numpy as np
 from ..linkages import FourBar
 from ..rigid import Machine, MassDistribution, RigidForces, rigid_forces
 from ..scenes import load_scene
-from .drawing import COLOURS, Array, arrow, canvas, pivot
-from .free_bodies import draw_body, free_bodies, round_force, scale_bar
+from . import sketch
+from .drawing import COLOURS, Array
 from .records import Drawn, Table
 
 if TYPE_CHECKING:
@@ -70,22 +70,22 @@ def _signed_degrees(angle: float) -> float:
 def figure_11(axes: Sequence[Axes]) -> Drawn:
     """Draw the links cut free, every force to one scale."""
     ax = axes[0]
-    canvas(ax)
+    sketch.canvas(ax)
     machine, speed = example()
-    bodies, forces = free_bodies(machine, radians(30.0), speed)
+    bodies, forces = sketch.free_bodies(machine, radians(30.0), speed)
     largest = max(float(np.hypot(*force)) for body in bodies.values() for force in body.forces)
     frame = machine.linkage.lengths["frame"]
     scale = 0.5 * frame / largest
     for link, body in bodies.items():
         letters, names, place = _BODIES[link]
-        draw_body(ax, body, letters, names, scale, frame * np.array(place))
+        sketch.draw_body(ax, body, letters, names, scale, frame * np.array(place))
     ground = frame * np.array([[-0.45, -0.75], [1.95, -0.55]])
     for place in ground:
-        pivot(ax, place, 0.1 * frame)
+        sketch.pivot(ax, place, 0.1 * frame)
     on_frame = ((-forces.f12, "$F_{21}$"), (forces.f41, "$F_{41}$"))
     for place, (force, text) in zip(ground, on_frame, strict=True):
-        arrow(ax, place, scale * np.asarray(force), COLOURS[3], text)
-    scale_bar(ax, (0.15 * frame, -0.8 * frame), scale, round_force(largest))
+        sketch.arrow(ax, place, scale * np.asarray(force), COLOURS[3], text)
+    sketch.scale_bar(ax, (0.15 * frame, -0.8 * frame), scale, sketch.round_force(largest))
     rows = tuple(
         (f"F{name[1:]}", *(f"{float(part) / POUND:.4f}" for part in getattr(forces, name)))
         for name in _JOINTS
@@ -97,7 +97,7 @@ def figure_11(axes: Sequence[Axes]) -> Drawn:
 def _equations(machine: Machine, speed: float, acceleration: float) -> list[float]:
     """Return how well the equations (4.4) to (4.13) hold, at a crank that speeds up too."""
     drive = (speed, acceleration)
-    bodies = free_bodies(machine, TURN, *drive)[0]
+    bodies = sketch.free_bodies(machine, TURN, *drive)[0]
     forces = rigid_forces(machine, TURN, *drive)
     pin, torque = _printed_forces(machine, *drive)
     moment, complete = machine.linkage.lengths["frame"] * forces["y41"], forces.shaking_moment

@@ -14,18 +14,8 @@ from ..core.periodic_function import PeriodicFunction
 from ..linkages import FourBar, FourBarMotion
 from ..linkages.clearance import clearance_range
 from ..linkages.transmission import transmission_angle
-from .drawing import (
-    COLOURS,
-    GROUND,
-    LINK_COLOURS,
-    Array,
-    arc,
-    bar,
-    canvas,
-    pin,
-    pivot,
-    write,
-)
+from . import sketch
+from .drawing import COLOURS, Array
 from .records import Drawn, Value
 from .smith_linkages import PROPORTIONS, end_load, four_bar_of, linkage_of
 
@@ -164,7 +154,7 @@ def _direction(vector: Array) -> float:
 def figure_8(axes: Sequence[Axes]) -> Drawn:
     """Draw the nominal position and the two extremes for one crank angle."""
     ax = axes[0]
-    canvas(ax)
+    sketch.canvas(ax)
     places = _draw_extremes(ax, _GENERAL, _ANGLE, 1.6, (0.5, -0.5))
     a, b, d = places["A"], places["B"], places["D"]
     ax.plot(*np.transpose([b, d]), ":", color="0.4", lw=1.0)
@@ -174,8 +164,8 @@ def figure_8(axes: Sequence[Axes]) -> Drawn:
         (2.9, "C'", r"$\phi'$"),
         (1.2, "C''", r"$\phi''$"),
     ):
-        arc(ax, d, radius, (_direction(b - d), _direction(places[name] - d)), text)
-    arc(ax, a, 1.1, (0.0, _ANGLE), r"$\theta_2$")
+        sketch.arc(ax, d, radius, (_direction(b - d), _direction(places[name] - d)), text)
+    sketch.arc(ax, a, 1.1, (0.0, _ANGLE), r"$\theta_2$")
     return Drawn(_general_values(float(np.hypot(*(b - d)))))
 
 
@@ -193,26 +183,30 @@ def _draw_extremes(
     for name, at in pins.items():
         alpha, style = (1.0, "-") if name == "C" else (0.6, _DASHED)
         end = b + linkage.coupler * (at - b) / np.hypot(*(at - b))
-        bar(ax, b, end, LINK_COLOURS["coupler"], lw=2.4, alpha=alpha, ls=style, zorder=3)
-        bar(ax, d, at, LINK_COLOURS["follower"], lw=2.4, alpha=alpha, ls=style, zorder=3)
+        sketch.bar(
+            ax, b, end, sketch.LINK_COLOURS["coupler"], lw=2.4, alpha=alpha, ls=style, zorder=3
+        )
+        sketch.bar(
+            ax, d, at, sketch.LINK_COLOURS["follower"], lw=2.4, alpha=alpha, ls=style, zorder=3
+        )
         hole = Circle((float(end[0]), float(end[1])), 0.5 * c, fill=False, lw=0.9, alpha=alpha)
-        hole.set(edgecolor=LINK_COLOURS["coupler"], zorder=4)
+        hole.set(edgecolor=sketch.LINK_COLOURS["coupler"], zorder=4)
         ax.add_patch(hole)
         ax.update_datalim([end - 0.5 * c, end + 0.5 * c])
-        pin(ax, at, size=4.5)
+        sketch.pin(ax, at, size=4.5)
         shift = {"C": (0.0, 17.0), "C'": (16.0, 4.0), "C''": (-16.0, 6.0)}[name]
-        write(ax, at, name, shift, style="italic")
-    bar(ax, a, b, LINK_COLOURS["crank"], zorder=3)
+        sketch.write(ax, at, name, shift, style="italic")
+    sketch.bar(ax, a, b, sketch.LINK_COLOURS["crank"], zorder=3)
     _ground(ax, a, d, 0.09 * linkage.frame)
-    pin(ax, b)
-    write(ax, b, "B", (-11.0, 9.0), style="italic")
+    sketch.pin(ax, b)
+    sketch.write(ax, b, "B", (-11.0, 9.0), style="italic")
     return {**joints, **pins}
 
 
 def _ground(ax: Axes, a: Array, d: Array, unit: float) -> None:
     for place, name, side in ((a, "A", -16.0), (d, "D", 16.0)):
-        pivot(ax, place, unit)
-        write(ax, place, name, (side, 4.0), style="italic")
+        sketch.pivot(ax, place, unit)
+        sketch.write(ax, place, name, (side, 4.0), style="italic")
 
 
 def _general_values(distance: float) -> list[Value]:
@@ -237,27 +231,27 @@ def _general_values(distance: float) -> list[Value]:
 def figure_9a(axes: Sequence[Axes]) -> Drawn:
     """Draw the extreme position in which coupler and follower lie in one line."""
     ax = axes[0]
-    canvas(ax)
+    sketch.canvas(ax)
     l3, l4 = _IN_LINE.coupler, _IN_LINE.follower
     theta, a = _reach(_IN_LINE, l3 + l4), np.zeros(2)
     b = _IN_LINE.crank * np.array([cos(theta), sin(theta)])
     d = np.array([_IN_LINE.frame, 0.0])
     middle = d + l4 * (b - d) / (l3 + l4)
     for start, end, link in ((b, middle, "coupler"), (d, middle, "follower"), (a, b, "crank")):
-        bar(ax, start, end, LINK_COLOURS[link], zorder=3)
+        sketch.bar(ax, start, end, sketch.LINK_COLOURS[link], zorder=3)
     for name, up in (("C'", True), ("C''", False)):
         moved = _with_coupler(_IN_LINE, 0.4, crossed=not up).motion(theta)
         at = np.asarray(moved.joints["C"])
         for start, link in ((b, "coupler"), (d, "follower")):
-            bar(ax, start, at, LINK_COLOURS[link], lw=1.8, alpha=0.6, ls=_DASHED)
-        pin(ax, at, size=4.5)
-        write(ax, at, name, (6.0, 12.0) if up else (-6.0, -12.0), style="italic")
+            sketch.bar(ax, start, at, sketch.LINK_COLOURS[link], lw=1.8, alpha=0.6, ls=_DASHED)
+        sketch.pin(ax, at, size=4.5)
+        sketch.write(ax, at, name, (6.0, 12.0) if up else (-6.0, -12.0), style="italic")
         if up:
-            arc(ax, d, 0.45 * l4, (_direction(b - d), float(moved.theta4)), r"$\phi'$")
+            sketch.arc(ax, d, 0.45 * l4, (_direction(b - d), float(moved.theta4)), r"$\phi'$")
     _ground(ax, a, d, 1.3)
-    pin(ax, b, middle)
-    write(ax, b, "B", (-11.0, 9.0), style="italic")
-    write(ax, middle, "C", (10.0, 8.0), style="italic")
+    sketch.pin(ax, b, middle)
+    sketch.write(ax, b, "B", (-11.0, 9.0), style="italic")
+    sketch.write(ax, middle, "C", (10.0, 8.0), style="italic")
     c = 0.1
     printed = 1.0 - (l3 * c + c**2 / 4.0) / (2.0 * l4 * (l3 + l4))
     shorter = 1.0 + (l3 * c - c**2 / 4.0) / (2.0 * l4 * (l3 + l4))
@@ -277,15 +271,15 @@ def figure_9a(axes: Sequence[Axes]) -> Drawn:
 def figure_9b(axes: Sequence[Axes]) -> Drawn:
     """Draw the position in which BD and the follower are square."""
     ax = axes[0]
-    canvas(ax)
+    sketch.canvas(ax)
     l3, l4 = _SQUARE.coupler, _SQUARE.follower
     theta = _reach(_SQUARE, sqrt(l3**2 - l4**2))
     places = _draw_extremes(ax, _SQUARE, theta, 1.4, (0.5,))
     b, d = places["B"], places["D"]
     ax.plot(*np.transpose([b, d]), ":", color="0.4", lw=1.0)
     first, second = (0.55 * (at - d) / np.hypot(*(at - d)) for at in (b, places["C"]))
-    ax.plot(*np.transpose([d + first, d + first + second, d + second]), color=GROUND, lw=0.9)
-    arc(ax, d, 2.6, (_direction(b - d), _direction(places["C'"] - d)), r"$\phi'$")
+    ax.plot(*np.transpose([d + first, d + first + second, d + second]), color=sketch.GROUND, lw=0.9)
+    sketch.arc(ax, d, 2.6, (_direction(b - d), _direction(places["C'"] - d)), r"$\phi'$")
     values: list[Value] = []
     for c in (0.1, 0.01):
         sine = (l3 * c + c**2 / 4.0) / (2.0 * sqrt(l3**2 - l4**2) * l4)

@@ -9,7 +9,7 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.gallery import smith_charts, smith_responses
-from elastolink.runtime.gallery.free_bodies import free_bodies, round_force
+from elastolink.runtime.gallery.sketch import free_bodies, round_force
 from elastolink.runtime.gallery.smith_balancing import (
     BalancedLink,
     density_number,

@@ -19,13 +19,11 @@ from ..frequencies import (
 )
 from .aannaque_models import FULL, beams, exact_frequencies, held, structure_of
 from .drawing import COLOURS, turn
-from .records import Drawn, Table, Value
+from .records import Drawn, Value
 from .registry import contents
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-_ORDINALS = ("first", "second", "third", "fourth")
 
 
 @lru_cache(maxsize=1)
@@ -62,14 +60,9 @@ def elements(axes: Sequence[Axes], mode: int) -> Drawn:
         values.insert(0, 100.0 * (float(np.mean(one / three)) - 1.0))
     if mode > 1:
         return Drawn(values)
-    rows = tuple(
-        (name, str(size), *(f"{value:.2f}" for value in frequencies.mean(axis=0)))
-        for name, (size, frequencies) in models.items()
-    )
-    header = ("model", "freedoms", *(f"{nth} [rad/s]" for nth in _ORDINALS))
-    table = Table("Mean natural frequencies over the cycle", header, rows)
+    rows = [(name, size, *curves.mean(axis=0)) for name, (size, curves) in models.items()]
     freedoms = [models[name][0] for name in ("3 elements", "p-version 2")]
-    return Drawn([*values, *freedoms], tables=(table,))
+    return Drawn([*values, *freedoms], tables=[rows])
 
 
 # Table 5.1 as printed.
@@ -157,11 +150,9 @@ def table_5_1(axes: Sequence[Axes]) -> Drawn:
     rows = []
     for i in range(21):
         columns = (_elements(column) for column in _TABLE["columns"])
-        cells = (f"{values[i]:.3f}" if i < len(values) else "" for values in columns)
-        rows.append((str(i + 1), f"{_TABLE['exact'][i]:.3f}", f"{exact[i]:.3f}", *cells))
-    header = ("number", "exact, printed", "exact", *_TABLE["columns"])
-    table = Table("Natural frequencies of the portal frame [rad/s]", header, tuple(rows))
-    return Drawn([*_frequency_values(), *_error_values()], tables=(table,))
+        cells = (values[i] if i < len(values) else "" for values in columns)
+        rows.append((i + 1, _TABLE["exact"][i], exact[i], *cells))
+    return Drawn([*_frequency_values(), *_error_values()], tables=[rows])
 
 
 def _frequency_values() -> list[Value]:

@@ -18,7 +18,7 @@ from ..scenes import load_scene
 from . import sketch
 from .aannaque_models import FRAMES
 from .drawing import COLOURS, Array, panel_title
-from .records import Drawn, Table, Value
+from .records import Drawn, Value
 from .smith_linkages import four_bar_of
 
 if TYPE_CHECKING:
@@ -151,13 +151,10 @@ def figure_3_5(axes: Sequence[Axes]) -> Drawn:
         panel_title(ax, f"${name}$: {plane.lam:.4g}")
         ax.set_title("")
         ax.grid(visible=False)
-    rows = tuple(
-        (symbol, *(f"{plane.shares.get(symbol, 0.0):.4f}" for plane in planes))
-        for symbol in SYMBOLS[1:9]
-    )
-    header = ("class", *(f"lambda = {plane.lam:.4g}" for plane in planes))
-    table = Table("Share of each class in the area of the plane", header, rows)
-    return Drawn(_plane_values(planes), tables=(table,))
+    rows = [
+        (symbol, *(plane.shares.get(symbol, 0.0) for plane in planes)) for symbol in SYMBOLS[1:9]
+    ]
+    return Drawn(_plane_values(planes), tables=[rows])
 
 
 def _plane_values(planes: Sequence[BasePlane]) -> list[float]:
@@ -377,9 +374,8 @@ def free_body(axes: Sequence[Axes], link: str) -> Drawn:
     rows = []
     for letter, force in zip(letters, body.forces, strict=True):
         name = "".join(c for c in names[letter] if c not in "${}")
-        rows.append((name, *(f"{part:.4f}" for part in (*force, float(np.hypot(*force))))))
-    table = Table("Forces at this angle [N]", ("force", "x", "y", "size"), tuple(rows))
-    return Drawn(values, tables=(table,))
+        rows.append((name, *force, np.hypot(*force)))
+    return Drawn(values, tables=[rows])
 
 
 def figure_7_12(axes: Sequence[Axes]) -> Drawn:

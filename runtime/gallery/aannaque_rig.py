@@ -25,7 +25,7 @@ from ..scenes import load_scene
 from .aannaque_kinematics import cycle
 from .aannaque_models import FRAME, exact_frequencies, maxima, structure_of
 from .drawing import COLOURS, mark_fractions, panel_title, turn
-from .records import Drawn, Table
+from .records import Drawn
 from .registry import contents
 
 if TYPE_CHECKING:
@@ -127,13 +127,9 @@ def modes(axes: Sequence[Axes], place: int) -> Drawn:
         hertz = computed[rank] / (2 * np.pi)
         ax.set_title(f"mode {rank + 1}: {hertz:.1f} Hz, {computed[rank]:.1f} rad/s", fontsize=9)
     exact = exact_frequencies(structure_of(rig()), np.array([radians(angle)]), 3)[0]
-    rows = tuple(
-        (str(rank + 1), *(f"{value / (2 * np.pi):.2f}" for value in pair))
-        for rank, pair in enumerate(zip(computed, exact, strict=True))
-    )
-    header = ("mode", "three elements per link [Hz]", "dynamic stiffness [Hz]")
-    table = Table(f"Natural frequencies at the crank angle {angle} deg", header, rows)
-    return Drawn([angle, 100.0 * np.max(np.abs(computed / exact - 1.0))], tables=(table,))
+    rows = zip((1, 2, 3), computed / (2 * np.pi), exact / (2 * np.pi), strict=True)
+    gap = 100.0 * np.max(np.abs(computed / exact - 1.0))
+    return Drawn([angle, gap], {"angle": angle}, [rows])
 
 
 @lru_cache(maxsize=1)

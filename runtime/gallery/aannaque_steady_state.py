@@ -23,7 +23,7 @@ from .aannaque_algorithms import (
 )
 from .aannaque_models import CRITICAL, FULL, THESIS, beams, midpoint, moved, rms
 from .drawing import COLOURS, panel_title, turn
-from .records import Drawn, Table, Value
+from .records import Drawn, Value
 from .registry import contents
 
 if TYPE_CHECKING:
@@ -152,10 +152,7 @@ def contributions(axes: Sequence[Axes], link: str) -> Drawn:
     if link == "coupler":
         higher = np.sum(coupler[1:4]) / coupler[0]
         values = [higher / (np.sum(follower[1:4]) / follower[0])]
-    rows = tuple((name, *(f"{value:.3f}" for value in shares[name][:6])) for name in shares)
-    header = ("midpoint of", *(f"mode {i}" for i in range(1, 7)))
-    title = "rms of a mode's part over the rms of the displacement"
-    return Drawn(values, tables=(Table(title, header, rows),))
+    return Drawn(values, tables=[[(name, *sizes[:6]) for name, sizes in shares.items()]])
 
 
 @lru_cache(maxsize=4)
@@ -206,21 +203,16 @@ def figure_6_5(axes: Sequence[Axes]) -> Drawn:
     q = transition_nodes(*newmark_maps(system, CRITICAL, _STEPS))[:, : system.size]
     off = np.max(np.abs(_across("follower", q) - last)) / np.max(np.abs(last))
     numbers = [_settled(values, 1e-4), np.max(np.abs(multipliers)), off]
-    return Drawn(numbers, tables=(_cycle_table(),))
-
-
-def _cycle_table() -> Table:
     rows = []
     for drop, name in _FORMS:
         values, multipliers = march(drop)
         top = multipliers[np.argmax(np.abs(multipliers))]
         for tolerance in (1e-4, 1e-5):
-            cells = [name, f"{tolerance:g}", f"{abs(top):.4f}"]
-            cells.append(str(int(cycles_to_settle(top, tolerance, norm="change"))))
-            cells.append(str(int(cycles_to_settle(top, tolerance, norm="remaining"))))
-            rows.append((*cells, f"{_settled(values, tolerance):.0f}"))
-    header = ("form", "tolerance", "multiplier", "by change", "by rest", "marched, by change")
-    return Table("Cycles from rest at 62 rad/s", header, tuple(rows))
+            cycles = (
+                cycles_to_settle(top, tolerance, norm=norm) for norm in ("change", "remaining")
+            )
+            rows.append((name, tolerance, abs(top), *cycles, _settled(values, tolerance)))
+    return Drawn(numbers, tables=[rows])
 
 
 def _cycles(ratio: float) -> int:
@@ -284,12 +276,10 @@ def table_6_1(axes: Sequence[Axes]) -> Drawn:
         for name, label in _NAMES.items():
             ratios = [ratio(name, int(n), storage) for n in freedoms]
             ax.semilogx(freedoms, ratios, label=label)
-            rows.append((label, words, *(f"{ratio(name, n, storage):.3f}" for n in (9, 27, 300))))
+            rows.append((label, words, *(ratio(name, n, storage) for n in (9, 27, 300))))
         ax.axhline(1.0, color="0.5", lw=0.8)
         panel_title(ax, f"matrices {words}" if storage else words)
-    header = ("algorithm", "matrices", "n = 9", "n = 27", "n = 300")
-    table = Table("Counted over printed operations", header, tuple(rows))
-    return Drawn([ratio(name, 300) for name in _NAMES], tables=(table,))
+    return Drawn([ratio(name, 300) for name in _NAMES], tables=[rows])
 
 
 def table_6_2(axes: Sequence[Axes]) -> Drawn:

@@ -34,7 +34,7 @@ from .aannaque_models import (
     tops,
 )
 from .drawing import COLOURS
-from .records import Drawn, Table
+from .records import Drawn
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -92,24 +92,13 @@ def figure_7_1(axes: Sequence[Axes]) -> Drawn:
     both = [tops(_SPEEDS, largest), tops(_SPEEDS, second)]
     values = [_apart(places, np.concatenate(both)), nearest(places, CRITICAL)]
     values += [nearest(both[0], CRITICAL), float(np.max(np.abs(real_parts())))]
-    return Drawn(values, tables=(_maxima_table(places, both),))
-
-
-def _maxima_table(places: Array, both: Sequence[Array]) -> Table:
     rows, mean = [], float(_held().mean[0])
     for place in places:
         rank = int(np.argmin([np.min(np.abs(one - place), initial=np.inf) for one in both]))
         order = max(round(mean / float(place)), 1)
-        rows.append(
-            (
-                f"{place:.2f}",
-                f"{nearest(both[rank], float(place)):.2f}",
-                ("largest", "second")[rank],
-                f"{mean / order:.2f} (n = {order})" if rank == 0 else "",
-            )
-        )
-    header = ("stress [rad/s]", "real part [rad/s]", "modulus", "first mean frequency/n [rad/s]")
-    return Table("Critical speeds of the one-element model", header, tuple(rows))
+        name, divided = ("largest", "second")[rank], f"{mean / order:.2f} (n = {order})"
+        rows.append((place, nearest(both[rank], place), name, "" if rank else divided))
+    return Drawn(values, tables=[rows])
 
 
 @lru_cache(maxsize=1)

@@ -15,7 +15,7 @@ from ..periodic import floquet_multipliers
 from ..stability import StabilityChart, stability_chart
 from .beale_tip import AS_PRINTED, ENOUGH, FLEXIBLE, peak, rod, tip_from_rest
 from .drawing import COLOURS, panel_title
-from .records import Drawn, Table
+from .records import Drawn
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -88,15 +88,6 @@ def figure_12(axes: Sequence[Axes]) -> Drawn:
     three = heights[0]
     values = [np.max(three), np.min(three) / np.max(three)]
     values += [_largest("polynomial", 3, mean), _largest("overhang", ENOUGH, _QUOTED)]
-    return Drawn(values, tables=(_multiplier_table(mean),))
-
-
-def _largest(formulation: str, modes: int, speed: float) -> float:
-    motion = floquet_multipliers(_rod(formulation, modes, AS_PRINTED), speed, rtol=1e-9)
-    return peak(motion.multipliers)
-
-
-def _multiplier_table(mean: float) -> Table:
     rows = []
     speeds = (_QUOTED, mean, mean_frequency("overhang", ENOUGH))
     for drop in (AS_PRINTED, _COMPLETE):
@@ -106,9 +97,13 @@ def _multiplier_table(mean: float) -> Table:
                 motion = floquet_multipliers(_rod(formulation, modes, drop), speed, rtol=1e-9)
                 growth = 0.0 if motion.stable else float(motion.growth)
                 cells.append(f"{peak(motion.multipliers):.5f}, {growth:.2f} 1/s")
-            rows.append(tuple(cells))
-    header = ("modes", "physics", *(f"at {speed:.1f} rad/s" for speed in speeds))
-    return Table("Largest multiplier and growth rate, crank ratio 0.2", header, tuple(rows))
+            rows.append(cells)
+    return Drawn(values, {"speeds": speeds}, [rows])
+
+
+def _largest(formulation: str, modes: int, speed: float) -> float:
+    motion = floquet_multipliers(_rod(formulation, modes, AS_PRINTED), speed, rtol=1e-9)
+    return peak(motion.multipliers)
 
 
 @lru_cache(maxsize=4)
@@ -164,15 +159,11 @@ def figure_chart(axes: Sequence[Axes]) -> Drawn:
         ax.pcolormesh(points.x, points.y, codes, cmap=colours, vmin=0, vmax=3, rasterized=True)
         _mark(ax, frequencies(formulation, modes))
         panel_title(ax, f"{modes} {formulation} modes, {words}")
-        shares = (f"{100.0 * float(np.mean(points.kind == kind)):.1f}" for kind, _, _ in _KINDS)
-        error = f"{float(np.max(points.error)):.0e}"
-        rows.append((f"{modes} {formulation}", words, *shares, error))
+        shares = (100.0 * float(np.mean(points.kind == kind)) for kind, _, _ in _KINDS)
+        rows.append((f"{modes} {formulation}", words, *shares, np.max(points.error)))
     for _, colour, label in _KINDS:
         axes[0].fill([], [], color=colour, label=label)
-    shown = (f"{label} [%]" for _, _, label in _KINDS)
-    head = ("modes", "physics", *shown, "error of the invariants")
-    table = Table("Shares of the chart by kind of instability", head, tuple(rows))
-    return Drawn(_chart_values(), tables=(table,))
+    return Drawn(_chart_values(), tables=[rows])
 
 
 def _mark(ax: Axes, omega: Array) -> None:

@@ -19,7 +19,7 @@ from ..scenes import load_scene
 from ..systems.rod import FreeFreeRod
 from . import sketch
 from .drawing import COLOURS
-from .records import Drawn, Table
+from .records import Drawn
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -237,7 +237,7 @@ def damped_tip(scene: str, place: int, modes: int = 10) -> tuple[Array, Array, A
 
 def figure_5(axes: Sequence[Axes]) -> Drawn:
     """Draw the first turn and the periodic motion of ten polynomial modes with 0.002 damping."""
-    values, cells = [], []
+    values, rows = [], []
     for ax, scene in zip(axes, READINGS, strict=True):
         theta, free = stiff_tip(scene, "polynomial", 10)
         ax.plot(np.degrees(theta), 1e3 * free, **BAND, label="undamped, from rest")
@@ -253,12 +253,9 @@ def figure_5(axes: Sequence[Axes]) -> Drawn:
         for place, (name, _) in enumerate(_DAMPINGS):
             _, tip, settled = damped_tip(scene, place)
             values.append(_gap(tip, settled))
-            numbers = (1e3 * peak(tip), 1e3 * peak(settled), 100 * values[-1])
-            shown = [f"{value:.3g}" for value in numbers]
-            cells.append((mass, name, *shown, str(turns(settled))))
-    head = ("mass", "damping", "first turn, peak [mm]", "periodic, peak [mm]", "gap [%]", "turns")
-    title = "Readings of the damping: first turn from rest beside the periodic motion"
-    return Drawn(values, tables=(Table(title, head, tuple(cells)),))
+            numbers = (1e3 * peak(tip), 1e3 * peak(settled), 100 * values[-1], turns(settled))
+            rows.append((mass, name, *numbers))
+    return Drawn(values, tables=[rows])
 
 
 @lru_cache(maxsize=16)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import nan
 from textwrap import fill
@@ -163,6 +163,35 @@ class Table:
         return head + ["| " + " | ".join(cell or "–" for cell in row) + " |" for row in self.rows]
 
 
+@dataclass(frozen=True)
+class Columns:
+    """What a record says of a table.
+
+    Attributes
+    ----------
+    title : str
+        One line.
+    columns : mapping
+        From the heading of each column to the format of its numbers; empty for texts and counts.
+    """
+
+    title: str
+    columns: Mapping[str, str]
+
+    def filled(self, rows: Iterable[Sequence[Cell]], words: Mapping[str, object]) -> Table:
+        """Return the table with its cells as texts, and words in the braces of title and header."""
+        title, *header = (text.format_map(words) for text in (self.title, *self.columns))
+        texts = tuple(
+            tuple(
+                f"{float(cell):{form}}" if form and not isinstance(cell, str) else str(cell)
+                for cell, form in zip(row, self.columns.values(), strict=True)
+            )
+            for row in rows
+        )
+        return Table(title, tuple(header), texts)
+
+
+Cell = SupportsFloat | str
 Value = SupportsFloat | tuple[SupportsFloat, ...]
 
 
@@ -177,13 +206,13 @@ class Drawn:
         expected and perhaps tolerance, where the record does not hold the expected value.
     words : mapping
         What stands in the braces of the record's texts.
-    tables : tuple of Table
-        Numbers behind the picture.
+    tables : sequence
+        The rows of each of the record's tables: numbers and texts.
     """
 
     values: Sequence[Value] = ()
     words: Mapping[str, object] = field(default_factory=dict)
-    tables: tuple[Table, ...] = ()
+    tables: Sequence[Iterable[Sequence[Cell]]] = ()
 
 
 @dataclass(frozen=True)
@@ -244,6 +273,8 @@ class FigureEntry:
         Numbers of the text that the figure bears on, not computed yet.
     notes : tuple of str
         What the document leaves open and what was chosen for it.
+    tables : tuple of Columns
+        Tables of numbers behind the picture.
     page : Page or None
         The document of ours that it writes.
     """
@@ -260,6 +291,7 @@ class FigureEntry:
     legend: int = 4
     quoted: tuple[Quoted, ...] = ()
     notes: tuple[str, ...] = ()
+    tables: tuple[Columns, ...] = ()
     page: Page | None = None
 
     @property
@@ -286,9 +318,12 @@ class FigureEntry:
                     changes[name] = getattr(row, name).format_map(words)
             rows.append(replace(row, **changes))
         notes = tuple(note.format_map(words) if words else note for note in self.notes)
+        tables = tuple(
+            one.filled(cells, words) for one, cells in zip(self.tables, drawn.tables, strict=True)
+        )
         page = self.page
-        files = ((page.file, page.text(notes, drawn.tables)),) if page else ()
-        return Shown(self, tuple(rows), notes, drawn.tables, files)
+        files = ((page.file, page.text(notes, tables)),) if page else ()
+        return Shown(self, tuple(rows), notes, tables, files)
 
 
 @dataclass(frozen=True)

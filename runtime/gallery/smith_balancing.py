@@ -34,7 +34,7 @@ from ..rigid import (
 from ..rigid.counterweights import CASES, Case
 from . import sketch
 from .drawing import COLOURS, Array, panel_title
-from .records import Drawn, Table
+from .records import Drawn
 from .smith_forces import INCH, TURN, example, example_forces, finish_polar, peak
 
 if TYPE_CHECKING:
@@ -81,13 +81,11 @@ def figure_20(axes: Sequence[Axes]) -> Drawn:
         panel_title(ax, f"({case}) {_NAMES[case]}")
         for link, weight in _weights(case).items():
             _draw_weight(ax, motion, weight)
-            mass, offset = f"{weight.mass / _POUND_MASS:.4f}", f"{weight.offset / INCH:.3f}"
-            rows.append((f"({case})", link, mass, offset, f"{weight.disc_radius / INCH:.3f}"))
+            sizes = (weight.offset / INCH, weight.disc_radius / INCH)
+            rows.append((f"({case})", link, weight.mass / _POUND_MASS, *sizes))
         sketch.four_bar(ax, motion.joints, 0.1 * linkage.lengths["frame"])
     _same_limits(axes)
-    header = ("case", "link", "mass [lb]", "offset [in]", "radius [in]")
-    table = Table("Counterweights", header, tuple(rows))
-    return Drawn(_balance_values(), tables=(table,))
+    return Drawn(_balance_values(), tables=[rows])
 
 
 def _draw_weight(ax: Axes, motion: Motion, weight: Counterweight) -> None:
@@ -337,10 +335,9 @@ def figure_23b(axes: Sequence[Axes]) -> Drawn:
     rows = []
     for letter, density, number, best in _best():
         link = BalancedLink(best, number)
-        cells = (number, best, link.inertia, link.counterweight, link.radius)
-        rows.append((letter, f"{density:g}", *(f"{float(cell):.5f}" for cell in cells)))
-    header = ("point", "density", "K", "delta", "I/(M L^2)", "m_c/M", "r_c/L")
-    return Drawn(values, tables=(Table("Minima of the inertia", header, tuple(rows)),))
+        sizes = (link.inertia, link.counterweight, link.radius)
+        rows.append((letter, density, number, best, *sizes))
+    return Drawn(values, tables=[rows])
 
 
 def figure_23c(axes: Sequence[Axes]) -> Drawn:

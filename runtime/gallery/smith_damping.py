@@ -16,7 +16,7 @@ from ..hill.bloch import effective_operator
 from ..periodic import floquet_multipliers
 from ..stability import stability_edges
 from .drawing import COLOURS, Array, panel_title
-from .records import Drawn, Table, Value
+from .records import Drawn, Value
 from .registry import contents
 from .smith_linkages import LBF_IN_S2, RIG, RPM, Rig, region_name
 
@@ -114,13 +114,11 @@ def estimates_table(axes: Sequence[Axes]) -> Drawn:
         ax.hlines(one.quoted, one.stable, one.unstable, color="black", lw=3.0, label="quoted")
         panel_title(ax, f"{one.name}, {one.rig.name}")
         values.append((0.5 * sum(one.both("reduced", 1)), one.quoted, 0.15 * one.quoted))
-    return Drawn(values, _estimate_words(), (_estimates(),))
+    return Drawn(values, _estimate_words(), [_estimates()])
 
 
-def _estimates() -> Table:
-    orders = (("(7.51)" if order == 1 else f"order {order}") for order in _ORDERS)
-    header = ("region", "inertia", "quoted", *orders)
-    header += ("exact, (6.18)", "exact, complete", "decrement at rest")
+def _estimates() -> list[list[str]]:
+    """Return the damping that closes each region, by each order and exactly."""
 
     def span(one: Estimate, equation: str, order: int | None) -> str:
         ends = one.both(equation, order)
@@ -137,9 +135,8 @@ def _estimates() -> Table:
         cells = [one.name, f"{one.stable:g}-{one.unstable:g}", f"{one.quoted:g}"]
         cells += [span(one, "reduced", k) + ("*" if refused(one, k) else "") for k in _ORDERS]
         cells += [span(one, name, None) for name in ("reduced", "complete")]
-        low, high = at_rest(one)
-        rows.append((*cells, f"{low:.2f}-{high:.2f}"))
-    return Table("Damping K that closes the region", header, tuple(rows))
+        rows.append([*cells, "-".join(f"{end:.2f}" for end in at_rest(one))])
+    return rows
 
 
 def _estimate_words() -> dict[str, object]:
@@ -274,7 +271,7 @@ def _damped(chart: str, modes: int) -> LinearPeriodic:
 
 def modes_table(axes: Sequence[Axes]) -> Drawn:
     """Draw the widths of all regions of two modes over the crank speed."""
-    tables = []
+    tables, titles = [], []
     values: list[Value] = []
     for ax, (chart, inertia) in zip(axes, _CASES, strict=True):
         opened, closed = regions(chart, inertia)
@@ -285,36 +282,25 @@ def modes_table(axes: Sequence[Axes]) -> Drawn:
             left = [one for one in chosen if one.damped > 0.0]
             ends = [one.middle for one in chosen], [one.width for one in chosen]
             ax.plot(*ends, "o", mfc="none", color=colour, label=label)
-            rest = [one.middle for one in left], [one.damped for one in left]
-            ax.plot(*rest, "o", color=colour, ms=4)
+            kept = [one.middle for one in left], [one.damped for one in left]
+            ax.plot(*kept, "o", color=colour, ms=4)
         panel_title(ax, f"{RIG[chart].name}, {inertia:g} lbf in s²")
-        tables.append(_widest(chart, inertia, opened, closed))
+        tables.append(
+            [
+                (one.label, one.lower, one.upper, one.width, one.damped or "closed")
+                for one in opened[:10]
+            ]
+        )
+        rest = f"; {len(opened) - 10} narrower, {closed} closed" if len(opened) > 10 else ""
+        titles.append(
+            f"{RIG[chart].name}, follower inertia {inertia:g} lbf in s²: widest regions{rest}"
+        )
         # The first mode's regions with two modes beside those of the first mode alone.
         for n in (3, 4):
             alone, lower = _first_mode(chart, inertia)[n], np.array([one.lower for one in opened])
             nearest = float(lower[np.argmin(np.abs(lower - alone))])
             values.append((nearest, alone, _NEAR * alone))
-    return Drawn(values, _mode_words(), tuple(tables))
-
-
-def _widest(chart: str, inertia: float, opened: Sequence[_Region], closed: int) -> Table:
-    shown = opened[:10]
-    rows = tuple(
-        (
-            one.label,
-            f"{one.lower:.3f}",
-            f"{one.upper:.3f}",
-            f"{one.width:.3g}",
-            f"{one.damped:.2g}" if one.damped > 0.0 else "closed",
-        )
-        for one in shown
-    )
-    more = f"; {len(opened) - 10} narrower, {closed} closed" if len(opened) > 10 else ""
-    return Table(
-        f"{RIG[chart].name}, follower inertia {inertia:g} lbf in s²: widest regions{more}",
-        ("region", "from [rpm]", "to [rpm]", "width", "width when damped"),
-        rows,
-    )
+    return Drawn(values, {**_mode_words(), "titles": titles}, tables)
 
 
 def _mode_words() -> dict[str, object]:

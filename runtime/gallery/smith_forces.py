@@ -14,14 +14,14 @@ from ..rigid import Machine, MassDistribution, RigidForces, rigid_forces
 from ..scenes import load_scene
 from . import sketch
 from .drawing import COLOURS, Array
-from .records import Drawn, Table
+from .records import Drawn
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 INCH, POUND = 0.0254, 4.4482216152605
 TURN = np.linspace(0.0, 2.0 * pi, 1441)
-_JOINTS = ("f12", "f23", "f34", "f41")
+_JOINTS = ("12", "23", "34", "41")
 # Of each link: letters of its pins and its centre, names of the forces there, where it is drawn.
 _BODIES: dict[str, tuple[str, dict[str, str], tuple[float, float]]] = {
     "crank": (
@@ -86,12 +86,8 @@ def figure_11(axes: Sequence[Axes]) -> Drawn:
     for place, (force, text) in zip(ground, on_frame, strict=True):
         sketch.arrow(ax, place, scale * np.asarray(force), COLOURS[3], text)
     sketch.scale_bar(ax, (0.15 * frame, -0.8 * frame), scale, sketch.round_force(largest))
-    rows = tuple(
-        (f"F{name[1:]}", *(f"{float(part) / POUND:.4f}" for part in getattr(forces, name)))
-        for name in _JOINTS
-    )
-    table = Table("Pin forces at this angle [lbf]", ("force", "X", "Y"), rows)
-    return Drawn(_equations(machine, speed, 40.0), tables=(table,))
+    rows = [(f"F{joint}", *(getattr(forces, f"f{joint}") / POUND)) for joint in _JOINTS]
+    return Drawn(_equations(machine, speed, 40.0), tables=[rows])
 
 
 def _equations(machine: Machine, speed: float, acceleration: float) -> list[float]:

@@ -14,7 +14,7 @@ from ..hill import discriminant, perturbation_boundaries
 from ..scenes import load_scene
 from ..stability.boundary_speeds import speed_boundaries
 from .drawing import COLOURS, Array
-from .records import Drawn, Table
+from .records import Cell, Drawn
 from .registry import contents
 from .smith_linkages import (
     EQUATIONS,
@@ -107,7 +107,20 @@ def chart(axes: Sequence[Axes], figure: str) -> Drawn:
     sizes = order_sizes(rig)
     values = [one.predicted("complete") for one in compared]
     values += [max(sizes[name] for name in ("phi", "eps1 f1", "eps2 f2")), *_claims(rig)]
-    return Drawn(values, tables=(_quoted_speeds(compared),) if seen else ())
+    if not seen:
+        return Drawn(values)
+    rows = [
+        (
+            f"Fig. {one.figure}",
+            one.meaning + (f" ({one.note})" if one.note else ""),
+            one.inertia,
+            region_name(one.region),
+            one.speed,
+            *(f"{one.predicted(name):.1f} ({one.percent(name):+.1f} %)" for name in EQUATIONS),
+        )
+        for one in compared
+    ]
+    return Drawn(values, tables=[rows])
 
 
 def _boundaries(ax: Axes, rig: Rig, inertia: Array, high: float) -> None:
@@ -168,23 +181,6 @@ def _margins(ax: Axes, rig: Rig, window: tuple[float, float]) -> None:
     shown = {n: speed for n, speed in speeds.items() if window[0] <= speed <= window[1]}
     right.set_yticks(list(shown.values()), [region_name(n) for n in shown], fontsize=8)
     right.set_ylabel("fractions of the coupler frequency", fontsize=8)
-
-
-def _quoted_speeds(compared: Sequence[Observation]) -> Table:
-    rows = tuple(
-        (
-            f"Fig. {one.figure}",
-            one.meaning + (f" ({one.note})" if one.note else ""),
-            f"{one.inertia:.4f}",
-            region_name(one.region),
-            f"{one.speed:.0f}",
-            *(f"{one.predicted(name):.1f} ({one.percent(name):+.1f} %)" for name in EQUATIONS),
-        )
-        for one in compared
-    )
-    header = ("response", "what the text says", "I4 [lbf in s²]", "region", "quoted [rpm]")
-    equations = (f"{_NAMES[name]} [rpm]" for name in EQUATIONS)
-    return Table("Quoted speeds", (*header, *equations), rows)
 
 
 def order_sizes(rig: Rig) -> dict[str, float]:
@@ -253,7 +249,26 @@ def equations_table(axes: Sequence[Axes]) -> Drawn:
     ]
     ax.set_yticks(places, names, fontsize=7)
     ax.invert_yaxis()
-    tables = (_peaks(), _shifts(), _observed(), _summary())
+    rigs = _rig_linkages()
+    peaks: list[list[Cell]] = [
+        [rig.name, *order_sizes(rig).values(), _ratio(rig.linkage)] for rig in RIGS
+    ]
+    peaks += [
+        [f"{name}, no rig", *[""] * 5, _ratio(name)] for name in PROPORTIONS if name not in rigs
+    ]
+    observed = [
+        (
+            one.rig.name,
+            one.inertia,
+            region_name(one.region),
+            one.meaning,
+            one.speed,
+            *(one.predicted(name) for name in EQUATIONS),
+            _NAMES[one.nearest],
+        )
+        for one in _COMPARED
+    ]
+    tables = (peaks, _shifts(), observed, _summary())
     left = [_parts(name) for name in _rig_linkages()]
     count = sum(one.nearest == "complete" for one in _COMPARED)
     first, complete = _trend("first order"), _trend("complete")
@@ -264,23 +279,6 @@ def equations_table(axes: Sequence[Axes]) -> Drawn:
 
 def _rig_linkages() -> list[str]:
     return list(dict.fromkeys(rig.linkage for rig in RIGS))
-
-
-def _peaks() -> Table:
-    rows = [
-        (rig.name, *(f"{size:.3f}" for size in order_sizes(rig).values()), _ratio(rig.linkage))
-        for rig in RIGS
-    ]
-    others = [name for name in PROPORTIONS if name not in _rig_linkages()]
-    rows += [(f"{name}, no rig", *[""] * 5, _ratio(name)) for name in others]
-    left_out = ("left out: ε2 cos(θ2-θ3)", "left out: (π²/3 - 1/4) φ")
-    header = ("linkage, coupler", "φ", "ε1 f1", "ε2 f2", *left_out)
-    return Table(
-        "Peaks of the periodic terms of the first mode over that of the follower's, ε3 f3, "
-        "at the least follower inertia",
-        (*header, "left out over kept coupler part"),
-        tuple(rows),
-    )
 
 
 def _ratio(linkage: str) -> str:
@@ -331,29 +329,22 @@ def _moved() -> tuple[_Shift, ...]:
     return tuple(moved)
 
 
-def _shifts() -> Table:
+def _shifts() -> list[Sequence[Cell]]:
+    """Return the ends of the unstable regions, and how far they move."""
+
     def pair(values: Array) -> str:
         # Zero without a sign.
         low, high = (round(float(value), 1) + 0.0 for value in values)
         return f"{low:+.1f}, {high:+.1f}"
 
-    rows = []
+    rows: list[Sequence[Cell]] = []
     for one in _moved():
         base = one.ends["reduced"]
-        place = (one.rig.name, f"{one.inertia / LBF_IN_S2:.4f}", region_name(one.region))
+        place = (one.rig.name, one.inertia / LBF_IN_S2, region_name(one.region))
         moves = (pair(one.ends[name] - base) for name in EQUATIONS[1:])
         further = pair(one.two_modes - one.ends["complete"])
         rows.append((*place, f"{base[0]:.1f} to {base[1]:.1f}", *moves, further))
-    header = (
-        "linkage, coupler",
-        "I4 [lbf in s²]",
-        "region",
-        "unstable by (6.18) [rpm]",
-        "shift by (6.17) [rpm]",
-        "shift by complete [rpm]",
-        "further by the second mode [rpm]",
-    )
-    return Table("Ends of the unstable regions, and how far they move", header, tuple(rows))
+    return rows
 
 
 def two_modes(rig: Rig, inertia: float, n: int) -> Array:
@@ -370,23 +361,6 @@ def two_modes(rig: Rig, inertia: float, n: int) -> Array:
     return np.array([first[np.argmin(np.abs(first - end))] for end in alone])
 
 
-def _observed() -> Table:
-    rows = tuple(
-        (
-            one.rig.name,
-            f"{one.inertia:.4f}",
-            region_name(one.region),
-            one.meaning,
-            f"{one.speed:.0f}",
-            *(f"{one.predicted(name):.1f}" for name in EQUATIONS),
-            _NAMES[one.nearest],
-        )
-        for one in _COMPARED
-    )
-    header = ("linkage, coupler", "I4 [lbf in s²]", "region", "quoted in section 9.5.3", "[rpm]")
-    return Table("Speeds that chapter 9 quotes", (*header, *_NAMES.values(), "nearest"), rows)
-
-
 def _rms(equation: str, *, fitted: bool) -> float:
     """Return the root mean square deviation in percent, with one frequency per coupler fitted."""
     total = 0.0
@@ -399,29 +373,16 @@ def _rms(equation: str, *, fitted: bool) -> float:
     return float(np.sqrt(total / len(_COMPARED)))
 
 
-def _summary() -> Table:
-    rows = [
-        (
-            _NAMES[name],
-            str(sum(one.nearest == name for one in _COMPARED)),
-            f"{_rms(name, fitted=False):.1f} %",
-            f"{_rms(name, fitted=True):.1f} %",
-            *(f"{value:.1f}" for value in _trend(name)),
-        )
-        for name in EQUATIONS
-    ]
-    rows.append(("(6.18), first order", "", "", "", *(f"{v:.1f}" for v in _trend("first order"))))
+def _summary() -> list[Sequence[Cell]]:
+    """Return which equation is nearer."""
+    rows: list[Sequence[Cell]] = []
+    for name in EQUATIONS:
+        count = sum(one.nearest == name for one in _COMPARED)
+        errors = (f"{_rms(name, fitted=fitted):.1f} %" for fitted in (False, True))
+        rows.append((_NAMES[name], count, *errors, *_trend(name)))
+    rows.append(("(6.18), first order", "", "", "", *_trend("first order")))
     rows.append(("quoted", "", "", "", "250", "220"))
-    header = (
-        "equation",
-        "nearest to quoted speeds",
-        "rms deviation",
-        "the same, frequencies fitted",
-        "Ω/3, least inertia [rpm]",
-        "Ω/3, greatest [rpm]",
-    )
-    title = "Which equation is nearer (Ω/3: (5,1,5,2) with 1/32 in)"
-    return Table(title, header, tuple(rows))
+    return rows
 
 
 def _trend(equation: str) -> Array:

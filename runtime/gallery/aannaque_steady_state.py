@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from ..core.families import Array
 from ..core.trigonometric import even_angles
 from ..periodic import SteadyState, cycles_to_settle, steady_state
-from .aannaque_algorithms import (
+from .aannaque_models import CRITICAL, FULL, THESIS, beams, midpoint, moved, rms
+from .algorithms import (
     modal_motion,
     newmark_limit,
     newmark_maps,
@@ -21,7 +22,6 @@ from .aannaque_algorithms import (
     printed_count,
     transition_nodes,
 )
-from .aannaque_models import CRITICAL, FULL, THESIS, beams, midpoint, moved, rms
 from .drawing import COLOURS, panel_title, turn
 from .records import Drawn, Value
 from .registry import contents

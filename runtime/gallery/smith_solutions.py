@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
 from typing import TYPE_CHECKING
@@ -11,12 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core.families import LinearPeriodic
+from ..core.trigonometric import PeriodicArray, interpolated
 from ..hill import discriminant
 from ..periodic import simulate
-from ..periodic.equation import equation_of
 from ..scenes import load_scene
+from .algorithms import de_vogelaere_maps, de_vogelaere_start, kutta_merson, second_order_form
 from .drawing import COLOURS, Array, panel_title
-from .historic_steps import de_vogelaere_maps, de_vogelaere_start, kutta_merson
 from .records import Drawn
 from .smith_linkages import f3_series, linkage_of
 
@@ -27,6 +26,9 @@ if TYPE_CHECKING:
 _LAMBDA = 18.0
 _KUTTA_MERSON_RTOL = 1e-4
 _MU = 0.5
+# Crank angles, a coordinate and its derivative by the angle.
+_Run = tuple[Array, Array, Array]
+_UNITS = ((1.0, 0.0), (0.0, 1.0))
 _UNSTABLE, _STABLE = (0.25, 1.0, 2.25), (0.5, 1.5, 3.0)
 
 
@@ -44,92 +46,77 @@ def _speed(system: LinearPeriodic) -> float:
     return float(np.sqrt(stiffness)) / _LAMBDA
 
 
-@dataclass(frozen=True)
-class _Run:
-    """A march: crank angles ``(nt,)``, coordinates and time derivatives ``(nt, 1)``, the speed."""
-
-    theta: Array
-    q: Array
-    qd: Array
-    speed: float
+@lru_cache(maxsize=1)
+def _equation() -> PeriodicArray:
+    """Return the first mode's ``q'' = P q + F`` as a matrix on (q, 1)."""
+    system = _system(1)
+    mass, _, stiffness, force = second_order_form(system, _speed(system), 512)
+    samples = np.zeros((512, 2, 2))
+    samples[:, 0] = np.stack([-stiffness[:, 0, 0], force[:, 0]], axis=-1) / mass[:, :, 0]
+    return interpolated(samples, 2.0 * pi)
 
 
 @lru_cache(maxsize=32)
 def _march(step: float, turns: int, start: tuple[float, float] | None = None) -> _Run:
-    """March with de Vogelaere's method and a half step in degrees, against Smith's rule or not."""
-    system, h = _system(1), np.radians(step)
-    speed = _speed(system)
-    equation = equation_of(system, speed, {}, forcing=start is None)
+    """March with de Vogelaere's method and a half step in degrees, against Smith's rule or not.
 
-    def spring(theta: Array) -> Array:
-        # q'' = P q + F of one freedom, whose A has no skew part.
-        inertia = 1.0 / equation.at("mass", theta)[0]
-        out = np.zeros((len(theta), 1 + equation.forced, 1 + equation.forced))
-        stiffness = equation.at("stiffness", theta)[0]
-        if "gyroscopic" in equation.fields:
-            stiffness = stiffness - equation.slope("gyroscopic", theta)
-        out[:, :1, :1] = inertia * stiffness
-        if equation.forced:
-            out[:, 0, 1] = inertia[:, 0, 0] * equation.at("force", theta)[0, :, 0]
-        return out
-
-    count, unit = round(180.0 / step), float(equation.scale[0, 0])
-    maps = de_vogelaere_maps(spring, 2.0 * h * np.arange(float(count)), h)
-    q, rate = (0.0, 0.0) if start is None else start
-    one, zero = np.ones(int(equation.forced)), np.zeros(int(equation.forced))
-    first = np.append(q / unit, one), np.append(rate / unit, zero)
-    states = [de_vogelaere_start(spring, 0.0, h, *first)]
+    From rest, or without forcing from q and its derivative by the angle.
+    """
+    h, count = np.radians(step), round(180.0 / step)
+    maps = de_vogelaere_maps(_equation(), 2.0 * h * np.arange(float(count)), h)
+    q, slope, forced = (0.0, 0.0, 1.0) if start is None else (*start, 0.0)
+    y, rate = np.array([q, forced]), np.array([slope, 0.0])
+    states = [de_vogelaere_start(_equation(), 0.0, h, y, rate)]
     for _ in range(turns):
         for matrix in maps:
             states.append(matrix @ states[-1])
     every = max(1, count // 360)
-    kept = unit * np.array(states)[::every]
-    theta = 2.0 * h * every * np.arange(float(len(kept)))
-    slope = kept[:, 1 + equation.forced] / h
-    return _Run(theta, kept[:, :1], speed * slope[:, None], speed)
+    kept = np.array(states)[::every]
+    return 2.0 * h * every * np.arange(float(len(kept))), kept[:, 0], kept[:, 2] / h
 
 
 def _kutta_merson(turns: int) -> _Run:
     """March from rest with the Kutta-Merson programme, values kept at each degree."""
-    system = _system(1)
-    speed = _speed(system)
-    equation = equation_of(system, speed, {}, forcing=True)
-    unit = float(equation.scale[0, 0])
+
+    def generator(angles: Array) -> Array:
+        # Of q, its derivative by the angle, and 1.
+        rows = np.zeros((len(angles), 3, 3))
+        rows[:, 0, 1] = 1.0
+        rows[:, 1, ::2] = _equation()(angles)[:, 0]
+        return rows
+
     # The motion from rest has no size yet: that of the first quarter of a wave.
-    begin = simulate(system, speed, 0.25 / _LAMBDA, samples=16 * round(_LAMBDA))
-    peak = np.max(np.abs(begin.q)) / unit + np.max(np.abs(begin.qd)) / speed * unit
+    begin = simulate(_system(1), _speed(_system(1)), 0.25 / _LAMBDA, samples=16 * round(_LAMBDA))
+    sizes = [np.max(np.abs(values)) for values in (begin.q, begin.qd / begin.speed, 1.0)]
     theta = np.radians(np.arange(360.0 * turns + 1.0))
-    run = kutta_merson(
-        lambda angles: equation.generator(angles)[0],
+    rtol = _KUTTA_MERSON_RTOL
+    states = kutta_merson(
+        generator,
         theta,
         np.array([0.0, 0.0, 1.0]),
-        _KUTTA_MERSON_RTOL,
-        np.full(3, 1e-2 * _KUTTA_MERSON_RTOL * peak),
+        rtol,
+        1e-2 * rtol * np.array(sizes),
         first=0.1 / _LAMBDA,
     )
-    q = unit * run.states[:, :1]
-    return _Run(theta, q, np.full_like(q, np.nan), speed)
+    return theta, states[:, 0], states[:, 1]
 
 
 def _remaining(step: float) -> float:
     """Return the amplitude of a free vibration after one turn over that at its start."""
-    # Small enough to stay within the linear range, which a free vibration has no part in.
-    size = 1e-3
-    runs = [_march(step, 1, start) for start in ((size, 0.0), (0.0, size))]
-    ends = [(run.q[-1, 0] / size, run.qd[-1, 0] / (size * run.speed)) for run in runs]
-    return float(np.sqrt(abs(np.linalg.det(np.array(ends)))))
+    ends = [[q[-1], slope[-1]] for _, q, slope in (_march(step, 1, start) for start in _UNITS)]
+    return float(np.sqrt(abs(np.linalg.det(ends))))
 
 
 def _phase(run: _Run, turn: int) -> complex:
     """Return the fast vibration's complex amplitude over one turn, by a smooth window."""
-    inside = (run.theta >= 2 * pi * (turn - 1)) & (run.theta <= 2 * pi * turn)
-    theta, values = run.theta[inside], run.q[inside, 0]
-    window = np.sin(0.5 * (theta - theta[0])) ** 4
-    return complex(np.sum(values * window * np.exp(-1j * _LAMBDA * theta)))
+    theta, q, _ = run
+    inside = (theta >= 2 * pi * (turn - 1)) & (theta <= 2 * pi * turn)
+    window = np.sin(0.5 * (theta[inside] - theta[inside][0])) ** 4
+    return complex(np.sum(q[inside] * window * np.exp(-1j * _LAMBDA * theta[inside])))
 
 
 def _line(ax: Axes, run: _Run, colour: str, label: str = "", style: str = "-") -> None:
-    ax.plot(np.degrees(run.theta), 1e3 * run.q[:, 0], style, color=colour, lw=1.0, label=label)
+    ax.plot(np.degrees(run[0]), 1e3 * run[1], style, color=colour, lw=1.0, label=label)
 
 
 def figure_28(axes: Sequence[Axes]) -> Drawn:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from beam_motions import FOUR_BAR, JOINT_MASSES, SECTIONS
 from elastolink.runtime.beams import linkage_system
-from elastolink.runtime.gallery.aannaque_algorithms import newmark_maps
+from elastolink.runtime.gallery.algorithms import newmark_maps
 from elastolink.runtime.periodic import steady_state
 from elastolink.runtime.periodic.ring import solve_ring
 from elastolink.runtime.systems import with_modal_damping

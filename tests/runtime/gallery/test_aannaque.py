@@ -10,7 +10,6 @@ from elastolink.runtime.gallery import (
     aannaque_steady_state,
     aannaque_stresses,
 )
-from elastolink.runtime.gallery.aannaque_algorithms import operation_count, printed_count
 from elastolink.runtime.gallery.aannaque_kinematics import crossover, linkage
 from elastolink.runtime.gallery.aannaque_models import (
     beams,
@@ -19,6 +18,7 @@ from elastolink.runtime.gallery.aannaque_models import (
     hybrid_matrices,
     hybrid_model,
 )
+from elastolink.runtime.gallery.algorithms import operation_count, printed_count
 from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.periodic import floquet_multipliers, steady_state
 from elastolink.runtime.recovery import recover, stress_operator

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..linkages import FourBar, FourBarMotion
-from ..linkages.base_planes import BasePlane, base_plane
+from ..linkages.base_planes import base_plane
 from ..linkages.classification import SYMBOLS, classify
 from ..linkages.curves import coupler_curve
 from ..linkages.transmission import transmission_angle
@@ -30,6 +30,14 @@ _SPACE_LAMBDA = 1.5
 # Below, at and above the plane through the linkage of four equal links.
 _PLANES = {r"\lambda<\sqrt{3}": 1.0, r"\lambda=\sqrt{3}": sqrt(3.0), r"\lambda>\sqrt{3}": 3.0}
 _DIRECTIONS = np.vstack([np.ones(3), 2.0 * np.eye(3) - 1.0])
+# The projection of the three axes on the paper, the third upwards.
+_TURN, _TILT = radians(38.0), radians(24.0)
+_VIEW = np.array(
+    [
+        [-sin(_TURN), cos(_TURN), 0.0],
+        [-cos(_TURN) * sin(_TILT), -sin(_TURN) * sin(_TILT), cos(_TILT)],
+    ]
+)
 _PLANE_NAMES = (
     r"$1=\lambda_2+\lambda_3+\lambda_4$",
     r"$\lambda_2=1+\lambda_3+\lambda_4$",
@@ -78,21 +86,10 @@ def figure_3_4(axes: Sequence[Axes]) -> Drawn:
     ax.plot(*line.T, "--", color="0.2", lw=1.0, zorder=8)
     ax.plot(*line[1], "o", color="0.2", ms=3.5, zorder=8)
     sketch.write(ax, line[1], r"$\lambda$", (8.0, 8.0), fontsize=11)
-    inside, outside = (np.mean(classify(_linkages(_beside(step))) > 0) for step in (1e-6, -1e-6))
+    inside, outside = (np.mean(classify(_beside(step)) > 0) for step in (1e-6, -1e-6))
     gaps = np.abs(plane.outline @ _DIRECTIONS.T - 1.0)
     distance = np.abs(plane.outline @ np.full(3, 1.0 / sqrt(3.0)) - plane.lam)
     return Drawn([inside, outside, np.max(np.min(gaps, axis=1)), np.max(distance)])
-
-
-def _view() -> Array:
-    """Return the projection of the three axes on the paper, the third upwards."""
-    turn, tilt = np.radians(38.0), np.radians(24.0)
-    right = [-np.sin(turn), np.cos(turn), 0.0]
-    up = [-np.cos(turn) * np.sin(tilt), -np.sin(turn) * np.sin(tilt), np.cos(tilt)]
-    return np.array([right, up])
-
-
-_VIEW = _view()
 
 
 def _face(ax: Axes, corners: Array, colour: str, alpha: float) -> None:
@@ -117,7 +114,7 @@ def _call(ax: Axes, place: Array, text: str, shift: tuple[float, float]) -> None
 
 
 def _beside(step: float) -> Array:
-    """Return ratios a step off the four zero-mobility planes, shape (n, 3); inwards positive."""
+    """Return linkages a step off the four zero-mobility planes, (n, 4); inwards positive."""
     generator = np.random.default_rng(34)
     places = []
     for normal in _DIRECTIONS:
@@ -130,12 +127,7 @@ def _beside(step: float) -> Array:
         place[:, closing] = 0.0
         place[:, closing] = 1.0 + place.sum(axis=1)
         places.append(place - step * normal)
-    return np.concatenate(places)
-
-
-def _linkages(ratios: Array) -> Array:
-    """Return frame, input, coupler, output of ratios lambda_2, lambda_3, lambda_4."""
-    coupler, output, frame = ratios.T
+    coupler, output, frame = np.concatenate(places).T
     return np.stack([frame, np.ones_like(frame), coupler, output], axis=-1)
 
 
@@ -154,22 +146,19 @@ def figure_3_5(axes: Sequence[Axes]) -> Drawn:
     rows = [
         (symbol, *(plane.shares.get(symbol, 0.0) for plane in planes)) for symbol in SYMBOLS[1:9]
     ]
-    return Drawn(_plane_values(planes), tables=[rows])
-
-
-def _plane_values(planes: Sequence[BasePlane]) -> list[float]:
     counted = [
         abs(np.mean(plane.numbers[plane.numbers > 0] == SYMBOLS.index(symbol)) - share)
         for plane in planes
         for symbol, share in plane.shares.items()
     ]
-    return [
+    values = [
         len(SYMBOLS) - 1,
         len({symbol for plane in planes for symbol in plane.regions}),
         max(abs(sum(plane.shares.values()) - 1.0) for plane in planes),
         max(counted),
         int(classify(np.ones((1, 4)))[0]),
     ]
+    return Drawn(values, tables=[rows])
 
 
 @lru_cache(maxsize=1)
@@ -413,9 +402,10 @@ def pulses_of(frame: float) -> tuple[float, float]:
 
 def crossover() -> float:
     """Return the frame length [m] at which the second pulse is as large as the first."""
-    low, high = 0.60, 0.68
-    while high - low > 1e-6:
-        middle = 0.5 * (low + high)
-        first, second = pulses_of(middle)
-        low, high = (middle, high) if second < first else (low, middle)
-    return 0.5 * (low + high)
+    from scipy.optimize import brentq
+
+    def excess(frame: float) -> float:
+        first, second = pulses_of(frame)
+        return second - first
+
+    return float(brentq(excess, 0.60, 0.68, xtol=1e-9))

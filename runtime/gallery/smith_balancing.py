@@ -23,7 +23,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..linkages import Motion
 from ..rigid import (
     Counterweight,
     RigidForces,
@@ -73,6 +72,8 @@ def _forces(case: Case, offset: float = _OFFSET, thickness: float = _THICKNESS) 
 
 def figure_20(axes: Sequence[Axes]) -> Drawn:
     """Draw the four configurations with their counterweights to scale."""
+    from matplotlib.patches import Circle
+
     linkage = example()[0].linkage
     motion = linkage.motion(radians(60.0))
     rows = []
@@ -80,34 +81,24 @@ def figure_20(axes: Sequence[Axes]) -> Drawn:
         sketch.canvas(ax)
         panel_title(ax, f"({case}) {_NAMES[case]}")
         for link, weight in _weights(case).items():
-            _draw_weight(ax, motion, weight)
+            colour, radius = sketch.LINK_COLOURS[link], weight.disc_radius
+            start = motion.point(link, 0.0).position
+            centre = motion.point(link, weight.along, weight.across).position
+            sketch.bar(ax, start, centre, colour, lw=2.2, zorder=2)
+            look: dict[str, Any] = {"facecolor": colour, "edgecolor": sketch.INK, "lw": 0.9}
+            ax.add_patch(Circle(tuple(centre), radius, zorder=2, alpha=0.45, **look))
+            ax.update_datalim([centre - radius, centre + radius])
             sizes = (weight.offset / INCH, weight.disc_radius / INCH)
             rows.append((f"({case})", link, weight.mass / _POUND_MASS, *sizes))
         sketch.four_bar(ax, motion.joints, 0.1 * linkage.lengths["frame"])
-    _same_limits(axes)
-    return Drawn(_balance_values(), tables=[rows])
-
-
-def _draw_weight(ax: Axes, motion: Motion, weight: Counterweight) -> None:
-    from matplotlib.patches import Circle
-
-    colour, radius = sketch.LINK_COLOURS[weight.link], weight.disc_radius
-    start = motion.point(weight.link, 0.0).position
-    centre = motion.point(weight.link, weight.along, weight.across).position
-    sketch.bar(ax, start, centre, colour, lw=2.2, zorder=2)
-    look: dict[str, Any] = {"facecolor": colour, "alpha": 0.45, "edgecolor": sketch.INK, "lw": 0.9}
-    ax.add_patch(Circle((float(centre[0]), float(centre[1])), radius, zorder=2, **look))
-    ax.update_datalim([centre - radius, centre + radius])
-
-
-def _same_limits(axes: Sequence[Axes]) -> None:
-    """Give all panels the limits that hold every one of them."""
+    # All panels have the limits that hold every one of them.
     boxes = np.array([ax.dataLim.get_points() for ax in axes])
     (left, low), (right, high) = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
     edge = 0.04 * (right - left)
     for ax in axes:
         ax.set_aspect("equal", adjustable="box")
         ax.set(xlim=(left - edge, right + edge), ylim=(low - edge, high + edge))
+    return Drawn(_balance_values(), tables=[rows])
 
 
 def _balance_values() -> list[float]:
@@ -288,22 +279,19 @@ def figure_23a(axes: Sequence[Axes]) -> Drawn:
         ax.plot(best, number, "o", color=COLOURS[1], ms=5)
         sketch.write(ax, (best, number), letter, (-10.0, 8.0))
     ends = [offset_function(0.0), offset_function(1.0), np.diff(offset_function(delta)).min()]
-    return Drawn([*ends, optimal_offset(0.6), *_printed_equations(delta[1:])])
-
-
-def _printed_equations(delta: Array) -> list[float]:
-    """Return the printed inertia, its derivative and the quintic less what holds."""
-    number = _number(_DENSITIES["C"])
+    # The printed inertia, its derivative and the quintic less what holds.
+    delta, number = delta[1:], _number(_DENSITIES["C"])
     link = BalancedLink(delta, number)
     bars, exact = 0.5 * (1.0 + delta**2), (1.0 + delta**3) / 3.0
     rest = 0.25 * number * (1.0 / delta - delta) ** 2 + 0.5 * (delta - delta**3)
     slope = 0.5 * (1.0 - delta**2) + 0.5 * number * (delta - delta**-3.0)
-    return [
+    gaps = [
         np.max(np.abs(bars + rest - link.inertia)),
         np.max(np.abs(exact + rest - link.inertia)) / link.inertia.max(),
         np.max(np.abs(slope - link.slope)) / np.abs(link.slope).max(),
         max(abs(d**5 - k * d**4 - d**3 + k) for _, _, k, d in _best()),
     ]
+    return Drawn([*ends, optimal_offset(0.6), *gaps])
 
 
 def _densities(ax: Axes, delta: Array, beside: float) -> None:

@@ -141,14 +141,10 @@ class _Pair:
         return ends.lower[0], ends.upper[0]
 
 
-def _functions() -> _Pair:
-    return _Pair(_series(linkage_of(_LINKAGE), "f1"), f3_series(_LINKAGE))
-
-
 def figure_38(axes: Sequence[Axes]) -> Drawn:
     """Draw both boundary surfaces of one region and their first-order lines in the planes."""
     space: Any = axes[0]
-    pair = _functions()
+    pair = _Pair(_series(linkage_of(_LINKAGE), "f1"), f3_series(_LINKAGE))
     turn, amounts = np.linspace(0.0, 0.5 * pi, 41), np.linspace(0.0, 1.0, 33)
     reach = np.minimum(_REACH / np.maximum(np.cos(turn), np.sin(turn)), 2.0 * _REACH)
     rays = [
@@ -156,23 +152,18 @@ def figure_38(axes: Sequence[Axes]) -> Drawn:
     ]
     waves: tuple[Callable[[Array], Array], ...] = (np.cos, np.sin)
     eps1, eps2 = (np.outer(reach * wave(turn), amounts) for wave in waves)
-    for which, colour in enumerate(COLOURS[:2]):
-        sheet = np.stack([ray[which] for ray in rays])
+    for which, (colour, side) in enumerate(zip(COLOURS, ("lower", "upper"), strict=False)):
+        sheet, label = np.stack([ray[which] for ray in rays]), f"{side} boundary, exact"
         space.plot_surface(
             eps1, sheet, eps2, color=colour, alpha=0.45, rcount=41, ccount=33, linewidth=0.0
         )
         for ray in range(0, len(turn), 10):
             space.plot(eps1[ray], sheet[ray], eps2[ray], color=colour, lw=0.7)
-        space.plot(eps1[:, -1], sheet[:, -1], eps2[:, -1], color=colour, lw=0.9)
+        space.plot(eps1[:, -1], sheet[:, -1], eps2[:, -1], color=colour, lw=0.9, label=label)
     _first_order(space, pair)
-    _frame(space)
-    for colour, style, label in (
-        (COLOURS[0], "-", "lower boundary, exact"),
-        (COLOURS[1], "-", "upper boundary, exact"),
-        ("0.25", "--", "first order"),
-        ("0.25", ":", "middle, first order"),
-    ):
-        space.plot([], [], [], style, color=colour, label=label)
+    space.plot([0.0, 0.0], [0.0, 1.75], [0.0, 0.0], color="0.2", lw=1.0)
+    space.set_box_aspect((1.0, 1.7, 1.0), zoom=1.12)
+    space.view_init(elev=22.0, azim=-28.0)
     return Drawn(_space_values(pair), _order_errors(pair))
 
 
@@ -192,25 +183,16 @@ def _first_order(space: Any, pair: _Pair) -> None:
         x, z = share * _REACH * eps1 * amounts, share * _REACH * eps2 * amounts
         ends = pair.to_order(x, z, 1)
         for letter, end in zip(names, ends, strict=True):
-            space.plot(x, end, z, "--", color=ink, lw=1.0, zorder=20)
+            space.plot(x, end, z, "--", color=ink, lw=1.0, zorder=20, label="first order")
             name((x[1], end[1], z[1]), letter)
         if middle_name:
             middle = 0.5 * (ends[0] + ends[1])
-            space.plot(x, middle, z, ":", color=ink, lw=1.0, zorder=20)
+            label = "middle, first order"
+            space.plot(x, middle, z, ":", color=ink, lw=1.0, zorder=20, label=label)
             name((x[1], middle[1], z[1]), middle_name)
         space.plot([x[1]] * 2, [end[1] for end in ends], [z[1]] * 2, color=ink, lw=1.6, zorder=21)
     name((0.0, 0.25 * _REGION**2, 0.0), "P")
     name((0.0, 0.0, 0.0), "O")
-
-
-def _frame(space: Any) -> None:
-    space.plot([0.0, 0.0], [0.0, 1.75], [0.0, 0.0], color="0.2", lw=1.0)
-    space.set(xlabel=r"$\epsilon_1$", ylabel=r"$\lambda^2$", zlabel=r"$\epsilon_2$")
-    space.set(xlim=(0.0, _REACH), ylim=(0.0, 1.75), zlim=(0.0, _REACH))
-    ticks = [0.0, 0.2, 0.4, 0.6]
-    space.set(xticks=ticks, zticks=ticks)
-    space.set_box_aspect((1.0, 1.7, 1.0), zoom=1.12)
-    space.view_init(elev=22.0, azim=-28.0)
 
 
 def _order_errors(pair: _Pair) -> dict[str, float]:

@@ -22,6 +22,7 @@ from elastolink.runtime.gallery.smith_linkages import (
     RIGS,
     RPM,
     end_load,
+    f3_series,
     four_bar_of,
     linkage_of,
 )
@@ -165,7 +166,8 @@ def test_only_a_scene_with_a_four_bar_gives_one():
 
 
 def test_the_surfaces_of_the_space_are_those_of_the_sum_of_both_functions():
-    pair = smith_charts._functions()
+    f1 = smith_charts._series(linkage_of("(2,1,2,2)"), "f1")
+    pair = smith_charts._Pair(f1, f3_series("(2,1,2,2)"))
     lower, upper = pair.along(0.3, 0.4, np.array([0.0, 1.0]))
     exact = hill_boundaries(pair.first * 0.3 + pair.second * 0.4, 1.0, (2,))
     assert lower[1] == exact.lower[0] and upper[1] == exact.upper[0]

@@ -13,6 +13,7 @@ from ..constrained import constrained_motion
 from ..constrained.motion import ConstrainedMotion
 from ..core.families import Array, LinearPeriodic
 from ..linkages import QuickReturn
+from ..periodic import steady_state
 from ..periodic.equation import equation_of
 from ..periodic.transition import method, segments_of
 from ..scenes import load_scene
@@ -39,7 +40,7 @@ BAND: dict[str, Any] = {"color": "0.25", "lw": 3.0, "alpha": 0.35}
 CONVERGED = f"{ENOUGH} overhang modes (converged)"
 # Steps a turn of a method that is stable at any step: what they do not resolve are vibrations of
 # the highest polynomial modes, of which the deflection holds next to nothing.
-_STEPS, _DAMPED_STEPS = 1440, 720
+_STEPS = 1440
 # Crank angles of a turn at which deflections are given.
 _GIVEN = 720
 # Places along the rod.
@@ -52,8 +53,6 @@ _DAMPINGS: tuple[tuple[str, dict[str, Any]], ...] = (
     ),
     ("C = 0.002 s K", {"rod__relaxation_time": 0.002}),
 )
-# Turns after which what is left of the start is below 1e-6 of it.
-_SETTLED = {STIFF: 15, HEAVY: 240}
 
 
 def rod(
@@ -225,33 +224,27 @@ def lean(scene: str) -> float:
     return float(np.degrees(np.arctan2(drawn_in, abs(last[-1]))))
 
 
-@lru_cache(maxsize=16)
-def damped_tip(scene: str, place: int, modes: int = 10) -> tuple[Array, Array, Array]:
-    """Return crank angles, first turn and periodic motion [m] for a reading of the damping."""
-    system = rod(scene, "polynomial", modes, **_DAMPINGS[place][1])
-    count = _SETTLED[scene]
-    theta, tip = tip_from_rest(system, SPEED, turns=count, steps=_DAMPED_STEPS)
-    turn = (len(tip) - 1) // count
-    return theta[: turn + 1], tip[: turn + 1], tip[-turn - 1 :]
-
-
 def figure_5(axes: Sequence[Axes]) -> Drawn:
     """Draw the first turn and the periodic motion of ten polynomial modes with 0.002 damping."""
     values, rows = [], []
     for ax, scene in zip(axes, READINGS, strict=True):
         theta, free = stiff_tip(scene, "polynomial", 10)
         ax.plot(np.degrees(theta), 1e3 * free, **BAND, label="undamped, from rest")
-        for place, colour, text in (
-            (1, COLOURS[0], "damping ratio 0.002 in mode 1, internal"),
-            (3, COLOURS[1], "C = 0.002 s K"),
-        ):
-            theta, tip, settled = damped_tip(scene, place)
-            angle, label = np.degrees(theta), f"{text}, periodic"
-            ax.plot(angle, 1e3 * tip, color=colour, label=f"{text}, from rest")
-            ax.plot(angle, 1e3 * settled, "--", color=colour, lw=1.0, label=label)
         mass = "read as lbm/in" if scene == STIFF else "read as lbf s^2/in^2"
-        for place, (name, _) in enumerate(_DAMPINGS):
-            _, tip, settled = damped_tip(scene, place)
+        for (name, changes), colour, text in zip(
+            _DAMPINGS,
+            ("", COLOURS[0], "", COLOURS[1]),
+            ("", "damping ratio 0.002 in mode 1, internal", "", "C = 0.002 s K"),
+            strict=True,
+        ):
+            system = rod(scene, "polynomial", 10, **changes)
+            theta, tip = tip_from_rest(system, SPEED, steps=_GIVEN)
+            around = steady_state(system, SPEED, rtol=1e-8, samples=_GIVEN).deflection()
+            settled = np.append(around, around[0])
+            if text:
+                angle, label = np.degrees(theta), f"{text}, periodic"
+                ax.plot(angle, 1e3 * tip, color=colour, label=f"{text}, from rest")
+                ax.plot(angle, 1e3 * settled, "--", color=colour, lw=1.0, label=label)
             values.append(_gap(tip, settled))
             numbers = (1e3 * peak(tip), 1e3 * peak(settled), 100 * values[-1], turns(settled))
             rows.append((mass, name, *numbers))

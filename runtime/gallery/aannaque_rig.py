@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import degrees, radians
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -43,9 +43,8 @@ STATIONS: Mapping[str, tuple[float, ...]] = {
 _SLOW, _FAST = SPEEDS["C"][0], SPEEDS["C"][-1]
 # How much larger displacements are drawn beside the true path.
 _LARGER = {_SLOW: 200.0, _FAST: 8.0}
-# Captions of Figs. 8.9 to 8.18; by section 8.4 the cycle is divided into ten equal angles.
-CAPTIONS = (0, 36, 72, 108, 144, 180, 216, 252, 288, 316)
-ANGLES = tuple(360 * k // len(CAPTIONS) for k in range(len(CAPTIONS)))
+# By section 8.4 the cycle is divided into ten equal angles.
+ANGLES = tuple(range(0, 360, 36))
 _LENGTHS = np.concatenate([np.linspace(0.30, 0.52, 8), np.linspace(0.535, 0.80, 16)])
 FRAMES = (0.547, 0.632, 0.642, 0.652, 0.662)
 _LOW, _HIGH, _LONG_HIGH = 5.0, 40.0, 30.0
@@ -309,26 +308,23 @@ def sheet(axes: Sequence[Axes], letter: str, first: int, last: int) -> Drawn:
     speeds = tuple(SPEEDS[letter][number - 1] for number in numbers)
     shown = cycles({"C": SHORT, "D": LONG}[letter], FRAME, speeds)
     names = {"crank": "input link", "coupler": "coupler", "follower": "follower"}
+    looks: dict[float, dict[str, Any]] = {
+        0.5: {"color": COLOURS[0], "lw": 1.0, "label": "midpoint"},
+        0.0: {"color": COLOURS[1], "lw": 0.8, "ls": "--", "label": "end at the flywheel"},
+    }
     for row, number in enumerate(numbers):
-        for column, (link, name) in enumerate(names.items()):
-            ax = axes[3 * row + column]
-            middle = shown.stress[link, 0.5][row] / 1e6
-            turn(ax, shown.theta, middle, color=COLOURS[0], lw=1.0, label="midpoint")
-            if (link, 0.0) in shown.stress:
-                end, label = shown.stress[link, 0.0][row] / 1e6, "end at the flywheel"
-                turn(ax, shown.theta, end, "--", color=COLOURS[1], lw=0.8, label=label)
+        for ax, (link, name) in zip(axes[3 * row :], names.items(), strict=False):
+            for place, look in looks.items():
+                if (link, place) in shown.stress:
+                    turn(ax, shown.theta, shown.stress[link, place][row] / 1e6, **look)
             ax.locator_params(axis="y", nbins=4)
-            panel_title(ax, f"{letter}.{number}: {name}, {shown.speed[row]:g} rad/s")
+            panel_title(ax, f"{letter}.{number}: {name}, {speeds[row]:g} rad/s")
             ax.tick_params(labelbottom=number == last)
-    highest = max(_highest(shown, k) for k in range(len(numbers)))
+    highest = 0.0
+    for values in shown.stress.values():
+        waves = np.abs(np.fft.rfft(values))[:, 1:]
+        kept = waves >= 0.01 * np.max(waves, axis=1, keepdims=True)
+        last_kept = waves.shape[1] - np.argmax(kept[:, ::-1], axis=1)
+        highest = max(highest, float(np.max(last_kept * shown.speed)) / (2 * np.pi))
     peaks = [np.max(np.abs(shown.stress["crank", place]), axis=1) for place in (0.0, 0.5)]
     return Drawn([highest, float(np.min(peaks[0] / peaks[1]))])
-
-
-def _highest(shown: Cycles, speed: int) -> float:
-    """Return the frequency [Hz] of the highest harmonic with 1 % of the largest, all links."""
-    best = 0
-    for values in shown.stress.values():
-        waves = np.abs(np.fft.rfft(values[speed]))[1:]
-        best = max(best, 1 + int(np.flatnonzero(waves >= 0.01 * waves.max())[-1]))
-    return best * float(shown.speed[speed]) / (2 * np.pi)

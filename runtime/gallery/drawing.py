@@ -124,7 +124,7 @@ def panel_title(ax: Axes, text: str) -> None:
     ax.set_title(text, loc="left", fontsize=9)
 
 
-def turn(ax: Axes, theta: Array, values: Array, style: str = "-", **look: Any) -> None:
+def turn(ax: Axes, theta: Array, values: Array, *style: str, **look: Any) -> None:
     """Draw values at the angles [rad] of a turn over degrees, closed at its end."""
     closed = np.degrees(np.append(theta, 2.0 * pi)), np.append(values, values[0])
-    ax.plot(*closed, style, **look)
+    ax.plot(*closed, *style, **look)

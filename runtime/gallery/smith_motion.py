@@ -166,7 +166,22 @@ def figure_8(axes: Sequence[Axes]) -> Drawn:
     ):
         sketch.arc(ax, d, radius, (_direction(b - d), _direction(places[name] - d)), text)
     sketch.arc(ax, a, 1.1, (0.0, _ANGLE), r"$\theta_2$")
-    return Drawn(_general_values(float(np.hypot(*(b - d)))))
+    # (3.1) to (3.3) beside the computed range, and beside other linkages.
+    l3, l4, c = _GENERAL.coupler, _GENERAL.follower, 0.2
+    distance, phi = float(np.hypot(*(b - d))), float(_phi(_GENERAL, _ANGLE))
+    values: list[Value] = []
+    moves = clearance_range(_GENERAL, c, _ANGLE)
+    # The follower turns back by delta phi', and on by delta phi''.
+    for sign, move in ((1.0, moves.below), (-1.0, moves.above)):
+        printed = (l3 * c + sign * c**2 / 4.0) / (2.0 * distance * l4)
+        other = float(_phi(_with_coupler(_GENERAL, 0.5 * sign * c), _ANGLE))
+        angles = (phi + sign * float(move), other)
+        values += [(sign * (cos(phi) - cos(angle)), printed) for angle in angles]
+    for small in (0.2, 0.02):
+        printed = degrees(l3 * small / (distance * l4 * sin(phi)))
+        total = float(clearance_range(_GENERAL, small, _ANGLE).width)
+        values.append((degrees(total), printed, printed * (small / l4) ** 2))
+    return Drawn(values)
 
 
 def _draw_extremes(
@@ -207,25 +222,6 @@ def _ground(ax: Axes, a: Array, d: Array, unit: float) -> None:
     for place, name, side in ((a, "A", -16.0), (d, "D", 16.0)):
         sketch.pivot(ax, place, unit)
         sketch.write(ax, place, name, (side, 4.0), style="italic")
-
-
-def _general_values(distance: float) -> list[Value]:
-    """Return (3.1) to (3.3) beside the computed range, and beside other linkages."""
-    l3, l4, c = _GENERAL.coupler, _GENERAL.follower, 0.2
-    phi = float(_phi(_GENERAL, _ANGLE))
-    values: list[Value] = []
-    moves = clearance_range(_GENERAL, c, _ANGLE)
-    # The follower turns back by delta phi', and on by delta phi''.
-    for sign, move in ((1.0, moves.below), (-1.0, moves.above)):
-        printed = (l3 * c + sign * c**2 / 4.0) / (2.0 * distance * l4)
-        other = float(_phi(_with_coupler(_GENERAL, 0.5 * sign * c), _ANGLE))
-        angles = (phi + sign * float(move), other)
-        values += [(sign * (cos(phi) - cos(angle)), printed) for angle in angles]
-    for small in (0.2, 0.02):
-        printed = degrees(l3 * small / (distance * l4 * sin(phi)))
-        total = float(clearance_range(_GENERAL, small, _ANGLE).width)
-        values.append((degrees(total), printed, printed * (small / l4) ** 2))
-    return values
 
 
 def figure_9a(axes: Sequence[Axes]) -> Drawn:

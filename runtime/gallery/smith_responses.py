@@ -53,12 +53,9 @@ def wave_form(axes: Sequence[Axes], divisor: float) -> Drawn:
     ax.plot(np.degrees(run.theta), length * run.q[:, 0], "--", color=COLOURS[4], label=label)
     values = [_vibrations(name, speed) for name in damped]
     if divisor == round(divisor):
-
-        def harmonic(speed: float) -> float:
-            q = steady_state(damped["reduced"], speed, samples=512).q[:, 0]
-            return float(np.abs(np.fft.rfft(q)[int(divisor)]))
-
-        values.append(harmonic(speed) / harmonic(0.97 * speed))
+        both = steady_state(damped["reduced"], speed * np.array([1.0, 0.97]), samples=512)
+        harmonic = np.abs(np.fft.rfft(both.q[..., 0]))[:, int(divisor)]
+        values.append(float(harmonic[0] / harmonic[1]))
     return Drawn(values)
 
 

@@ -187,12 +187,6 @@ def test_maxima_stand_out_by_the_share_asked_for():
     assert len(aannaque_models.maxima(x, y, -np.log1p(-0.01))) == 2
 
 
-def test_the_ten_angles_are_even():
-    np.testing.assert_array_equal(np.diff(aannaque_rig.ANGLES), 36)
-    assert len(aannaque_rig.ANGLES) == 10
-    assert aannaque_rig.CAPTIONS[:-1] == aannaque_rig.ANGLES[:-1]
-
-
 @pytest.mark.slow
 def test_lengths_at_which_both_pinned_links_vibrate_alike():
     # sqrt(I/A) is what the sections differ by; lengths go with its square root.

@@ -178,7 +178,7 @@ class Columns:
     title: str
     columns: Mapping[str, str]
 
-    def filled(self, rows: Iterable[Sequence[Cell]], words: Mapping[str, object]) -> Table:
+    def filled(self, rows: Iterable[Sequence[Any]], words: Mapping[str, object]) -> Table:
         """Return the table with its cells as texts, and words in the braces of title and header."""
         title, *header = (text.format_map(words) for text in (self.title, *self.columns))
         texts = tuple(
@@ -191,7 +191,6 @@ class Columns:
         return Table(title, tuple(header), texts)
 
 
-Cell = SupportsFloat | str
 Value = SupportsFloat | tuple[SupportsFloat, ...]
 
 
@@ -207,12 +206,12 @@ class Drawn:
     words : mapping
         What stands in the braces of the record's texts.
     tables : sequence
-        The rows of each of the record's tables: numbers and texts.
+        The rows of each of the record's tables, their cells numbers and texts.
     """
 
     values: Sequence[Value] = ()
     words: Mapping[str, object] = field(default_factory=dict)
-    tables: Sequence[Iterable[Sequence[Cell]]] = ()
+    tables: Sequence[Iterable[Sequence[Any]]] = ()
 
 
 @dataclass(frozen=True)

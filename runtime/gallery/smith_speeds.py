@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from ..hill import discriminant, perturbation_boundaries
 from ..scenes import load_scene
 from ..stability.boundary_speeds import speed_boundaries
 from .drawing import COLOURS, Array
-from .records import Cell, Drawn
+from .records import Drawn
 from .registry import contents
 from .smith_linkages import (
     EQUATIONS,
@@ -250,7 +250,7 @@ def equations_table(axes: Sequence[Axes]) -> Drawn:
     ax.set_yticks(places, names, fontsize=7)
     ax.invert_yaxis()
     rigs = _rig_linkages()
-    peaks: list[list[Cell]] = [
+    peaks: list[Sequence[Any]] = [
         [rig.name, *order_sizes(rig).values(), _ratio(rig.linkage)] for rig in RIGS
     ]
     peaks += [
@@ -329,7 +329,7 @@ def _moved() -> tuple[_Shift, ...]:
     return tuple(moved)
 
 
-def _shifts() -> list[Sequence[Cell]]:
+def _shifts() -> list[Sequence[Any]]:
     """Return the ends of the unstable regions, and how far they move."""
 
     def pair(values: Array) -> str:
@@ -337,7 +337,7 @@ def _shifts() -> list[Sequence[Cell]]:
         low, high = (round(float(value), 1) + 0.0 for value in values)
         return f"{low:+.1f}, {high:+.1f}"
 
-    rows: list[Sequence[Cell]] = []
+    rows: list[Sequence[Any]] = []
     for one in _moved():
         base = one.ends["reduced"]
         place = (one.rig.name, one.inertia / LBF_IN_S2, region_name(one.region))
@@ -373,9 +373,9 @@ def _rms(equation: str, *, fitted: bool) -> float:
     return float(np.sqrt(total / len(_COMPARED)))
 
 
-def _summary() -> list[Sequence[Cell]]:
+def _summary() -> list[Sequence[Any]]:
     """Return which equation is nearer."""
-    rows: list[Sequence[Cell]] = []
+    rows: list[Sequence[Any]] = []
     for name in EQUATIONS:
         count = sum(one.nearest == name for one in _COMPARED)
         errors = (f"{_rms(name, fitted=fitted):.1f} %" for fitted in (False, True))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -136,55 +137,34 @@ def figure_5_1(axes: Sequence[Axes]) -> Drawn:
 
 def table_5_1(axes: Sequence[Axes]) -> Drawn:
     """Draw the relative errors of Table 5.1.b, recomputed, with the printed ones."""
-    ax, exact = axes[0], _exact()
-    for (column, known), colour in zip(_TABLE["columns"].items(), COLOURS, strict=False):
-        printed = np.array(known["errors"])
-        errors = 100.0 * (_elements(column) / exact[: len(printed)] - 1.0)
-        numbers = np.arange(1, len(errors) + 1)
-        ax.semilogy(numbers, errors, "-", color=colour, lw=1.0, label=column)
+    ax, exact, columns = axes[0], _exact(), {name: _elements(name) for name in _TABLE["columns"]}
+
+    def gaps(computed: Array, printed: Sequence[float]) -> Array:
+        # Three decimals are printed; the roots were sought to 2.5e-7 more.
+        known = np.array(printed)
+        return np.asarray(np.abs(computed - known) / (1e-3 + 2.5e-7 * known))
+
+    # The worst gaps to what is printed over the last digit; what is wrong there by itself.
+    right = ~np.isin(np.arange(1, 22), _WRONG)
+    values: list[Value] = [np.max(gaps(exact, _TABLE["exact"])[right]), *exact[~right]]
+    of_errors: list[Value] = []
+    largest = 0.0
+    for (name, computed), colour in zip(columns.items(), COLOURS, strict=False):
+        values.append(np.max(gaps(computed, _TABLE["columns"][name]["frequencies"])))
+        printed = np.array(_TABLE["columns"][name]["errors"])
+        errors, numbers = 100.0 * (computed / exact[: len(printed)] - 1.0), np.arange(len(printed))
+        limit = np.where(np.round(printed, 2) == printed, 1e-2, 2e-3)
+        of_errors += [np.max((np.abs(errors - printed) / limit)[numbers != 3]), *errors[3:4]]
+        if "element" in name:
+            largest = max(largest, float(np.max(errors)))
+        ax.semilogy(numbers + 1, errors, "-", color=colour, lw=1.0, label=name)
         shown = printed > 0.0
-        ax.plot(numbers[shown], printed[shown], "o", color=colour, ms=3.5)
+        ax.plot(numbers[shown] + 1, printed[shown], "o", color=colour, ms=3.5)
     ax.plot([], [], "o", color="0.4", ms=3.5, label="printed")
     ax.axvline(4, color="0.6", lw=0.7, ls=(0, (1, 3)))
     ax.set_xticks(range(1, 22, 2))
-    rows = []
-    for i in range(21):
-        columns = (_elements(column) for column in _TABLE["columns"])
-        cells = (values[i] if i < len(values) else "" for values in columns)
-        rows.append((i + 1, _TABLE["exact"][i], exact[i], *cells))
-    return Drawn([*_frequency_values(), *_error_values()], tables=[rows])
-
-
-def _frequency_values() -> list[Value]:
-    """Return the worst gaps to the printed frequencies over their last digit, and the wrong two."""
-
-    def gaps(computed: Array, printed: Array) -> Array:
-        # Three decimals are printed; the roots were sought to 2.5e-7 more.
-        return np.asarray(np.abs(computed - printed) / (1e-3 + 2.5e-7 * printed))
-
-    exact, wrong = _exact(), np.isin(np.arange(1, 22), _WRONG)
-    values: list[Value] = [np.max(gaps(exact, np.array(_TABLE["exact"]))[~wrong])]
-    values += [exact[number - 1] for number in _WRONG]
-    for name, known in _TABLE["columns"].items():
-        values.append(np.max(gaps(_elements(name), np.array(known["frequencies"]))))
-    return values
-
-
-def _error_values() -> list[Value]:
-    """Return the worst gaps to the printed errors over their last digit, and the fourth errors."""
-    values: list[Value] = []
-    largest = 0.0
-    for column, known in _TABLE["columns"].items():
-        text = np.array(known["errors"])
-        errors = 100.0 * (_elements(column) / _exact()[: len(text)] - 1.0)
-        limit = np.where(np.round(text, 2) == text, 1e-2, 2e-3)
-        others = np.arange(len(text)) != 3
-        values.append(np.max((np.abs(errors - text) / limit)[others]))
-        if len(text) > 3:
-            values.append(errors[3])
-        if "element" in column:
-            largest = max(largest, float(np.max(errors)))
-    return [*values, largest]
+    rows = zip_longest(range(1, 22), _TABLE["exact"], exact, *columns.values(), fillvalue="")
+    return Drawn([*values, *of_errors, largest], tables=[rows])
 
 
 @lru_cache(maxsize=1)

@@ -10,8 +10,8 @@ table ``notes``; ``page`` is a document that notes and tables make up.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
-from functools import cache, partial
+from collections.abc import Mapping, Sequence
+from functools import cache
 from importlib import import_module, resources
 from typing import TYPE_CHECKING, Any
 
@@ -58,9 +58,14 @@ def _merged(kind: Mapping[str, Any], record: Mapping[str, Any]) -> dict[str, Any
 def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> FigureEntry:
     record.pop("kind", None)
     common = record.pop("common", {})
-    draw: Callable[[Sequence[Axes]], Drawn] = partial(
-        _draw, record.pop("draw"), record.pop("arguments", ())
-    )
+    place, arguments = record.pop("draw"), record.pop("arguments", ())
+
+    def draw(axes: Sequence[Axes]) -> Drawn:
+        # The module that draws is loaded only now.
+        module, _, name = place.partition(".")
+        drawn: Drawn = getattr(import_module(f".{module}", __package__), name)(axes, *arguments)
+        return drawn
+
     if "page" in record:
         record["page"] = Page(**record["page"])
     record["tables"] = tuple(Columns(**table) for table in record.get("tables", ()))
@@ -85,10 +90,3 @@ def _quoted(common: Mapping[str, Any], row: Mapping[str, Any]) -> Quoted:
     if kinds:
         given = {"kind": kinds[0], "expected": values[kinds[0]], **given}
     return Quoted(**given)
-
-
-def _draw(place: str, arguments: Sequence[Any], axes: Sequence[Axes]) -> Drawn:
-    """Call the function that draws; its module is loaded only now."""
-    module, _, name = place.partition(".")
-    drawn: Drawn = getattr(import_module(f".{module}", __package__), name)(axes, *arguments)
-    return drawn

@@ -29,7 +29,8 @@ _MU = 0.5
 # Crank angles, a coordinate and its derivative by the angle.
 _Run = tuple[Array, Array, Array]
 _UNITS = ((1.0, 0.0), (0.0, 1.0))
-_UNSTABLE, _STABLE = (0.25, 1.0, 2.25), (0.5, 1.5, 3.0)
+# lambda^2 of Fig. 33: unstable and stable ones by turns.
+_HILL = (0.25, 0.5, 1.0, 1.5, 2.25, 3.0)
 
 
 @lru_cache(maxsize=2)
@@ -204,12 +205,9 @@ def figure_33(axes: Sequence[Axes]) -> Drawn:
         "parameters.damping": 0.0,
     }
     system = load_scene("hill_example", overrides=changes).linear_system()
-    half = discriminant(f, np.array(_UNSTABLE + _STABLE), _MU).value
-    for i, lam2 in enumerate(_UNSTABLE + _STABLE):
+    half = discriminant(f, np.array(_HILL), _MU).value
+    for ax, lam2, colour in zip(axes, _HILL, 3 * (COLOURS[1], COLOURS[0]), strict=True):
         run = simulate(system.with_parameters(lam2=lam2), 1.0, 6.0, initial=(1.0, 0.0))
-        column, row = divmod(i, 3)
-        ax = axes[2 * row + column]
-        ax.plot(run.theta / (2 * pi), run.q[:, 0], color=COLOURS[1 - column], lw=1.0)
-        kind = "unstable" if column == 0 else "stable"
-        panel_title(ax, rf"$\lambda^2$ = {lam2:g}: {kind}")
-    return Drawn(list(np.abs(half)))
+        ax.plot(run.theta / (2 * pi), run.q[:, 0], color=colour, lw=1.0)
+    # The unstable ones, at the left, come first.
+    return Drawn([*np.abs(half[::2]), *np.abs(half[1::2])])

@@ -52,7 +52,6 @@ _MASS, _LENGTH, _DISC = 1.0, 1.0, 0.1
 _DENSITIES = {"A": 5.0, "B": 10.0, "C": 20.0, "D": 40.0, "E": 80.0}
 # So light that no counterweight at all is best.
 _LIGHT = 2.5
-_CUBE_ROOT_BELOW = 1e-60
 
 
 def _weights(
@@ -251,11 +250,11 @@ def optimal_offset(density_number: Any) -> Any:
     one step of Newton's method mends the round-off that sinh amplifies.
     """
     k = np.asarray(density_number, dtype=float)
-    # Far below round-off 1 + delta^2 is 1, and 1/K might overflow.
-    safe = np.clip(k, _CUBE_ROOT_BELOW, 0.5)
+    # 1/K of a smaller one would overflow.
+    safe = np.clip(k, np.finfo(float).tiny, 0.5)
     s = 2.0 / np.sqrt(3.0) * np.sinh(np.arcsinh(1.5 * np.sqrt(3.0) / safe) / 3.0)
     s = s - (s * s * s + s - 1.0 / safe) / (3.0 * s * s + 1.0)
-    return np.where(k >= 0.5, 1.0, np.where(k < _CUBE_ROOT_BELOW, np.cbrt(k), 1.0 / s))
+    return np.where(k >= 0.5, 1.0, 1.0 / s)
 
 
 def _number(density: float) -> float:

@@ -18,7 +18,7 @@ from ..stability import stability_edges
 from .drawing import COLOURS, Array, panel_title
 from .records import Drawn, Value
 from .registry import contents
-from .smith_linkages import LBF_IN_S2, RIG, RPM, Rig, region_name
+from .smith_linkages import LBF_IN_S2, RIG, RPM, OfRig, region_name
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,7 +28,7 @@ _SCAN = np.linspace(0.0, 0.5, 5001)
 
 
 @dataclass(frozen=True)
-class Estimate:
+class Estimate(OfRig):
     """One damping that section 9.5.5 quotes, of the unstable region 2 Omega/n of a chart's rig.
 
     ``stable`` and ``unstable`` are follower inertias [lbf in s^2] between which the region opens:
@@ -36,16 +36,10 @@ class Estimate:
     its value else; ``quoted`` is K as the thesis gives it.
     """
 
-    chart: str
     region: int
     stable: float
     unstable: float
     quoted: float
-
-    @property
-    def rig(self) -> Rig:
-        """The linkage and coupler."""
-        return RIG[self.chart]
 
     @property
     def name(self) -> str:

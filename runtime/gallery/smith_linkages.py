@@ -162,6 +162,18 @@ RIGS = tuple(
 RIG: Mapping[str, Rig] = {rig.figure: rig for rig in RIGS}
 
 
+@dataclass(frozen=True)
+class OfRig:
+    """What was observed with a rig, known by the number of its chart."""
+
+    chart: str
+
+    @property
+    def rig(self) -> Rig:
+        """The linkage and coupler."""
+        return RIG[self.chart]
+
+
 @lru_cache(maxsize=64)
 def _system(
     scene: str, equation: str, modes: int, decrement: float = 0.0, inertia: float | None = None

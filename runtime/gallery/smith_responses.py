@@ -15,7 +15,7 @@ from ..hill import discriminant
 from ..periodic import simulate, steady_state
 from .drawing import COLOURS, Array, mark_fractions, panel_title, turn
 from .records import Drawn
-from .smith_linkages import RIG, RPM, Rig
+from .smith_linkages import RIG, RPM, OfRig
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -73,22 +73,16 @@ def _vibrations(equation: str, speed: float) -> float:
 
 
 @dataclass(frozen=True)
-class Response:
+class Response(OfRig):
     """One recorded frequency response of chapter 9: chart of the rig, inertia, range of the speed.
 
     The follower's inertia [lbf in s^2]; speeds [rpm] as written in the text or beside the trace,
     else chosen.
     """
 
-    chart: str
     inertia: float
     low: float
     high: float
-
-    @property
-    def rig(self) -> Rig:
-        """Linkage and coupler."""
-        return RIG[self.chart]
 
     def envelope(self, decrement: float) -> Envelope:
         """Return the extreme deflections over the range, for a logarithmic decrement."""

@@ -23,6 +23,7 @@ from .smith_linkages import (
     RIG,
     RIGS,
     RPM,
+    OfRig,
     Rig,
     end_load,
     linkage_of,
@@ -39,7 +40,7 @@ _NAMES = {"reduced": "(6.18)", "printed": "(6.17)", "complete": "complete"}
 
 
 @dataclass(frozen=True)
-class Observation:
+class Observation(OfRig):
     """One crank speed that chapter 9 quotes.
 
     Number of the rig's chart, follower inertia [lbf in s^2], number n of the unstable region
@@ -50,7 +51,6 @@ class Observation:
     it) or the upper one (``end``: stable again above it).
     """
 
-    chart: str
     inertia: float
     region: int
     speed: float
@@ -59,11 +59,6 @@ class Observation:
     meaning: str
     note: str = ""
     half_width: float = 0.0
-
-    @property
-    def rig(self) -> Rig:
-        """The linkage and coupler."""
-        return RIG[self.chart]
 
     @property
     def si_inertia(self) -> float:

@@ -19,6 +19,7 @@ from . import sketch
 from .aannaque_models import FRAMES
 from .drawing import COLOURS, Array, panel_title
 from .records import Drawn, Value
+from .registry import contents
 from .smith_linkages import four_bar_of
 
 if TYPE_CHECKING:
@@ -44,18 +45,6 @@ _PLANE_NAMES = (
     r"$\lambda_3=\lambda_2+1+\lambda_4$",
     r"$\lambda_4=\lambda_2+\lambda_3+1$",
 )
-# Letters of the joints and the centre, and the names of what acts there.
-_BODIES = {
-    "crank": ("OAG", {"O": "$F_{01}$", "A": "$F_{21}$", "G": "$F_{1}$", "torque": "$C$"}),
-    "coupler": (
-        "ABG",
-        {"A": "$F_{12}$", "B": "$F_{32}$", "G": "$F_{2}$", "couple": r"$-J_2\alpha_2$"},
-    ),
-    "follower": (
-        "CBG",
-        {"C": "$F_{03}$", "B": "$F_{23}$", "G": "$F_{3}$", "couple": r"$-J_3\alpha_3$"},
-    ),
-}
 
 
 def figure_3_4(axes: Sequence[Axes]) -> Drawn:
@@ -347,7 +336,7 @@ def free_body(axes: Sequence[Axes], link: str) -> Drawn:
     ax, scene = axes[0], load_scene(_SCENE)
     machine, speed = scene.machine(), scene["operation"]["speed"]
     body = sketch.free_bodies(machine, radians(105.0), speed)[0][link]
-    letters, names = _BODIES[link]
+    letters, names = contents("aannaque")["bodies"][link].values()
     largest = max(float(np.hypot(*force)) for force in body.forces)
     length = float(np.hypot(*(body.places[1] - body.places[0])))
     scale = 0.55 * length / largest

@@ -15,6 +15,7 @@ from ..scenes import load_scene
 from . import sketch
 from .drawing import COLOURS, Array
 from .records import Drawn
+from .registry import contents
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,24 +23,6 @@ if TYPE_CHECKING:
 INCH, POUND = 0.0254, 4.4482216152605
 TURN = np.linspace(0.0, 2.0 * pi, 1441)
 _JOINTS = ("12", "23", "34", "41")
-# Of each link: letters of its pins and its centre, names of the forces there, where it is drawn.
-_BODIES: dict[str, tuple[str, dict[str, str], tuple[float, float]]] = {
-    "crank": (
-        "ABG",
-        {"A": "$F_{12}$", "B": "$F_{32}$", "G": r"$-M_2\mathbf{a}_2$", "torque": "$T$"},
-        (-0.45, -0.25),
-    ),
-    "coupler": (
-        "BCG",
-        {"B": "$F_{23}$", "C": "$F_{43}$", "G": r"$-M_3\mathbf{a}_3$"},
-        (0.05, 0.55),
-    ),
-    "follower": (
-        "DCG",
-        {"D": "$F_{14}$", "C": "$F_{34}$", "G": r"$-M_4\mathbf{a}_4$"},
-        (0.95, 0.0),
-    ),
-}
 
 
 @lru_cache(maxsize=1)
@@ -77,8 +60,9 @@ def figure_11(axes: Sequence[Axes]) -> Drawn:
     frame = machine.linkage.lengths["frame"]
     scale = 0.5 * frame / largest
     for link, body in bodies.items():
-        letters, names, place = _BODIES[link]
-        sketch.draw_body(ax, body, letters, names, scale, frame * np.array(place))
+        drawn = contents("smith")["bodies"][link]
+        place = frame * np.array(drawn["place"])
+        sketch.draw_body(ax, body, drawn["letters"], drawn["names"], scale, place)
     ground = frame * np.array([[-0.45, -0.75], [1.95, -0.55]])
     for place in ground:
         sketch.pivot(ax, place, 0.1 * frame)

@@ -104,10 +104,13 @@ def damped(
     """
     f, ax = f3_series(_LINKAGE), axes[0]
     for damping, colour in zip(dampings, COLOURS, strict=False):
-        # Closer values above the tips of (7.51), where the outlines are flat.
+        # Closer values above the tips, exact and by (7.51), where the outlines are flat.
         tips = 2.0 * damping * np.array(regions) / f.amplitudes[regions]
-        near = np.outer(tips, 1.0 + 1e-9 + np.linspace(0.0, 0.3, 31) ** 2).ravel()
-        mu = np.unique(np.concatenate([np.linspace(0.0, top, 241), near[near < top]]))
+        if damping:
+            exact = critical_damping(f, None, regions, damping=damping).mu
+            tips = np.concatenate([tips, exact])
+        near = np.outer(tips, 1.0 + 1e-9 + np.linspace(0.0, 0.3, 1 + 30 // len(tips)) ** 2).ravel()
+        mu = np.unique(np.concatenate([np.linspace(0.0, top, 181), near[near < top]]))
         drawn = {"exact": ("-", hill_boundaries(f, mu, regions, damping=damping))}
         if len(regions) == 1:
             first = perturbation_boundaries(f, mu, regions, damping=damping, outside="value")

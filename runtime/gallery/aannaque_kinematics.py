@@ -10,29 +10,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..linkages import FourBar, FourBarMotion
-from ..linkages.base_planes import BasePlane, base_plane
+from ..linkages.base_planes import base_plane
 from ..linkages.classification import SYMBOLS, classify
 from ..linkages.curves import coupler_curve
 from ..linkages.transmission import transmission_angle
 from ..scenes import load_scene
+from . import sketch
 from .aannaque_models import FRAMES
-from .drawing import (
-    COLOURS,
-    LINK_COLOURS,
-    Array,
-    arc,
-    bar,
-    canvas,
-    crank_axis,
-    four_bar,
-    legend_below,
-    panel_title,
-    pin,
-    pivot,
-    write,
-)
-from .free_bodies import draw_body, free_bodies, round_force, scale_bar
-from .records import Drawn, Table, Value
+from .drawing import COLOURS, Array, panel_title
+from .records import Drawn, Value
+from .registry import contents
 from .smith_linkages import four_bar_of
 
 if TYPE_CHECKING:
@@ -44,24 +31,20 @@ _SPACE_LAMBDA = 1.5
 # Below, at and above the plane through the linkage of four equal links.
 _PLANES = {r"\lambda<\sqrt{3}": 1.0, r"\lambda=\sqrt{3}": sqrt(3.0), r"\lambda>\sqrt{3}": 3.0}
 _DIRECTIONS = np.vstack([np.ones(3), 2.0 * np.eye(3) - 1.0])
+# The projection of the three axes on the paper, the third upwards.
+_TURN, _TILT = radians(38.0), radians(24.0)
+_VIEW = np.array(
+    [
+        [-sin(_TURN), cos(_TURN), 0.0],
+        [-cos(_TURN) * sin(_TILT), -sin(_TURN) * sin(_TILT), cos(_TILT)],
+    ]
+)
 _PLANE_NAMES = (
     r"$1=\lambda_2+\lambda_3+\lambda_4$",
     r"$\lambda_2=1+\lambda_3+\lambda_4$",
     r"$\lambda_3=\lambda_2+1+\lambda_4$",
     r"$\lambda_4=\lambda_2+\lambda_3+1$",
 )
-# Letters of the joints and the centre, and the names of what acts there.
-_BODIES = {
-    "crank": ("OAG", {"O": "$F_{01}$", "A": "$F_{21}$", "G": "$F_{1}$", "torque": "$C$"}),
-    "coupler": (
-        "ABG",
-        {"A": "$F_{12}$", "B": "$F_{32}$", "G": "$F_{2}$", "couple": r"$-J_2\alpha_2$"},
-    ),
-    "follower": (
-        "CBG",
-        {"C": "$F_{03}$", "B": "$F_{23}$", "G": "$F_{3}$", "couple": r"$-J_3\alpha_3$"},
-    ),
-}
 
 
 def figure_3_4(axes: Sequence[Axes]) -> Drawn:
@@ -85,26 +68,17 @@ def figure_3_4(axes: Sequence[Axes]) -> Drawn:
     for i, axis in enumerate(np.eye(3)):
         ends = np.array([np.zeros(3), 1.25 * far * axis]) @ _VIEW.T
         ax.plot(*ends.T, color="0.3", lw=0.9, zorder=1)
-        write(ax, ends[1], rf"$\lambda_{i + 2}$", 8.0 * ends[1] / np.hypot(*ends[1]), fontsize=11)
+        sketch.write(
+            ax, ends[1], rf"$\lambda_{i + 2}$", 8.0 * ends[1] / np.hypot(*ends[1]), fontsize=11
+        )
     line = np.array([np.zeros(3), np.full(3, _SPACE_LAMBDA / sqrt(3.0))]) @ _VIEW.T
     ax.plot(*line.T, "--", color="0.2", lw=1.0, zorder=8)
     ax.plot(*line[1], "o", color="0.2", ms=3.5, zorder=8)
-    write(ax, line[1], r"$\lambda$", (8.0, 8.0), fontsize=11)
-    inside, outside = (np.mean(classify(_linkages(_beside(step))) > 0) for step in (1e-6, -1e-6))
+    sketch.write(ax, line[1], r"$\lambda$", (8.0, 8.0), fontsize=11)
+    inside, outside = (np.mean(classify(_beside(step)) > 0) for step in (1e-6, -1e-6))
     gaps = np.abs(plane.outline @ _DIRECTIONS.T - 1.0)
     distance = np.abs(plane.outline @ np.full(3, 1.0 / sqrt(3.0)) - plane.lam)
     return Drawn([inside, outside, np.max(np.min(gaps, axis=1)), np.max(distance)])
-
-
-def _view() -> Array:
-    """Return the projection of the three axes on the paper, the third upwards."""
-    turn, tilt = np.radians(38.0), np.radians(24.0)
-    right = [-np.sin(turn), np.cos(turn), 0.0]
-    up = [-np.cos(turn) * np.sin(tilt), -np.sin(turn) * np.sin(tilt), np.cos(tilt)]
-    return np.array([right, up])
-
-
-_VIEW = _view()
 
 
 def _face(ax: Axes, corners: Array, colour: str, alpha: float) -> None:
@@ -129,7 +103,7 @@ def _call(ax: Axes, place: Array, text: str, shift: tuple[float, float]) -> None
 
 
 def _beside(step: float) -> Array:
-    """Return ratios a step off the four zero-mobility planes, shape (n, 3); inwards positive."""
+    """Return linkages a step off the four zero-mobility planes, (n, 4); inwards positive."""
     generator = np.random.default_rng(34)
     places = []
     for normal in _DIRECTIONS:
@@ -142,12 +116,7 @@ def _beside(step: float) -> Array:
         place[:, closing] = 0.0
         place[:, closing] = 1.0 + place.sum(axis=1)
         places.append(place - step * normal)
-    return np.concatenate(places)
-
-
-def _linkages(ratios: Array) -> Array:
-    """Return frame, input, coupler, output of ratios lambda_2, lambda_3, lambda_4."""
-    coupler, output, frame = ratios.T
+    coupler, output, frame = np.concatenate(places).T
     return np.stack([frame, np.ones_like(frame), coupler, output], axis=-1)
 
 
@@ -158,33 +127,27 @@ def figure_3_5(axes: Sequence[Axes]) -> Drawn:
         plane.plot(ax)
         for text in ax.texts:
             text.set_fontsize(7.0)
-        ax.grid(visible=False)
         for axis in (ax.xaxis, ax.yaxis):
             axis.label.set_fontsize(8.0)
         panel_title(ax, f"${name}$: {plane.lam:.4g}")
         ax.set_title("")
-    rows = tuple(
-        (symbol, *(f"{plane.shares.get(symbol, 0.0):.4f}" for plane in planes))
-        for symbol in SYMBOLS[1:9]
-    )
-    header = ("class", *(f"lambda = {plane.lam:.4g}" for plane in planes))
-    table = Table("Share of each class in the area of the plane", header, rows)
-    return Drawn(_plane_values(planes), tables=(table,))
-
-
-def _plane_values(planes: Sequence[BasePlane]) -> list[float]:
+        ax.grid(visible=False)
+    rows = [
+        (symbol, *(plane.shares.get(symbol, 0.0) for plane in planes)) for symbol in SYMBOLS[1:9]
+    ]
     counted = [
         abs(np.mean(plane.numbers[plane.numbers > 0] == SYMBOLS.index(symbol)) - share)
         for plane in planes
         for symbol, share in plane.shares.items()
     ]
-    return [
+    values = [
         len(SYMBOLS) - 1,
         len({symbol for plane in planes for symbol in plane.regions}),
         max(abs(sum(plane.shares.values()) - 1.0) for plane in planes),
         max(counted),
         int(classify(np.ones((1, 4)))[0]),
     ]
+    return Drawn(values, tables=[rows])
 
 
 @lru_cache(maxsize=1)
@@ -203,25 +166,25 @@ def cycle(frame: float | None = None) -> FourBarMotion:
 def figure_3_6(axes: Sequence[Axes]) -> Drawn:
     """Draw both assemblies at one crank angle."""
     ax, bars = axes[0], linkage()
-    canvas(ax)
+    sketch.canvas(ax)
     other = FourBar(bars.frame, bars.crank, bars.coupler, bars.follower, assembly="crossed")
     both = [item.motion(_INPUT) for item in (bars, other)]
     a, b, d = (np.asarray(both[0].joints[name]) for name in "ABD")
     ax.plot(*np.transpose([b, d]), ":", color="0.4", lw=1.0)
     for motion, name, style in zip(both, ("B", "B'"), ("-", (0, (3, 1.2))), strict=True):
         c = np.asarray(motion.joints["C"])
-        bar(ax, b, c, LINK_COLOURS["coupler"], ls=style, zorder=3)
-        bar(ax, d, c, LINK_COLOURS["follower"], ls=style, zorder=3)
-        pin(ax, c)
-        write(ax, c, name, (12.0, 10.0 if name == "B" else -10.0), style="italic")
-    bar(ax, a, b, LINK_COLOURS["crank"], zorder=4)
+        sketch.bar(ax, b, c, sketch.LINK_COLOURS["coupler"], ls=style, zorder=3)
+        sketch.bar(ax, d, c, sketch.LINK_COLOURS["follower"], ls=style, zorder=3)
+        sketch.pin(ax, c)
+        sketch.write(ax, c, name, (12.0, 10.0 if name == "B" else -10.0), style="italic")
+    sketch.bar(ax, a, b, sketch.LINK_COLOURS["crank"], zorder=4)
     for place, name, shift in ((a, "O", -16.0), (d, "C", 16.0)):
-        pivot(ax, place, 0.1 * bars.frame)
-        write(ax, place, name, (shift, 4.0), style="italic")
-    pin(ax, b)
-    write(ax, b, "A", (-10.0, 10.0), style="italic")
+        sketch.pivot(ax, place, 0.1 * bars.frame)
+        sketch.write(ax, place, name, (shift, 4.0), style="italic")
+    sketch.pin(ax, b)
+    sketch.write(ax, b, "A", (-10.0, 10.0), style="italic")
     ax.plot([0.0, 0.12 * bars.frame], [0.0, 0.0], color="0.35", lw=0.8)
-    arc(ax, a, 0.07 * bars.frame, (0.0, _INPUT), "$t_1$")
+    sketch.arc(ax, a, 0.07 * bars.frame, (0.0, _INPUT), "$t_1$")
     follower, coupler = _printed_angles(_INPUT)
     gammas = [degrees(float(m.transmission_angle)) for m in both]
 
@@ -252,24 +215,14 @@ def _printed_angles(theta: float) -> list[list[float]]:
     return angles
 
 
-def _rates(ax: Axes, kind: str, label: str, *printed: Array) -> list[float]:
+def _rates(ax: Axes, kind: str, *printed: Array) -> list[float]:
     """Draw a rate of coupler and follower; return the largest gaps of the printed equations."""
     motion, gaps = cycle(), []
-    for number, link, colour, values in zip(
-        (3, 4), ("coupler", "follower"), COLOURS, printed, strict=False
-    ):
+    for number, link, values in zip((3, 4), ("coupler", "follower"), printed, strict=True):
         rate = getattr(motion, f"{kind}{number}")
-        ax.plot(np.degrees(motion.theta2), rate, color=colour, label=link)
+        ax.plot(np.degrees(motion.theta2), rate, label=link)
         gaps.append(float(np.max(np.abs(values - rate))))
-    _input_axes(ax, label)
-    legend_below([ax])
     return gaps
-
-
-def _input_axes(ax: Axes, label: str) -> None:
-    ax.axhline(0.0, color="0.6", lw=0.8, zorder=1)
-    crank_axis(ax)
-    ax.set(xlabel="input angle $t_1$ [deg]", ylabel=label)
 
 
 def figure_3_7(axes: Sequence[Axes]) -> Drawn:
@@ -279,7 +232,6 @@ def figure_3_7(axes: Sequence[Axes]) -> Drawn:
     gaps = _rates(
         axes[0],
         "omega",
-        "relative angular velocity",
         -bars.crank * np.sin(t3 - t1) / (bars.coupler * np.sin(t3 - t2)),
         -bars.crank * np.sin(t2 - t1) / (bars.follower * np.sin(t3 - t2)),
     )
@@ -302,7 +254,6 @@ def figure_3_8(axes: Sequence[Axes]) -> Drawn:
     gaps = _rates(
         axes[0],
         "alpha",
-        "relative angular acceleration",
         coupler / (l2 * np.sin(t3 - t2)),
         follower / (l3 * np.sin(t3 - t2)),
     )
@@ -324,11 +275,7 @@ def figure_3_9(axes: Sequence[Axes]) -> Drawn:
         ([180.0], mu.greatest, "greatest", (0.0, 10.0)),
     ):
         ax.plot(angles, [degrees(value)] * len(angles), "o", color=COLOURS[1], ms=5)
-        write(ax, (angles[0], degrees(value)), f"{name}: {degrees(value):.2f}°", shift)
-    crank_axis(ax)
-    ax.set(xlabel="input angle $t_1$ [deg]", ylabel=r"transmission angle $\gamma$ [deg]")
-    ax.set_ylim(30.0, 150.0)
-    legend_below([ax])
+        sketch.write(ax, (angles[0], degrees(value)), f"{name}: {degrees(value):.2f}°", shift)
     values: list[Value] = []
     for angle, value, sign in (
         (mu.at_least, mu.least, 1.0),
@@ -348,7 +295,7 @@ def figure_3_9(axes: Sequence[Axes]) -> Drawn:
 def figure_3_10(axes: Sequence[Axes]) -> Drawn:
     """Draw the mechanism at several positions, and the paths of some points of its coupler."""
     ax, bars = axes[0], linkage()
-    canvas(ax)
+    sketch.canvas(ax)
     length, start = bars.coupler, radians(70.0)
     points = {
         "A": (0.0, 0.0),
@@ -362,8 +309,8 @@ def figure_3_10(axes: Sequence[Axes]) -> Drawn:
     for k in range(1, 8):
         joints = bars.motion(start + k * pi / 4.0).joints
         for ends, link in (("AB", "crank"), ("BC", "coupler"), ("DC", "follower")):
-            colour = LINK_COLOURS[link]
-            bar(ax, joints[ends[0]], joints[ends[1]], colour, lw=1.6, alpha=0.22, zorder=2)
+            colour = sketch.LINK_COLOURS[link]
+            sketch.bar(ax, joints[ends[0]], joints[ends[1]], colour, lw=1.6, alpha=0.22, zorder=2)
     for (name, curve), colour in zip(curves.items(), ("0.35", "0.35", *COLOURS[3:]), strict=False):
         closed = np.vstack([curve.position, curve.position[:1]])
         ax.plot(*closed.T, color=colour, lw=1.4, ls="--" if name in "AB" else "-", zorder=4)
@@ -373,10 +320,10 @@ def figure_3_10(axes: Sequence[Axes]) -> Drawn:
         at = now.point("coupler", *points[name]).position
         if name in "RS":
             lines = np.array([joints["B"], at, joints["C"]])
-            ax.plot(*lines.T, color=LINK_COLOURS["coupler"], lw=1.0, zorder=4)
+            ax.plot(*lines.T, color=sketch.LINK_COLOURS["coupler"], lw=1.0, zorder=4)
         ax.plot(*at, "o", color="0.15", ms=4.0, zorder=8)
-        write(ax, at, name, (8.0, 8.0), style="italic")
-    four_bar(ax, joints, 0.07 * bars.frame, "OABC")
+        sketch.write(ax, at, name, (8.0, 8.0), style="italic")
+    sketch.four_bar(ax, joints, 0.07 * bars.frame, "OABC")
     swing = transmission_angle(bars).swing or 0.0
     pins = (("A", np.zeros(2), bars.crank), ("B", np.array([bars.frame, 0.0]), bars.follower))
     off = [np.abs(np.hypot(*(curves[n].position - at).T) - r).max() for n, at, r in pins]
@@ -388,26 +335,25 @@ def free_body(axes: Sequence[Axes], link: str) -> Drawn:
     """Draw one link cut free (Fig. 3.11)."""
     ax, scene = axes[0], load_scene(_SCENE)
     machine, speed = scene.machine(), scene["operation"]["speed"]
-    body = free_bodies(machine, radians(105.0), speed)[0][link]
-    letters, names = _BODIES[link]
+    body = sketch.free_bodies(machine, radians(105.0), speed)[0][link]
+    letters, names = contents("aannaque")["bodies"][link].values()
     largest = max(float(np.hypot(*force)) for force in body.forces)
     length = float(np.hypot(*(body.places[1] - body.places[0])))
     scale = 0.55 * length / largest
-    canvas(ax)
-    draw_body(ax, body, letters, names, scale)
+    sketch.canvas(ax)
+    sketch.draw_body(ax, body, letters, names, scale)
     heads = np.array(body.places) + scale * np.array(body.forces)
     low = np.min([*body.places, *heads], axis=0) - 0.22 * length
-    scale_bar(ax, low, scale, round_force(largest))
-    whole = free_bodies(machine, np.linspace(0.0, 2.0 * pi, 361), speed)[0][link]
+    sketch.scale_bar(ax, low, scale, sketch.round_force(largest))
+    whole = sketch.free_bodies(machine, np.linspace(0.0, 2.0 * pi, 361), speed)[0][link]
     values = [whole.unbalanced_force, whole.unbalanced_moment]
     if link == "crank":
         values.append(float(np.min(whole.torque)))
     rows = []
     for letter, force in zip(letters, body.forces, strict=True):
         name = "".join(c for c in names[letter] if c not in "${}")
-        rows.append((name, *(f"{part:.4f}" for part in (*force, float(np.hypot(*force))))))
-    table = Table("Forces at this angle [N]", ("force", "x", "y", "size"), tuple(rows))
-    return Drawn(values, tables=(table,))
+        rows.append((name, *force, np.hypot(*force)))
+    return Drawn(values, tables=[rows])
 
 
 def figure_7_12(axes: Sequence[Axes]) -> Drawn:
@@ -418,8 +364,6 @@ def figure_7_12(axes: Sequence[Axes]) -> Drawn:
         greatest = degrees(float(np.max(motion.transmission_angle)))
         label = rf"$L_4$ = {frame:.3f} m, $\gamma_{{\max}}$ = {greatest:.0f}°"
         ax.plot(np.degrees(motion.theta2), speed**2 * motion.alpha4, label=label)
-    _input_axes(ax, "acceleration of the follower [rad/s$^2$]")
-    legend_below([ax], columns=3)
     pulses = np.array([pulses_of(frame) for frame in FRAMES])
     last = cycle(FRAMES[-1])
     later = last.theta2 > radians(90.0)
@@ -447,9 +391,10 @@ def pulses_of(frame: float) -> tuple[float, float]:
 
 def crossover() -> float:
     """Return the frame length [m] at which the second pulse is as large as the first."""
-    low, high = 0.60, 0.68
-    while high - low > 1e-6:
-        middle = 0.5 * (low + high)
-        first, second = pulses_of(middle)
-        low, high = (middle, high) if second < first else (low, middle)
-    return 0.5 * (low + high)
+    from scipy.optimize import brentq
+
+    def excess(frame: float) -> float:
+        first, second = pulses_of(frame)
+        return second - first
+
+    return float(brentq(excess, 0.60, 0.68, xtol=1e-9))

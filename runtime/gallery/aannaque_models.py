@@ -1,9 +1,7 @@
-"""The beams of Aannaque's Table 4.1 as the gallery uses them: models, motions, frequencies."""
+"""The beams of Aannaque's Table 4.1: models, frequencies, the "exact" model of section 7.4.1."""
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -11,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..beams import Structure
-from ..core.errors import LinearRangeWarning, bad
-from ..core.families import Array, LinearPeriodic
+from ..core.errors import bad
+from ..core.families import Array, LinearPeriodic, Term
+from ..core.trigonometric import even_angles, interpolated
 from ..frequencies import dynamic_stiffness, wittrick_williams
 from ..frequencies.held import held_frequencies
-from ..periodic import SteadyState, steady_state
 from ..recovery.stress_over_speed import StressCurve, stress_curve
 from ..scenes import load_scene
+from ..systems import with_modal_damping
 
 SCENE = "aannaque_1996_table_4_1"
 # The thesis' form (7.1), without stiffening; and the whole of the equations.
@@ -27,6 +26,8 @@ FRAME = 0.547
 # The distances of the pivots [m] of Figs. 8.19 to 8.23, and one more of chapter 7.
 FRAMES = (0.547, 0.600, 0.632, 0.642, 0.652, 0.662)
 CRITICAL = 62.0
+# Angles of a turn at which the matrices of the "exact" model are formed.
+_ANGLES = 128
 LINKS = ("crank", "coupler", "follower")
 
 
@@ -63,16 +64,7 @@ def structure_of(system: LinearPeriodic) -> Structure:
 
 def stresses(system: LinearPeriodic, speeds: Array, rtol: float = 1e-3) -> StressCurve:
     """Return the largest stresses over the speed, by the shapes as in the thesis."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", LinearRangeWarning)
-        return stress_curve(system, speeds, rtol=rtol, method="shape")
-
-
-def periodic(system: LinearPeriodic, speed: Array | float, rtol: float = 1e-5) -> SteadyState:
-    """Return steady states, whatever their deflections."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", LinearRangeWarning)
-        return steady_state(system, speed, rtol=rtol)
+    return stress_curve(system, speeds, rtol=rtol, method="shape")
 
 
 def midpoint(system: LinearPeriodic, link: str, theta: Array) -> Array:
@@ -125,41 +117,92 @@ def nearest(places: Array, speed: float) -> float:
     return float(places[np.argmin(np.abs(places - speed))])
 
 
-@dataclass(frozen=True)
-class ModelComparison:
-    """Natural frequencies of several models of a mechanism held at the same crank angles [rad].
-
-    Frequencies [rad/s], rising, ``(models, nt, count)``; the size of a model is its number of
-    coordinates, 0 of ``exact``, that of dynamic stiffness.
-    """
-
-    names: tuple[str, ...]
-    size: NDArray[np.int64]
-    theta: Array
-    frequency: Array
-
-    def difference(self, model: str, reference: str = "exact") -> Array:
-        """Return a model's frequencies over those of another, less 1, ``(nt, count)``."""
-        one, other = (self.frequency[self.names.index(name)] for name in (model, reference))
-        return np.asarray(one / other - 1.0)
-
-
-def compare_models(
-    models: Mapping[str, LinearPeriodic], theta: Array, count: int = 4, *, exact: bool = True
-) -> ModelComparison:
-    """Return the frequencies of several models and, by the first one's structure, exact ones."""
-    names, sizes = list(models), [system.size for system in models.values()]
-    rows = [held_frequencies(system, theta, {})[0][:, :count] for system in models.values()]
-    structure = next(iter(models.values())).structure
-    if exact and structure is not None:
-        names, sizes = [*names, "exact"], [*sizes, 0]
-        rows.append(exact_frequencies(structure, theta, count))
-    return ModelComparison(
-        tuple(names), np.array(sizes, dtype=np.int64), np.asarray(theta), np.stack(rows)
-    )
+def held(system: LinearPeriodic, theta: Array, count: int = 4) -> Array:
+    """Return the lowest natural frequencies [rad/s] with the crank held, ``(nt, count)``."""
+    return np.asarray(held_frequencies(system, theta, {})[0][:, :count])
 
 
 def exact_frequencies(structure: Structure, theta: Array, count: int) -> Array:
     """Return the lowest natural frequencies [rad/s] by dynamic stiffness, ``(nt, count)``."""
     problems = (dynamic_stiffness(structure, float(angle)) for angle in theta)
     return np.stack([wittrick_williams(one, count=count).frequencies[:count] for one in problems])
+
+
+@dataclass(frozen=True)
+class HybridMatrices:
+    """Mass and stiffness of one element for each link at crank angles [rad], at their first mode.
+
+    M and K ``(nt, n, n)`` as in (5.16) and (5.17), that frequency [rad/s], how often the matrices
+    were formed anew, and the names of the coordinates.
+    """
+
+    mass: Array
+    stiffness: Array
+    first: Array
+    iterations: NDArray[np.int64]
+    labels: tuple[str, ...]
+
+
+def hybrid_matrices(structure: Structure, theta: Array, rtol: float = 1e-3) -> HybridMatrices:
+    """Return the matrices of the thesis' "exact" model at crank angles.
+
+    At each angle the first frequency of the cubic elements gives M(omega) and K(omega), these a
+    better frequency, and so on until it changes by less than ``rtol``.  That is Newton's method on
+    the exact eigenproblem, so that few steps suffice; it needs a cubic element that is not far off.
+    """
+    from scipy.linalg import eigh
+
+    rows = []
+    for angle in theta:
+        problem = dynamic_stiffness(structure, float(angle))
+        omega, formed, steps = 0.0, -1.0, -1
+        while steps < 1 or abs(omega - formed) > rtol * omega:
+            formed, steps = omega, steps + 1
+            mass = problem.mass(formed)
+            stiffness = problem.stiffness(formed) + formed**2 * mass
+            square = eigh(stiffness, mass, eigvals_only=True, subset_by_index=(0, 0))[0]
+            omega = float(np.sqrt(square))
+        rows.append((mass, stiffness, omega, steps))
+    mass, stiffness, first, iterations = (np.array(part) for part in zip(*rows, strict=True))
+    return HybridMatrices(mass, stiffness, first, iterations, problem.labels)
+
+
+@lru_cache(maxsize=2)
+def hybrid(rtol: float) -> HybridMatrices:
+    """Return the matrices of the beams of Table 4.1 at even crank angles."""
+    return hybrid_matrices(structure_of(beams(1)), even_angles(2.0 * np.pi, _ANGLES), rtol)
+
+
+@lru_cache(maxsize=1)
+def hybrid_model() -> LinearPeriodic:
+    """Return the thesis' "exact" model: one element for each link, M and K at the first frequency.
+
+    Damping 2 %, the form of the thesis; the inertia of the rigid motion by the same masses.
+    """
+    base, exact, theta = beams(1), hybrid(1e-10), even_angles(2.0 * np.pi, _ANGLES)
+    order = [exact.labels.index(label) for label in base.labels]
+    places = np.ix_(range(_ANGLES), order, order)
+    push = exact.mass[places] @ np.linalg.solve(
+        base.array("M", theta), base.array("f", theta)[..., None]
+    )
+    mass, stiffness, force = (
+        interpolated(values, 2.0 * np.pi)
+        for values in (exact.mass[places], exact.stiffness[places], push[..., 0])
+    )
+    terms = (
+        Term("M", None, mass),
+        # The family's own M' is taken out, as of any instantaneous form.
+        Term("C", None, lambda angles: -mass.derivative(angles), power=1),
+        Term("K", None, stiffness),
+        Term("f", None, force),
+    )
+    bare = LinearPeriodic(
+        base.size,
+        terms,
+        {},
+        lambda values: {},
+        labels=base.labels,
+        relative_deflection=base.relative_deflection,
+        structure=base.structure,
+    )
+    return with_modal_damping(bare, 0.02)

@@ -18,40 +18,33 @@ from ..frequencies import (
     link_frequencies,
     natural_frequencies,
 )
+from ..periodic import steady_state
 from ..recovery import ElasticCurve, elastic_coupler_curve, stress_operator
 from ..recovery.stress_over_speed import StressCurve, stress_curve
 from ..scenes import load_scene
 from .aannaque_kinematics import cycle
-from .aannaque_models import FRAME, exact_frequencies, maxima, periodic, structure_of
-from .drawing import COLOURS, crank_axis, legend_below, panel_title
-from .records import Drawn, Table
+from .aannaque_models import FRAME, exact_frequencies, maxima, structure_of
+from .drawing import COLOURS, mark_fractions, panel_title, turn
+from .records import Drawn
+from .registry import contents
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 SHORT, LONG = "aannaque_1996_table_4_1", "aannaque_1996_long_coupler"
-# Captions of Appendix C, Figs. C.1 to C.24 [rad/s].
-SPEEDS_C = (
-    *(7.11, 9.71, 11.1, 13.43, 15.44, 16.28, 16.71, 17.70, 18.27, 20.07, 20.40, 21.01),
-    *(21.08, 21.89, 22.52, 22.60, 23.44, 24.35, 25.96, 27.32, 29.09, 30.21, 31.42, 35.30),
-)
-# Captions of Appendix D, Figs. D.1 to D.26; that of D.5 is left in the list of figures alone.
-SPEEDS_D = (
-    *(6.84, 7.86, 9.11, 9.68, 10.23, 11.38, 11.90, 12.44, 13.40, 14.28, 15.51, 16.45, 16.89),
-    *(18.00, 18.81, 20.27, 21.37, 21.74, 22.68, 22.77, 23.36, 23.62, 23.89, 24.74, 25.34, 25.75),
-)
+# Speeds in the captions of appendices C and D [rad/s].
+SPEEDS: Mapping[str, Sequence[float]] = contents("aannaque")["speeds"]
 # Where the gauges sat: the captions say the middle of the input link, section 8.5 its end.
 STATIONS: Mapping[str, tuple[float, ...]] = {
     "crank": (0.0, 0.5),
     "coupler": (0.5,),
     "follower": (0.5,),
 }
-_SLOW, _FAST = SPEEDS_C[0], SPEEDS_C[-1]
+_SLOW, _FAST = SPEEDS["C"][0], SPEEDS["C"][-1]
 # How much larger displacements are drawn beside the true path.
 _LARGER = {_SLOW: 200.0, _FAST: 8.0}
-# Captions of Figs. 8.9 to 8.18; by section 8.4 the cycle is divided into ten equal angles.
-CAPTIONS = (0, 36, 72, 108, 144, 180, 216, 252, 288, 316)
-ANGLES = tuple(360 * k // len(CAPTIONS) for k in range(len(CAPTIONS)))
+# By section 8.4 the cycle is divided into ten equal angles.
+ANGLES = tuple(range(0, 360, 36))
 _LENGTHS = np.concatenate([np.linspace(0.30, 0.52, 8), np.linspace(0.535, 0.80, 16)])
 FRAMES = (0.547, 0.632, 0.642, 0.652, 0.662)
 _LOW, _HIGH, _LONG_HIGH = 5.0, 40.0, 30.0
@@ -71,7 +64,7 @@ def rig(scene: str = SHORT, frame: float = FRAME) -> LinearPeriodic:
 @lru_cache(maxsize=4)
 def midpoint(speed: float) -> ElasticCurve:
     """Return the path of the coupler's midpoint at a crank speed [rad/s]."""
-    return elastic_coupler_curve(rig(), periodic(rig(), speed))
+    return elastic_coupler_curve(rig(), steady_state(rig(), speed, rtol=1e-5))
 
 
 def figure_8_2(axes: Sequence[Axes]) -> Drawn:
@@ -82,9 +75,7 @@ def figure_8_2(axes: Sequence[Axes]) -> Drawn:
         _closed(ax, path.rigid, "--", "0.8", "rigid linkage")
         enlarged = path.rigid + larger * path.displacement
         _closed(ax, enlarged, ":", COLOURS[1], "elastic linkage, its displacement enlarged")
-        _paper(ax)
         panel_title(ax, f"{speed:g} rad/s; dotted: displacement {larger:g} times as large")
-    legend_below(axes)
     return Drawn([1e3 * midpoint(speed).largest for speed in (_SLOW, _FAST)])
 
 
@@ -93,8 +84,6 @@ def figure_8_3(axes: Sequence[Axes]) -> Drawn:
     path = midpoint(_SLOW)
     _closed(axes[0], path.elastic, "-", COLOURS[0], "elastic linkage")
     _closed(axes[0], path.rigid, "--", "0.8", "rigid linkage")
-    _paper(axes[0])
-    legend_below(axes)
     _displacements(axes[1], {_SLOW: COLOURS[0]})
     return Drawn([1e3 * path.largest])
 
@@ -107,8 +96,6 @@ def figure_8_4(axes: Sequence[Axes]) -> Drawn:
     enlarged = fast.rigid + _LARGER[_FAST] * fast.displacement
     label = f"{_FAST:g} rad/s, displacement {_LARGER[_FAST]:g} times as large"
     _closed(axes[0], enlarged, ":", COLOURS[1], label)
-    _paper(axes[0])
-    legend_below(axes)
     _displacements(axes[1], {_SLOW: COLOURS[4], _FAST: COLOURS[1]})
     return Drawn([fast.largest / slow.largest / (_FAST / _SLOW) ** 2])
 
@@ -118,20 +105,10 @@ def _closed(ax: Axes, places: Array, style: str, colour: str, label: str) -> Non
     ax.plot(*(1e3 * around).T, style, color=colour, label=label)
 
 
-def _paper(ax: Axes) -> None:
-    ax.set_aspect("equal")
-    ax.set(xlabel="x [mm]", ylabel="y [mm]")
-
-
 def _displacements(ax: Axes, speeds: Mapping[float, str]) -> None:
     for speed, colour in speeds.items():
         path = midpoint(speed)
-        size = 1e3 * np.hypot(*path.displacement.T)
-        angle = np.degrees(np.append(path.theta, 2 * np.pi))
-        ax.plot(angle, np.append(size, size[0]), color=colour)
-    crank_axis(ax)
-    ax.set_ylim(bottom=0.0)
-    ax.set_ylabel("distance from the rigid path [mm]")
+        turn(ax, path.theta, 1e3 * np.hypot(*path.displacement.T), color=colour)
 
 
 @lru_cache(maxsize=1)
@@ -149,13 +126,9 @@ def modes(axes: Sequence[Axes], place: int) -> Drawn:
         hertz = computed[rank] / (2 * np.pi)
         ax.set_title(f"mode {rank + 1}: {hertz:.1f} Hz, {computed[rank]:.1f} rad/s", fontsize=9)
     exact = exact_frequencies(structure_of(rig()), np.array([radians(angle)]), 3)[0]
-    rows = tuple(
-        (str(rank + 1), *(f"{value / (2 * np.pi):.2f}" for value in pair))
-        for rank, pair in enumerate(zip(computed, exact, strict=True))
-    )
-    header = ("mode", "three elements per link [Hz]", "dynamic stiffness [Hz]")
-    table = Table(f"Natural frequencies at the crank angle {angle} deg", header, rows)
-    return Drawn([angle, 100.0 * np.max(np.abs(computed / exact - 1.0))], tables=(table,))
+    rows = zip((1, 2, 3), computed / (2 * np.pi), exact / (2 * np.pi), strict=True)
+    gap = 100.0 * np.max(np.abs(computed / exact - 1.0))
+    return Drawn([angle, gap], {"angle": angle}, [rows])
 
 
 @lru_cache(maxsize=1)
@@ -217,10 +190,7 @@ def long_frame(axes: Sequence[Axes], frame: float) -> Drawn:
         over = curve(SHORT, value)
         label = f"$L_4$ = {value:.3f} m"
         ax.semilogy(over.speed, over.of("follower") / 1e6, style, color=colour, label=label)
-    _fractions(ax, mean_frequency(SHORT, frame), _HIGH)
-    ax.set_xlabel("crank speed [rad/s]")
-    ax.set_ylabel("largest stress at the follower's midpoint [MPa]")
-    legend_below(axes)
+    _mark_fractions(ax, mean_frequency(SHORT, frame), _HIGH)
     values = _orders(SHORT, frame, curve(SHORT, frame), "follower")
     place = FRAMES.index(frame)
     if place:
@@ -235,18 +205,12 @@ def long_frame(axes: Sequence[Axes], frame: float) -> Drawn:
     return Drawn(values)
 
 
-def _fractions(ax: Axes, mean: float, high: float, mode: int = 1) -> None:
+def _mark_fractions(ax: Axes, mean: float, high: float, mode: int = 1) -> None:
     """Mark a mode's mean frequency over whole numbers: of the second mode the lowest alone."""
     first = int(mean / high) + 1
-    place: dict[str, Any] = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points"}
-    for order in range(first, (10 if mode == 1 else first) + 1):
-        speed = mean / order
-        if _LOW < speed < high:
-            ax.axvline(speed, color="0.6", lw=0.7, ls=(0, (1, 3)), zorder=1)
-            # Those up to the eighth have room for a name.
-            if order <= 8:
-                text = rf"$\bar\omega_{mode}/{order}$"
-                ax.annotate(text, (speed, 0.0), xytext=(2, 3), fontsize=7, color="0.4", **place)
+    orders = range(first, (10 if mode == 1 else first) + 1)
+    name = rf"$\bar\omega_{mode}/{{}}$"
+    mark_fractions(ax, mean, orders, name, (_LOW, high), low=True)
 
 
 def _orders(scene: str, frame: float, over: StressCurve, link: str) -> list[float]:
@@ -283,16 +247,11 @@ def figure_8_24(axes: Sequence[Axes]) -> Drawn:
     values = []
     for frame, style, colour in ((0.662, "-", COLOURS[0]), (FRAME, "--", COLOURS[4])):
         shown = cycles(SHORT, frame, (_SHOWN,))
-        angle = np.degrees(np.append(shown.theta, 2 * np.pi))
         stress = shown.stress["follower", 0.5][0] / 1e6
-        stress = np.append(stress, stress[0])
-        ax.plot(angle, stress, style, color=colour, label=f"$L_4$ = {frame:.3f} m")
+        turn(ax, shown.theta, stress, style, color=colour, label=f"$L_4$ = {frame:.3f} m")
         if frame != FRAME:
-            values.append(angle[int(np.argmax(np.abs(stress)))])
+            values.append(np.degrees(shown.theta[int(np.argmax(np.abs(stress)))]))
     ax.axvline(180.0, color="0.6", lw=0.7, ls=(0, (1, 3)))
-    crank_axis(ax)
-    ax.set_ylabel("stress at the follower's midpoint [MPa]")
-    legend_below(axes)
     widest = degrees(float(motion.theta2[int(np.argmax(motion.transmission_angle))]))
     lowest = min(float(_held(scene).least[:, 0].min()) for scene in (SHORT, LONG)) / (2 * np.pi)
     # The input link with its flywheel: calculated and measured frequency [Hz].
@@ -307,10 +266,7 @@ def long_coupler(axes: Sequence[Axes], link: str) -> Drawn:
     before = short.of(link)[kept] / 1e6
     ax.semilogy(short.speed[kept], before, "--", color=COLOURS[4], label="$L_2$ = 0.328 m")
     for mode in (1, 2):
-        _fractions(ax, mean_frequency(LONG, FRAME, mode), _LONG_HIGH, mode)
-    ax.set_xlabel("crank speed [rad/s]")
-    ax.set_ylabel(f"largest stress at the {link}'s midpoint [MPa]")
-    legend_below(axes)
+        _mark_fractions(ax, mean_frequency(LONG, FRAME, mode), _LONG_HIGH, mode)
     ratios = [one.of("coupler") / one.of("follower") for one in (long, short)]
     growth = np.exp(np.mean(np.log(ratios[0])) - np.mean(np.log(ratios[1][kept])))
     return Drawn([*_orders(LONG, FRAME, long, link), growth])
@@ -333,7 +289,7 @@ class Cycles:
 def cycles(scene: str, frame: float, speeds: tuple[float, ...]) -> Cycles:
     """Return the stresses at the gauges over the cycle."""
     system = rig(scene, frame)
-    motion = periodic(system, np.array(speeds))
+    motion = steady_state(system, np.array(speeds), rtol=1e-5)
     form, stations = stress_operator(system, motion.theta, STATIONS)
     values = np.stack(
         [
@@ -346,51 +302,29 @@ def cycles(scene: str, frame: float, speeds: tuple[float, ...]) -> Cycles:
     return Cycles(np.array(speeds), motion.theta, by_station)
 
 
-def gauges(letter: str, numbers: Sequence[int]) -> Cycles:
-    """Return the stresses over the cycle at the speeds of some figures of an appendix."""
-    scene, speeds = {"C": (SHORT, SPEEDS_C), "D": (LONG, SPEEDS_D)}[letter]
-    return cycles(scene, FRAME, tuple(speeds[number - 1] for number in numbers))
-
-
 def sheet(axes: Sequence[Axes], letter: str, first: int, last: int) -> Drawn:
     """Draw some figures of appendix C or D, a row of links for each."""
     numbers = range(first, last + 1)
-    shown = gauges(letter, numbers)
-    angle = np.degrees(np.append(shown.theta, 2 * np.pi))
+    speeds = tuple(SPEEDS[letter][number - 1] for number in numbers)
+    shown = cycles({"C": SHORT, "D": LONG}[letter], FRAME, speeds)
     names = {"crank": "input link", "coupler": "coupler", "follower": "follower"}
+    looks: dict[float, dict[str, Any]] = {
+        0.5: {"color": COLOURS[0], "lw": 1.0, "label": "midpoint"},
+        0.0: {"color": COLOURS[1], "lw": 0.8, "ls": "--", "label": "end at the flywheel"},
+    }
     for row, number in enumerate(numbers):
-        for column, (link, name) in enumerate(names.items()):
-            ax = axes[3 * row + column]
-            _gauge(ax, angle, shown.stress[link, 0.5][row], "-", COLOURS[0], 1.0, "midpoint")
-            if (link, 0.0) in shown.stress:
-                end = shown.stress[link, 0.0][row]
-                _gauge(ax, angle, end, "--", COLOURS[1], 0.8, "end at the flywheel")
-            ax.set_xlim(0.0, 360.0)
-            ax.set_xticks([0, 90, 180, 270, 360])
+        for ax, (link, name) in zip(axes[3 * row :], names.items(), strict=False):
+            for place, look in looks.items():
+                if (link, place) in shown.stress:
+                    turn(ax, shown.theta, shown.stress[link, place][row] / 1e6, **look)
             ax.locator_params(axis="y", nbins=4)
-            panel_title(ax, f"{letter}.{number}: {name}, {shown.speed[row]:g} rad/s")
-            if number < last:
-                ax.tick_params(labelbottom=False)
-            else:
-                ax.set_xlabel("crank angle [deg]")
-        axes[3 * row].set_ylabel("stress [MPa]")
-    legend_below(axes)
-    highest = max(_highest(shown, k) for k in range(len(numbers)))
+            panel_title(ax, f"{letter}.{number}: {name}, {speeds[row]:g} rad/s")
+            ax.tick_params(labelbottom=number == last)
+    highest = 0.0
+    for values in shown.stress.values():
+        waves = np.abs(np.fft.rfft(values))[:, 1:]
+        kept = waves >= 0.01 * np.max(waves, axis=1, keepdims=True)
+        last_kept = waves.shape[1] - np.argmax(kept[:, ::-1], axis=1)
+        highest = max(highest, float(np.max(last_kept * shown.speed)) / (2 * np.pi))
     peaks = [np.max(np.abs(shown.stress["crank", place]), axis=1) for place in (0.0, 0.5)]
     return Drawn([highest, float(np.min(peaks[0] / peaks[1]))])
-
-
-def _gauge(
-    ax: Axes, angle: Array, stress: Array, style: str, colour: str, width: float, label: str
-) -> None:
-    values = np.append(stress, stress[0]) / 1e6
-    ax.plot(angle, values, style, color=colour, lw=width, label=label)
-
-
-def _highest(shown: Cycles, speed: int) -> float:
-    """Return the frequency [Hz] of the highest harmonic with 1 % of the largest, all links."""
-    best = 0
-    for values in shown.stress.values():
-        waves = np.abs(np.fft.rfft(values[speed]))[1:]
-        best = max(best, 1 + int(np.flatnonzero(waves >= 0.01 * waves.max())[-1]))
-    return best * float(shown.speed[speed]) / (2 * np.pi)

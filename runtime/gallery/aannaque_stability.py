@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ...generated import hill_meissner
 from ..core.periodic_function import PeriodicFunction
 from ..hill import critical_damping, discriminant, hill_boundaries
-from .drawing import COLOURS, Array, legend_below, panel_title
+from .drawing import COLOURS, Array, panel_title
 from .records import Drawn
 
 if TYPE_CHECKING:
@@ -210,13 +210,10 @@ def figure_7_2(axes: Sequence[Axes]) -> Drawn:
     pinched = np.array([*((j, k) for j in whole for k in whole), *((j - 0.5,) * 2 for j in whole)])
     ax.plot(*pinched.T, "o", color="0.15", ms=3.2, label="regions without width", clip_on=False)
     ax.plot([], [], color="0.55", lw=0.8, ls=(0, (1, 3)), label=r"$x_1 + x_2 = n\pi$")
-    ax.set_aspect("equal")
     ax.set(xlim=(0.0, _WIDEST), ylim=(0.0, _WIDEST))
     for axis, name in ((ax.xaxis, "x_1"), (ax.yaxis, "x_2")):
         axis.set_ticks(range(_WIDEST + 1), ["0", "π", *(f"{i}π" for i in range(2, _WIDEST + 1))])
         axis.set_label_text(f"${name} = T v_{name[-1]} / 2$")
-    ax.grid(visible=False)
-    legend_below([ax])
     return Drawn(_branch_values())
 
 

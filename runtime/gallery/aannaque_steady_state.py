@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 
 from ..core.families import Array
 from ..core.trigonometric import even_angles
-from ..periodic import SteadyState, cycles_to_settle
-from .aannaque_algorithms import (
-    TABLE_6_2,
-    TABLE_6_3,
+from ..periodic import SteadyState, cycles_to_settle, steady_state
+from .aannaque_models import CRITICAL, FULL, THESIS, beams, midpoint, moved, rms
+from .algorithms import (
     modal_motion,
     newmark_limit,
     newmark_maps,
@@ -23,9 +22,9 @@ from .aannaque_algorithms import (
     printed_count,
     transition_nodes,
 )
-from .aannaque_models import CRITICAL, FULL, THESIS, beams, midpoint, moved, periodic, rms
-from .drawing import COLOURS, crank_axis, legend_below, panel_title
-from .records import Drawn, Table, Value
+from .drawing import COLOURS, panel_title, turn
+from .records import Drawn, Value
+from .registry import contents
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,6 +33,8 @@ _SPEED = 35.0
 # Newmark's steps in a revolution, half a degree each.
 _STEPS = 720
 _FORMS = ((THESIS, "the thesis' form"), (FULL, "full form with stiffening"))
+# Tables 6.2 and 6.3 as printed.
+_TABLES = contents("aannaque")["table_6"]
 _NAMES = {
     "time_marching": "time marching",
     "transition_matrix": "algorithm 1",
@@ -61,31 +62,21 @@ def figure_6_1(axes: Sequence[Axes]) -> Drawn:
         (0.75, 0.62, "stable at every step"),
     ):
         ax.text(x, y, words, ha="center", va="center")
-    ax.set(xlim=(0.0, 1.2), ylim=(0.0, 0.8), xlabel=r"$\gamma$", ylabel=r"$\beta$")
-    ax.grid(visible=False)
-    legend_below([ax])
     # Points between the lines, on which the regions meet, that are in another region than drawn.
     gamma, beta = np.meshgrid(np.arange(0.013, 1.2, 0.04), np.arange(0.003, 0.8, 0.04))
     drawn = 1 + (beta > 0.5 * gamma).astype(int) + (beta > 0.25 * (gamma + 0.5) ** 2)
     misjudged = np.where(gamma < 0.5, 0, drawn) != newmark_regions(gamma, beta)
     below = newmark_limit(0.49, 0.25)
     linear = (newmark_limit(0.5, 1.0 / 6.0), float(np.sqrt(12.0)))
-    least = [_least_beta(gamma) for gamma in (0.5, 0.9)]
+    # The least beta that is stable at every step: beside round values, on which round-off decides.
+    fine = 1e-12 + np.linspace(0.0, 1.0, 1000001)
+    least = [fine[np.isinf(newmark_limit(gamma, fine))][0] for gamma in (0.5, 0.9)]
     return Drawn([np.count_nonzero(misjudged), *least, float(below), linear])
-
-
-def _least_beta(gamma: float) -> float:
-    """Return the least beta that is stable at every step."""
-    low, high = 0.0, 1.0
-    while high - low > 1e-9:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if np.isinf(newmark_limit(gamma, middle)) else (middle, high)
-    return 0.5 * (low + high)
 
 
 @lru_cache(maxsize=1)
 def _whole() -> SteadyState:
-    return periodic(beams(1), _SPEED)
+    return steady_state(beams(1), _SPEED, rtol=1e-5)
 
 
 @lru_cache(maxsize=8)
@@ -101,27 +92,19 @@ def _across(link: str, q: Array) -> Array:
 
 def deflections(axes: Sequence[Axes], link: str) -> Drawn:
     """Draw a link's midpoint over the cycle, with and without uncoupled modes (Fig. 6.3)."""
-    ax = axes[0]
+    ax, full = axes[0], steady_state(beams(1, FULL), _SPEED, rtol=1e-5)
     for q, style, colour, label in (
         (_whole().q, "-", COLOURS[0], "no uncoupling"),
         (_uncoupled(9), "--", COLOURS[1], "all 9 modes, uncoupled"),
         (_uncoupled(4), "-.", COLOURS[2], "4 modes, uncoupled"),
-        (periodic(beams(1, FULL), _SPEED).q, ":", "0.4", "full form with stiffening"),
+        (full.q, ":", "0.4", "full form with stiffening"),
     ):
-        values = 1e3 * _across(link, q)
-        turned = np.linspace(0.0, 360.0, len(q) + 1)
-        ax.plot(turned, np.append(values, values[0]), style, color=colour, label=label)
-    _cycle_axis(ax, f"displacement across the\n{link}'s midpoint [mm]", columns=2)
+        angles = even_angles(2.0 * np.pi, len(q))
+        turn(ax, angles, 1e3 * _across(link, q), style, color=colour, label=label)
     coupler, follower = _gap("coupler", 9), _gap("follower", 9)
     if link == "follower":
         return Drawn([follower])
     return Drawn([coupler, coupler / follower, _gap("coupler", 4)])
-
-
-def _cycle_axis(ax: Axes, label: str, columns: int) -> None:
-    crank_axis(ax)
-    ax.set(xlabel="input angle $t_1$ [deg]", ylabel=label)
-    legend_below([ax], columns=columns)
 
 
 def _gap(link: str, modes: int) -> float:
@@ -152,7 +135,6 @@ def contributions(axes: Sequence[Axes], link: str) -> Drawn:
     ax.plot(turned, 1e3 * whole, color="0.15", lw=1.6, label="displacement")
     for mode in range(4):
         ax.plot(turned, 1e3 * parts[:, mode], color=COLOURS[mode], label=f"mode {mode + 1}")
-    _cycle_axis(ax, f"part of the {link}'s midpoint [mm]", columns=5)
     shares, closed = {}, []
     for name in ("coupler", "follower"):
         whole, parts = _contributions(name)
@@ -163,10 +145,7 @@ def contributions(axes: Sequence[Axes], link: str) -> Drawn:
     if link == "coupler":
         higher = np.sum(coupler[1:4]) / coupler[0]
         values = [higher / (np.sum(follower[1:4]) / follower[0])]
-    rows = tuple((name, *(f"{value:.3f}" for value in shares[name][:6])) for name in shares)
-    header = ("midpoint of", *(f"mode {i}" for i in range(1, 7)))
-    title = "rms of a mode's part over the rms of the displacement"
-    return Drawn(values, tables=(Table(title, header, rows),))
+    return Drawn(values, tables=[[(name, *sizes[:6]) for name, sizes in shares.items()]])
 
 
 @lru_cache(maxsize=4)
@@ -207,48 +186,26 @@ def figure_6_5(axes: Sequence[Axes]) -> Drawn:
     values, multipliers = march()
     cycles = np.arange(values.size) / values.shape[1]
     axes[0].plot(cycles, 1e3 * values.ravel(), color=COLOURS[0], lw=0.6)
-    axes[0].set_ylabel("follower's midpoint [mm]")
-    panel_title(axes[0], "from rest, the thesis' form")
     for drop, label in _FORMS:
         change = changes(march(drop)[0])
         counted = np.arange(2, len(change) + 2)
         axes[1].semilogy(counted, change, "o-", ms=3, label=label)
     axes[1].axhline(1e-4, color="0.4", lw=0.8, ls="--", label=r"$10^{-4}$")
     axes[1].axvline(31, color="0.4", lw=0.8, ls=":", label="31 cycles")
-    axes[1].set_ylabel("change in a cycle\nover the peak")
-    for ax in axes:
-        ax.set_xlim(0.0, 40.0)
-    axes[1].set_xlabel("cycle")
-    legend_below([axes[1]])
     system, last = beams(1), values[-1]
     q = transition_nodes(*newmark_maps(system, CRITICAL, _STEPS))[:, : system.size]
     off = np.max(np.abs(_across("follower", q) - last)) / np.max(np.abs(last))
     numbers = [_settled(values, 1e-4), np.max(np.abs(multipliers)), off]
-    return Drawn(numbers, tables=(_cycle_table(),))
-
-
-def _cycle_table() -> Table:
     rows = []
     for drop, name in _FORMS:
         values, multipliers = march(drop)
         top = multipliers[np.argmax(np.abs(multipliers))]
         for tolerance in (1e-4, 1e-5):
-            cells = [name, f"{tolerance:g}", f"{abs(top):.4f}"]
-            cells.append(str(int(cycles_to_settle(top, tolerance, norm="change"))))
-            cells.append(str(int(cycles_to_settle(top, tolerance, norm="remaining"))))
-            rows.append((*cells, f"{_settled(values, tolerance):.0f}"))
-    header = ("form", "tolerance", "multiplier", "by change", "by rest", "marched, by change")
-    return Table("Cycles from rest at 62 rad/s", header, tuple(rows))
-
-
-def _counted(name: str, intervals: int, freedoms: int, cycles: int = 1, **more: bool) -> float:
-    return float(
-        operation_count(name, intervals=intervals, freedoms=freedoms, cycles=cycles, **more)
-    )
-
-
-def _printed(name: str, intervals: int, freedoms: int, cycles: int = 1, **more: bool) -> float:
-    return float(printed_count(name, intervals=intervals, freedoms=freedoms, cycles=cycles, **more))
+            cycles = (
+                cycles_to_settle(top, tolerance, norm=norm) for norm in ("change", "remaining")
+            )
+            rows.append((name, tolerance, abs(top), *cycles, _settled(values, tolerance)))
+    return Drawn(numbers, tables=[rows])
 
 
 def _cycles(ratio: float) -> int:
@@ -271,31 +228,27 @@ def figure_6_6(axes: Sequence[Axes]) -> Drawn:
         for name, cycles, label, colour in lines:
             printed, counted = (
                 [1e-6 * count(name, n, 9, cycles, storage=storage) for n in intervals]
-                for count in (_printed, _counted)
+                for count in (printed_count, operation_count)
             )
             ax.plot(intervals, printed, "o-", ms=3, color=colour, label=label)
             ax.plot(intervals, counted, "--", lw=0.9, color=colour)
         ax.plot([], [], "--", lw=0.9, color="0.4", label="counted here")
-        ax.set_xlabel("intervals")
         panel_title(ax, "matrices stored" if storage else "no storage")
-        ax.set_ylim(bottom=0.0)
-    axes[0].set_ylabel("operations [million]")
-    legend_below([axes[0]], columns=3)
     one, two = "transition_matrix", "closed_form"
     values = [
         max(
             count(one, big, n) / count(two, big, n) for n in (1, 2, 9, 27, 100) for big in (90, 720)
         )
-        for count in (_printed, _counted)
+        for count in (printed_count, operation_count)
     ]
-    values.append(_counted(one, 1440, 9) / _counted(one, 720, 9))
+    values.append(operation_count(one, 1440, 9) / operation_count(one, 720, 9))
     return Drawn([*values, _break_even(10), _break_even(50) / _break_even(10)])
 
 
 def _break_even(freedoms: int) -> float:
     """Return the cycles from which marching takes more operations than algorithm 1."""
-    wanted, cycles = _printed("transition_matrix", 720, freedoms), 1
-    while _printed("time_marching", 720, freedoms, cycles) < wanted:
+    wanted, cycles = printed_count("transition_matrix", 720, freedoms), 1
+    while printed_count("time_marching", 720, freedoms, cycles) < wanted:
         cycles += 1
     return float(cycles)
 
@@ -305,9 +258,10 @@ def table_6_1(axes: Sequence[Axes]) -> Drawn:
     freedoms = np.unique(np.round(np.geomspace(3, 300, 25)).astype(int))
 
     def ratio(name: str, n: int, storage: bool = True) -> float:
-        return _counted(name, 720, n, 5, storage=storage) / _printed(
-            name, 720, n, 5, storage=storage
+        counts = (
+            count(name, 720, n, 5, storage=storage) for count in (operation_count, printed_count)
         )
+        return next(counts) / next(counts)
 
     rows = []
     for ax, storage in zip(axes, (True, False), strict=True):
@@ -315,57 +269,46 @@ def table_6_1(axes: Sequence[Axes]) -> Drawn:
         for name, label in _NAMES.items():
             ratios = [ratio(name, int(n), storage) for n in freedoms]
             ax.semilogx(freedoms, ratios, label=label)
-            rows.append((label, words, *(f"{ratio(name, n, storage):.3f}" for n in (9, 27, 300))))
+            rows.append((label, words, *(ratio(name, n, storage) for n in (9, 27, 300))))
         ax.axhline(1.0, color="0.5", lw=0.8)
-        ax.set_xlabel("freedoms $n$")
         panel_title(ax, f"matrices {words}" if storage else words)
-    axes[0].set_ylabel("counted over printed operations")
-    legend_below([axes[0]])
-    header = ("algorithm", "matrices", "n = 9", "n = 27", "n = 300")
-    table = Table("Counted over printed operations", header, tuple(rows))
-    return Drawn([ratio(name, 300) for name in _NAMES], tables=(table,))
+    return Drawn([ratio(name, 300) for name in _NAMES], tables=[rows])
 
 
 def table_6_2(axes: Sequence[Axes]) -> Drawn:
     """Draw the entries of Table 6.2 and those of the printed formulas."""
-    ax, places = axes[0], np.arange(len(TABLE_6_2))
+    ax, entries = axes[0], np.array(_TABLES["operations"])
+    keys, printed, places = entries[:, :3].astype(int), entries[:, 3:], np.arange(len(entries))
     columns = [(name, storage) for storage in (True, False) for name in _NAMES]
     computed = np.array(
-        [[1e-6 * _printed(name, *key, storage=kept) for name, kept in columns] for key in TABLE_6_2]
+        [[1e-6 * printed_count(name, *k, storage=kept) for name, kept in columns] for k in keys]
     )
-    printed = np.array(list(TABLE_6_2.values()), dtype=float)
     for k, ((name, kept), colour) in enumerate(zip(columns, COLOURS, strict=False)):
         label = f"{_NAMES[name]}, {'stored' if kept else 'no storage'}"
         shift = places + 0.12 * (k - 2.5)
         ax.semilogy(shift, computed[:, k], "_", color=colour, ms=9, mew=2, label=label)
         ax.semilogy(shift, printed[:, k], "o", color=colour, ms=3)
-    ax.set_xticks(places, [f"N {big}\nn {n}\n$n_c$ {cycles}" for big, n, cycles in TABLE_6_2])
-    ax.set_ylabel("operations [million]")
-    legend_below([ax], columns=3)
+    ax.set_xticks(places, [f"N {big}\nn {n}\n$n_c$ {cycles}" for big, n, cycles in keys])
     return Drawn([np.max(np.abs(printed / computed - 1.0))])
 
 
 def table_6_3(axes: Sequence[Axes]) -> Drawn:
     """Draw the operations of the Fourier series and of algorithm 1 over the harmonics."""
-    harmonics = np.arange(1, 31)
+    harmonics, entries = range(1, 31), _TABLES["series"]
 
     def series(number: int, big: int, n: int) -> float:
-        return 1e-6 * printed_count("harmonic_balance", intervals=big, freedoms=n, harmonics=number)
+        return 1e-6 * printed_count("harmonic_balance", big, n, harmonics=number)
 
     for ax, n in zip(axes, (10, 50), strict=True):
         for big, colour in ((90, COLOURS[0]), (720, COLOURS[1])):
-            values = [series(int(h), big, n) for h in harmonics]
+            values = [series(h, big, n) for h in harmonics]
             ax.semilogy(harmonics, values, color=colour, label=f"Fourier series, N = {big}")
-            one = 1e-6 * _printed("transition_matrix", big, n)
+            one = 1e-6 * printed_count("transition_matrix", big, n)
             ax.axhline(one, color=colour, ls="--", lw=0.9, label=f"algorithm 1, N = {big}")
-            points = [(h, v[0]) for (b, h, k), v in TABLE_6_3.items() if (b, k) == (big, n)]
+            points = [(h, value) for b, h, k, value, _ in entries if (b, k) == (big, n)]
             ax.plot(*np.transpose(points), "o", color=colour, ms=4)
-        ax.set_xlabel("harmonics")
-        panel_title(ax, f"{n} freedoms")
-    axes[0].set_ylabel("operations [million]")
     axes[1].plot([], [], "o", color="0.4", ms=4, label="printed, Fourier series")
-    legend_below([axes[1]], columns=3)
     numbers: list[Value] = []
-    for big, number, n in TABLE_6_3:
-        numbers += [series(number, big, n), 1e-6 * _printed("transition_matrix", big, n)]
+    for big, number, n, *_ in entries:
+        numbers += [series(number, big, n), 1e-6 * printed_count("transition_matrix", big, n)]
     return Drawn(numbers)

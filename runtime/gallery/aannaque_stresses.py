@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from functools import lru_cache
 from itertools import pairwise
@@ -10,14 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..core.errors import LinearRangeWarning
 from ..core.families import Array, LinearPeriodic
+from ..core.trigonometric import resampled
 from ..frequencies import NaturalFrequencies, natural_frequencies
 from ..hill import Meissner, discriminant
-from ..periodic import floquet_multipliers
+from ..periodic import floquet_multipliers, steady_state
 from ..periodic.reduced import reduced_system
 from ..recovery import recover, stress_operator
-from .aannaque_hybrid import fourier_sum, hybrid, hybrid_model
 from .aannaque_models import (
     CRITICAL,
     FRAMES,
@@ -25,17 +23,18 @@ from .aannaque_models import (
     LINKS,
     THESIS,
     beams,
+    hybrid,
+    hybrid_model,
     maxima,
     moved,
     nearest,
-    periodic,
     rms,
     stresses,
     structure_of,
     tops,
 )
-from .drawing import COLOURS, crank_axis, legend_below
-from .records import Drawn, Table
+from .drawing import COLOURS
+from .records import Drawn
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,10 +46,6 @@ _WIDE, _FEWER = np.linspace(5.0, 70.0, 326), np.linspace(10.0, 70.0, 121)
 _MODES = 4
 # The range of L4 up to which the stresses fall.
 _LATE = 0.632
-
-
-def _speed_axis(ax: Axes, speed: Array, label: str) -> None:
-    ax.set(xlim=(speed[0], speed[-1]), xlabel="crank speed [rad/s]", ylabel=label)
 
 
 def _apart(places: Array, others: Array) -> float:
@@ -91,33 +86,19 @@ def figure_7_1(axes: Sequence[Axes]) -> Drawn:
     ):
         label = f"multipliers of {name} modulus"
         axes[1].plot(_SPEEDS, values, style, ms=3.5, color=colour, label=label)
-    for ax, label in zip(axes, ("largest stress [MPa]", "real part"), strict=True):
-        _speed_axis(ax, _SPEEDS, label)
+    for ax in axes:
         for place in places:
             ax.axvline(place, color="0.6", lw=0.6, ls=(0, (1, 3)))
-    axes[0].set_xlabel("")
-    legend_below(axes, columns=3)
     both = [tops(_SPEEDS, largest), tops(_SPEEDS, second)]
     values = [_apart(places, np.concatenate(both)), nearest(places, CRITICAL)]
     values += [nearest(both[0], CRITICAL), float(np.max(np.abs(real_parts())))]
-    return Drawn(values, tables=(_maxima_table(places, both),))
-
-
-def _maxima_table(places: Array, both: Sequence[Array]) -> Table:
     rows, mean = [], float(_held().mean[0])
     for place in places:
         rank = int(np.argmin([np.min(np.abs(one - place), initial=np.inf) for one in both]))
         order = max(round(mean / float(place)), 1)
-        rows.append(
-            (
-                f"{place:.2f}",
-                f"{nearest(both[rank], float(place)):.2f}",
-                ("largest", "second")[rank],
-                f"{mean / order:.2f} (n = {order})" if rank == 0 else "",
-            )
-        )
-    header = ("stress [rad/s]", "real part [rad/s]", "modulus", "first mean frequency/n [rad/s]")
-    return Table("Critical speeds of the one-element model", header, tuple(rows))
+        name, divided = ("largest", "second")[rank], f"{mean / order:.2f} (n = {order})"
+        rows.append((place, nearest(both[rank], place), name, "" if rank else divided))
+    return Drawn(values, tables=[rows])
 
 
 @lru_cache(maxsize=1)
@@ -144,9 +125,6 @@ def figure_7_3(axes: Sequence[Axes]) -> Drawn:
     ax.plot(_SPEEDS, damped, "--", color=COLOURS[3], label="all modes, damping 2 %")
     for level in (-1.0, 1.0):
         ax.axhline(level, color="0.6", lw=0.6)
-    _speed_axis(ax, _SPEEDS, "half trace, real part")
-    ax.set_ylim(-1.3, 1.3)
-    legend_below([ax], columns=5)
     reference, whole = tops(_SPEEDS, fine), _meissner(_SPEEDS, 720)
     divisions = float(_held().mean[0]) / np.arange(1, 12)
     gaps = [float(np.max(np.abs(_meissner(_SPEEDS, count) - whole))) for count in (90, 180)]
@@ -162,46 +140,36 @@ def figure_7_3(axes: Sequence[Axes]) -> Drawn:
 
 @lru_cache(maxsize=8)
 def _response(frame: float) -> tuple[Array, Array]:
-    """Return rms displacement of the follower's midpoint [m] and peak strain energy [J]."""
+    """Return rms displacement of the follower's midpoint [mm] and peak strain energy [J]."""
     system = beams(1, frame=frame)
-    motion = periodic(system, _COARSE, rtol=1e-3)
+    motion = steady_state(system, _COARSE, rtol=1e-3)
     stiffness = system.array("K", motion.theta)
     energy = 0.5 * np.einsum("stn,tnm,stm->st", motion.q, stiffness, motion.q)
-    return rms(moved(system, "follower", motion.theta, motion.q)), np.max(energy, axis=1)
+    return 1e3 * rms(moved(system, "follower", motion.theta, motion.q)), np.max(energy, axis=1)
 
 
-def _six_frames(ax: Axes, speed: Array, curves: Sequence[Array], scale: float, label: str) -> None:
+def six_frames(axes: Sequence[Axes], quantity: str) -> Drawn:
+    """Draw a quantity over the speed for six frames (Figs. 7.4 to 7.6).
+
+    The rms displacement of the follower's midpoint, the crank's largest stress, or the peak of the
+    strain energy.
+    """
+    ax, speed = axes[0], _FINE if quantity == "stress" else _COARSE
+    if quantity == "stress":
+        curves = [1e-6 * stresses(beams(1, frame=frame), speed).of("crank") for frame in FRAMES]
+    else:
+        curves = [_response(frame)[quantity == "energy"] for frame in FRAMES]
     for frame, values in zip(FRAMES, curves, strict=True):
-        ax.semilogy(speed, scale * values, label=f"$L_4$ = {frame:.3f} m")
-    _speed_axis(ax, speed, label)
-    legend_below([ax], columns=3)
-
-
-def figure_7_4(axes: Sequence[Axes]) -> Drawn:
-    """Draw the rms displacement of the follower's midpoint over the speed, six frames."""
-    ax, curves = axes[0], [_response(frame)[0] for frame in FRAMES]
-    _six_frames(ax, _COARSE, curves, 1e3, "rms of the follower's midpoint [mm]")
+        ax.semilogy(speed, values, label=f"$L_4$ = {frame:.3f} m")
+    falls = _falls(speed, curves)
+    if quantity != "displacement":
+        return Drawn(falls)
     ax.axhline(50.0 * 0.525, color="0.5", lw=0.8, ls="--")
     ax.text(20.5, 50.0 * 0.525 * 1.1, "5 % of the follower", fontsize=8, color="0.4")
-    places = [nearest(maxima(_COARSE, values), CRITICAL) for values in curves[:3]]
+    places = [nearest(maxima(speed, values), CRITICAL) for values in curves[:3]]
     systems = (beams(1, FULL, frame=frame) for frame in FRAMES)
     means = [natural_frequencies(system, 0.0, 1).mean[0] for system in systems]
-    spread = np.ptp(means) / means[0]
-    return Drawn([*_falls(_COARSE, curves), places[0], np.ptp(places) / places[0], spread])
-
-
-def figure_7_5(axes: Sequence[Axes]) -> Drawn:
-    """Draw the largest stress of the input link over the speed, six frames."""
-    curves = [stresses(beams(1, frame=frame), _FINE).of("crank") for frame in FRAMES]
-    _six_frames(axes[0], _FINE, curves, 1e-6, "largest stress of the crank [MPa]")
-    return Drawn(_falls(_FINE, curves))
-
-
-def figure_7_6(axes: Sequence[Axes]) -> Drawn:
-    """Draw the peak strain energy over the speed, six frames."""
-    curves = [_response(frame)[1] for frame in FRAMES]
-    _six_frames(axes[0], _COARSE, curves, 1.0, "peak strain energy [J]")
-    return Drawn(_falls(_COARSE, curves))
+    return Drawn([*falls, places[0], np.ptp(places) / places[0], np.ptp(means) / means[0]])
 
 
 def _falls(speed: Array, curves: Sequence[Array]) -> list[float]:
@@ -227,9 +195,6 @@ def damping(axes: Sequence[Axes], ratio: float) -> Drawn:
     for drop, style, lead in ((THESIS, "-", ""), (FULL, ":", "full form, ")):
         for link, colour, values in zip(LINKS, COLOURS, _curve(3, ratio, drop).T, strict=False):
             ax.semilogy(_WIDE, 1e-6 * values, style, color=colour, label=f"{lead}{link}")
-    _speed_axis(ax, _WIDE, "largest stress [MPa]")
-    ax.set_ylim(bottom=0.3)
-    legend_below([ax], columns=3)
     base, damped = _curve(3), _curve(3, ratio)
     if ratio == 0.02:
         slow = (_WIDE > 20.0) & (_WIDE < 30.0)
@@ -242,18 +207,6 @@ def damping(axes: Sequence[Axes], ratio: float) -> Drawn:
     return Drawn([*values, np.max((damped / base)[_WIDE > 20.0])])
 
 
-@lru_cache(maxsize=1)
-def _hybrid_curve() -> Array:
-    """Return the largest stress of all links [Pa] of the "exact" model, by cubic shapes."""
-    motion = periodic(hybrid_model(), _FEWER, rtol=1e-3)
-    form = stress_operator(beams(1), motion.theta, 7, method="shape")[0]
-    largest = [
-        float(np.max(np.abs(form.values(float(speed), q, qd / speed))))
-        for speed, q, qd in zip(_FEWER, motion.q, motion.qd, strict=True)
-    ]
-    return np.array(largest)
-
-
 def figure_7_8(axes: Sequence[Axes]) -> Drawn:
     """Draw the largest stress over the speed for one, two and three elements, and "exact"."""
     ax, counts = axes[0], (1, 2, 3)
@@ -261,14 +214,17 @@ def figure_7_8(axes: Sequence[Axes]) -> Drawn:
     for count, values in zip(counts, largest, strict=True):
         label = f"{count} element{'s' if count > 1 else ''}"
         ax.semilogy(_WIDE, 1e-6 * values, label=label)
-    ax.semilogy(_FEWER, 1e-6 * _hybrid_curve(), "--", color="0.2", label='"exact"')
-    _speed_axis(ax, _WIDE, "largest stress of all links [MPa]")
-    ax.set_ylim(bottom=0.3)
-    legend_below([ax])
+    motion = steady_state(hybrid_model(), _FEWER, rtol=1e-3)
+    form = stress_operator(beams(1), motion.theta, 7, method="shape")[0]
+    exact = [
+        1e-6 * np.max(np.abs(form.values(float(speed), q, qd / speed)))
+        for speed, q, qd in zip(_FEWER, motion.q, motion.qd, strict=True)
+    ]
+    ax.semilogy(_FEWER, exact, "--", color="0.2", label='"exact"')
     second, third = (nearest(maxima(_WIDE, values), 23.5) for values in largest[1:])
     means = [float(natural_frequencies(beams(count), 0.0, 1).mean[0]) for count in counts]
-    exact = float(np.mean(hybrid(1e-10).first))
-    ratios = [means[0] / means[2], means[1] / means[2], means[2] / exact]
+    means.append(float(np.mean(hybrid(1e-10).first)))
+    ratios = [means[0] / means[2], means[1] / means[2], means[2] / means[3]]
     return Drawn([*ratios, second / third, np.max(hybrid(1e-3).iterations)])
 
 
@@ -279,20 +235,12 @@ def bending_at_midpoint(
 
     The motion is that of another system where one is given, the stress by the first one's shapes.
     """
-    motion = periodic(system if moving is None else moving, 30.0)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", LinearRangeWarning)
-        forces = recover(system, motion, stations={"follower": [0.5]}, method="shape")
+    motion = steady_state(system if moving is None else moving, 30.0, rtol=1e-5)
+    forces = recover(system, motion, stations={"follower": [0.5]}, method="shape")
     beams_of = structure_of(system).beams
     (section,) = (beam.section for beam in beams_of if beam.name == "follower")
     factor = 0.5 * (section.thickness or np.nan) / section.second_moment
     return forces.theta, np.asarray(factor * forces.of("follower", "moment")[:, 0])
-
-
-def _cycle_axis(ax: Axes, columns: int = 4) -> None:
-    crank_axis(ax)
-    ax.set(xlabel="input angle $t_1$ [deg]", ylabel="stress at the follower's midpoint [MPa]")
-    legend_below([ax], columns=columns)
 
 
 def figure_7_9(axes: Sequence[Axes]) -> Drawn:
@@ -308,31 +256,21 @@ def figure_7_9(axes: Sequence[Axes]) -> Drawn:
     for (name, (theta, values)), colour in zip(models.items(), (*COLOURS[:3], "0.2"), strict=True):
         style = "--" if "exact" in name else "-"
         ax.plot(np.degrees(theta), 1e-6 * values, style, color=colour, label=name)
-        half = np.fft.rfft(values) / len(values)
-        even.append(fourier_sum(half[:200], 0, 2.0 * np.pi * np.arange(512) / 512))
-    _cycle_axis(ax)
+        even.append(resampled(values, 512))
     one, two = (float(np.corrcoef(values, even[2])[0, 1]) for values in even[:2])
     peaks = [float(np.max(np.abs(values))) for values in even]
     return Drawn([two, one / two, peaks[1] / peaks[0], peaks[2] / peaks[1]])
-
-
-@lru_cache(maxsize=8)
-def midpoint_stress(frame: float) -> tuple[Array, Array]:
-    """Return angles and stress with three elements and another frame."""
-    return bending_at_midpoint(beams(3, frame=frame))
 
 
 def figure_7_13(axes: Sequence[Axes]) -> Drawn:
     """Draw the stress at the follower's midpoint over the cycle, six frames."""
     ax, pulses = axes[0], []
     for frame in FRAMES:
-        theta, values = midpoint_stress(frame)
+        theta, values = bending_at_midpoint(beams(3, frame=frame))
         turned, size = np.degrees(theta), np.abs(values)
         ax.plot(turned, 1e-6 * values, label=f"$L_4$ = {frame:.3f} m")
         # Before a quarter turn with the response after it, and about half a turn.
         later = (turned > 150.0) & (turned < 300.0)
         pulses.append((float(np.max(size[~later])), float(np.max(size[later]))))
-    ax.axhline(0.0, color="0.6", lw=0.8, zorder=1)
-    _cycle_axis(ax, columns=3)
     least = FRAMES[int(np.argmin(np.max(pulses, axis=1)))]
     return Drawn([pulses[0][1] / pulses[0][0], pulses[-1][1] / pulses[-1][0], least])

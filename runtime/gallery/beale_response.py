@@ -14,8 +14,8 @@ from ..frequencies import ResonanceCurve, natural_frequencies, resonance_curve
 from ..periodic import floquet_multipliers
 from ..stability import StabilityChart, stability_chart
 from .beale_tip import AS_PRINTED, ENOUGH, FLEXIBLE, peak, rod, tip_from_rest
-from .drawing import COLOURS, crank_axis, legend_below, panel_title
-from .records import Drawn, Table
+from .drawing import COLOURS, panel_title
+from .records import Drawn
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -64,9 +64,6 @@ def figure_11(axes: Sequence[Axes]) -> Drawn:
         label = f"{modes} {formulation} modes, mean {held.mean[0]:.1f} rad/s"
         ax.plot(np.degrees(held.theta), held.frequency[:, 0], style, color=colour, label=label)
         ax.axhline(held.mean[0], color=colour, lw=0.6, ls=(0, (1, 3)))
-    crank_axis(ax)
-    ax.set_ylabel("first natural frequency [rad/s]")
-    legend_below(axes)
     first = natural_frequencies(_rod("polynomial", 3, AS_PRINTED)).frequency[:, 0]
     return Drawn([mean_frequency(), np.max(first) / np.min(first)])
 
@@ -88,22 +85,9 @@ def figure_12(axes: Sequence[Axes]) -> Drawn:
         label = f"{modes} {formulation} modes, {physics}, {speed:.4g} rad/s"
         axes[k // 2].plot(theta / (2 * np.pi), tip, color=COLOURS[k], lw=0.7, label=label)
         heights.append(np.abs(tip[1:]).reshape(_TURNS, -1).max(axis=1))
-    for ax in axes:
-        ax.set(xlim=(0.0, float(_TURNS)), ylabel="tip deflection [m]")
-    axes[1].set_xlabel("revolutions of the crank")
-    legend_below(axes, columns=2)
     three = heights[0]
     values = [np.max(three), np.min(three) / np.max(three)]
     values += [_largest("polynomial", 3, mean), _largest("overhang", ENOUGH, _QUOTED)]
-    return Drawn(values, tables=(_multiplier_table(mean),))
-
-
-def _largest(formulation: str, modes: int, speed: float) -> float:
-    motion = floquet_multipliers(_rod(formulation, modes, AS_PRINTED), speed, rtol=1e-9)
-    return peak(motion.multipliers)
-
-
-def _multiplier_table(mean: float) -> Table:
     rows = []
     speeds = (_QUOTED, mean, mean_frequency("overhang", ENOUGH))
     for drop in (AS_PRINTED, _COMPLETE):
@@ -113,9 +97,13 @@ def _multiplier_table(mean: float) -> Table:
                 motion = floquet_multipliers(_rod(formulation, modes, drop), speed, rtol=1e-9)
                 growth = 0.0 if motion.stable else float(motion.growth)
                 cells.append(f"{peak(motion.multipliers):.5f}, {growth:.2f} 1/s")
-            rows.append(tuple(cells))
-    header = ("modes", "physics", *(f"at {speed:.1f} rad/s" for speed in speeds))
-    return Table("Largest multiplier and growth rate, crank ratio 0.2", header, tuple(rows))
+            rows.append(cells)
+    return Drawn(values, {"speeds": speeds}, [rows])
+
+
+def _largest(formulation: str, modes: int, speed: float) -> float:
+    motion = floquet_multipliers(_rod(formulation, modes, AS_PRINTED), speed, rtol=1e-9)
+    return peak(motion.multipliers)
 
 
 @lru_cache(maxsize=4)
@@ -144,8 +132,6 @@ def figure_resonances(axes: Sequence[Axes]) -> Drawn:
         values.append(peak(tip_from_rest(system, mean_frequency(ratio=ratio) / 10, turns=10)[1]))
         for order in range(1, 6) if ratio == _RATIO else ():
             ax.axvline(mean / order, color="0.7", lw=0.6, ls=(0, (1, 3)))
-    ax.set(xlabel="crank speed [rad/s]", ylabel="largest tip deflection [m]")
-    legend_below(axes)
     return Drawn(values)
 
 
@@ -173,23 +159,11 @@ def figure_chart(axes: Sequence[Axes]) -> Drawn:
         ax.pcolormesh(points.x, points.y, codes, cmap=colours, vmin=0, vmax=3, rasterized=True)
         _mark(ax, frequencies(formulation, modes))
         panel_title(ax, f"{modes} {formulation} modes, {words}")
-        ax.set(xlim=(_SPEEDS[0], _SPEEDS[-1]), ylim=(-0.024, _RATIOS[-1]))
-        ax.set_yticks(np.linspace(0.0, 0.2, 5))
-        ax.grid(visible=False)
-        shares = (f"{100.0 * float(np.mean(points.kind == kind)):.1f}" for kind, _, _ in _KINDS)
-        error = f"{float(np.max(points.error)):.0e}"
-        rows.append((f"{modes} {formulation}", words, *shares, error))
+        shares = (100.0 * float(np.mean(points.kind == kind)) for kind, _, _ in _KINDS)
+        rows.append((f"{modes} {formulation}", words, *shares, np.max(points.error)))
     for _, colour, label in _KINDS:
         axes[0].fill([], [], color=colour, label=label)
-    for ax in axes[2:]:
-        ax.set_xlabel("crank speed [rad/s]")
-    for ax in axes[::2]:
-        ax.set_ylabel("crank ratio G/a$_x$")
-    legend_below(axes[:1])
-    shown = (f"{label} [%]" for _, _, label in _KINDS)
-    head = ("modes", "physics", *shown, "error of the invariants")
-    table = Table("Shares of the chart by kind of instability", head, tuple(rows))
-    return Drawn(_chart_values(), tables=(table,))
+    return Drawn(_chart_values(), tables=[rows])
 
 
 def _mark(ax: Axes, omega: Array) -> None:

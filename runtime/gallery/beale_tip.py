@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -12,27 +11,16 @@ from numpy.typing import NDArray
 
 from ..constrained import constrained_motion
 from ..constrained.motion import ConstrainedMotion
-from ..core.errors import LinearRangeWarning
 from ..core.families import Array, LinearPeriodic
 from ..linkages import QuickReturn
+from ..periodic import steady_state
 from ..periodic.equation import equation_of
 from ..periodic.transition import method, segments_of
 from ..scenes import load_scene
 from ..systems.rod import FreeFreeRod
-from .drawing import (
-    COLOURS,
-    INK,
-    LINK_COLOURS,
-    bar,
-    canvas,
-    crank_axis,
-    legend_below,
-    panel_title,
-    pin,
-    pivot,
-    write,
-)
-from .records import Drawn, Table
+from . import sketch
+from .drawing import COLOURS
+from .records import Drawn
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,7 +28,8 @@ if TYPE_CHECKING:
 STIFF = "beale_1992_bahgat_willmert"
 HEAVY = "beale_1992_bahgat_willmert_heavy"
 FLEXIBLE = "beale_1992_flexible_rod"
-READINGS = ((STIFF, "mass read as lbm/in"), (HEAVY, r"mass read as lbf s$^2$/in$^2$"))
+# The mass read as lbm/in, and as lbf s^2/in^2.
+READINGS = (STIFF, HEAVY)
 AS_PRINTED = ("as_printed",)
 # The free-free equations as printed have the frame term, and no tension.
 FRAME = ("tension",)
@@ -51,7 +40,7 @@ BAND: dict[str, Any] = {"color": "0.25", "lw": 3.0, "alpha": 0.35}
 CONVERGED = f"{ENOUGH} overhang modes (converged)"
 # Steps a turn of a method that is stable at any step: what they do not resolve are vibrations of
 # the highest polynomial modes, of which the deflection holds next to nothing.
-_STEPS, _DAMPED_STEPS = 1440, 720
+_STEPS = 1440
 # Crank angles of a turn at which deflections are given.
 _GIVEN = 720
 # Places along the rod.
@@ -64,8 +53,6 @@ _DAMPINGS: tuple[tuple[str, dict[str, Any]], ...] = (
     ),
     ("C = 0.002 s K", {"rod__relaxation_time": 0.002}),
 )
-# Turns after which what is left of the start is below 1e-6 of it.
-_SETTLED = {STIFF: 15, HEAVY: 240}
 
 
 def rod(
@@ -136,31 +123,21 @@ def turns(values: Array) -> int:
     return int(np.count_nonzero(np.diff(np.sign(np.diff(values)))))
 
 
-def tip_axis(ax: Axes, title: str) -> None:
-    """Put crank angle, zero line and title on the axes of a deflection."""
-    ax.axhline(0.0, color="0.6", lw=0.6)
-    panel_title(ax, title)
-    crank_axis(ax)
-
-
 def polynomials(axes: Sequence[Axes], modes: int) -> Drawn:
     """Draw the large crank's tip with so many polynomial modes (Figs. 2 and 3)."""
     values: list[float] = []
-    for ax, (scene, title) in zip(axes, READINGS, strict=True):
+    for ax, scene in zip(axes, READINGS, strict=True):
         theta, exact = stiff_tip(scene, "overhang", ENOUGH)
         ax.plot(np.degrees(theta), 1e3 * exact, **BAND, label=CONVERGED)
         for count, (style, colour) in {10: ("--", COLOURS[1]), modes: ("-", COLOURS[0])}.items():
             theta, tip = stiff_tip(scene, "polynomial", count)
             label = f"{count} polynomial modes"
             ax.plot(np.degrees(theta), 1e3 * tip, style, color=colour, label=label)
-        tip_axis(ax, title)
         three, ten = (stiff_tip(scene, "polynomial", count)[1] for count in (3, 10))
         if modes == 3:
             values += [peak(three) / peak(ten), _gap(three, ten), turns(three)]
         else:
             values += [peak(ten) / peak(exact), turns(ten)]
-    axes[0].set_ylabel("tip deflection [mm]")
-    legend_below(axes)
     return Drawn(values)
 
 
@@ -192,17 +169,14 @@ def figure_4(axes: Sequence[Axes]) -> Drawn:
     """Draw the linkage at some crank angles, and both components for both mass readings."""
     _draw_linkage(axes[0])
     values: list[float] = []
-    for ax, (scene, title) in zip(axes[1:], READINGS, strict=True):
+    for ax, scene in zip(axes[1:], READINGS, strict=True):
         theta, across, up = components(scene)
         angle = np.degrees(theta)
         ax.plot(angle, 1e3 * up, color=COLOURS[0], label="$V_2$, across the base (j)")
         ax.plot(angle, 1e3 * across, "--", color=COLOURS[1], label="$U_3$, along the base (i)")
-        tip_axis(ax, title)
         moved, whole = np.abs(up) > 1e-3 * peak(up), np.hypot(across, up)
         share = peak(across[moved] / up[moved])
         values += [share, peak(whole - np.abs(up)) / peak(whole), lean(scene), turns(up)]
-    axes[1].set_ylabel("tip deflection [mm]")
-    legend_below(axes)
     return Drawn(values)
 
 
@@ -210,7 +184,7 @@ def _draw_linkage(ax: Axes) -> None:
     """Draw the mechanism to scale [cm], one position full and the others pale."""
     linkage, cm, shown = _linkage(), 100.0, 60.0
     centre = np.array([linkage.frame, 0.0]) * cm
-    canvas(ax)
+    sketch.canvas(ax)
     around = np.linspace(0.0, 2.0 * np.pi, 181)
     circle = centre[:, None] + linkage.crank * cm * np.array([np.cos(around), np.sin(around)])
     ax.plot(*circle, color="0.75", lw=0.7, ls=(0, (4, 3)))
@@ -220,21 +194,22 @@ def _draw_linkage(ax: Axes) -> None:
         tip = linkage.rod * cm * np.array([np.cos(direction), np.sin(direction)])
         block = centre + linkage.crank * cm * np.array([np.cos(theta), np.sin(theta)])
         alpha = 1.0 if degrees == shown else 0.25
-        bar(ax, (0.0, 0.0), tip, LINK_COLOURS["coupler"], alpha=alpha, lw=2.6, zorder=2)
-        bar(ax, centre, block, LINK_COLOURS["crank"], alpha=alpha, lw=2.6, zorder=3)
+        sketch.bar(
+            ax, (0.0, 0.0), tip, sketch.LINK_COLOURS["coupler"], alpha=alpha, lw=2.6, zorder=2
+        )
+        sketch.bar(ax, centre, block, sketch.LINK_COLOURS["crank"], alpha=alpha, lw=2.6, zorder=3)
         away = 11.0 * (block - centre) / np.hypot(*(block - centre))
-        write(ax, block, f"{degrees:.0f}°", away, fontsize=7, color="0.3")
+        sketch.write(ax, block, f"{degrees:.0f}°", away, fontsize=7, color="0.3")
         if degrees == shown:
             box = np.array([[-0.9, -0.5], [0.9, -0.5], [0.9, 0.5], [-0.9, 0.5]])
             turn = np.array([[tip[0], tip[1]], [-tip[1], tip[0]]]) / np.hypot(*tip)
-            ax.fill(*(block + box @ turn).T, facecolor="w", edgecolor=INK, lw=1.0, zorder=5)
-            pin(ax, block)
-            write(ax, tip, "tip", (6.0, 9.0), style="italic")
-    pivot(ax, (0.0, 0.0), 1.0)
-    pivot(ax, centre, 1.0)
-    write(ax, centre, "$C$", (0.0, -20.0))
-    write(ax, (0.0, 0.0), "O", (-10.0, 5.0), style="italic")
-    panel_title(ax, "crank 1.5 in, base 4 in, rod 9.3746 in, 90 rad/s")
+            ax.fill(*(block + box @ turn).T, facecolor="w", edgecolor=sketch.INK, lw=1.0, zorder=5)
+            sketch.pin(ax, block)
+            sketch.write(ax, tip, "tip", (6.0, 9.0), style="italic")
+    sketch.pivot(ax, (0.0, 0.0), 1.0)
+    sketch.pivot(ax, centre, 1.0)
+    sketch.write(ax, centre, "$C$", (0.0, -20.0))
+    sketch.write(ax, (0.0, 0.0), "O", (-10.0, 5.0), style="italic")
 
 
 def lean(scene: str) -> float:
@@ -249,43 +224,31 @@ def lean(scene: str) -> float:
     return float(np.degrees(np.arctan2(drawn_in, abs(last[-1]))))
 
 
-@lru_cache(maxsize=16)
-def damped_tip(scene: str, place: int, modes: int = 10) -> tuple[Array, Array, Array]:
-    """Return crank angles, first turn and periodic motion [m] for a reading of the damping."""
-    system = rod(scene, "polynomial", modes, **_DAMPINGS[place][1])
-    count = _SETTLED[scene]
-    theta, tip = tip_from_rest(system, SPEED, turns=count, steps=_DAMPED_STEPS)
-    turn = (len(tip) - 1) // count
-    return theta[: turn + 1], tip[: turn + 1], tip[-turn - 1 :]
-
-
 def figure_5(axes: Sequence[Axes]) -> Drawn:
     """Draw the first turn and the periodic motion of ten polynomial modes with 0.002 damping."""
-    values, cells = [], []
-    for ax, (scene, title) in zip(axes, READINGS, strict=True):
+    values, rows = [], []
+    for ax, scene in zip(axes, READINGS, strict=True):
         theta, free = stiff_tip(scene, "polynomial", 10)
         ax.plot(np.degrees(theta), 1e3 * free, **BAND, label="undamped, from rest")
-        for place, colour, text in (
-            (1, COLOURS[0], "damping ratio 0.002 in mode 1, internal"),
-            (3, COLOURS[1], "C = 0.002 s K"),
-        ):
-            theta, tip, settled = damped_tip(scene, place)
-            angle, label = np.degrees(theta), f"{text}, periodic"
-            ax.plot(angle, 1e3 * tip, color=colour, label=f"{text}, from rest")
-            ax.plot(angle, 1e3 * settled, "--", color=colour, lw=1.0, label=label)
-        tip_axis(ax, title)
         mass = "read as lbm/in" if scene == STIFF else "read as lbf s^2/in^2"
-        for place, (name, _) in enumerate(_DAMPINGS):
-            _, tip, settled = damped_tip(scene, place)
+        for (name, changes), colour, text in zip(
+            _DAMPINGS,
+            ("", COLOURS[0], "", COLOURS[1]),
+            ("", "damping ratio 0.002 in mode 1, internal", "", "C = 0.002 s K"),
+            strict=True,
+        ):
+            system = rod(scene, "polynomial", 10, **changes)
+            theta, tip = tip_from_rest(system, SPEED, steps=_GIVEN)
+            around = steady_state(system, SPEED, rtol=1e-8, samples=_GIVEN).deflection()
+            settled = np.append(around, around[0])
+            if text:
+                angle, label = np.degrees(theta), f"{text}, periodic"
+                ax.plot(angle, 1e3 * tip, color=colour, label=f"{text}, from rest")
+                ax.plot(angle, 1e3 * settled, "--", color=colour, lw=1.0, label=label)
             values.append(_gap(tip, settled))
-            numbers = (1e3 * peak(tip), 1e3 * peak(settled), 100 * values[-1])
-            shown = [f"{value:.3g}" for value in numbers]
-            cells.append((mass, name, *shown, str(turns(settled))))
-    axes[0].set_ylabel("tip deflection [mm]")
-    legend_below(axes, columns=3)
-    head = ("mass", "damping", "first turn, peak [mm]", "periodic, peak [mm]", "gap [%]", "turns")
-    title = "Readings of the damping: first turn from rest beside the periodic motion"
-    return Drawn(values, tables=(Table(title, head, tuple(cells)),))
+            numbers = (1e3 * peak(tip), 1e3 * peak(settled), 100 * values[-1], turns(settled))
+            rows.append((mass, name, *numbers))
+    return Drawn(values, tables=[rows])
 
 
 @lru_cache(maxsize=16)
@@ -298,10 +261,7 @@ def constrained_tip(scene: str, modes: int) -> tuple[Array, Array, ConstrainedMo
     system = load_scene(scene, overrides=overrides).system()
     if not isinstance(system, FreeFreeRod):
         raise TypeError("not the rod with constraints")
-    with warnings.catch_warnings():
-        # The heavy reading passes the linear range; the figure's own note says so.
-        warnings.simplefilter("ignore", LinearRangeWarning)
-        run = constrained_motion(system, rtol=1e-6, samples=720)
+    run = constrained_motion(system, rtol=1e-6, samples=720)
     return system.speed * run.time, system.deflection(run.q, run.time, 1.0)[..., 0], run
 
 
@@ -326,11 +286,6 @@ def figure_7(axes: Sequence[Axes]) -> Drawn:
         axes[0].plot(angle, 1e3 * tip, style, color=colour, label=_word(modes))
         axes[1].plot(angle, 1e2 * (tip - exact) / peak(exact), style, color=colour)
         gaps.append(_gap(tip, exact))
-    tip_axis(axes[0], "crank ratio 0.01, 100 rad/s")
-    tip_axis(axes[1], "less the converged deflection, over its peak")
-    axes[0].set(xlabel="", ylabel="tip deflection [mm]")
-    axes[1].set_ylabel("difference [%]")
-    legend_below(axes)
     return Drawn([gaps[0], gaps[1] - gaps[2], _defect(FLEXIBLE, (1, 2, 3))])
 
 
@@ -338,9 +293,9 @@ def large_crank(axes: Sequence[Axes], modes: int) -> Drawn:
     """Draw the stiff rod's tip with so many free-free modes (Figs. 8 to 10)."""
     values: list[float] = []
     # With more modes the constrained form of the light rod takes thousands of steps a turn.
-    runs = [scene for scene, _ in READINGS if scene == HEAVY or modes == 1]
+    runs = [scene for scene in READINGS if scene == HEAVY or modes == 1]
     dashed: dict[str, Any] = {"color": COLOURS[1], "ls": "--"}
-    for ax, (scene, title) in zip(axes, READINGS, strict=True):
+    for ax, scene in zip(axes, READINGS, strict=True):
         tips = {}
         for formulation, count, drop, look, label in (
             ("overhang", ENOUGH, FRAME, BAND, CONVERGED),
@@ -360,7 +315,4 @@ def large_crank(axes: Sequence[Axes], modes: int) -> Drawn:
             label = f"{_word(modes)}, with constraints"
             ax.plot(np.degrees(theta), 1e3 * tip, ":", color=COLOURS[0], lw=2.0, label=label)
             values.append(_gap(tip, linear))
-        tip_axis(ax, title)
-    axes[0].set_ylabel("tip deflection [mm]")
-    legend_below(axes)
     return Drawn([*values, *(_defect(scene, (modes,)) for scene in runs)])

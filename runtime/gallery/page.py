@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import tempfile
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack, suppress
 from html import escape
 from pathlib import Path
 
 from ..core.errors import bad
-from .records import Quoted, Shown, Table
+from .records import Quoted, Shown, Table, counts
 
 _CSS = """
 body { font: 15px/1.5 Georgia, serif; color: #222; max-width: 62rem; margin: 2rem auto;
@@ -28,29 +28,24 @@ td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: 
 .note { font-size: 0.85rem; color: #444; }
 """.strip()
 
-_HEADER = (
-    "what the text says",
-    "section",
-    "printed",
-    "computed",
-    "deviation",
-    "tolerance",
-    "verdict",
-)
+# Of each kind of comparison: a heading, and what the expected value is called.
+_KINDS = {
+    "printed": ("Numbers that the text prints", "printed"),
+    "words": ("Words of the text, read as numbers", "read as"),
+    "check": ("Checks of equations and of results", "expected"),
+}
 
 
 def page(title: str, shown: Sequence[Shown]) -> str:
     """Return the whole page under a heading, figures in order."""
     rows = [row for item in shown for row in item.quoted]
-    agree = sum(row.agrees for row in rows)
-    known = sum(bool(row.differs) and not row.agrees for row in rows)
     parts = [
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
         f"<title>{escape(title)}</title>\n<style>\n{_CSS}\n</style>\n</head>\n<body>",
         f"<h1>{escape(title)}</h1>",
-        f"<p>{len(shown)} figures redrawn. Of {len(rows)} quoted numbers and statements, {agree} "
-        f"agree with what is computed here, {known} are known to differ for the reason given, and "
-        f"{len(rows) - agree - known} differ without one.</p>",
+        f"<p>{len(shown)} figures redrawn, and what is computed held against:</p>\n<ul>",
+        *(f"<li>{escape(line)}</li>" for line in counts(rows)),
+        "</ul>",
         _summary(shown),
         *(_figure(item) for item in shown),
         "</body>\n</html>\n",
@@ -59,15 +54,16 @@ def page(title: str, shown: Sequence[Shown]) -> str:
 
 
 def _summary(shown: Sequence[Shown]) -> str:
-    lines = ["<table>\n<tr><th>figure</th><th>title</th><th>quoted</th>"]
-    lines.append("<th>agree</th></tr>")
+    lines = ["<table>\n<tr><th>figure</th><th>title</th>"]
+    lines.append("<th>printed</th><th>in words</th><th>checks</th><th>agree</th></tr>")
     for item in shown:
-        quoted = item.quoted
-        agree = sum(row.agrees for row in quoted)
+        numbers = [sum(row.kind == kind for row in item.quoted) for kind in _KINDS]
+        numbers.append(sum(row.agrees for row in item.quoted))
         lines.append(
             f'<tr><td><a href="#{item.entry.stem}">{escape(item.entry.label)}</a></td>'
             f"<td>{escape(item.entry.title)}</td>"
-            f'<td class="number">{len(quoted)}</td><td class="number">{agree}</td></tr>'
+            + "".join(f'<td class="number">{number}</td>' for number in numbers)
+            + "</tr>"
         )
     return "\n".join([*lines, "</table>"])
 
@@ -80,14 +76,17 @@ def _figure(item: Shown) -> str:
         f'<p><img src="{entry.stem}.png" alt="{escape(entry.title, quote=True)}"></p>',
     ]
     lines += [f'<p class="note">{escape(note)}</p>' for note in item.notes]
-    if item.quoted:
-        lines.append(_quoted(item.quoted))
+    for kind, (heading, name) in _KINDS.items():
+        rows = [row for row in item.quoted if row.kind == kind]
+        if rows:
+            lines += [f"<h3>{heading}</h3>", _quoted(rows, name)]
     lines += [_table(table) for table in item.tables]
     return "\n".join(lines)
 
 
-def _quoted(rows: Sequence[Quoted]) -> str:
-    lines = ["<table>\n<tr>" + "".join(f"<th>{name}</th>" for name in _HEADER) + "</tr>"]
+def _quoted(rows: Sequence[Quoted], name: str) -> str:
+    names = ("what", "section", name, "computed", "deviation", "tolerance", "verdict")
+    lines = ["<table>\n<tr>" + "".join(f"<th>{name}</th>" for name in names) + "</tr>"]
     for row in rows:
         sign = "" if row.relation == "=" else f"{escape(row.relation)} "
         unit = f" {escape(row.unit)}" if row.unit else ""
@@ -95,7 +94,7 @@ def _quoted(rows: Sequence[Quoted]) -> str:
         remark = f": {escape(row.differs)}" if row.differs else ""
         cells = [
             f"<td>{escape(row.number)}</td><td>{escape(row.where)}</td>",
-            f'<td class="number">{sign}{row.printed:.4g}{unit}</td>',
+            f'<td class="number">{sign}{row.expected:.4g}{unit}</td>',
             f'<td class="number">{row.computed:.4g}{unit}</td>',
             f'<td class="number">{row.deviation:+.2g}{unit}</td>',
             f"<td>{row.tolerance:.2g}{unit} ({escape(row.meaning)})</td>",
@@ -117,66 +116,46 @@ def _table(table: Table) -> str:
 def write_together(folder: Path, contents: Mapping[str, bytes]) -> None:
     """Write files into a folder; on an error or an interrupt it is left as it was.
 
-    The files are written beside the folder first, then moved.  Other files in the folder stay.  A
-    folder that cannot be made or written is refused.
+    The files are written beside the folder's own first, then moved.  Other files in the folder
+    stay.  A folder that cannot be made or written is refused.
     """
-    made = _missing(folder)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        staging = Path(tempfile.mkdtemp(prefix=".gallery.", dir=folder))
-    except OSError as refusal:
-        _remove(made)
-        reason = refusal.strerror or "an error"
-        raise bad(
-            str(folder), reason, "a folder that can be written", "choose another"
-        ) from refusal
-    try:
-        _stage_and_move(folder, staging, contents)
-    except BaseException:
-        shutil.rmtree(staging, ignore_errors=True)
-        _remove(made)
-        raise
+    with ExitStack() as undo:
+        missing = [path for path in (folder, *folder.parents) if not path.exists()]
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            staging = Path(tempfile.mkdtemp(prefix=".gallery.", dir=folder))
+        except OSError as refusal:
+            _remove(missing)
+            reason = refusal.strerror or "an error"
+            raise bad(
+                str(folder), reason, "a folder that can be written", "choose another"
+            ) from refusal
+        undo.callback(_remove, missing)
+        undo.callback(shutil.rmtree, staging)
+        new, old = staging / "new", staging / "old"
+        new.mkdir()
+        old.mkdir()
+        for name, content in contents.items():
+            (new / name).write_bytes(content)
+        for name in contents:
+            undo.callback(_restore, folder / name, new / name, old / name)
+            if (folder / name).exists():
+                (folder / name).replace(old / name)
+            (new / name).replace(folder / name)
+        undo.pop_all()
     shutil.rmtree(staging)
 
 
-def _stage_and_move(folder: Path, staging: Path, contents: Mapping[str, bytes]) -> None:
-    mask = os.umask(0)
-    os.umask(mask)
-    new, old = staging / "new", staging / "old"
-    new.mkdir()
-    old.mkdir()
-    for name, content in contents.items():
-        (new / name).write_bytes(content)
-        (new / name).chmod(0o666 & ~mask)
-    moved: list[str] = []
-    try:
-        for name in contents:
-            target = folder / name
-            moved.append(name)
-            if target.exists():
-                target.replace(old / name)
-            (new / name).replace(target)
-    except BaseException:
-        for name in moved:
-            if (old / name).exists():
-                (old / name).replace(folder / name)
-            elif not (new / name).exists():
-                (folder / name).unlink(missing_ok=True)
-        raise
-
-
-def _missing(folder: Path) -> list[Path]:
-    """Return the folders that would have to be made, the innermost first."""
-    missing = []
-    while not folder.exists():
-        missing.append(folder)
-        folder = folder.parent
-    return missing
+def _restore(target: Path, new: Path, old: Path) -> None:
+    """Take back the move of a new file to its place, however far it came."""
+    if old.exists():
+        old.replace(target)
+    elif not new.exists():
+        target.unlink()
 
 
 def _remove(folders: list[Path]) -> None:
+    """Remove those of the folders, the innermost first, that are there and empty."""
     for folder in folders:
-        try:
+        with suppress(OSError):
             folder.rmdir()
-        except OSError:
-            return

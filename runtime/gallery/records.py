@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import nan
 from textwrap import fill
@@ -14,18 +14,26 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Relation = Literal["=", "<", ">"]
+Kind = Literal["printed", "words", "check"]
+
+# What each kind of expected number is called beside the computed one.
+KINDS: Mapping[Kind, str] = {
+    "printed": "printed",
+    "words": "by the text's words",
+    "check": "for a check",
+}
 
 
 @dataclass(frozen=True)
 class Quoted:
-    """One number that a document quotes, beside the one that is computed here.
+    """One statement of a document, as a number beside the one that is computed here.
 
     Attributes
     ----------
     number : str
-        What is quoted, in a few words.
-    printed : float
-        The value in the text; for words such as "an order of magnitude" the value they stand for.
+        What is compared, in a few words.
+    expected : float
+        The value that the computed one is held against.
     computed : float
         The value computed here; not a number in a record that was not drawn.
     tolerance : float
@@ -35,15 +43,19 @@ class Quoted:
     where : str
         Section of the document.
     relation : {"=", "<", ">"}
-        Whether the text says that the value is ``printed``, is below it, or is above it.
+        Whether the value should be as ``expected``, below it, or above it.
     unit : str
         Unit of the values; empty for a ratio.
     differs : str
         Why the two are known to differ; empty where they should agree.
+    kind : {"printed", "words", "check"}
+        Where ``expected`` comes from: the document prints it; words of the document such as "an
+        order of magnitude" are read as it; or it is no number of the document but that of another
+        route to an equation of the document or to a result of ours.
     """
 
     number: str
-    printed: float = nan
+    expected: float = nan
     computed: float = nan
     tolerance: float = 0.0
     meaning: str = ""
@@ -51,11 +63,12 @@ class Quoted:
     relation: Relation = "="
     unit: str = ""
     differs: str = ""
+    kind: Kind = "check"
 
     @property
     def deviation(self) -> float:
-        """Computed less printed; for an inequality, by how much it is missed."""
-        gap = self.computed - self.printed
+        """Computed less expected; for an inequality, by how much it is missed."""
+        gap = self.computed - self.expected
         if self.relation == "<":
             return max(gap, 0.0)
         if self.relation == ">":
@@ -93,8 +106,9 @@ class Quoted:
         return {
             "number": self.number,
             "where": self.where,
+            "kind": self.kind,
             "relation": self.relation,
-            "printed": float(self.printed),
+            "expected": float(self.expected),
             "computed": float(self.computed),
             "deviation": float(self.deviation),
             "tolerance": float(self.tolerance),
@@ -103,6 +117,25 @@ class Quoted:
             "agrees": self.agrees,
             "differs": self.differs,
         }
+
+
+def counts(rows: Sequence[Quoted]) -> list[str]:
+    """Return for each kind of comparison, in words, how many there are and how they come out."""
+    lines = []
+    for kind, what in (
+        ("printed", "numbers that the documents print"),
+        ("words", "statements in words, read as numbers"),
+        ("check", "checks of equations and of results"),
+    ):
+        chosen = [row for row in rows if row.kind == kind]
+        agree = sum(row.agrees for row in chosen)
+        known = sum(bool(row.differs) and not row.agrees for row in chosen)
+        if chosen:
+            lines.append(
+                f"{what}: {len(chosen)}, of which {agree} agree, {known} are known to differ and "
+                f"{len(chosen) - agree - known} differ without a reason"
+            )
+    return lines
 
 
 @dataclass(frozen=True)
@@ -130,6 +163,34 @@ class Table:
         return head + ["| " + " | ".join(cell or "–" for cell in row) + " |" for row in self.rows]
 
 
+@dataclass(frozen=True)
+class Columns:
+    """What a record says of a table.
+
+    Attributes
+    ----------
+    title : str
+        One line.
+    columns : mapping
+        From the heading of each column to the format of its numbers; empty for texts and counts.
+    """
+
+    title: str
+    columns: Mapping[str, str]
+
+    def filled(self, rows: Iterable[Sequence[Any]], words: Mapping[str, object]) -> Table:
+        """Return the table with its cells as texts, and words in the braces of title and header."""
+        title, *header = (text.format_map(words) for text in (self.title, *self.columns))
+        texts = tuple(
+            tuple(
+                f"{float(cell):{form}}" if form and not isinstance(cell, str) else str(cell)
+                for cell, form in zip(row, self.columns.values(), strict=True)
+            )
+            for row in rows
+        )
+        return Table(title, tuple(header), texts)
+
+
 Value = SupportsFloat | tuple[SupportsFloat, ...]
 
 
@@ -141,16 +202,16 @@ class Drawn:
     ----------
     values : sequence
         The computed values of the record's quoted numbers, in their order; a tuple of computed,
-        printed and perhaps tolerance, where the printed value is that of a printed equation.
+        expected and perhaps tolerance, where the record does not hold the expected value.
     words : mapping
         What stands in the braces of the record's texts.
-    tables : tuple of Table
-        Numbers behind the picture.
+    tables : sequence
+        The rows of each of the record's tables, their cells numbers and texts.
     """
 
     values: Sequence[Value] = ()
     words: Mapping[str, object] = field(default_factory=dict)
-    tables: tuple[Table, ...] = ()
+    tables: Sequence[Iterable[Sequence[Any]]] = ()
 
 
 @dataclass(frozen=True)
@@ -201,10 +262,18 @@ class FigureEntry:
         Width and height of the picture [in].
     projection : str or None
         Of the axes: ``"3d"`` for a picture in space.
+    axes : mapping
+        Settings of all panels, see :func:`~.drawing.dress`.
+    panel : sequence of mapping
+        Further settings of each panel.
+    legend : int
+        Columns of the legend below the panels; 0 for none.
     quoted : tuple of Quoted
         Numbers of the text that the figure bears on, not computed yet.
     notes : tuple of str
         What the document leaves open and what was chosen for it.
+    tables : tuple of Columns
+        Tables of numbers behind the picture.
     page : Page or None
         The document of ours that it writes.
     """
@@ -216,8 +285,12 @@ class FigureEntry:
     panels: tuple[int, int] = (1, 1)
     size: tuple[float, float] = (7.2, 4.6)
     projection: str | None = None
+    axes: Mapping[str, Any] = field(default_factory=dict)
+    panel: Sequence[Mapping[str, Any]] = ()
+    legend: int = 4
     quoted: tuple[Quoted, ...] = ()
     notes: tuple[str, ...] = ()
+    tables: tuple[Columns, ...] = ()
     page: Page | None = None
 
     @property
@@ -236,7 +309,7 @@ class FigureEntry:
         words = drawn.words
         rows = []
         for row, value in zip(self.quoted, drawn.values, strict=True):
-            names = ("computed", "printed", "tolerance")
+            names = ("computed", "expected", "tolerance")
             given = value if isinstance(value, tuple) else (value,)
             changes: dict[str, Any] = {n: float(v) for n, v in zip(names, given, strict=False)}
             if words:
@@ -244,9 +317,12 @@ class FigureEntry:
                     changes[name] = getattr(row, name).format_map(words)
             rows.append(replace(row, **changes))
         notes = tuple(note.format_map(words) if words else note for note in self.notes)
+        tables = tuple(
+            one.filled(cells, words) for one, cells in zip(self.tables, drawn.tables, strict=True)
+        )
         page = self.page
-        files = ((page.file, page.text(notes, drawn.tables)),) if page else ()
-        return Shown(self, tuple(rows), notes, drawn.tables, files)
+        files = ((page.file, page.text(notes, tables)),) if page else ()
+        return Shown(self, tuple(rows), notes, tables, files)
 
 
 @dataclass(frozen=True)
@@ -323,9 +399,10 @@ class Gallery(Result):
                 sign = "" if row.relation == "=" else f"{row.relation} "
                 unit = f" {row.unit}" if row.unit else ""
                 out.append(
-                    f"  {row.number}: {sign}{row.printed:.4g}{unit} printed, "
+                    f"  {row.number}: {sign}{row.expected:.4g}{unit} {KINDS[row.kind]}, "
                     f"{row.computed:.4g} computed: {row.verdict}"
                 )
+        out += ["", *counts([row for _, row in self.rows])]
         if self.folder:
             out += ["", f"{len(self.files)} files in {self.folder}, first index.html"]
         return out

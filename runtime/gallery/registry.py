@@ -1,20 +1,21 @@
 """The records of all figures, read from one file of data for each document.
 
 A record holds the figure's label and title, the function that draws it (``draw``, a module and a
-name in it, with ``arguments`` after the axes), its panels and size, and the numbers that the text
-quotes; ``common`` holds what these share.  A note ``@name`` stands in the file's table ``notes``,
-and ``page`` is a document that its notes and tables make up.
+name in it, with ``arguments`` after the axes), its panels and size, and what is compared, the
+expected value under the name of its kind; ``common`` holds what these share.  A record of a
+``kind`` takes what it does not say from the file's table ``kind``; a note ``@name`` stands in its
+table ``notes``; ``page`` is a document that notes and tables make up.
 """
 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
-from functools import cache, partial
+from collections.abc import Mapping, Sequence
+from functools import cache
 from importlib import import_module, resources
 from typing import TYPE_CHECKING, Any
 
-from .records import Drawn, FigureEntry, Page, Quoted
+from .records import KINDS, Columns, Drawn, FigureEntry, Page, Quoted
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,26 +29,52 @@ def documents() -> Mapping[str, tuple[FigureEntry, ...]]:
     return {name: _read(name) for name in NAMES}
 
 
+@cache
+def contents(document: str) -> Mapping[str, Any]:
+    """Return a document's file of data: its records and what else stands printed in it."""
+    file = resources.files(__package__) / "data" / f"{document}.toml"
+    return tomllib.loads(file.read_text("utf-8"))
+
+
 def _read(document: str) -> tuple[FigureEntry, ...]:
-    content = (resources.files(__package__) / "data" / f"{document}.toml").read_text("utf-8")
-    data = tomllib.loads(content)
-    notes = data.get("notes", {})
-    return tuple(_entry(document, record, notes) for record in data["figure"])
+    data = contents(document)
+    notes, kinds = data.get("notes", {}), data.get("kind", {})
+    return tuple(
+        _entry(document, _merged(kinds.get(record.get("kind", ""), {}), record), notes)
+        for record in data["figure"]
+    )
+
+
+def _merged(kind: Mapping[str, Any], record: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a record with what its kind adds; tables in both are joined."""
+    tables = {
+        name: {**kind[name], **record[name]}
+        for name in kind.keys() & record.keys()
+        if isinstance(kind[name], dict)
+    }
+    return {**kind, **record, **tables}
 
 
 def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> FigureEntry:
+    record.pop("kind", None)
     common = record.pop("common", {})
-    draw: Callable[[Sequence[Axes]], Drawn] = partial(
-        _draw, record.pop("draw"), record.pop("arguments", ())
-    )
+    place, arguments = record.pop("draw"), record.pop("arguments", ())
+
+    def draw(axes: Sequence[Axes]) -> Drawn:
+        # The module that draws is loaded only now.
+        module, _, name = place.partition(".")
+        drawn: Drawn = getattr(import_module(f".{module}", __package__), name)(axes, *arguments)
+        return drawn
+
     if "page" in record:
         record["page"] = Page(**record["page"])
+    record["tables"] = tuple(Columns(**table) for table in record.get("tables", ()))
     for name in {"panels", "size"} & record.keys():
         record[name] = tuple(record[name])
     return FigureEntry(
         document,
         draw=draw,
-        quoted=tuple(Quoted(**{**common, **row}) for row in record.pop("quoted", ())),
+        quoted=tuple(_quoted(common, row) for row in record.pop("quoted", ())),
         notes=tuple(
             notes[note[1:]] if note.startswith("@") else note for note in record.pop("notes", ())
         ),
@@ -55,8 +82,11 @@ def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> F
     )
 
 
-def _draw(place: str, arguments: Sequence[Any], axes: Sequence[Axes]) -> Drawn:
-    """Call the function that draws; its module is loaded only now."""
-    module, _, name = place.partition(".")
-    drawn: Drawn = getattr(import_module(f".{module}", __package__), name)(axes, *arguments)
-    return drawn
+def _quoted(common: Mapping[str, Any], row: Mapping[str, Any]) -> Quoted:
+    """Return one comparison; the key of the expected value, if it has one here, is its kind."""
+    given = {**common, **row}
+    values = {kind: given.pop(kind) for kind in KINDS if kind in given}
+    kinds = [kind for kind in values if kind in row] or list(values)
+    if kinds:
+        given = {"kind": kinds[0], "expected": values[kinds[0]], **given}
+    return Quoted(**given)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import io
 import os
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..core.errors import bad
+from ..core.errors import LinearRangeWarning, bad
 from ..core.progress import bar
 from ..core.results import Check
 from . import registry
@@ -115,16 +116,19 @@ def render(entry: FigureEntry, *, picture: bool = True) -> tuple[Shown, bytes | 
     import matplotlib as mpl
 
     from ..core.plotting import new_figure
-    from .drawing import SETTINGS
+    from .drawing import SETTINGS, finish
 
-    with mpl.rc_context():
+    with mpl.rc_context(), warnings.catch_warnings():
+        # At a resonance the linear range is left; the figures' notes say so.
+        warnings.simplefilter("ignore", LinearRangeWarning)
         # The user's own settings must not change the pictures.
         mpl.rcdefaults()
         mpl.rcParams.update(SETTINGS)
         canvas = new_figure(*entry.size)
         options = {"projection": entry.projection}
-        axes = canvas.subplots(*entry.panels, squeeze=False, subplot_kw=options)
-        shown = entry.show(list(np.ravel(axes)))
+        axes = list(np.ravel(canvas.subplots(*entry.panels, squeeze=False, subplot_kw=options)))
+        shown = entry.show(axes)
+        finish(axes, entry.panels[1], entry.axes, entry.panel, entry.legend)
         return shown, _png(canvas) if picture else None
 
 

@@ -23,7 +23,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..linkages import Motion
 from ..rigid import (
     Counterweight,
     RigidForces,
@@ -32,20 +31,9 @@ from ..rigid import (
     with_counterweights,
 )
 from ..rigid.counterweights import CASES, Case
-from .drawing import (
-    COLOURS,
-    INK,
-    LINK_COLOURS,
-    Array,
-    bar,
-    canvas,
-    crank_axis,
-    four_bar,
-    legend_below,
-    panel_title,
-    write,
-)
-from .records import Drawn, Table
+from . import sketch
+from .drawing import COLOURS, Array, panel_title
+from .records import Drawn
 from .smith_forces import INCH, TURN, example, example_forces, finish_polar, peak
 
 if TYPE_CHECKING:
@@ -64,7 +52,6 @@ _MASS, _LENGTH, _DISC = 1.0, 1.0, 0.1
 _DENSITIES = {"A": 5.0, "B": 10.0, "C": 20.0, "D": 40.0, "E": 80.0}
 # So light that no counterweight at all is best.
 _LIGHT = 2.5
-_CUBE_ROOT_BELOW = 1e-60
 
 
 def _weights(
@@ -84,43 +71,33 @@ def _forces(case: Case, offset: float = _OFFSET, thickness: float = _THICKNESS) 
 
 def figure_20(axes: Sequence[Axes]) -> Drawn:
     """Draw the four configurations with their counterweights to scale."""
+    from matplotlib.patches import Circle
+
     linkage = example()[0].linkage
     motion = linkage.motion(radians(60.0))
     rows = []
     for ax, case in zip(axes, CASES, strict=True):
-        canvas(ax)
+        sketch.canvas(ax)
         panel_title(ax, f"({case}) {_NAMES[case]}")
         for link, weight in _weights(case).items():
-            _draw_weight(ax, motion, weight)
-            mass, offset = f"{weight.mass / _POUND_MASS:.4f}", f"{weight.offset / INCH:.3f}"
-            rows.append((f"({case})", link, mass, offset, f"{weight.disc_radius / INCH:.3f}"))
-        four_bar(ax, motion.joints, 0.1 * linkage.lengths["frame"])
-    _same_limits(axes)
-    header = ("case", "link", "mass [lb]", "offset [in]", "radius [in]")
-    table = Table("Counterweights", header, tuple(rows))
-    return Drawn(_balance_values(), tables=(table,))
-
-
-def _draw_weight(ax: Axes, motion: Motion, weight: Counterweight) -> None:
-    from matplotlib.patches import Circle
-
-    colour, radius = LINK_COLOURS[weight.link], weight.disc_radius
-    start = motion.point(weight.link, 0.0).position
-    centre = motion.point(weight.link, weight.along, weight.across).position
-    bar(ax, start, centre, colour, lw=2.2, zorder=2)
-    look: dict[str, Any] = {"facecolor": colour, "alpha": 0.45, "edgecolor": INK, "lw": 0.9}
-    ax.add_patch(Circle((float(centre[0]), float(centre[1])), radius, zorder=2, **look))
-    ax.update_datalim([centre - radius, centre + radius])
-
-
-def _same_limits(axes: Sequence[Axes]) -> None:
-    """Give all panels the limits that hold every one of them."""
+            colour, radius = sketch.LINK_COLOURS[link], weight.disc_radius
+            start = motion.point(link, 0.0).position
+            centre = motion.point(link, weight.along, weight.across).position
+            sketch.bar(ax, start, centre, colour, lw=2.2, zorder=2)
+            look: dict[str, Any] = {"facecolor": colour, "edgecolor": sketch.INK, "lw": 0.9}
+            ax.add_patch(Circle(tuple(centre), radius, zorder=2, alpha=0.45, **look))
+            ax.update_datalim([centre - radius, centre + radius])
+            sizes = (weight.offset / INCH, weight.disc_radius / INCH)
+            rows.append((f"({case})", link, weight.mass / _POUND_MASS, *sizes))
+        sketch.four_bar(ax, motion.joints, 0.1 * linkage.lengths["frame"])
+    # All panels have the limits that hold every one of them.
     boxes = np.array([ax.dataLim.get_points() for ax in axes])
     (left, low), (right, high) = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
     edge = 0.04 * (right - left)
     for ax in axes:
         ax.set_aspect("equal", adjustable="box")
         ax.set(xlim=(left - edge, right + edge), ylim=(low - edge, high + edge))
+    return Drawn(_balance_values(), tables=[rows])
 
 
 def _balance_values() -> list[float]:
@@ -164,23 +141,18 @@ def figure_21(axes: Sequence[Axes]) -> Drawn:
         for angle in (0, 60, 120, 180, 240, 300):
             place = values[4 * angle]
             way = place / (np.hypot(*place) or 1.0)
-            write(ax, place, f"{angle}°", 12.0 * way, color=colour, fontsize=7)
-    finish_polar(ax, "")
+            sketch.write(ax, place, f"{angle}°", 12.0 * way, color=colour, fontsize=7)
+    finish_polar(ax)
     return Drawn([peak(_forces("b").shaking_force)[0] / peak(_forces("a").shaking_force)[0]])
 
 
 def figure_22(axes: Sequence[Axes]) -> Drawn:
     """Draw the moment on the frame in the four cases, by (4.13) and complete."""
-    for ax, title in zip(axes, ("(4.13): $l_1 Y_{41}$", "with the drive's reaction"), strict=True):
+    for ax in axes:
         for case in CASES:
             label = f"({case}) {_NAMES[case]}"
             ax.plot(np.degrees(TURN), _moment(case, ax is axes[1]), label=label)
-        ax.axhline(0.0, color="0.6", lw=0.8, zorder=1)
-        crank_axis(ax)
-        ax.set_ylabel("moment on the frame about A [N m]")
-        panel_title(ax, title)
     axes[1].set_ylim(axes[0].get_ylim())
-    legend_below(axes[:1], columns=2)
 
     def growth(case: Case, complete: bool) -> tuple[float, float]:
         """Return that of the greatest size, and that of the range."""
@@ -210,7 +182,7 @@ def figure_23d(axes: Sequence[Axes]) -> Drawn:
         label = f"{name} offset {inches:g} in" if inches else name
         ax.plot(*force.T, color=colour, label=f"{label}: {peaks[inches]:.1f} N")
         ax.plot(*force[:-1:120].T, "o", color=colour, ms=2.6)
-    finish_polar(ax, "_{23}")
+    finish_polar(ax)
     thin, usual, thick = (_best_offset(part * INCH) for part in (0.25, 0.5, 1.0))
     rise = {inches: peaks[inches] - peaks[0.0] for inches in (1.0, 3.0, 6.0)}
     ratios = [peaks[inches] / peaks[0.0] for inches in rise]
@@ -278,11 +250,11 @@ def optimal_offset(density_number: Any) -> Any:
     one step of Newton's method mends the round-off that sinh amplifies.
     """
     k = np.asarray(density_number, dtype=float)
-    # Far below round-off 1 + delta^2 is 1, and 1/K might overflow.
-    safe = np.clip(k, _CUBE_ROOT_BELOW, 0.5)
+    # 1/K of a smaller one would overflow.
+    safe = np.clip(k, np.finfo(float).tiny, 0.5)
     s = 2.0 / np.sqrt(3.0) * np.sinh(np.arcsinh(1.5 * np.sqrt(3.0) / safe) / 3.0)
     s = s - (s * s * s + s - 1.0 / safe) / (3.0 * s * s + 1.0)
-    return np.where(k >= 0.5, 1.0, np.where(k < _CUBE_ROOT_BELOW, np.cbrt(k), 1.0 / s))
+    return np.where(k >= 0.5, 1.0, 1.0 / s)
 
 
 def _number(density: float) -> float:
@@ -304,27 +276,21 @@ def figure_23a(axes: Sequence[Axes]) -> Drawn:
     for letter, _, number, best in _best():
         ax.plot([best, best, 0.0], [0.0, number, number], ":", color="0.6", lw=0.9)
         ax.plot(best, number, "o", color=COLOURS[1], ms=5)
-        write(ax, (best, number), letter, (-10.0, 8.0))
-    ax.set(xlim=(0.0, 1.0), ylim=(0.0, 0.55))
-    ax.set_xlabel(r"offset $\delta=\ell/L$")
-    ax.set_ylabel(r"$K=\delta^3/(1+\delta^2)$")
+        sketch.write(ax, (best, number), letter, (-10.0, 8.0))
     ends = [offset_function(0.0), offset_function(1.0), np.diff(offset_function(delta)).min()]
-    return Drawn([*ends, optimal_offset(0.6), *_printed_equations(delta[1:])])
-
-
-def _printed_equations(delta: Array) -> list[float]:
-    """Return the printed inertia, its derivative and the quintic less what holds."""
-    number = _number(_DENSITIES["C"])
+    # The printed inertia, its derivative and the quintic less what holds.
+    delta, number = delta[1:], _number(_DENSITIES["C"])
     link = BalancedLink(delta, number)
     bars, exact = 0.5 * (1.0 + delta**2), (1.0 + delta**3) / 3.0
     rest = 0.25 * number * (1.0 / delta - delta) ** 2 + 0.5 * (delta - delta**3)
     slope = 0.5 * (1.0 - delta**2) + 0.5 * number * (delta - delta**-3.0)
-    return [
+    gaps = [
         np.max(np.abs(bars + rest - link.inertia)),
         np.max(np.abs(exact + rest - link.inertia)) / link.inertia.max(),
         np.max(np.abs(slope - link.slope)) / np.abs(link.slope).max(),
         max(abs(d**5 - k * d**4 - d**3 + k) for _, _, k, d in _best()),
     ]
+    return Drawn([*ends, optimal_offset(0.6), *gaps])
 
 
 def _densities(ax: Axes, delta: Array, beside: float) -> None:
@@ -334,9 +300,7 @@ def _densities(ax: Axes, delta: Array, beside: float) -> None:
         ax.plot(delta, link.inertia, color=colour, label=rf"$\rho$ = {density:g}")
         least = float(BalancedLink(best, number).inertia)
         ax.plot(best, least, "o", color=colour, ms=4.5)
-        write(ax, (best, least), letter, (beside, -10.0), color=colour)
-    ax.set(xlabel=r"offset $\delta=\ell/L$", ylabel=r"$I_G/(M L^2)$")
-    legend_below([ax], columns=6)
+        sketch.write(ax, (best, least), letter, (beside, -10.0), color=colour)
 
 
 def figure_23b(axes: Sequence[Axes]) -> Drawn:
@@ -345,7 +309,6 @@ def figure_23b(axes: Sequence[Axes]) -> Drawn:
     light = BalancedLink(delta, _number(_LIGHT))
     ax.plot(delta, light.inertia, "--", color="0.45", label=rf"$\rho$ = {_LIGHT:g}")
     _densities(ax, delta, 0.0)
-    ax.set(xlim=(0.0, 1.0), ylim=(0.3, 2.0))
     end = BalancedLink(1.0, _number(_LIGHT))
     offsets = [best for *_, best in _best()]
     pivoted = 2.0 * _MASS * (2.0 * _LENGTH) ** 2 / 12.0
@@ -359,10 +322,9 @@ def figure_23b(axes: Sequence[Axes]) -> Drawn:
     rows = []
     for letter, density, number, best in _best():
         link = BalancedLink(best, number)
-        cells = (number, best, link.inertia, link.counterweight, link.radius)
-        rows.append((letter, f"{density:g}", *(f"{float(cell):.5f}" for cell in cells)))
-    header = ("point", "density", "K", "delta", "I/(M L^2)", "m_c/M", "r_c/L")
-    return Drawn(values, tables=(Table("Minima of the inertia", header, tuple(rows)),))
+        sizes = (link.inertia, link.counterweight, link.radius)
+        rows.append((letter, density, number, best, *sizes))
+    return Drawn(values, tables=[rows])
 
 
 def figure_23c(axes: Sequence[Axes]) -> Drawn:
@@ -371,7 +333,6 @@ def figure_23c(axes: Sequence[Axes]) -> Drawn:
     line = BalancedLink(delta, offset_function(delta))
     ax.plot(delta, line.inertia, "--", color="0.3", lw=1.3, label="minima of all densities")
     _densities(ax, delta, 6.0)
-    ax.set(xlim=(0.1, 1.0), ylim=(0.4, 0.85))
     # Each lettered offset beside the least of the sampled inertia: another route.
     fine, best = np.linspace(0.05, 1.0, 9501), _best()
     sampled = [fine[int(np.argmin(BalancedLink(fine, number).inertia))] for *_, number, _ in best]

@@ -10,26 +10,25 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..core.families import LinearPeriodic
 from ..hill import critical_damping, hill_boundaries, perturbation_boundaries
 from ..hill.bloch import effective_operator
 from ..periodic import floquet_multipliers
-from ..scenes import load_scene
-from ..stability import StabilityEdges, stability_edges
-from .drawing import COLOURS, Array, legend_below, panel_title
-from .records import Drawn, Table, Value
-from .smith_linkages import LBF_IN_S2, RIG, RPM, Rig, region_name
+from ..stability import stability_edges
+from .drawing import COLOURS, Array, panel_title
+from .records import Drawn, Value
+from .registry import contents
+from .smith_linkages import LBF_IN_S2, RIG, RPM, OfRig, region_name
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from ..core.families import LinearPeriodic
 
 _ORDERS = (1, 2, 3, 4, 6)
 _SCAN = np.linspace(0.0, 0.5, 5001)
 
 
 @dataclass(frozen=True)
-class Estimate:
+class Estimate(OfRig):
     """One damping that section 9.5.5 quotes, of the unstable region 2 Omega/n of a chart's rig.
 
     ``stable`` and ``unstable`` are follower inertias [lbf in s^2] between which the region opens:
@@ -37,16 +36,10 @@ class Estimate:
     its value else; ``quoted`` is K as the thesis gives it.
     """
 
-    chart: str
     region: int
     stable: float
     unstable: float
     quoted: float
-
-    @property
-    def rig(self) -> Rig:
-        """The linkage and coupler."""
-        return RIG[self.chart]
 
     @property
     def name(self) -> str:
@@ -59,12 +52,7 @@ class Estimate:
         return low, high
 
 
-ESTIMATES = (
-    Estimate("82", 5, 0.0069, 0.0079, 0.02),
-    Estimate("82", 6, 0.0130, 0.0149, 0.01),
-    Estimate("85", 4, 0.0130, 0.0149, 0.005),
-    Estimate("85", 3, 0.0058, 0.0079, 0.02),
-)
+ESTIMATES = tuple(Estimate(**row) for row in contents("smith")["estimate"])
 
 
 @lru_cache(maxsize=512)
@@ -97,42 +85,34 @@ def at_rest(estimate: Estimate) -> tuple[float, float]:
     """
     f = estimate.rig.function("reduced", estimate.stable * LBF_IN_S2)
     place = float(critical_damping(f, 1.0, (estimate.region,)).lam2[0])
-    low, high = load_scene(estimate.rig.scene).get("measured.log_decrement")
-    factor = np.sqrt(place) / (2.0 * pi)
-    return float(low * factor), float(high * factor)
+    least, _, most = estimate.rig.decrements
+    factor = float(np.sqrt(place)) / (2.0 * pi)
+    return least * factor, most * factor
 
 
 def estimates_table(axes: Sequence[Axes]) -> Drawn:
     """Draw the damping that closes each region over the follower's inertia."""
     values: list[Value] = []
     for ax, one in zip(axes, ESTIMATES, strict=True):
-        _estimate_panel(ax, one)
+        measured = one.rig.inertias / LBF_IN_S2
+        inertia = np.linspace(0.95 * measured[0], 1.02 * measured[-1], 31)
+        for equation, order, style, colour, label in (
+            ("reduced", 1, "--", COLOURS[0], "(7.51)"),
+            ("reduced", 2, ":", COLOURS[2], "second order"),
+            ("reduced", None, "-", COLOURS[5], "exact, (6.18)"),
+            ("complete", None, "-", COLOURS[3], "exact, complete equation"),
+        ):
+            closing = [critical(one, float(value), equation, order) for value in inertia]
+            ax.plot(inertia, closing, style, color=colour, label=label)
+        ax.fill_between(inertia, *at_rest(one), color="0.92", lw=0, label="decrements at rest")
+        ax.hlines(one.quoted, one.stable, one.unstable, color="black", lw=3.0, label="quoted")
+        panel_title(ax, f"{one.name}, {one.rig.name}")
         values.append((0.5 * sum(one.both("reduced", 1)), one.quoted, 0.15 * one.quoted))
-    legend_below(axes, columns=3)
-    return Drawn(values, _estimate_words(), (_estimates(),))
+    return Drawn(values, _estimate_words(), [_estimates()])
 
 
-def _estimate_panel(ax: Axes, one: Estimate) -> None:
-    measured = one.rig.inertias / LBF_IN_S2
-    inertia = np.linspace(0.95 * measured[0], 1.02 * measured[-1], 31)
-    for equation, order, style, colour, label in (
-        ("reduced", 1, "--", COLOURS[0], "(7.51)"),
-        ("reduced", 2, ":", COLOURS[2], "second order"),
-        ("reduced", None, "-", COLOURS[5], "exact, (6.18)"),
-        ("complete", None, "-", COLOURS[3], "exact, complete equation"),
-    ):
-        values = [critical(one, float(value), equation, order) for value in inertia]
-        ax.plot(inertia, values, style, color=colour, label=label)
-    ax.fill_between(inertia, *at_rest(one), color="0.92", lw=0, label="decrements at rest")
-    ax.hlines(one.quoted, one.stable, one.unstable, color="black", lw=3.0, label="quoted")
-    ax.set(ylim=(0.0, 0.16), xlabel="follower inertia [lbf in s²]", ylabel="critical damping $K$")
-    panel_title(ax, f"{one.name}, {one.rig.name}")
-
-
-def _estimates() -> Table:
-    orders = (("(7.51)" if order == 1 else f"order {order}") for order in _ORDERS)
-    header = ("region", "inertia", "quoted", *orders)
-    header += ("exact, (6.18)", "exact, complete", "decrement at rest")
+def _estimates() -> list[list[str]]:
+    """Return the damping that closes each region, by each order and exactly."""
 
     def span(one: Estimate, equation: str, order: int | None) -> str:
         ends = one.both(equation, order)
@@ -149,9 +129,8 @@ def _estimates() -> Table:
         cells = [one.name, f"{one.stable:g}-{one.unstable:g}", f"{one.quoted:g}"]
         cells += [span(one, "reduced", k) + ("*" if refused(one, k) else "") for k in _ORDERS]
         cells += [span(one, name, None) for name in ("reduced", "complete")]
-        low, high = at_rest(one)
-        rows.append((*cells, f"{low:.2f}-{high:.2f}"))
-    return Table("Damping K that closes the region", header, tuple(rows))
+        rows.append([*cells, "-".join(f"{end:.2f}" for end in at_rest(one))])
+    return rows
 
 
 def _estimate_words() -> dict[str, object]:
@@ -220,32 +199,14 @@ class _Region:
 
 
 @lru_cache(maxsize=16)
-def _system(chart: str, damped: bool, modes: int = 2) -> LinearPeriodic:
-    rig = RIG[chart]
-    changes: dict[str, object] = {"model.modes": modes}
-    if damped:
-        changes["coupler.damping_ratio"] = _decrement(rig) / (2.0 * pi)
-    return load_scene(rig.scene, overrides=changes).linear_system()
-
-
-@lru_cache(maxsize=16)
-def _edges(chart: str, inertia: float) -> StabilityEdges:
-    low, high = (share * RIG[chart].frequency for share in _SPAN)
-    return stability_edges(_system(chart, False), (low, high), follower_inertia=inertia * LBF_IN_S2)
-
-
-def _decrement(rig: Rig) -> float:
-    """Return the lowest logarithmic decrement that was measured at rest."""
-    return float(load_scene(rig.scene).get("measured.log_decrement")[0])
-
-
-@lru_cache(maxsize=16)
 def regions(chart: str, inertia: float) -> tuple[list[_Region], int]:
     """Return the open regions at an inertia [lbf in s^2], widest first, and how many are closed.
 
     Regions that reach beyond the range, with an end that is not known, are left out.
     """
-    bare = _edges(chart, inertia)
+    rig = RIG[chart]
+    low, high = (share * rig.frequency for share in _SPAN)
+    bare = stability_edges(rig.system(modes=2), (low, high), follower_inertia=inertia * LBF_IN_S2)
     width = bare.upper - bare.lower
     kept = np.flatnonzero(width > 2.0 * bare.error)
     left = _left_by_damping(chart, inertia, bare.lower[kept], width[kept])
@@ -274,7 +235,7 @@ def regions(chart: str, inertia: float) -> tuple[list[_Region], int]:
 def _first_mode(chart: str, inertia: float) -> Mapping[int, float]:
     """Return the speeds [rpm] at which regions of the first mode alone begin, by number."""
     rig = RIG[chart]
-    f = rig.form("complete").function(1.0, follower_inertia=inertia * LBF_IN_S2)
+    f = rig.function("complete", inertia * LBF_IN_S2)
     upper = hill_boundaries(f, 1.0, _NUMBERS).upper.tolist()
     begins = zip(_NUMBERS, upper, strict=True)
     return {n: float(rig.frequency / np.sqrt(end) / RPM) for n, end in begins if end > 0.0}
@@ -289,7 +250,7 @@ def _left_by_damping(chart: str, inertia: float, lower: Array, width: Array) -> 
     places = np.concatenate([[-0.03, 1.03], np.linspace(0.0, 1.0, 27)[1:-1]])
     speeds = lower[:, None] + width[:, None] * places
     motion = floquet_multipliers(
-        _system(chart, True), speeds.ravel(), follower_inertia=inertia * LBF_IN_S2
+        _damped(chart, 2), speeds.ravel(), follower_inertia=inertia * LBF_IN_S2
     )
     outside = np.abs(motion.multipliers) > 1.0 + motion.error
     growing = np.sum(outside, axis=-1).reshape(speeds.shape)
@@ -297,56 +258,43 @@ def _left_by_damping(chart: str, inertia: float, lower: Array, width: Array) -> 
     return np.asarray(np.mean(growing[:, 2:] > beside[:, None], axis=1))
 
 
+def _damped(chart: str, modes: int) -> LinearPeriodic:
+    """Return a rig with the lowest logarithmic decrement that was measured at rest."""
+    return RIG[chart].system(modes=modes, decrement=RIG[chart].decrements[0])
+
+
 def modes_table(axes: Sequence[Axes]) -> Drawn:
     """Draw the widths of all regions of two modes over the crank speed."""
-    tables = []
+    tables, titles = [], []
     values: list[Value] = []
     for ax, (chart, inertia) in zip(axes, _CASES, strict=True):
         opened, closed = regions(chart, inertia)
-        title = f"{RIG[chart].name}, {inertia:g} lbf in s²"
-        _widths(ax, opened, title)
-        tables.append(_widest(chart, inertia, opened, closed))
+        for kind, (label, colour) in _KINDS.items():
+            chosen = [one for one in opened if one.kind == kind and np.isfinite(one.width)]
+            if not chosen:
+                continue
+            left = [one for one in chosen if one.damped > 0.0]
+            ends = [one.middle for one in chosen], [one.width for one in chosen]
+            ax.plot(*ends, "o", mfc="none", color=colour, label=label)
+            kept = [one.middle for one in left], [one.damped for one in left]
+            ax.plot(*kept, "o", color=colour, ms=4)
+        panel_title(ax, f"{RIG[chart].name}, {inertia:g} lbf in s²")
+        tables.append(
+            [
+                (one.label, one.lower, one.upper, one.width, one.damped or "closed")
+                for one in opened[:10]
+            ]
+        )
+        rest = f"; {len(opened) - 10} narrower, {closed} closed" if len(opened) > 10 else ""
+        titles.append(
+            f"{RIG[chart].name}, follower inertia {inertia:g} lbf in s²: widest regions{rest}"
+        )
         # The first mode's regions with two modes beside those of the first mode alone.
         for n in (3, 4):
             alone, lower = _first_mode(chart, inertia)[n], np.array([one.lower for one in opened])
             nearest = float(lower[np.argmin(np.abs(lower - alone))])
             values.append((nearest, alone, _NEAR * alone))
-    axes[0].legend(loc="upper left", fontsize=7)
-    return Drawn(values, _mode_words(), tuple(tables))
-
-
-def _widths(ax: Axes, opened: Sequence[_Region], title: str) -> None:
-    for kind, (label, colour) in _KINDS.items():
-        chosen = [one for one in opened if one.kind == kind and np.isfinite(one.width)]
-        if not chosen:
-            continue
-        left = [one for one in chosen if one.damped > 0.0]
-        middles, widths = [one.middle for one in chosen], [one.width for one in chosen]
-        ax.plot(middles, widths, "o", mfc="none", color=colour, label=label)
-        ax.plot([one.middle for one in left], [one.damped for one in left], "o", color=colour, ms=4)
-    ax.set_yscale("log")
-    ax.set(ylim=(1e-10, 1e3), xlabel="crank speed [rpm]", ylabel="width [rpm]")
-    panel_title(ax, title)
-
-
-def _widest(chart: str, inertia: float, opened: Sequence[_Region], closed: int) -> Table:
-    shown = opened[:10]
-    rows = tuple(
-        (
-            one.label,
-            f"{one.lower:.3f}",
-            f"{one.upper:.3f}",
-            f"{one.width:.3g}",
-            f"{one.damped:.2g}" if one.damped > 0.0 else "closed",
-        )
-        for one in shown
-    )
-    more = f"; {len(opened) - 10} narrower, {closed} closed" if len(opened) > 10 else ""
-    return Table(
-        f"{RIG[chart].name}, follower inertia {inertia:g} lbf in s²: widest regions{more}",
-        ("region", "from [rpm]", "to [rpm]", "width", "width when damped"),
-        rows,
-    )
+    return Drawn(values, {**_mode_words(), "titles": titles}, tables)
 
 
 def _mode_words() -> dict[str, object]:
@@ -361,7 +309,7 @@ def _mode_words() -> dict[str, object]:
         for (chart, inertia), one in widest
     ]
     return {
-        "decrement": _decrement(RIG[_CASES[0][0]]),
+        "decrement": RIG[_CASES[0][0]].decrements[0],
         "widest": "; ".join(parts),
         "sums": len(sums),
         "sums_left": sum(one.damped > 0.0 for one in sums),
@@ -375,6 +323,6 @@ def _stable_alone(case: tuple[str, float], one: _Region) -> bool:
     """Return True where the damped first mode alone is stable in the middle of a region."""
     chart, inertia = case
     motion = floquet_multipliers(
-        _system(chart, True, 1), one.middle * RPM, follower_inertia=inertia * LBF_IN_S2
+        _damped(chart, 1), one.middle * RPM, follower_inertia=inertia * LBF_IN_S2
     )
     return bool(np.all(motion.stable))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
-from math import degrees, log, pi, radians
+from math import degrees, pi, radians
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,34 +12,17 @@ import numpy as np
 from ..linkages import FourBar
 from ..rigid import Machine, MassDistribution, RigidForces, rigid_forces
 from ..scenes import load_scene
-from .drawing import COLOURS, Array, arrow, canvas, legend_below, pivot
-from .free_bodies import draw_body, free_bodies, round_force, scale_bar
-from .records import Drawn, Table
+from . import sketch
+from .drawing import COLOURS, Array
+from .records import Drawn
+from .registry import contents
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 INCH, POUND = 0.0254, 4.4482216152605
 TURN = np.linspace(0.0, 2.0 * pi, 1441)
-_JOINTS = ("f12", "f23", "f34", "f41")
-# Of each link: letters of its pins and its centre, names of the forces there, where it is drawn.
-_BODIES: dict[str, tuple[str, dict[str, str], tuple[float, float]]] = {
-    "crank": (
-        "ABG",
-        {"A": "$F_{12}$", "B": "$F_{32}$", "G": r"$-M_2\mathbf{a}_2$", "torque": "$T$"},
-        (-0.45, -0.25),
-    ),
-    "coupler": (
-        "BCG",
-        {"B": "$F_{23}$", "C": "$F_{43}$", "G": r"$-M_3\mathbf{a}_3$"},
-        (0.05, 0.55),
-    ),
-    "follower": (
-        "DCG",
-        {"D": "$F_{14}$", "C": "$F_{34}$", "G": r"$-M_4\mathbf{a}_4$"},
-        (0.95, 0.0),
-    ),
-}
+_JOINTS = ("12", "23", "34", "41")
 
 
 @lru_cache(maxsize=1)
@@ -70,34 +53,31 @@ def _signed_degrees(angle: float) -> float:
 def figure_11(axes: Sequence[Axes]) -> Drawn:
     """Draw the links cut free, every force to one scale."""
     ax = axes[0]
-    canvas(ax)
+    sketch.canvas(ax)
     machine, speed = example()
-    bodies, forces = free_bodies(machine, radians(30.0), speed)
+    bodies, forces = sketch.free_bodies(machine, radians(30.0), speed)
     largest = max(float(np.hypot(*force)) for body in bodies.values() for force in body.forces)
     frame = machine.linkage.lengths["frame"]
     scale = 0.5 * frame / largest
     for link, body in bodies.items():
-        letters, names, place = _BODIES[link]
-        draw_body(ax, body, letters, names, scale, frame * np.array(place))
+        drawn = contents("smith")["bodies"][link]
+        place = frame * np.array(drawn["place"])
+        sketch.draw_body(ax, body, drawn["letters"], drawn["names"], scale, place)
     ground = frame * np.array([[-0.45, -0.75], [1.95, -0.55]])
     for place in ground:
-        pivot(ax, place, 0.1 * frame)
+        sketch.pivot(ax, place, 0.1 * frame)
     on_frame = ((-forces.f12, "$F_{21}$"), (forces.f41, "$F_{41}$"))
     for place, (force, text) in zip(ground, on_frame, strict=True):
-        arrow(ax, place, scale * np.asarray(force), COLOURS[3], text)
-    scale_bar(ax, (0.15 * frame, -0.8 * frame), scale, round_force(largest))
-    rows = tuple(
-        (f"F{name[1:]}", *(f"{float(part) / POUND:.4f}" for part in getattr(forces, name)))
-        for name in _JOINTS
-    )
-    table = Table("Pin forces at this angle [lbf]", ("force", "X", "Y"), rows)
-    return Drawn(_equations(machine, speed, 40.0), tables=(table,))
+        sketch.arrow(ax, place, scale * np.asarray(force), COLOURS[3], text)
+    sketch.scale_bar(ax, (0.15 * frame, -0.8 * frame), scale, sketch.round_force(largest))
+    rows = [(f"F{joint}", *(getattr(forces, f"f{joint}") / POUND)) for joint in _JOINTS]
+    return Drawn(_equations(machine, speed, 40.0), tables=[rows])
 
 
 def _equations(machine: Machine, speed: float, acceleration: float) -> list[float]:
     """Return how well the equations (4.4) to (4.13) hold, at a crank that speeds up too."""
     drive = (speed, acceleration)
-    bodies = free_bodies(machine, TURN, *drive)[0]
+    bodies = sketch.free_bodies(machine, TURN, *drive)[0]
     forces = rigid_forces(machine, TURN, *drive)
     pin, torque = _printed_forces(machine, *drive)
     moment, complete = machine.linkage.lengths["frame"] * forces["y41"], forces.shaking_moment
@@ -180,14 +160,11 @@ def polar_look(ax: Axes) -> None:
     ax.autoscale_view()
 
 
-def finish_polar(ax: Axes, name: str) -> None:
-    """Mark the origin, scale both axes alike, label them with a force [N]."""
+def finish_polar(ax: Axes) -> None:
+    """Mark the origin and scale both axes alike."""
     ax.plot(0.0, 0.0, "+", color="k")
     ax.set_aspect("equal", adjustable="datalim")
     polar_look(ax)
-    ax.set_xlabel(f"$X{name}$ [N]" if name else "X [N]")
-    ax.set_ylabel(f"$Y{name}$ [N]" if name else "Y [N]")
-    legend_below([ax], columns=2)
 
 
 def family(
@@ -195,38 +172,23 @@ def family(
 ) -> Drawn:
     """Draw the follower-frame force of linkages that differ in the crank [in], Figs. 17 to 19."""
     ax, peaks, accelerations = axes[0], [], []
+    machine, speed = example()
+    per_length = machine.mass("coupler").mass / machine.linkage.lengths["coupler"]
     for crank, colour in zip(cranks, COLOURS, strict=False):
-        forces, fastest = _family_forces(frame, crank, coupler, follower)
+        linkage = FourBar(INCH * frame, INCH * crank, INCH * coupler, INCH * follower)
+        masses = {
+            link: MassDistribution.uniform_bar(per_length * length, length)
+            for link, length in linkage.lengths.items()
+            if link != "frame"
+        }
+        forces = rigid_forces(Machine(linkage, masses), TURN, speed, outputs=("pins",)).f41
         peaks.append(peak(forces)[0])
-        accelerations.append(fastest)
+        accelerations.append(float(np.max(np.abs(linkage.motion(TURN).alpha4))))
         x, y = forces.T
         name = f"({frame:g}, {crank:g}, {coupler:g}, {follower:g})"
         ax.plot(x, y, color=colour, label=f"{name}: {peaks[-1]:.1f} N")
         ax.plot(x[:-1:120], y[:-1:120], "o", color=colour, ms=2.6)
         ax.plot(x[0], y[0], "o", mfc="w", mec=colour, ms=5.0)
-    finish_polar(ax, "_{41}")
-    return Drawn(
-        [
-            min(
-                log(b / a) / log(v / u)
-                for a, b, u, v in zip(values, values[1:], cranks, cranks[1:], strict=False)
-            )
-            for values in (accelerations, peaks)
-        ]
-    )
-
-
-def _family_forces(
-    frame: float, crank: float, coupler: float, follower: float
-) -> tuple[Array, float]:
-    """Return the follower-frame force over a turn and the follower's greatest acceleration."""
-    machine, speed = example()
-    per_length = machine.mass("coupler").mass / machine.linkage.lengths["coupler"]
-    linkage = FourBar(INCH * frame, INCH * crank, INCH * coupler, INCH * follower)
-    masses = {
-        link: MassDistribution.uniform_bar(per_length * length, length)
-        for link, length in linkage.lengths.items()
-        if link != "frame"
-    }
-    forces = rigid_forces(Machine(linkage, masses), TURN, speed, outputs=("pins",))
-    return forces.f41, float(np.max(np.abs(linkage.motion(TURN).alpha4)))
+    finish_polar(ax)
+    powers = np.diff(np.log([accelerations, peaks])) / np.diff(np.log(cranks))
+    return Drawn(list(np.min(powers, axis=1)))

@@ -105,17 +105,29 @@ class Rig:
         """The eight measured follower inertias [kg m^2]."""
         return np.array(load_scene(self.scene).get("measured.follower_inertias"))
 
-    def system(self, equation: str, modes: int = 1) -> LinearPeriodic:
-        """Return the coupler's vibration by one of the :data:`EQUATIONS`."""
-        return _system(self.scene, equation, modes)
+    @property
+    def decrements(self) -> tuple[float, float, float]:
+        """The least, the middle and the greatest logarithmic decrement measured at rest."""
+        least, most = load_scene(self.scene).get("measured.log_decrement")
+        return float(least), 0.5 * float(least + most), float(most)
 
-    def form(self, equation: str) -> HillForm:
-        """Return the first mode's Hill equation."""
-        return _form(self.scene, equation)
+    def system(
+        self,
+        equation: str = "complete",
+        modes: int = 1,
+        decrement: float = 0.0,
+        inertia: float | None = None,
+    ) -> LinearPeriodic:
+        """Return the coupler's vibration by one of the :data:`EQUATIONS`.
 
-    def function(self, equation: str, inertia: float) -> PeriodicFunction:
-        """Return the periodic coefficient at a follower inertia [kg m^2]."""
-        return self.form(equation).function(1.0, follower_inertia=inertia)
+        With a logarithmic decrement, and the follower's inertia [lbf in s^2] or the scene's.
+        """
+        return _system(self.scene, equation, modes, decrement, inertia)
+
+    def function(self, equation: str, inertia: float | None = None) -> PeriodicFunction:
+        """Return the periodic coefficient at a follower inertia [kg m^2], or the scene's."""
+        changes = {} if inertia is None else {"follower_inertia": inertia}
+        return _form(self.scene, equation).function(1.0, **changes)
 
     def ends(self, equation: str, inertia: ArrayLike, regions: tuple[int, ...]) -> Array:
         """Return the crank speeds [rad/s] that bound unstable regions of the first mode.
@@ -150,11 +162,28 @@ RIGS = tuple(
 RIG: Mapping[str, Rig] = {rig.figure: rig for rig in RIGS}
 
 
+@dataclass(frozen=True)
+class OfRig:
+    """What was observed with a rig, known by the number of its chart."""
+
+    chart: str
+
+    @property
+    def rig(self) -> Rig:
+        """The linkage and coupler."""
+        return RIG[self.chart]
+
+
 @lru_cache(maxsize=64)
-def _system(scene: str, equation: str, modes: int) -> LinearPeriodic:
-    return load_scene(
-        scene, overrides={"model.formulation": equation, "model.modes": modes}
-    ).linear_system()
+def _system(
+    scene: str, equation: str, modes: int, decrement: float = 0.0, inertia: float | None = None
+) -> LinearPeriodic:
+    changes = {"model.formulation": equation, "model.modes": modes}
+    if decrement:
+        changes["coupler.damping_ratio"] = decrement / (2 * pi)
+    if inertia is not None:
+        changes["follower.inertia"] = inertia * LBF_IN_S2
+    return load_scene(scene, overrides=changes).linear_system()
 
 
 @lru_cache(maxsize=64)

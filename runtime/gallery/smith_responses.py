@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -12,14 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import LinearRangeWarning
-from ..core.families import LinearPeriodic
 from ..hill import discriminant
-from ..periodic import SteadyState, simulate, steady_state
-from ..scenes import load_scene
-from .drawing import COLOURS, Array, crank_axis, legend_below, panel_title
+from ..periodic import simulate, steady_state
+from .drawing import COLOURS, Array, mark_fractions, panel_title, turn
 from .records import Drawn
-from .smith_linkages import LBF_IN_S2, RIG, RPM, Rig
+from .smith_linkages import RIG, RPM, OfRig
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,77 +33,35 @@ def figure_45(axes: Sequence[Axes]) -> Drawn:
     ax, x = axes[0], np.linspace(0.0, 0.5, 251)
     ax.plot(x, np.sin(pi * x), color=COLOURS[0], label=r"$\sin(\pi x/l)$")
     ax.plot(x, 3 * x - 4 * x**3, "--", color=COLOURS[1], label=r"$3(x/l) - 4(x/l)^3$")
-    ax.set(xlim=(0.0, 0.5), xlabel="x/l", ylabel="y")
-    legend_below([ax])
     at = 0.1
     return Drawn([100.0 * (1.0 - (3 * at - 4 * at**3) / np.sin(pi * at))])
-
-
-@lru_cache(maxsize=64)
-def coupler(
-    scene: str, decrement: float, inertia: float | None = None, equation: str = "complete"
-) -> LinearPeriodic:
-    """Return the coupler's vibration by a formulation, with a logarithmic decrement at rest.
-
-    The follower's inertia [lbf in s^2] is the scene's where none is given.
-    """
-    changes: dict[str, Any] = {
-        "model.formulation": equation,
-        "coupler.damping_ratio": decrement / (2 * pi),
-    }
-    if inertia is not None:
-        changes["follower.inertia"] = inertia * LBF_IN_S2
-    return load_scene(scene, overrides=changes).linear_system()
-
-
-def quiet_state(system: LinearPeriodic, speed: float | Array, samples: int = 256) -> SteadyState:
-    """Return the periodic motion, warning of nothing."""
-    with warnings.catch_warnings():
-        # At a resonance the linear range is left; the figures' notes say so.
-        warnings.simplefilter("ignore", LinearRangeWarning)
-        return steady_state(system, speed, samples=samples)
-
-
-def periodic_response(system: LinearPeriodic, speed: float) -> tuple[Array, Array]:
-    """Return crank angles over one closed turn and the first mode's periodic motion at them."""
-    state = quiet_state(system, speed, 512)
-    return np.append(state.theta, 2 * pi), np.append(state.q[:, 0], state.q[0, 0])
 
 
 def wave_form(axes: Sequence[Axes], divisor: float) -> Drawn:
     """Draw the wave-form at the speed Omega/divisor (Figs. 47 to 51)."""
     ax, speed = axes[0], _RIG.frequency / divisor
-    damped = {name: coupler(_RIG.scene, _DECREMENT, None, name) for name in ("reduced", "complete")}
+    damped = {name: _RIG.system(name, decrement=_DECREMENT) for name in ("reduced", "complete")}
     length = 1e3 * damped["complete"].reference_length
     for equation, label, colour in (
         ("reduced", "equation of the thesis (6.18)", COLOURS[0]),
         ("complete", "complete equation", COLOURS[1]),
     ):
-        theta, q = periodic_response(damped[equation], speed)
-        ax.plot(np.degrees(theta), length * q, color=colour, label=f"{label}, damped")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", LinearRangeWarning)
-        undamped = coupler(_RIG.scene, 0.0, None, "reduced")
-        run = simulate(undamped, speed, 1.0, initial=(0.0, 0.0), samples=512)
+        state = steady_state(damped[equation], speed, samples=512)
+        turn(ax, state.theta, length * state.q[:, 0], color=colour, label=f"{label}, damped")
+    run = simulate(_RIG.system("reduced"), speed, 1.0, initial=(0.0, 0.0), samples=512)
     label = "(6.18), undamped, from rest"
     ax.plot(np.degrees(run.theta), length * run.q[:, 0], "--", color=COLOURS[4], label=label)
-    crank_axis(ax)
-    ax.set_ylabel("deflection of the middle [mm]")
-    legend_below([ax], columns=3)
     values = [_vibrations(name, speed) for name in damped]
     if divisor == round(divisor):
-
-        def harmonic(speed: float) -> float:
-            _, q = periodic_response(damped["reduced"], speed)
-            return float(np.abs(np.fft.rfft(q[:-1])[int(divisor)]))
-
-        values.append(harmonic(speed) / harmonic(0.97 * speed))
+        both = steady_state(damped["reduced"], speed * np.array([1.0, 0.97]), samples=512)
+        harmonic = np.abs(np.fft.rfft(both.q[..., 0]))[:, int(divisor)]
+        values.append(float(harmonic[0] / harmonic[1]))
     return Drawn(values)
 
 
 def _vibrations(equation: str, speed: float) -> float:
     """Return the undamped characteristic exponent: free vibrations in one crank cycle."""
-    f = _RIG.form(equation).function(speed)
+    f = _RIG.function(equation)
     lam2 = (_RIG.frequency / speed) ** 2
     half = float(discriminant(f, lam2, 1.0).value)
     # Within a region the exponent has the region's own real part.
@@ -119,22 +73,16 @@ def _vibrations(equation: str, speed: float) -> float:
 
 
 @dataclass(frozen=True)
-class Response:
+class Response(OfRig):
     """One recorded frequency response of chapter 9: chart of the rig, inertia, range of the speed.
 
     The follower's inertia [lbf in s^2]; speeds [rpm] as written in the text or beside the trace,
     else chosen.
     """
 
-    chart: str
     inertia: float
     low: float
     high: float
-
-    @property
-    def rig(self) -> Rig:
-        """Linkage and coupler."""
-        return RIG[self.chart]
 
     def envelope(self, decrement: float) -> Envelope:
         """Return the extreme deflections over the range, for a logarithmic decrement."""
@@ -163,18 +111,12 @@ class Envelope:
 
 @lru_cache(maxsize=64)
 def _envelope(one: Response, decrement: float) -> Envelope:
-    system = coupler(one.rig.scene, decrement, one.inertia)
+    system = one.rig.system(decrement=decrement, inertia=one.inertia)
     speed = np.linspace(one.low, one.high, 241)
-    motion = quiet_state(system, speed * RPM)
+    motion = steady_state(system, speed * RPM)
     middle = 1e3 * system.reference_length * motion.q[..., 0]
     stable = np.ones(len(speed), bool) if motion.stable is None else np.asarray(motion.stable)
     return Envelope(speed, middle.min(axis=-1), middle.max(axis=-1), stable)
-
-
-def decrements(rig: Rig) -> tuple[float, float, float]:
-    """Return the least, the middle and the greatest logarithmic decrement measured at rest."""
-    least, most = load_scene(rig.scene)["measured"]["log_decrement"]
-    return float(least), 0.5 * float(least + most), float(most)
 
 
 def response(
@@ -188,7 +130,7 @@ def response(
 ) -> Drawn:
     """Draw a frequency response; compute resonances near speeds [rpm] and what a claim needs."""
     one, ax = Response(chart, inertia, low, high), axes[0]
-    least, middle, most = decrements(one.rig)
+    least, middle, most = one.rig.decrements
     for decrement, colour, width, front in (
         (least, COLOURS[1], 0.8, 2.0),
         (middle, COLOURS[0], 1.3, 3.0),
@@ -199,55 +141,28 @@ def response(
         ax.plot(ends.speed, ends.greatest, color=colour, lw=width, label=label, zorder=front)
         ax.plot(ends.speed, ends.least, color=colour, lw=width, zorder=front)
     ends = one.envelope(middle)
-    _shade(ax, ends)
-    _limits(ax, ends, 1e3 * coupler(one.rig.scene, middle, inertia).reference_length)
-    _fractions(ax, one)
-    ax.set(xlim=(low, high), xlabel="crank speed [rpm]", ylabel="deflection of the middle [mm]")
-    legend_below(axes)
-    return Drawn([*(resonance(one, at) for at in resonances), *(_CLAIMS[claim](one))])
-
-
-def _shade(ax: Axes, ends: Envelope) -> None:
-    """Mark the speeds at which the periodic motion is unstable."""
+    unstable: dict[str, Any] = {"where": list(~ends.stable), "step": "mid"}
+    if not np.all(ends.stable):
+        unstable["label"] = "unstable"
+    across = ax.get_xaxis_transform()
     ax.fill_between(
-        ends.speed,
-        0.0,
-        1.0,
-        where=list(~ends.stable),
-        color="#f7e3d3",
-        lw=0,
-        step="mid",
-        transform=ax.get_xaxis_transform(),
-        label="unstable" if not np.all(ends.stable) else None,
-        zorder=0,
+        ends.speed, 0.0, 1.0, color="#f7e3d3", lw=0, zorder=0, transform=across, **unstable
     )
-
-
-def _limits(ax: Axes, ends: Envelope, length: float) -> None:
-    """Keep the axis to what can be read; mark how far linear equations hold."""
+    # The axis is kept to what can be read; dashed lines say how far linear equations hold.
+    length = 1e3 * one.rig.system(inertia=inertia).reference_length
     top = max(float(np.max(np.abs(values))) for values in (ends.least, ends.greatest))
     end = min(1.15 * top, _DRAWN * length)
-    ax.set_ylim(-end, end)
     if _LINEAR * length < end:
         for level in (_LINEAR * length, -_LINEAR * length):
             ax.axhline(level, color="0.5", lw=0.7, ls="--", zorder=1)
-
-
-def _fractions(ax: Axes, one: Response) -> None:
-    """Mark the fractions of the natural frequency; those up to the eighth have room for a name."""
-    place: dict[str, Any] = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points"}
-    for order in range(1, 13):
-        speed = one.rig.frequency / RPM / order
-        if one.low < speed < one.high:
-            ax.axvline(speed, color="0.6", lw=0.7, ls=(0, (1, 3)), zorder=1)
-            if order <= 8:
-                text = f"Ω/{order}"
-                ax.annotate(text, (speed, 1.0), xytext=(2, -8), fontsize=7, color="0.4", **place)
+    mark_fractions(ax, one.rig.frequency / RPM, range(1, 13), "Ω/{}", (low, high), low=False)
+    ax.set(xlim=(low, high), ylim=(-end, end))
+    return Drawn([*(resonance(one, at) for at in resonances), *(_CLAIMS[claim](one))])
 
 
 def resonance(one: Response, speed: float) -> float:
     """Return the crank speed [rpm] of the greatest deflection's maximum nearest to a speed."""
-    ends = one.envelope(decrements(one.rig)[0])
+    ends = one.envelope(one.rig.decrements[0])
     height = ends.height
     inner = (height[1:-1] > height[:-2]) & (height[1:-1] >= height[2:])
     places = ends.speed[1:-1][inner]
@@ -256,10 +171,10 @@ def resonance(one: Response, speed: float) -> float:
 
 def _harmonics(one: Response, orders: range) -> list[float]:
     """Return how far from Omega/n [%] each harmonic is greatest, at most."""
-    system = coupler(one.rig.scene, decrements(one.rig)[0], one.inertia)
+    system = one.rig.system(decrement=one.rig.decrements[0], inertia=one.inertia)
     factor, apart = np.linspace(0.94, 1.06, 61), []
     for order in orders:
-        motion = quiet_state(system, factor * one.rig.frequency / order)
+        motion = steady_state(system, factor * one.rig.frequency / order)
         size = np.abs(np.fft.rfft(motion.q[..., 0], axis=-1)[:, order])
         apart.append(abs(float(factor[np.argmax(size)]) - 1.0))
     return [100.0 * max(apart)]
@@ -270,39 +185,27 @@ def _increment(one: Response) -> list[float]:
     sizes = []
     for inertia in (one.inertia, 0.0069):
         other = Response(one.chart, inertia, one.low, one.high)
-        ends = other.envelope(decrements(one.rig)[0])
+        ends = other.envelope(one.rig.decrements[0])
         sizes.append(float(np.interp(300.0, ends.speed, ends.height)))
     return [sizes[0] / sizes[1]]
 
 
-def _middle(speeds: Array) -> float:
-    return 0.5 * float(speeds[0] + speeds[-1])
+def _unstable(
+    one: Response, low: float = 0.0, high: float = np.inf, damping: int = 1
+) -> list[float]:
+    """Return first, middle and last unstable speed within a range.
 
-
-def _region(one: Response) -> list[float]:
-    """Return the middle of the unstable region 2 Omega/5 below 300 rpm."""
-    unstable = one.envelope(decrements(one.rig)[0]).unstable
-    return [_middle(unstable[(unstable > 245.0) & (unstable < 291.0)])]
-
-
-def _passed(one: Response) -> list[float]:
-    """Return place and end of the unstable region 2 Omega/3 at the least inertia."""
-    unstable = one.envelope(decrements(one.rig)[1]).unstable
-    return [_middle(unstable), float(unstable[-1])]
-
-
-def _onset(one: Response) -> list[float]:
-    return [float(one.envelope(decrements(one.rig)[1]).unstable[0])]
-
-
-def _above(one: Response) -> list[float]:
-    unstable = one.envelope(decrements(one.rig)[1]).unstable
-    return [float(unstable[unstable > 1.2 * one.rig.frequency / RPM / 2][0])]
+    With the least measured decrement, the middle or the greatest one (0, 1, 2).
+    """
+    speeds = one.envelope(one.rig.decrements[damping]).unstable
+    inside = speeds[(speeds > low) & (speeds < high)]
+    first, last = float(inside[0]), float(inside[-1])
+    return [first, 0.5 * (first + last), last]
 
 
 def _between(one: Response) -> list[float]:
     """Return at how many speeds about 500 rpm the periodic motion is largest."""
-    ends = one.envelope(decrements(one.rig)[0])
+    ends = one.envelope(one.rig.decrements[0])
     inside = np.flatnonzero(np.abs(ends.speed - 500.0) < 15.0)
     beside = np.maximum(ends.height[inside - 1], ends.height[inside + 1])
     return [int(np.count_nonzero(ends.height[inside] > beside))]
@@ -314,10 +217,11 @@ _CLAIMS: dict[str, Callable[[Response], list[float]]] = {
     "harmonics 3 to 10": lambda one: _harmonics(one, range(3, 11)),
     "harmonics 4 to 7": lambda one: _harmonics(one, range(4, 8)),
     "increment": _increment,
-    "region 5": _region,
-    "region 3 passed": _passed,
-    "region 3 onset": _onset,
-    "region 3 onset, second": _above,
+    # Below 300 rpm.
+    "region 5": lambda one: _unstable(one, 245.0, 291.0, damping=0)[1:2],
+    "region 3 passed": lambda one: _unstable(one)[1:],
+    "region 3 onset": lambda one: _unstable(one)[:1],
+    "region 3 onset, second": lambda one: _unstable(one, 0.6 * one.rig.frequency / RPM)[:1],
     "largest about 500 rpm": _between,
 }
 
@@ -328,8 +232,8 @@ def wave(chart: str, inertia: float, speed: float) -> tuple[Array, Array]:
     Rig by the number of its chart, follower inertia [lbf in s^2], crank speed [rad/s].
     """
     rig = RIG[chart]
-    system = coupler(rig.scene, decrements(rig)[1], inertia)
-    motion = quiet_state(system, speed)
+    system = rig.system(decrement=rig.decrements[1], inertia=inertia)
+    motion = steady_state(system, speed)
     return motion.theta, 1e3 * system.reference_length * motion.q[:, 0]
 
 
@@ -340,10 +244,8 @@ def figure_54(axes: Sequence[Axes]) -> Drawn:
         speed = factor * RIG["84"].frequency / order
         theta, bent = wave("84", _LEAST, speed)
         ax.plot(np.degrees(theta), bent, color=COLOURS[0])
-        crank_axis(ax)
         panel_title(ax, f"{name} resonance: {speed / RPM:.0f} rpm")
         first.append(np.fft.rfft(bent)[order] / len(bent))
-    axes[0].set_ylabel("deflection of the middle [mm]")
     turned = abs(float(np.degrees(np.angle(first[2] / first[0]))))
     return Drawn([abs(first[1]) / max(abs(first[0]), abs(first[2])), turned])
 
@@ -355,7 +257,4 @@ def figure_55(axes: Sequence[Axes]) -> Drawn:
         theta, bent = wave("82", inertia, 230.0 * RPM)
         ax.plot(np.degrees(theta), bent, label=f"I4 = {inertia:g} lbf in s2")
         sizes.append(float(np.ptp(bent)))
-    crank_axis(ax)
-    ax.set_ylabel("deflection of the middle [mm]")
-    legend_below(axes)
     return Drawn([np.min(np.array(sizes[1:]) / np.array(sizes[:-1]))])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
 from typing import TYPE_CHECKING
@@ -11,12 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core.families import LinearPeriodic
+from ..core.trigonometric import PeriodicArray, interpolated
 from ..hill import discriminant
 from ..periodic import simulate
-from ..periodic.equation import equation_of
 from ..scenes import load_scene
-from .drawing import COLOURS, Array, crank_axis, legend_below, panel_title
-from .historic_steps import de_vogelaere_maps, de_vogelaere_start, kutta_merson
+from .algorithms import de_vogelaere_maps, de_vogelaere_start, kutta_merson, second_order_form
+from .drawing import COLOURS, Array, panel_title
 from .records import Drawn
 from .smith_linkages import f3_series, linkage_of
 
@@ -27,7 +26,11 @@ if TYPE_CHECKING:
 _LAMBDA = 18.0
 _KUTTA_MERSON_RTOL = 1e-4
 _MU = 0.5
-_UNSTABLE, _STABLE = (0.25, 1.0, 2.25), (0.5, 1.5, 3.0)
+# Crank angles, a coordinate and its derivative by the angle.
+_Run = tuple[Array, Array, Array]
+_UNITS = ((1.0, 0.0), (0.0, 1.0))
+# lambda^2 of Fig. 33: unstable and stable ones by turns.
+_HILL = (0.25, 0.5, 1.0, 1.5, 2.25, 3.0)
 
 
 @lru_cache(maxsize=2)
@@ -44,147 +47,107 @@ def _speed(system: LinearPeriodic) -> float:
     return float(np.sqrt(stiffness)) / _LAMBDA
 
 
-@dataclass(frozen=True)
-class _Run:
-    """A march: crank angles ``(nt,)``, coordinates and time derivatives ``(nt, 1)``, the speed."""
-
-    theta: Array
-    q: Array
-    qd: Array
-    speed: float
+@lru_cache(maxsize=1)
+def _equation() -> PeriodicArray:
+    """Return the first mode's ``q'' = P q + F`` as a matrix on (q, 1)."""
+    system = _system(1)
+    mass, _, stiffness, force = second_order_form(system, _speed(system), 512)
+    samples = np.zeros((512, 2, 2))
+    samples[:, 0] = np.stack([-stiffness[:, 0, 0], force[:, 0]], axis=-1) / mass[:, :, 0]
+    return interpolated(samples, 2.0 * pi)
 
 
 @lru_cache(maxsize=32)
 def _march(step: float, turns: int, start: tuple[float, float] | None = None) -> _Run:
-    """March with de Vogelaere's method and a half step in degrees, against Smith's rule or not."""
-    system, h = _system(1), np.radians(step)
-    speed = _speed(system)
-    equation = equation_of(system, speed, {}, forcing=start is None)
+    """March with de Vogelaere's method and a half step in degrees, against Smith's rule or not.
 
-    def spring(theta: Array) -> Array:
-        # q'' = P q + F of one freedom, whose A has no skew part.
-        inertia = 1.0 / equation.at("mass", theta)[0]
-        out = np.zeros((len(theta), 1 + equation.forced, 1 + equation.forced))
-        stiffness = equation.at("stiffness", theta)[0]
-        if "gyroscopic" in equation.fields:
-            stiffness = stiffness - equation.slope("gyroscopic", theta)
-        out[:, :1, :1] = inertia * stiffness
-        if equation.forced:
-            out[:, 0, 1] = inertia[:, 0, 0] * equation.at("force", theta)[0, :, 0]
-        return out
-
-    count, unit = round(180.0 / step), float(equation.scale[0, 0])
-    maps = de_vogelaere_maps(spring, 2.0 * h * np.arange(float(count)), h)
-    q, rate = (0.0, 0.0) if start is None else start
-    one, zero = np.ones(int(equation.forced)), np.zeros(int(equation.forced))
-    first = np.append(q / unit, one), np.append(rate / unit, zero)
-    states = [de_vogelaere_start(spring, 0.0, h, *first)]
+    From rest, or without forcing from q and its derivative by the angle.
+    """
+    h, count = np.radians(step), round(180.0 / step)
+    maps = de_vogelaere_maps(_equation(), 2.0 * h * np.arange(float(count)), h)
+    q, slope, forced = (0.0, 0.0, 1.0) if start is None else (*start, 0.0)
+    y, rate = np.array([q, forced]), np.array([slope, 0.0])
+    states = [de_vogelaere_start(_equation(), 0.0, h, y, rate)]
     for _ in range(turns):
         for matrix in maps:
             states.append(matrix @ states[-1])
     every = max(1, count // 360)
-    kept = unit * np.array(states)[::every]
-    theta = 2.0 * h * every * np.arange(float(len(kept)))
-    slope = kept[:, 1 + equation.forced] / h
-    return _Run(theta, kept[:, :1], speed * slope[:, None], speed)
+    kept = np.array(states)[::every]
+    return 2.0 * h * every * np.arange(float(len(kept))), kept[:, 0], kept[:, 2] / h
 
 
 def _kutta_merson(turns: int) -> _Run:
     """March from rest with the Kutta-Merson programme, values kept at each degree."""
-    system = _system(1)
-    speed = _speed(system)
-    equation = equation_of(system, speed, {}, forcing=True)
-    unit = float(equation.scale[0, 0])
+
+    def generator(angles: Array) -> Array:
+        # Of q, its derivative by the angle, and 1.
+        rows = np.zeros((len(angles), 3, 3))
+        rows[:, 0, 1] = 1.0
+        rows[:, 1, ::2] = _equation()(angles)[:, 0]
+        return rows
+
     # The motion from rest has no size yet: that of the first quarter of a wave.
-    begin = simulate(system, speed, 0.25 / _LAMBDA, samples=16 * round(_LAMBDA))
-    peak = np.max(np.abs(begin.q)) / unit + np.max(np.abs(begin.qd)) / speed * unit
+    begin = simulate(_system(1), _speed(_system(1)), 0.25 / _LAMBDA, samples=16 * round(_LAMBDA))
+    sizes = [np.max(np.abs(values)) for values in (begin.q, begin.qd / begin.speed, 1.0)]
     theta = np.radians(np.arange(360.0 * turns + 1.0))
-    run = kutta_merson(
-        lambda angles: equation.generator(angles)[0],
+    rtol = _KUTTA_MERSON_RTOL
+    states = kutta_merson(
+        generator,
         theta,
         np.array([0.0, 0.0, 1.0]),
-        _KUTTA_MERSON_RTOL,
-        np.full(3, 1e-2 * _KUTTA_MERSON_RTOL * peak),
+        rtol,
+        1e-2 * rtol * np.array(sizes),
         first=0.1 / _LAMBDA,
     )
-    q = unit * run.states[:, :1]
-    return _Run(theta, q, np.full_like(q, np.nan), speed)
+    return theta, states[:, 0], states[:, 1]
 
 
 def _remaining(step: float) -> float:
     """Return the amplitude of a free vibration after one turn over that at its start."""
-    # Small enough to stay within the linear range, which a free vibration has no part in.
-    size = 1e-3
-    runs = [_march(step, 1, start) for start in ((size, 0.0), (0.0, size))]
-    ends = [(run.q[-1, 0] / size, run.qd[-1, 0] / (size * run.speed)) for run in runs]
-    return float(np.sqrt(abs(np.linalg.det(np.array(ends)))))
+    ends = [[q[-1], slope[-1]] for _, q, slope in (_march(step, 1, start) for start in _UNITS)]
+    return float(np.sqrt(abs(np.linalg.det(ends))))
 
 
 def _phase(run: _Run, turn: int) -> complex:
     """Return the fast vibration's complex amplitude over one turn, by a smooth window."""
-    inside = (run.theta >= 2 * pi * (turn - 1)) & (run.theta <= 2 * pi * turn)
-    theta, values = run.theta[inside], run.q[inside, 0]
-    window = np.sin(0.5 * (theta - theta[0])) ** 4
-    return complex(np.sum(values * window * np.exp(-1j * _LAMBDA * theta)))
+    theta, q, _ = run
+    inside = (theta >= 2 * pi * (turn - 1)) & (theta <= 2 * pi * turn)
+    window = np.sin(0.5 * (theta[inside] - theta[inside][0])) ** 4
+    return complex(np.sum(q[inside] * window * np.exp(-1j * _LAMBDA * theta[inside])))
 
 
-def _lag(one: _Run, other: _Run, turn: int) -> float:
-    """Return the phase between two runs in degrees of the fast vibration, without sign."""
-    return float(abs(np.degrees(np.angle(_phase(one, turn) / _phase(other, turn)))))
-
-
-def _line(ax: Axes, run: _Run, colour: str, label: str, style: str = "-") -> None:
-    ax.plot(np.degrees(run.theta), 1e3 * run.q[:, 0], style, color=colour, lw=1.0, label=label)
-    ax.set_ylabel(r"$10^3\,U_1$")
+def _line(ax: Axes, run: _Run, colour: str, label: str = "", style: str = "-") -> None:
+    ax.plot(np.degrees(run[0]), 1e3 * run[1], style, color=colour, lw=1.0, label=label)
 
 
 def figure_28(axes: Sequence[Axes]) -> Drawn:
     """Draw solutions with a step that is too long and one that is short enough."""
     for ax, step, colour in zip(axes, (2.0, 1.0, 0.1), COLOURS, strict=False):
-        _line(ax, _march(step, 2), colour, f"h = {step:g} deg")
-        crank_axis(ax, 2.0)
+        _line(ax, _march(step, 2), colour)
         panel_title(ax, f"step length {step:g} deg")
-    for ax in axes[:-1]:
-        ax.set_xlabel("")
-    waves = 360.0 / (20.0 * _LAMBDA), _remaining(2.0), _free_decay(2.0, 360.0 / 17.0)
-    return Drawn([*waves, _remaining(1.0), _remaining(0.1)])
-
-
-def _free_decay(step: float, waves: float) -> float:
-    """Return what a half step [deg] leaves of y'' = -waves^2 y after one turn."""
-    h = np.radians(step)
+    # What a half step of 2 degrees leaves of y'' = -(360/17)^2 y after one turn.
+    h, waves = np.radians(2.0), 360.0 / 17.0
     maps = de_vogelaere_maps(lambda t: np.full((len(t), 1, 1), -waves * waves), np.zeros(1), h)
-    return float(np.max(np.abs(np.linalg.eigvals(maps[0]))) ** (pi / h))
+    decay = float(np.max(np.abs(np.linalg.eigvals(maps[0]))) ** (pi / h))
+    left = [_remaining(step) for step in (2.0, 1.0, 0.1)]
+    return Drawn([360.0 / (20.0 * _LAMBDA), left[0], decay, *left[1:]])
 
 
-def _cycles(axes: Sequence[Axes]) -> None:
-    """Show the first and the fourth crank cycle."""
-    for ax, turn in zip(axes, (1, 4), strict=True):
-        ax.set_xlim(360.0 * (turn - 1), 360.0 * turn)
-        ax.set_xticks([360.0 * (turn - 1) + 60.0 * i for i in range(7)])
-        panel_title(ax, f"crank cycle {turn}")
-    axes[-1].set_xlabel(r"crank angle $\theta_2$ [deg]")
-    legend_below(axes[:1])
+def methods(axes: Sequence[Axes], other: str) -> Drawn:
+    """Draw the first and the fourth cycle of two solutions (Figs. 29 and 30).
 
-
-def figure_29(axes: Sequence[Axes]) -> Drawn:
-    """Draw the first and the fourth crank cycle with steps of 1 and 0.5 degrees."""
-    long, short = _march(1.0, 4), _march(0.5, 4)
+    De Vogelaere's with a half step of 0.5 degrees, beside another step or Kutta and Merson's.
+    """
+    usual, step = _march(0.5, 4), other == "1 deg"
+    looser = _march(1.0, 4) if step else _kutta_merson(4)
+    names = ("h = 0.5 deg", "h = 1 deg")
+    if not step:
+        names = ("de Vogelaere, h = 0.5 deg", "Kutta-Merson, variable step")
     for ax in axes:
-        _line(ax, long, COLOURS[1], "h = 1 deg", "--")
-        _line(ax, short, COLOURS[0], "h = 0.5 deg")
-    _cycles(axes)
-    return Drawn([_lag(long, short, 4)])
-
-
-def figure_30(axes: Sequence[Axes]) -> Drawn:
-    """Draw de Vogelaere's and the Kutta-Merson solution over four crank cycles."""
-    ours, other = _march(0.5, 4), _kutta_merson(4)
-    for ax in axes:
-        _line(ax, ours, COLOURS[0], "de Vogelaere, h = 0.5 deg")
-        _line(ax, other, COLOURS[1], "Kutta-Merson, variable step", "--")
-    _cycles(axes)
-    return Drawn([_lag(ours, other, 4)])
+        _line(ax, usual, COLOURS[0], names[0])
+        _line(ax, looser, COLOURS[1], names[1], "--")
+    # Phase in degrees of the fast vibration in the fourth cycle, without sign.
+    return Drawn([abs(np.degrees(np.angle(_phase(usual, 4) / _phase(looser, 4))))])
 
 
 def _fast_parts(q: Array) -> Array:
@@ -206,11 +169,8 @@ def figure_31(axes: Sequence[Axes]) -> Drawn:
     run = simulate(system, _speed(system), 1.0, samples=3240)
     for m, (ax, colour) in enumerate(zip(axes, COLOURS, strict=False), start=1):
         ax.plot(np.degrees(run.theta), 1e6 * run.q[:, m - 1], color=colour, lw=0.9)
-        crank_axis(ax)
-        ax.set_ylabel(rf"$10^6\,U_{m}$")
         panel_title(ax, f"mode {m}")
-    for ax in axes[:-1]:
-        ax.set_xlabel("")
+        ax.set_ylabel(rf"$10^6\,U_{m}$")
     fast = _fast_parts(run.q)
     size = np.sqrt(2.0 * np.nanmean(fast**2, axis=0))
     slow = np.nanmax(np.abs(run.q - fast), axis=0)
@@ -221,29 +181,18 @@ def figure_31(axes: Sequence[Axes]) -> Drawn:
 
 def figure_32(axes: Sequence[Axes]) -> Drawn:
     """Draw the forcing of the first and the second mode."""
-    ax, theta = axes[0], np.linspace(0.0, 2 * pi, 721)
+    theta = np.linspace(0.0, 2 * pi, 721)
     forcing = _system(3).array("f", theta)
     for m in (1, 2):
-        ax.plot(np.degrees(theta), forcing[:, m - 1], label=f"mode {m}: $g_{m}$")
-    crank_axis(ax)
-    ax.set_ylabel(r"forcing $g_m(\theta_2)$")
-    legend_below([ax])
-    peaks = np.max(np.abs(forcing), axis=0)
-    return Drawn(
-        [
-            np.max(np.abs(forcing[:, :2] - _right_side(theta))),
-            peaks[0] / peaks[2],
-            np.max(np.abs(forcing[:, 2] - forcing[:, 0] / 3.0)),
-        ]
-    )
-
-
-def _right_side(theta: Array) -> Array:
-    """Return the right sides of Smith (6.16) for the first two modes, shape ``(nt, 2)``."""
+        axes[0].plot(np.degrees(theta), forcing[:, m - 1], label=f"mode {m}: $g_{m}$")
+    # The right sides of (6.16) for the first two modes.
     linkage = linkage_of("(2,1,2,2)")
     motion = linkage.motion(theta)
     carried = 2.0 * linkage.crank / linkage.coupler * np.sin(motion.theta2 - motion.theta3)
-    return np.stack([2.0 / pi * (carried - motion.alpha3), motion.alpha3 / pi], axis=-1)
+    right = np.stack([2.0 / pi * (carried - motion.alpha3), motion.alpha3 / pi], axis=-1)
+    peaks = np.max(np.abs(forcing), axis=0)
+    odd = np.max(np.abs(forcing[:, 2] - forcing[:, 0] / 3.0))
+    return Drawn([np.max(np.abs(forcing[:, :2] - right)), peaks[0] / peaks[2], odd])
 
 
 def figure_33(axes: Sequence[Axes]) -> Drawn:
@@ -256,16 +205,9 @@ def figure_33(axes: Sequence[Axes]) -> Drawn:
         "parameters.damping": 0.0,
     }
     system = load_scene("hill_example", overrides=changes).linear_system()
-    half = discriminant(f, np.array(_UNSTABLE + _STABLE), _MU).value
-    for i, lam2 in enumerate(_UNSTABLE + _STABLE):
+    half = discriminant(f, np.array(_HILL), _MU).value
+    for ax, lam2, colour in zip(axes, _HILL, 3 * (COLOURS[1], COLOURS[0]), strict=True):
         run = simulate(system.with_parameters(lam2=lam2), 1.0, 6.0, initial=(1.0, 0.0))
-        column, row = divmod(i, 3)
-        ax = axes[2 * row + column]
-        ax.plot(run.theta / (2 * pi), run.q[:, 0], color=COLOURS[1 - column], lw=1.0)
-        kind = "unstable" if column == 0 else "stable"
-        panel_title(ax, rf"$\lambda^2$ = {lam2:g}: {kind}")
-        ax.set_xlim(0.0, 6.0)
-        ax.set_ylabel("u")
-        if row == 2:
-            ax.set_xlabel("crank cycles")
-    return Drawn(list(np.abs(half)))
+        ax.plot(run.theta / (2 * pi), run.q[:, 0], color=colour, lw=1.0)
+    # The unstable ones, at the left, come first.
+    return Drawn([*np.abs(half[::2]), *np.abs(half[1::2])])

@@ -6,15 +6,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from ..hill import discriminant, perturbation_boundaries
 from ..scenes import load_scene
 from ..stability.boundary_speeds import speed_boundaries
-from .drawing import COLOURS, Array, legend_below
-from .records import Drawn, Table
+from .drawing import COLOURS, Array
+from .records import Drawn
+from .registry import contents
 from .smith_linkages import (
     EQUATIONS,
     LBF_IN_S2,
@@ -22,6 +23,7 @@ from .smith_linkages import (
     RIG,
     RIGS,
     RPM,
+    OfRig,
     Rig,
     end_load,
     linkage_of,
@@ -32,12 +34,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _REGIONS = (3, 4, 5, 6, 7, 8)
+_TURN = np.linspace(0.0, 2 * pi, 1441)
 _THESIS, _COMPLETE, _FILL = COLOURS[0], COLOURS[1], "#f7e3d3"
 _NAMES = {"reduced": "(6.18)", "printed": "(6.17)", "complete": "complete"}
 
 
 @dataclass(frozen=True)
-class Observation:
+class Observation(OfRig):
     """One crank speed that chapter 9 quotes.
 
     Number of the rig's chart, follower inertia [lbf in s^2], number n of the unstable region
@@ -48,7 +51,6 @@ class Observation:
     it) or the upper one (``end``: stable again above it).
     """
 
-    chart: str
     inertia: float
     region: int
     speed: float
@@ -57,11 +59,6 @@ class Observation:
     meaning: str
     note: str = ""
     half_width: float = 0.0
-
-    @property
-    def rig(self) -> Rig:
-        """The linkage and coupler."""
-        return RIG[self.chart]
 
     @property
     def si_inertia(self) -> float:
@@ -86,31 +83,7 @@ class Observation:
         return min(EQUATIONS, key=lambda name: abs(self.predicted(name) - self.speed))
 
 
-_LEAST, _GREATEST = 0.0058, 0.0190
-_TEXT = "section 9.5.3 says the least, the list of figures 0.0069"
-_HIGHER = "'higher values': 0.0109 to 0.0190; 0.0149 taken"
-OBSERVATIONS = (
-    Observation("82", _LEAST, 6, 250.0, "resonance", "56", "third subharmonic, low inertia", _TEXT),
-    Observation(
-        "82", _GREATEST, 6, 220.0, "resonance", "61", "third subharmonic, greatest inertia"
-    ),
-    Observation("82", _LEAST, 5, 300.0, "resonance", "56", "small rise in amplitude", _TEXT),
-    Observation(
-        "82", 0.0149, 5, 270.0, "range", "58-61", "no period, from 260 to 280 rpm", _HIGHER, 10.0
-    ),
-    Observation("82", _GREATEST, 0, 230.0, "stable", "55", "stable at every inertia shown"),
-    Observation("83", _LEAST, 8, 300.0, "resonance", "75", "resonance"),
-    Observation("83", _LEAST, 6, 400.0, "resonance", "75", "resonance"),
-    Observation("83", _LEAST, 5, 500.0, "resonance", "75", "apparent resonance, softening"),
-    Observation("83", _LEAST, 4, 600.0, "resonance", "74", "unsymmetric resonance"),
-    Observation("84", _LEAST, 3, 900.0, "onset", "80", "unstable above"),
-    Observation("85", 0.0079, 4, 350.0, "resonance", "53", "resonance, printed inertia 0.00783"),
-    Observation("85", _LEAST, 4, 360.0, "resonance", "62", "resonance"),
-    Observation("85", 0.0079, 4, 360.0, "resonance", "65", "resonance"),
-    Observation("85", _LEAST, 3, 460.0, "resonance", "63", "vibration of period 4 pi"),
-    Observation("85", _LEAST, 3, 480.0, "end", "63", "stable again from here"),
-    Observation("85", 0.0079, 3, 450.0, "onset", "65", "unstable above"),
-)
+OBSERVATIONS = tuple(Observation(**row) for row in contents("smith")["observation"])
 _COMPARED = tuple(one for one in OBSERVATIONS if one.region)
 
 
@@ -123,13 +96,26 @@ def chart(axes: Sequence[Axes], figure: str) -> Drawn:
     _boundaries(ax, rig, inertia, high)
     seen = [one for one in OBSERVATIONS if one.chart == figure]
     _points(ax, seen)
-    _frame(ax, rig, inertia, (low, high))
-    legend_below([ax], columns=3)
+    _margins(ax, rig, (low, high))
+    ax.set(xlim=(1e3 * least, 1e3 * greatest), ylim=(low, high))
     compared = [one for one in seen if one.region]
     sizes = order_sizes(rig)
     values = [one.predicted("complete") for one in compared]
     values += [max(sizes[name] for name in ("phi", "eps1 f1", "eps2 f2")), *_claims(rig)]
-    return Drawn(values, tables=(_quoted_speeds(compared),) if seen else ())
+    if not seen:
+        return Drawn(values)
+    rows = [
+        (
+            f"Fig. {one.figure}",
+            one.meaning + (f" ({one.note})" if one.note else ""),
+            one.inertia,
+            region_name(one.region),
+            one.speed,
+            *(f"{one.predicted(name):.1f} ({one.percent(name):+.1f} %)" for name in EQUATIONS),
+        )
+        for one in compared
+    ]
+    return Drawn(values, tables=[rows])
 
 
 def _boundaries(ax: Axes, rig: Rig, inertia: Array, high: float) -> None:
@@ -161,7 +147,6 @@ def _points(ax: Axes, seen: Sequence[Observation]) -> None:
         "end": ("v", "white", "stable again, quoted"),
         "stable": ("s", "white", "stable, quoted"),
     }
-    used = set()
     for one in seen:
         shape, face, label = marks[one.kind]
         ax.errorbar(
@@ -175,19 +160,14 @@ def _points(ax: Axes, seen: Sequence[Observation]) -> None:
             ecolor="black",
             capsize=3,
             zorder=5,
-            label=None if label in used else label,
+            label=label,
         )
-        used.add(label)
 
 
-def _frame(ax: Axes, rig: Rig, inertia: Array, window: tuple[float, float]) -> None:
-    """Set limits, the measured inertias along the top, fractions of the frequency at the right."""
-    ax.set(xlim=(1e3 * inertia[0], 1e3 * inertia[-1]), ylim=window)
-    ax.grid(visible=False)
+def _margins(ax: Axes, rig: Rig, window: tuple[float, float]) -> None:
+    """Set the measured inertias along the top, fractions of the frequency at the right."""
     for value in rig.inertias:
         ax.axvline(1e3 * value, color="0.85", lw=0.6, zorder=0)
-    ax.set_xlabel(r"follower inertia $I_4$ [10$^{-3}$ kg m$^2$]")
-    ax.set_ylabel(r"crank speed $\omega_2$ [rpm]")
     top, right = ax.secondary_xaxis("top"), ax.secondary_yaxis("right")
     names = [f"{value / LBF_IN_S2:.4f}" for value in rig.inertias]
     top.set_xticks(1e3 * rig.inertias, names, rotation=60, fontsize=7, ha="left")
@@ -198,42 +178,30 @@ def _frame(ax: Axes, rig: Rig, inertia: Array, window: tuple[float, float]) -> N
     right.set_ylabel("fractions of the coupler frequency", fontsize=8)
 
 
-def _quoted_speeds(compared: Sequence[Observation]) -> Table:
-    rows = tuple(
-        (
-            f"Fig. {one.figure}",
-            one.meaning + (f" ({one.note})" if one.note else ""),
-            f"{one.inertia:.4f}",
-            region_name(one.region),
-            f"{one.speed:.0f}",
-            *(f"{one.predicted(name):.1f} ({one.percent(name):+.1f} %)" for name in EQUATIONS),
-        )
-        for one in compared
-    )
-    header = ("response", "what the text says", "I4 [lbf in s²]", "region", "quoted [rpm]")
-    equations = (f"{_NAMES[name]} [rpm]" for name in EQUATIONS)
-    return Table("Quoted speeds", (*header, *equations), rows)
-
-
 def order_sizes(rig: Rig) -> dict[str, float]:
     """Return the peak of each periodic term over that of the follower's, at the least inertia.
 
     Keys ``phi``, ``eps1 f1``, ``eps2 f2`` are the terms of (6.17); ``eps2 cos23`` and
     ``(pi^2/3 - 1/4) phi`` those that it leaves out of the first mode's equation.
     """
-    theta = np.linspace(0.0, 2 * pi, 1441)
-    linkage = linkage_of(rig.linkage)
-    parts = end_load(linkage, theta)
-    follower = float(np.max(np.abs(rig.function("reduced", float(rig.inertias[0]))(theta))))
-    eps1, eps2 = pi**2 / 3, pi**2 * linkage.crank / (2 * linkage.coupler)
-    terms = {
+    follower = _peak(rig.function("reduced", float(rig.inertias[0]))(_TURN))
+    return {name: _peak(term) / follower for name, term in _terms(rig.linkage, _TURN).items()}
+
+
+def _terms(linkage: str, theta: Array) -> dict[str, Array]:
+    links = linkage_of(linkage)
+    parts, eps2 = end_load(links, theta), pi**2 * links.crank / (2 * links.coupler)
+    return {
         "phi": parts.phi,
-        "eps1 f1": eps1 * parts.f1,
+        "eps1 f1": pi**2 / 3 * parts.f1,
         "eps2 f2": eps2 * parts.f2,
         "eps2 cos23": eps2 * parts.cos23,
         "(pi^2/3 - 1/4) phi": (pi**2 / 3 - 0.25) * parts.phi,
     }
-    return {name: float(np.max(np.abs(values))) / follower for name, values in terms.items()}
+
+
+def _peak(values: Array) -> float:
+    return float(np.max(np.abs(values)))
 
 
 def _claims(rig: Rig) -> list[float]:
@@ -246,8 +214,7 @@ def _claims(rig: Rig) -> list[float]:
 
     if rig.figure == "82":
         speed = 230.0 * RPM
-        least = float(min(load_scene(rig.scene).get("measured.log_decrement")))
-        ratio = least / (2 * pi) * rig.frequency / speed
+        ratio = rig.decrements[0] / (2 * pi) * rig.frequency / speed
         halves = [
             discriminant(rig.function("complete", i), (rig.frequency / speed) ** 2, 1.0, ratio)
             for i in rig.inertias
@@ -277,12 +244,29 @@ def equations_table(axes: Sequence[Axes]) -> Drawn:
     ]
     ax.set_yticks(places, names, fontsize=7)
     ax.invert_yaxis()
-    ax.set_xlabel("computed less quoted speed [% of the quoted]")
-    legend_below([ax])
-    tables = (_terms(), _shifts(), _observed(), _summary())
+    rigs = _rig_linkages()
+    peaks: list[Sequence[Any]] = [
+        [rig.name, *order_sizes(rig).values(), _ratio(rig.linkage)] for rig in RIGS
+    ]
+    peaks += [
+        [f"{name}, no rig", *[""] * 5, _ratio(name)] for name in PROPORTIONS if name not in rigs
+    ]
+    observed = [
+        (
+            one.rig.name,
+            one.inertia,
+            region_name(one.region),
+            one.meaning,
+            one.speed,
+            *(one.predicted(name) for name in EQUATIONS),
+            _NAMES[one.nearest],
+        )
+        for one in _COMPARED
+    ]
+    tables = (peaks, _shifts(), observed, _summary())
     left = [_parts(name) for name in _rig_linkages()]
     count = sum(one.nearest == "complete" for one in _COMPARED)
-    first, complete = _first_order_trend(), _trend("complete")
+    first, complete = _trend("first order"), _trend("complete")
     ratio = min(b / a for a, b in left)
     values = [_gap_of_two_routes(), ratio, count / len(_COMPARED)]
     return Drawn([*values, first[1] / first[0], complete[1] / complete[0]], _words(count), tables)
@@ -292,23 +276,6 @@ def _rig_linkages() -> list[str]:
     return list(dict.fromkeys(rig.linkage for rig in RIGS))
 
 
-def _terms() -> Table:
-    rows = [
-        (rig.name, *(f"{size:.3f}" for size in order_sizes(rig).values()), _ratio(rig.linkage))
-        for rig in RIGS
-    ]
-    others = [name for name in PROPORTIONS if name not in _rig_linkages()]
-    rows += [(f"{name}, no rig", *[""] * 5, _ratio(name)) for name in others]
-    left_out = ("left out: ε2 cos(θ2-θ3)", "left out: (π²/3 - 1/4) φ")
-    header = ("linkage, coupler", "φ", "ε1 f1", "ε2 f2", *left_out)
-    return Table(
-        "Peaks of the periodic terms of the first mode over that of the follower's, ε3 f3, "
-        "at the least follower inertia",
-        (*header, "left out over kept coupler part"),
-        tuple(rows),
-    )
-
-
 def _ratio(linkage: str) -> str:
     kept, left = _parts(linkage)
     return f"{left / kept:.2f}"
@@ -316,29 +283,20 @@ def _ratio(linkage: str) -> str:
 
 def _parts(linkage: str) -> tuple[float, float]:
     """Return the peaks of the coupler part that (6.17) keeps and of the one it leaves out."""
-    links, theta = linkage_of(linkage), np.linspace(0.0, 2 * pi, 1441)
-    parts = end_load(links, theta)
-    eps1, eps2 = pi**2 / 3, pi**2 * links.crank / (2 * links.coupler)
-    kept = eps1 * parts.f1 + eps2 * parts.f2 - parts.phi
-    return float(np.max(np.abs(kept))), float(np.max(np.abs(_left_out(linkage, theta))))
-
-
-def _left_out(linkage: str, theta: Array) -> Array:
-    links = linkage_of(linkage)
-    parts = end_load(links, theta)
-    tension = pi**2 * links.crank / (2 * links.coupler) * parts.cos23
-    return tension + (pi**2 / 3 - 0.25) * parts.phi
+    phi, f1, f2, tension, more = _terms(linkage, _TURN).values()
+    return _peak(f1 + f2 - phi), _peak(tension + more)
 
 
 def _gap_of_two_routes() -> float:
     """Return the largest difference of what (6.17) leaves out, by the modules and by hand."""
-    theta, gaps = np.linspace(0.0, 2 * pi, 181), []
+    gaps = []
     for rig in RIGS:
         complete, printed = (
-            rig.function(name, float(rig.inertias[0]))(theta) for name in ("complete", "printed")
+            rig.function(name, float(rig.inertias[0]))(_TURN) for name in ("complete", "printed")
         )
-        gaps.append(np.max(np.abs(complete - printed - _left_out(rig.linkage, theta))))
-    return float(max(gaps))
+        *_, tension, more = _terms(rig.linkage, _TURN).values()
+        gaps.append(_peak(complete - printed - tension - more))
+    return max(gaps)
 
 
 @dataclass(frozen=True)
@@ -366,29 +324,22 @@ def _moved() -> tuple[_Shift, ...]:
     return tuple(moved)
 
 
-def _shifts() -> Table:
+def _shifts() -> list[Sequence[Any]]:
+    """Return the ends of the unstable regions, and how far they move."""
+
     def pair(values: Array) -> str:
         # Zero without a sign.
         low, high = (round(float(value), 1) + 0.0 for value in values)
         return f"{low:+.1f}, {high:+.1f}"
 
-    rows = []
+    rows: list[Sequence[Any]] = []
     for one in _moved():
         base = one.ends["reduced"]
-        place = (one.rig.name, f"{one.inertia / LBF_IN_S2:.4f}", region_name(one.region))
+        place = (one.rig.name, one.inertia / LBF_IN_S2, region_name(one.region))
         moves = (pair(one.ends[name] - base) for name in EQUATIONS[1:])
         further = pair(one.two_modes - one.ends["complete"])
         rows.append((*place, f"{base[0]:.1f} to {base[1]:.1f}", *moves, further))
-    header = (
-        "linkage, coupler",
-        "I4 [lbf in s²]",
-        "region",
-        "unstable by (6.18) [rpm]",
-        "shift by (6.17) [rpm]",
-        "shift by complete [rpm]",
-        "further by the second mode [rpm]",
-    )
-    return Table("Ends of the unstable regions, and how far they move", header, tuple(rows))
+    return rows
 
 
 def two_modes(rig: Rig, inertia: float, n: int) -> Array:
@@ -405,23 +356,6 @@ def two_modes(rig: Rig, inertia: float, n: int) -> Array:
     return np.array([first[np.argmin(np.abs(first - end))] for end in alone])
 
 
-def _observed() -> Table:
-    rows = tuple(
-        (
-            one.rig.name,
-            f"{one.inertia:.4f}",
-            region_name(one.region),
-            one.meaning,
-            f"{one.speed:.0f}",
-            *(f"{one.predicted(name):.1f}" for name in EQUATIONS),
-            _NAMES[one.nearest],
-        )
-        for one in _COMPARED
-    )
-    header = ("linkage, coupler", "I4 [lbf in s²]", "region", "quoted in section 9.5.3", "[rpm]")
-    return Table("Speeds that chapter 9 quotes", (*header, *_NAMES.values(), "nearest"), rows)
-
-
 def _rms(equation: str, *, fitted: bool) -> float:
     """Return the root mean square deviation in percent, with one frequency per coupler fitted."""
     total = 0.0
@@ -434,42 +368,26 @@ def _rms(equation: str, *, fitted: bool) -> float:
     return float(np.sqrt(total / len(_COMPARED)))
 
 
-def _summary() -> Table:
-    rows = [
-        (
-            _NAMES[name],
-            str(sum(one.nearest == name for one in _COMPARED)),
-            f"{_rms(name, fitted=False):.1f} %",
-            f"{_rms(name, fitted=True):.1f} %",
-            *(f"{value:.1f}" for value in _trend(name)),
-        )
-        for name in EQUATIONS
-    ]
-    rows.append(("(6.18), first order", "", "", "", *(f"{v:.1f}" for v in _first_order_trend())))
+def _summary() -> list[Sequence[Any]]:
+    """Return which equation is nearer."""
+    rows: list[Sequence[Any]] = []
+    for name in EQUATIONS:
+        count = sum(one.nearest == name for one in _COMPARED)
+        errors = (f"{_rms(name, fitted=fitted):.1f} %" for fitted in (False, True))
+        rows.append((_NAMES[name], count, *errors, *_trend(name)))
+    rows.append(("(6.18), first order", "", "", "", *_trend("first order")))
     rows.append(("quoted", "", "", "", "250", "220"))
-    header = (
-        "equation",
-        "nearest to quoted speeds",
-        "rms deviation",
-        "the same, frequencies fitted",
-        "Ω/3, least inertia [rpm]",
-        "Ω/3, greatest [rpm]",
-    )
-    title = "Which equation is nearer (Ω/3: (5,1,5,2) with 1/32 in)"
-    return Table(title, header, tuple(rows))
+    return rows
 
 
 def _trend(equation: str) -> Array:
     """Return the middles of Omega/3 [rpm] at the least and the greatest inertia."""
     rig = RIG["82"]
-    return np.asarray(np.mean(rig.ends(equation, rig.inertias[[0, -1]], (6,))[:, 0] / RPM, axis=0))
-
-
-def _first_order_trend() -> Array:
-    rig = RIG["82"]
+    ends = rig.inertias[[0, -1]]
+    if equation != "first order":
+        return np.asarray(np.mean(rig.ends(equation, ends, (6,))[:, 0] / RPM, axis=0))
     # The larger inertia is beyond what first order may be trusted with: as Smith did all the same.
-    f, ends = rig.function("reduced", 1.0), rig.inertias[[0, -1]]
-    bounds = perturbation_boundaries(f, ends, (6,), outside="value")
+    bounds = perturbation_boundaries(rig.function("reduced", 1.0), ends, (6,), outside="value")
     speeds = rig.frequency / np.sqrt(np.stack([bounds.lower[0], bounds.upper[0]])) / RPM
     return np.asarray(np.mean(speeds, axis=0))
 

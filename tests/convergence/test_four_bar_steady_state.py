@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 from beam_motions import damped_four_bar
-from elastolink.runtime.gallery.aannaque_algorithms import newmark_maps
+from elastolink.runtime.gallery.algorithms import newmark_maps
 from elastolink.runtime.periodic import steady_state
 from elastolink.runtime.periodic.ring import solve_ring
 from periodic_systems import peak_gap

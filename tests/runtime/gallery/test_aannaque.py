@@ -10,14 +10,22 @@ from elastolink.runtime.gallery import (
     aannaque_steady_state,
     aannaque_stresses,
 )
-from elastolink.runtime.gallery.aannaque_algorithms import operation_count, printed_count
-from elastolink.runtime.gallery.aannaque_hybrid import hybrid_matrices, hybrid_model
 from elastolink.runtime.gallery.aannaque_kinematics import crossover, linkage
-from elastolink.runtime.gallery.aannaque_models import compare_models
+from elastolink.runtime.gallery.aannaque_models import (
+    beams,
+    exact_frequencies,
+    held,
+    hybrid_matrices,
+    hybrid_model,
+)
+from elastolink.runtime.gallery.algorithms import operation_count, printed_count
 from elastolink.runtime.linkages import FourBar
-from elastolink.runtime.periodic import floquet_multipliers
+from elastolink.runtime.periodic import floquet_multipliers, steady_state
 from elastolink.runtime.recovery import recover, stress_operator
 from scipy.optimize import brentq
+
+# Deflections leave the linear range at resonances; the equations stay linear.
+pytestmark = pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.LinearRangeWarning")
 
 
 def test_the_pulses_cross_where_the_peaks_found_by_roots_do():
@@ -58,8 +66,8 @@ def test_maxima_are_refined_between_samples():
 @pytest.mark.slow
 def test_midpoints_by_the_recovery_of_displacements():
     for elements in (2, 3):
-        system = aannaque_models.beams(elements)
-        motion = aannaque_models.periodic(system, 20.0)
+        system = beams(elements)
+        motion = steady_state(system, 20.0, rtol=1e-5)
         for link in ("coupler", "follower") if elements == 2 else ("follower",):
             found = recover(system, motion, stations={link: [0.5]}, method="shape")
             ours = aannaque_models.moved(system, link, motion.theta, motion.q)
@@ -68,9 +76,9 @@ def test_midpoints_by_the_recovery_of_displacements():
 
 
 def test_the_march_settles_to_the_cyclic_solution():
-    system = aannaque_models.beams(1)
+    system = beams(1)
     values = aannaque_steady_state.march()[0][-1]
-    motion = aannaque_models.periodic(system, aannaque_models.CRITICAL, rtol=1e-6)
+    motion = steady_state(system, aannaque_models.CRITICAL)
     exact = aannaque_models.moved(system, "follower", motion.theta, motion.q)
     # Newmark's 720 steps: the sixth oscillation of the second mode is 4e-4 late in phase.
     assert abs(np.max(values) / np.max(exact) - 1.0) < 5e-3
@@ -79,8 +87,8 @@ def test_the_march_settles_to_the_cyclic_solution():
 def test_the_exact_model_has_the_first_frequency_of_the_dynamic_stiffness():
     """At most five iterations at 1e-3, as in the thesis; two or three are enough."""
     angles = np.array([0.3, 2.0, 4.1])
-    structure = aannaque_models.beams(1).structure
-    exact = aannaque_models.exact_frequencies(structure, angles, 1)[:, 0]
+    structure = beams(1).structure
+    exact = exact_frequencies(structure, angles, 1)[:, 0]
     matrices = hybrid_matrices(structure, angles)
     assert matrices.iterations.min() >= 1 and matrices.iterations.max() <= 3
     np.testing.assert_allclose(matrices.first, exact, rtol=1e-4)
@@ -94,7 +102,7 @@ def test_the_exact_model_has_the_first_frequency_of_the_dynamic_stiffness():
 @pytest.mark.slow
 def test_the_system_of_the_exact_model_has_it_too():
     system, angles = hybrid_model(), np.array([0.3, 2.0, 4.1])
-    found = hybrid_matrices(aannaque_models.beams(1).structure, angles, rtol=1e-10)
+    found = hybrid_matrices(beams(1).structure, angles, rtol=1e-10)
     mass, stiffness = system.array("M", angles), system.array("K", angles)
     squares = np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real.min(axis=1)
     np.testing.assert_allclose(np.sqrt(squares), found.first, rtol=1e-6)
@@ -110,7 +118,7 @@ def test_operations_of_marching_from_where_it_costs_more():
 def test_multipliers_of_four_modes_are_those_of_all():
     place = 168
     speed = float(aannaque_stresses._SPEEDS[place])
-    whole = floquet_multipliers(aannaque_models.beams(1), speed, rtol=1e-7).multipliers
+    whole = floquet_multipliers(beams(1), speed, rtol=1e-7).multipliers
     pairs = whole[:4].real.reshape(2, 2).max(axis=1)
     # The five higher modes carry no motion: 1e-3 of the second pair, less of the first.
     np.testing.assert_allclose(aannaque_stresses.real_parts()[place, :2], pairs, atol=2e-3)
@@ -118,11 +126,11 @@ def test_multipliers_of_four_modes_are_those_of_all():
 
 @pytest.mark.slow
 def test_stresses_over_the_speed_by_single_motions():
-    system = aannaque_models.beams(3)
+    system = beams(3)
     curve = aannaque_stresses._curve(3)
     for place in (150, 250):
         speed = float(aannaque_stresses._WIDE[place])
-        motion = aannaque_models.periodic(system, speed, rtol=1e-5)
+        motion = steady_state(system, speed, rtol=1e-5)
         form = stress_operator(system, motion.theta, 7, method="shape")[0]
         values = form.values(speed, motion.q, motion.qd / speed)
         # Between 256 angles the peak is a little higher.
@@ -131,21 +139,23 @@ def test_stresses_over_the_speed_by_single_motions():
 
 @pytest.mark.slow
 def test_the_stress_of_the_midpoint_needs_several_elements():
-    base = aannaque_stresses.midpoint_stress(aannaque_models.FRAME)[1]
-    fine = aannaque_stresses.bending_at_midpoint(aannaque_models.beams(4))[1]
+    base = aannaque_stresses.bending_at_midpoint(beams(3))[1]
+    fine = aannaque_stresses.bending_at_midpoint(beams(4))[1]
     assert np.max(np.abs(fine)) == pytest.approx(np.max(np.abs(base)), rel=0.1)
 
 
 @pytest.mark.slow
 def test_finite_elements_lie_above_the_exact_frequencies():
     """Aannaque 4.3: 10 % (first) and 26 % (fourth), one element against three; 5.4.2: 1.18 %."""
-    models = {count: aannaque_models.beams(int(count), aannaque_models.FULL) for count in "13"}
-    found = compare_models(models, 2 * np.pi * np.arange(10) / 10)
-    mean = 100 * np.mean(found.difference("1", "3"), axis=0)
+    one, three = (beams(count, aannaque_models.FULL) for count in (1, 3))
+    theta = 2 * np.pi * np.arange(10) / 10
+    exact = exact_frequencies(one.structure, theta, 4)
+    rough, fine = held(one, theta), held(three, theta)
+    mean = 100 * np.mean(rough / fine - 1, axis=0)
     assert round(mean[0]) == 10 and round(mean[3]) == 26
-    assert np.max(found.difference("3")) == pytest.approx(0.0118, abs=5e-5)
-    assert all(np.all(found.difference(name) > 0) for name in models)
-    assert list(found.size) == [9, 27, 0]
+    assert np.max(fine / exact - 1) == pytest.approx(0.0118, abs=5e-5)
+    assert np.all(rough > exact) and np.all(fine > exact)
+    assert (one.size, three.size) == (9, 27)
 
 
 @pytest.mark.slow
@@ -175,12 +185,6 @@ def test_maxima_stand_out_by_the_share_asked_for():
     # A parabola through three places, an eighth of the width apart, is off by its cube.
     assert aannaque_models.maxima(x, y, -np.log1p(-0.05)) == pytest.approx([3.013], abs=2e-4)
     assert len(aannaque_models.maxima(x, y, -np.log1p(-0.01))) == 2
-
-
-def test_the_ten_angles_are_even():
-    np.testing.assert_array_equal(np.diff(aannaque_rig.ANGLES), 36)
-    assert len(aannaque_rig.ANGLES) == 10
-    assert aannaque_rig.CAPTIONS[:-1] == aannaque_rig.ANGLES[:-1]
 
 
 @pytest.mark.slow

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from elastolink.runtime.core.errors import LinearRangeWarning
 from elastolink.runtime.frequencies import natural_frequencies
 from elastolink.runtime.gallery import beale_response, beale_tip
 from elastolink.runtime.gallery.beale_tip import FLEXIBLE, HEAVY, STIFF, peak, rod, stiff_tip
 from elastolink.runtime.periodic import floquet_multipliers, steady_state
 from elastolink.runtime.scenes import load_scene
 from rod_tip_deflections import TIPS
+
+# Deflections leave the linear range at resonances; the equations stay linear.
+pytestmark = pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.LinearRangeWarning")
 
 # Tip deflection over the length at crank angles pi/4, ..., 2 pi, flexible rod, crank ratio 0.01,
 # 100 rad/s, without tension: from a fixed mesh that knows of no modes.
@@ -67,21 +69,6 @@ def test_foreshortening_turns_the_tip_by_an_angle_in_proportion_to_the_deflectio
     )
     # The bent shapes differ, but not by much: the first mode in both.
     assert 0.5 < light / heavy < 2.0
-
-
-@pytest.mark.parametrize("place", [1, 3])
-def test_the_settled_motion_is_the_steady_state(place):
-    _, first, settled = beale_tip.damped_tip(HEAVY, place, 3)
-    system = rod(HEAVY, "polynomial", 3, **beale_tip._DAMPINGS[place][1])
-    with pytest.warns(LinearRangeWarning):
-        steady = steady_state(system, 90.0, samples=1024)
-    x = np.append(steady.theta, 2 * np.pi)
-    y = np.append(steady.deflection(), steady.deflection()[0])
-    angle = np.linspace(0.0, 2 * np.pi, len(settled))
-    # Straight lines between the steady state's angles set what can be told.
-    curvature = peak(np.diff(y, 2)) / 8
-    assert peak(np.interp(angle, x, y) - settled) < 2 * curvature + 1e-5 * peak(settled)
-    assert peak(first - settled) > 10 * curvature
 
 
 def test_frequencies_at_crank_length_zero_are_those_of_another_basis():

@@ -12,9 +12,9 @@ from elastolink.runtime.cli import main
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.plotting import new_figure
 from elastolink.runtime.gallery import Drawn, FigureEntry, Quoted, figures, registry, reproduce
-from elastolink.runtime.gallery.drawing import arrow, turning_arrow
 from elastolink.runtime.gallery.page import write_together
 from elastolink.runtime.gallery.rendering import render
+from elastolink.runtime.gallery.sketch import arrow, turning_arrow
 
 # Figures that are drawn within a second, of every kind.
 QUICK = {
@@ -22,15 +22,17 @@ QUICK = {
     "aannaque": ("3.5", "3.7", "3.11", "5.1", "table_5.1", "6.1", "table_6.3", "7.12"),
     "beale": ("11",),
 }
-# Quoted numbers, and how many are known to differ.
-ROWS = (607, 85)
+# Comparisons by kind, and how many of them are known to differ.
+ROWS = {"printed": (164, 37), "words": (300, 37), "check": (143, 11)}
 WORDS = ("share", "left1", "left2", "right1", "right2")
 DOCS = Path(__file__).parents[3] / "docs"
 NUMBER = re.compile(r"[+-]?\d+(?:\.\d+)?")
 
 
-def quoted(printed, computed, tolerance=0.5, relation="=", differs=""):
-    return Quoted("a number", printed, computed, tolerance, "half", "1.1", relation, "", differs)
+def quoted(expected, computed, tolerance=0.5, relation="=", differs="", kind="printed"):
+    return Quoted(
+        "a number", expected, computed, tolerance, "half", "1.1", relation, "", differs, kind
+    )
 
 
 def entry_with(*rows):
@@ -95,7 +97,9 @@ def test_every_figure_that_was_promised_is_there_once():
 
 def test_the_numbers_that_the_documents_quote_are_all_there():
     rows = [row for entry in figures() for row in entry.quoted]
-    assert (len(rows), sum(bool(row.differs) for row in rows)) == ROWS
+    kinds = {kind: [row for row in rows if row.kind == kind] for kind in ROWS}
+    assert {k: (len(v), sum(bool(row.differs) for row in v)) for k, v in kinds.items()} == ROWS
+    assert sum(map(len, kinds.values())) == len(rows)
     assert all(row.number and row.meaning and row.where for row in rows)
 
 
@@ -200,6 +204,16 @@ def test_texts_of_a_page_are_escaped(tmp_path, monkeypatch):
     assert "a note, &lt; and &amp;" in page and "&lt; 1" in page
 
 
+def test_only_what_a_document_prints_is_called_printed(tmp_path, monkeypatch):
+    only(monkeypatch, *(quoted(1.0, 1.2, kind=kind) for kind in ("printed", "words", "check")))
+    gallery = reproduce("smith", None, tmp_path)
+    page, lines = (tmp_path / "index.html").read_text(), "\n".join(gallery.lines())
+    assert page.count("<th>printed</th>") == 2 and page.count("<th>read as</th>") == 1
+    assert "numbers that the documents print: 1, of which 1 agree" in page
+    assert lines.count(" printed, 1.2 computed") == 1
+    assert "1 by the text's words, 1.2 computed" in lines and "1 for a check, 1.2" in lines
+
+
 def test_nothing_is_written_without_a_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     gallery = reproduce("smith", "45")
@@ -279,7 +293,7 @@ def test_the_texts_of_a_record_take_up_computed_words():
     )
     (shown,) = entry.show(()).quoted
     assert (shown.number, shown.differs) == ("of a", "0.3")
-    assert (shown.computed, shown.printed, shown.tolerance) == (1.0, 2.0, 3.0)
+    assert (shown.computed, shown.expected, shown.tolerance) == (1.0, 2.0, 3.0)
     with pytest.raises(ValueError, match="zip"):
         replace(entry, draw=lambda axes: Drawn([])).show(())
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.gallery import smith_charts, smith_responses
-from elastolink.runtime.gallery.free_bodies import free_bodies, round_force
+from elastolink.runtime.gallery.sketch import free_bodies, round_force
 from elastolink.runtime.gallery.smith_balancing import (
     BalancedLink,
     density_number,
@@ -21,15 +21,19 @@ from elastolink.runtime.gallery.smith_linkages import (
     RIGS,
     RPM,
     end_load,
+    f3_series,
     four_bar_of,
     linkage_of,
 )
 from elastolink.runtime.gallery.smith_responses import Response
 from elastolink.runtime.gallery.smith_speeds import OBSERVATIONS
 from elastolink.runtime.hill import hill_boundaries
-from elastolink.runtime.periodic import simulate, steady_peaks
+from elastolink.runtime.periodic import steady_peaks
 from elastolink.runtime.rigid import case_counterweights, rigid_forces, with_counterweights
 from elastolink.runtime.scenes import load_scene
+
+# Deflections leave the linear range at resonances; the equations stay linear.
+pytestmark = pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.LinearRangeWarning")
 
 MP = mpmath.mp.clone()
 MP.dps = 400
@@ -76,17 +80,6 @@ def test_observations_agree_with_the_scenes():
         }
         for speed, n, inertia in zip(speeds, numbers, inertias, strict=True):
             assert (round(speed / RPM), n, round(inertia / LBF_IN_S2, 4)) in seen
-
-
-def test_the_periodic_response_closes_and_is_what_marching_settles_to():
-    system = smith_responses.coupler(RIGS[2].scene, 0.075)
-    speed = RIGS[2].frequency / 3.5
-    theta, q = smith_responses.periodic_response(system, speed)
-    assert abs(q[-1] - q[0]) < 1e-12
-    # After 120 turns the start has decayed by exp(-0.075 * 3.5 * 120) = 2e-14.
-    settled = simulate(system, speed, 121.0, samples=64)
-    np.testing.assert_allclose(settled.q[-65:, 0], q[::8], atol=1e-10)
-    assert len(theta) == 513
 
 
 @pytest.mark.parametrize("link", ["crank", "coupler", "follower"])
@@ -150,7 +143,8 @@ def test_only_a_scene_with_a_four_bar_gives_one():
 
 
 def test_the_surfaces_of_the_space_are_those_of_the_sum_of_both_functions():
-    pair = smith_charts._functions()
+    f1 = smith_charts._series(linkage_of("(2,1,2,2)"), "f1")
+    pair = smith_charts._Pair(f1, f3_series("(2,1,2,2)"))
     lower, upper = pair.along(0.3, 0.4, np.array([0.0, 1.0]))
     exact = hill_boundaries(pair.first * 0.3 + pair.second * 0.4, 1.0, (2,))
     assert lower[1] == exact.lower[0] and upper[1] == exact.upper[0]
@@ -163,9 +157,9 @@ def test_the_surfaces_of_the_space_are_those_of_the_sum_of_both_functions():
 
 
 def test_extremes_are_those_of_the_steady_peaks():
-    decrement = smith_responses.decrements(LAST.rig)[1]
+    decrement = LAST.rig.decrements[1]
     ends = LAST.envelope(decrement)
-    system = smith_responses.coupler(LAST.rig.scene, decrement, LAST.inertia)
+    system = LAST.rig.system(decrement=decrement, inertia=LAST.inertia)
     chosen = [0, 100, 200]
     peaks = steady_peaks(system, ends.speed[chosen] * RPM, x=[0.5])
     size = np.maximum(ends.greatest, -ends.least)[chosen]
@@ -176,9 +170,7 @@ def test_extremes_are_those_of_the_steady_peaks():
 
 
 def test_more_damping_lowers_a_resonance():
-    heights = [
-        np.max(FIRST.envelope(value).greatest) for value in smith_responses.decrements(FIRST.rig)
-    ]
+    heights = [np.max(FIRST.envelope(value).greatest) for value in FIRST.rig.decrements]
     assert heights[0] > heights[1] > heights[2]
 
 
@@ -195,15 +187,6 @@ def test_inertia_and_slope_are_those_of_rod_extension_and_cylinder(k):
         assert abs(link.inertia / exact(MP.mpf(float(delta))) - 1) < 8 * np.finfo(float).eps
         slope = MP.diff(exact, MP.mpf(float(delta)), h=MP.mpf(10) ** -100)
         assert float(link.slope) == pytest.approx(float(slope), rel=1e-12, abs=1e-13)
-
-
-def test_printed_factors_of_the_inertia_are_wrong_and_its_derivative_is_right():
-    # Smith prints (1 + delta^2)/2 for the bars; but his derivative has the slope of this function.
-    delta, k = 0.4, 0.1
-    link = BalancedLink(delta, k)
-    printed = 0.5 * (1 + delta**2) + k / 4 * (1 / delta - delta) ** 2 + 0.5 * (delta - delta**3)
-    assert abs(printed - link.inertia) > 0.1
-    assert link.slope == pytest.approx(0.5 * (1 - delta**2) + k / 2 * (delta - delta**-3))
 
 
 @pytest.mark.parametrize("exponent", [-300, -61, -59, -20, -6, -1])

@@ -1,6 +1,9 @@
-"""Aannaque's algorithms of chapter 6: Newmark's steps, uncoupled modes, operations of each.
+"""The documents' algorithms: one-step methods, uncoupled modes, operations of each.
 
-They are redrawn, not recommended: :func:`~..periodic.steady_state` is what the library solves with.
+De Vogelaere's and Kutta and Merson's steps are Smith's, Newmark's and all that follows Aannaque's
+(chapter 6).  They are redrawn, not recommended: :func:`~..periodic.steady_state` and
+:func:`~..periodic.simulate` are what the library solves with.
+
 Operations: an addition or a multiplication is one, a product of matrices ``(a, b) (b, c)`` takes
 ``(2 b - 1) a c``, a triangular decomposition ``(4 n^3 - 3 n^2 - n)/6``, each solution with it
 ``2 n^2 - n``.
@@ -8,7 +11,7 @@ Operations: an addition or a multiplication is one, a product of matrices ``(a, 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,68 +19,8 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.families import Array, LinearPeriodic
 from ..core.trigonometric import differentiated, even_angles
 from ..periodic.ring import solve_ring
-from .historic_steps import newmark_matrices
 
-# Tables 6.2 and 6.3 as printed, in millions: (N, n, cycles) to marching, algorithms 1 and 2 with
-# storage, the same without; (N, harmonics, n) to the Fourier series and algorithm 1.
-TABLE_6_2: Mapping[tuple[int, int, int], tuple[float, ...]] = {
-    (90, 10, 5): (2.43, 3.78, 5.93, 11.4, 7.71, 9.96),
-    (90, 10, 100): (6.02, 3.78, 5.93, 228, 7.71, 9.96),
-    (90, 50, 5): (259, 438, 707, 1270, 893, 1170),
-    (90, 50, 100): (345, 438, 707, 25500, 893, 1170),
-    (720, 10, 5): (19.5, 30.1, 47.4, 91.3, 61.8, 79.8),
-    (720, 10, 100): (48.2, 30.1, 47.4, 1830, 61.8, 79.8),
-    (720, 50, 5): (2070, 3490, 5650, 10200, 7160, 9340),
-    (720, 50, 100): (2760, 3490, 5650, 204000, 7160, 9340),
-}
-TABLE_6_3: Mapping[tuple[int, int, int], tuple[float, float]] = {
-    (90, 6, 10): (2.50, 3.78),
-    (90, 6, 50): (277, 438),
-    (90, 10, 10): (11.6, 3.78),
-    (90, 10, 50): (1200, 438),
-    (720, 6, 10): (2.59, 30.1),
-    (720, 6, 50): (277, 3490),
-    (720, 10, 10): (11.8, 30.1),
-    (720, 10, 50): (1200, 3490),
-    (720, 15, 10): (39.7, 30.1),
-    (720, 15, 50): (3920, 3490),
-}
-
-
-def printed_count(
-    algorithm: str,
-    *,
-    intervals: int,
-    freedoms: int,
-    cycles: int = 1,
-    harmonics: int = 1,
-    storage: bool = True,
-) -> int:
-    """Return the number of operations by the printed formula of an algorithm.
-
-    ``time_marching``, ``transition_matrix`` (algorithm 1), ``closed_form`` (algorithm 2) or
-    ``harmonic_balance`` (the Fourier series analysis); N intervals and n freedoms, n_c cycles
-    marched, N_h harmonics; ``storage`` of the intervals' matrices or not.
-    """
-    big, n, c, h = intervals, freedoms, cycles, harmonics
-    tail = 14 * n**3 + 21 * n**2
-    formulas = {
-        ("time_marching", True): big * (22 * n**3 + (29 + 4 * c) * n**2 + (3 + 2 * c) * n),
-        ("time_marching", False): big * c * (22 * n**3 + 33 * n**2 + 5 * n),
-        ("transition_matrix", True): big * (38 * n**3 + 37 * n**2 + 7 * n) + 16 * n**3 + 8 * n**2,
-        ("transition_matrix", False): big * (78 * n**3 + 77 * n**2 + 10 * n) - tail - 3 * n,
-        ("closed_form", True): big * (62 * n**3 + 37 * n**2 + 9 * n)
-        + (8 * n**3 + 8 * n**2 + 2 * n),
-        ("closed_form", False): big * (102 * n**3 + 87 * n**2 + 10 * n) - tail - n,
-    }
-    fourier = (
-        h**3 * (8 * n**3 + 32 * n**2)
-        + h**2 * (12 * n**3 - 120 * n**2 + 8 * n + 32)
-        + h * (6 * n**3 + 270 * n**2 + 10 * n + 4 * n * big)
-        + (n**3 - 135 * n**2 + 4 * n)
-    )
-    formulas[("harmonic_balance", True)] = fourier
-    return formulas[(algorithm, storage)]
+Generator = Callable[[Array], Array]
 
 
 def second_order_form(
@@ -98,6 +41,129 @@ def second_order_form(
     stiffness = differentiated(gyro, period) - at("B") + at("D") / speed
     stiffness += (at("K") + at("Kg")) / speed**2
     return mass, rate, stiffness, at("f") + at("h") / speed + at("p") / speed**2
+
+
+def de_vogelaere_maps(generator: Generator, theta: Array, half_step: float) -> Array:
+    """Return de Vogelaere's steps of ``y'' = P(theta) y`` as matrices (Smith, appendix 4).
+
+    With h the *half* step, the values of y'' = f(theta, y) at -h, 0, h and 2h are used:
+
+        y(h)   = y(0) + h y'(0) + h^2/6 (4 f(0) - f(-h)),
+        y(2h)  = y(0) + 2h y'(0) + h^2/3 (2 f(0) + 4 f(h)),
+        y'(2h) = y'(0) + h/3 (f(0) + 4 f(h) + f(2h)),
+
+    and f(h) serves the next step as its f(-h).  From P ``(nt, n, n)`` at angles, the left ends
+    ``(ns,)`` of the steps and h to matrices ``(ns, 3 n, 3 n)`` on (y, h y', h^2 f(-h)); forcing
+    enters as a last component of y that stays 1.
+    """
+    angles = theta[:, None] + half_step * np.arange(3.0)
+    values = half_step**2 * generator(angles.ravel())
+    n = values.shape[-1]
+    f0, f1, f2 = np.moveaxis(values.reshape(len(theta), 3, n, n), 1, 0)
+    y, slope, past = np.eye(3 * n).reshape(3, n, 3 * n)
+    start = f0 @ y
+    middle = f1 @ (y + slope + (4 * start - past) / 6)
+    end = y + 2 * slope + (2 * start + 4 * middle) / 3
+    end_slope = slope + (start + 4 * middle + f2 @ end) / 3
+    return np.concatenate([end, end_slope, middle], axis=-2)
+
+
+def de_vogelaere_start(
+    generator: Generator, theta: float, half_step: float, y: Array, slope: Array
+) -> Array:
+    """Return the first state ``(3 n,)`` of de Vogelaere's method from y and y' at an angle.
+
+    The value at -h comes from the Taylor polynomial y - h y' + h^2/2 y''; its third-order error
+    leaves the order of the method at four.
+    """
+    before, here = generator(np.array([theta - half_step, theta]))
+    past = y - half_step * slope + half_step**2 / 2 * (here @ y)
+    return np.concatenate([y, half_step * slope, half_step**2 * (before @ past)])
+
+
+def kutta_merson(
+    generator: Generator, theta: Array, state: Array, rtol: float, atol: Array, *, first: float
+) -> Array:
+    """Integrate ``y' = L(theta) y`` with steps chosen by Merson's estimate of the local error.
+
+    From a state ``(m,)`` at the first of the output's angles, on all of which steps end, to the
+    states ``(nt, m)`` at them; with the relative and absolute tolerance ``(m,)`` of one step, and
+    the first step to try.
+    """
+    states = [state]
+    step, here = first, float(theta[0])
+    for target in theta[1:]:
+        while here < target:
+            remaining = float(target) - here
+            pieces = max(1, int(np.ceil(remaining / step * (1 - 1e-12))))
+            trial = remaining / pieces
+            new, estimate = merson_step(generator, here, trial, state)
+            allowed = atol + rtol * np.maximum(np.abs(state), np.abs(new))
+            ratio = float(np.max(np.abs(estimate) / allowed))
+            proposal = trial * min(4.0, max(0.1, 0.9 * max(ratio, 1e-10) ** -0.2))
+            if ratio > 1.0:
+                step = proposal
+                continue
+            here = float(target) if pieces == 1 else here + trial
+            state = new
+            # A step cut short to meet the angle says little about how long the next may be.
+            step = proposal if ratio > 0.5 else max(step, proposal)
+        states.append(state)
+    return np.array(states)
+
+
+def merson_step(
+    generator: Generator, here: float, step: float, state: Array
+) -> tuple[Array, Array]:
+    """Return the new state and Merson's estimate of the local error of one step.
+
+    The estimate is a fifth of the difference between the two solutions of the pair.  With constant
+    coefficients it is the local error to leading order; else the second solution is of order three
+    only, and the estimate is larger than the error.
+    """
+    nodes = here + step * np.array([0.0, 1 / 3, 1 / 2, 1.0])
+    first, third, half, last = generator(nodes)
+    k1 = first @ state
+    k2 = third @ (state + step / 3 * k1)
+    k3 = third @ (state + step / 6 * (k1 + k2))
+    k4 = half @ (state + step / 8 * (k1 + 3 * k3))
+    k5 = last @ (state + step / 2 * (k1 - 3 * k3 + 4 * k4))
+    new = state + step / 6 * (k1 + 4 * k4 + k5)
+    return new, step / 30 * (2 * k1 - 9 * k3 + 8 * k4 - k5)
+
+
+def newmark_matrices(
+    mass: Array,
+    rate: Array,
+    stiffness: Array,
+    force: Array,
+    step: float,
+    *,
+    gamma: float = 0.5,
+    beta: float = 0.25,
+) -> tuple[Array, Array]:
+    """Return Newmark's steps of ``M q'' + G q' + H q = F`` as matrices (Aannaque 6.5).
+
+    Displacement and velocity at the end of a step come from accelerations at both ends,
+
+        q+ = q + h v + h^2 ((1/2 - beta) a + beta a+),   v+ = v + h ((1 - gamma) a + gamma a+).
+
+    From M, G, H ``(N + 1, n, n)`` and F ``(N + 1, n)`` at the ends of the steps to matrices
+    ``(N, 2n, 2n)`` on the state (q, q') and what the force adds, ``(N, 2n)``.
+    """
+    n, count = mass.shape[-1], len(mass) - 1
+    # Columns: what multiplies q, q' and 1 at the start of a step.
+    right = np.concatenate([-stiffness, -rate, force[..., None]], axis=-1)
+    a = np.linalg.solve(mass[:-1], right[:-1])
+    q, v = np.broadcast_to(np.eye(2 * n, 2 * n + 1).reshape(2, 1, n, -1), (2, count, n, 2 * n + 1))
+    q = q + step * v + (0.5 - beta) * step**2 * a
+    v = v + (1.0 - gamma) * step * a
+    load = -(rate[1:] @ v + stiffness[1:] @ q)
+    load[..., -1] += force[1:]
+    system = mass[1:] + gamma * step * rate[1:] + beta * step**2 * stiffness[1:]
+    new = np.linalg.solve(system, load)
+    whole = np.concatenate([q + beta * step**2 * new, v + gamma * step * new], axis=1)
+    return whole[..., :-1], whole[..., -1]
 
 
 def newmark_maps(system: LinearPeriodic, speed: float, intervals: int) -> tuple[Array, Array]:
@@ -205,8 +271,45 @@ def newmark_regions(gamma: Array, beta: Array) -> NDArray[np.int64]:
     return np.array(regions).reshape(gamma.shape)
 
 
+def printed_count(
+    algorithm: str,
+    intervals: int,
+    freedoms: int,
+    cycles: int = 1,
+    *,
+    harmonics: int = 1,
+    storage: bool = True,
+) -> int:
+    """Return the number of operations by the printed formula of an algorithm.
+
+    ``time_marching``, ``transition_matrix`` (algorithm 1), ``closed_form`` (algorithm 2) or
+    ``harmonic_balance`` (the Fourier series analysis); N intervals and n freedoms, n_c cycles
+    marched, N_h harmonics; ``storage`` of the intervals' matrices or not.
+    """
+    # Python's integers, as the numbers of operations may pass those of an array.
+    big, n, c, h = int(intervals), int(freedoms), int(cycles), harmonics
+    tail = 14 * n**3 + 21 * n**2
+    formulas = {
+        ("time_marching", True): big * (22 * n**3 + (29 + 4 * c) * n**2 + (3 + 2 * c) * n),
+        ("time_marching", False): big * c * (22 * n**3 + 33 * n**2 + 5 * n),
+        ("transition_matrix", True): big * (38 * n**3 + 37 * n**2 + 7 * n) + 16 * n**3 + 8 * n**2,
+        ("transition_matrix", False): big * (78 * n**3 + 77 * n**2 + 10 * n) - tail - 3 * n,
+        ("closed_form", True): big * (62 * n**3 + 37 * n**2 + 9 * n)
+        + (8 * n**3 + 8 * n**2 + 2 * n),
+        ("closed_form", False): big * (102 * n**3 + 87 * n**2 + 10 * n) - tail - n,
+    }
+    fourier = (
+        h**3 * (8 * n**3 + 32 * n**2)
+        + h**2 * (12 * n**3 - 120 * n**2 + 8 * n + 32)
+        + h * (6 * n**3 + 270 * n**2 + 10 * n + 4 * n * big)
+        + (n**3 - 135 * n**2 + 4 * n)
+    )
+    formulas[("harmonic_balance", True)] = fourier
+    return formulas[(algorithm, storage)]
+
+
 def operation_count(
-    algorithm: str, *, intervals: int, freedoms: int, cycles: int = 1, storage: bool = True
+    algorithm: str, intervals: int, freedoms: int, cycles: int = 1, *, storage: bool = True
 ) -> int:
     """Return the operations of one of the algorithms but the last, counted from its steps.
 
@@ -235,7 +338,7 @@ def _solve(n: int, columns: int) -> int:
 
 
 def _newmark_step(n: int) -> int:
-    """Count the map of one step as :func:`~.historic_steps.newmark_matrices` takes it."""
+    """Count the map of one step as :func:`newmark_matrices` takes it."""
     wide = 2 * n + 1
     # q'' at the left end, then q and v without the new acceleration.
     left = _solve(n, wide) + 4 * n * wide

@@ -48,7 +48,7 @@ def balanced_motion(
         size = np.max(np.abs(q), axis=0)
         size = np.where(size > 0.0, size, 1.0)
         gap = np.max(np.abs(q - _motion(equation, before, samples)[0]), axis=0) / size
-        error = gap + 4.0 * _EPS * min(condition, 1.0 / _EPS)
+        error = gap + 8.0 * _EPS * min(condition, 1.0 / _EPS)
         more = (3 * harmonics) // 2
         enough = bool(np.all(error <= rtol)) or not np.isfinite(condition)
         if enough or (2 * more + 1) * equation.size > _MOST_UNKNOWNS:

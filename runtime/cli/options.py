@@ -234,14 +234,6 @@ def progress(options: argparse.Namespace) -> bool:
     return sys.stderr.isatty() and not options.json
 
 
-def crank_speeds(text: str) -> list[float]:
-    """Return a range of positive crank speeds [rad/s] as ``--speed`` takes it."""
-    speeds = values(text, "frequency", "--speed")
-    if speeds[0] <= 0:
-        raise bad("--speed", repr(text), "positive speeds", "raise the lower end")
-    return speeds
-
-
 def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     """Return the lines of a table, columns aligned, the first to the left."""
     columns = list(zip(header, *rows, strict=True))

@@ -75,21 +75,11 @@ DIMENSIONS: Mapping[str, Dimension] = MappingProxyType(
 
 @dataclass(frozen=True)
 class _Unit:
-    """A unit, or a product of units.
+    """A unit, or a product of units."""
 
-    Attributes
-    ----------
-    factor : Decimal
-        To the SI unit; not a number where it is no multiple of it (degrees Celsius).
-    powers : mapping of str to Fraction
-        Of the base dimensions, by pint's names, such as ``[length]``; zeros are left out.
-    counts : frozenset of str
-        ``cycles`` or ``angle`` where it counts them.
-    """
-
-    factor: Decimal
-    powers: Mapping[str, Fraction]
-    counts: frozenset[str] = frozenset()
+    factor: Decimal  # to the SI unit; not a number where it is no multiple of it (degrees Celsius)
+    powers: Mapping[str, Fraction]  # of the base dimensions, by pint's names; no zeros
+    counts: frozenset[str] = frozenset()  # "cycles" or "angle" where it counts them
 
 
 _ANGLES = ("radian", "degree", "turn", "arcminute", "arcsecond", "revolution")

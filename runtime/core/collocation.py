@@ -125,21 +125,9 @@ def gauss_maps(stages: int, generator: Generator, theta: Array, step: float) -> 
     The stage slopes solve the linear system ``K_i = L_i (I + h sum_j a_ij K_j)``, all steps at
     once.  Forcing enters as one more state that stays 1.
 
-    Parameters
-    ----------
-    stages : int
-        Number of stages.
-    generator : callable
-        From angles ``(nt,)`` to L, ``(*batch, nt, m, m)``.
-    theta : ndarray
-        Left ends of the steps [rad], ``(ns,)``.
-    step : float
-        Their common length [rad].
-
-    Returns
-    -------
-    ndarray
-        ``(*batch, ns, m, m)`` with ``y(theta + step) = matrix y(theta)``.
+    ``generator`` takes angles ``(nt,)`` to L, ``(*batch, nt, m, m)``; the steps begin at ``theta``
+    ``(ns,)`` [rad], all of one length.  Returns ``(*batch, ns, m, m)`` with
+    ``y(theta + step) = matrix y(theta)``.
     """
     tableau = gauss_tableau(stages)
     angles = theta[:, None] + step * tableau.c

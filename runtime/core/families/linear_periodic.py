@@ -388,8 +388,7 @@ class LinearPeriodic:
             terms=self.terms + terms,
             parameters={**self.parameters, **extra},
             scales=merged if extra else self.scales,
-            rebuild=_then(self.rebuild, methodcaller("with_terms", *terms, scales=extra)),
-            remesh=_then(self.remesh, methodcaller("with_terms", *terms, scales=extra)),
+            **self._remade(methodcaller("with_terms", *terms, scales=extra)),
         )
 
     def with_changed_terms(self, change: Callable[[Term], Term]) -> LinearPeriodic:
@@ -407,8 +406,7 @@ class LinearPeriodic:
         return replace(
             self,
             terms=tuple(change(term) for term in self.terms),
-            rebuild=_then(self.rebuild, methodcaller("with_changed_terms", change)),
-            remesh=_then(self.remesh, methodcaller("with_changed_terms", change)),
+            **self._remade(methodcaller("with_changed_terms", change)),
         )
 
     def without(self, *arrays: str) -> LinearPeriodic:
@@ -416,9 +414,16 @@ class LinearPeriodic:
         return replace(
             self,
             terms=tuple(term for term in self.terms if term.array not in arrays),
-            rebuild=_then(self.rebuild, methodcaller("without", *arrays)),
-            remesh=_then(self.remesh, methodcaller("without", *arrays)),
+            **self._remade(methodcaller("without", *arrays)),
         )
+
+    def _remade(self, change: Callable[[LinearPeriodic], LinearPeriodic]) -> dict[str, Any]:
+        """Return what makes the system anew, and changes it then as this one is changed."""
+        makers = {"rebuild": self.rebuild, "remesh": self.remesh}
+        return {
+            name: None if make is None else partial(_made_then, make, change)
+            for name, make in makers.items()
+        }
 
     @cached_property
     def _rebuilds_itself(self) -> bool:
@@ -477,13 +482,6 @@ def _merged(
     """Return a system's monomials and those that are parameters themselves."""
     new = {name: np.asarray(values[name], dtype=float) for name in extra}
     return {**scales({name: values[name] for name in own}), **new}
-
-
-def _then(
-    make: Callable[[Any], LinearPeriodic] | None, change: Callable[[LinearPeriodic], LinearPeriodic]
-) -> Callable[[Any], LinearPeriodic] | None:
-    """Return what makes a system anew and changes it as this one is changed."""
-    return None if make is None else partial(_made_then, make, change)
 
 
 def _made_then(

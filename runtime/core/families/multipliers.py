@@ -81,29 +81,9 @@ def solve_multipliers(
     The matrix is solved whole, which wants inertia only in what the constraints allow; rows and
     columns are scaled by powers of two.
 
-    Parameters
-    ----------
-    mass : ndarray, shape (*batch, n, n)
-        Mass matrix.
-    jacobian : ndarray, shape (*batch, k, n)
-        Jacobian of the constraints.
-    forces : ndarray, shape (*batch, n)
-        Right-hand side of the motion.
-    gamma : ndarray, shape (*batch, k)
-        Right-hand side of the constraints.
-
-    Returns
-    -------
-    a : ndarray, shape (*batch, n)
-        Accelerations.
-    lam : ndarray, shape (*batch, k)
-        Multipliers.
-
-    Raises
-    ------
-    RedundantConstraints
-        If the rows of the Jacobian depend on each other, or a motion that they allow has no
-        inertia.
+    Of masses ``(*batch, n, n)``, a Jacobian ``(*batch, k, n)`` and right-hand sides ``(*batch, n)``
+    and ``(*batch, k)`` return accelerations and multipliers.  Rows of the Jacobian that depend on
+    each other, or a motion that they allow without inertia, raise `RedundantConstraints`.
     """
     columns, rows = scaling(mass, jacobian)
     check_rank(jacobian, columns, rows)

@@ -400,8 +400,8 @@ def _of_linear(system: LinearPeriodic, speed: float) -> dict[str, Any]:
     scales = system.scale_values()
     alive = [
         term
-        for term, amplitude in zip(system.terms, system.spectra, strict=True)
-        if np.any(amplitude) and (term.scale is None or np.any(scales[term.scale]))
+        for row, term in enumerate(system.terms)
+        if np.any(system.spectrum(row)) and (term.scale is None or np.any(scales[term.scale]))
     ]
     kinds = {}
     for array in MATRICES + VECTORS:

@@ -253,6 +253,12 @@ def columns(*columns: tuple[str, str, Iterable[Any]]) -> list[str]:
     return table(header, list(zip(*cells, strict=True)))
 
 
+def multipliers(heading: str, values: Iterable[complex]) -> list[str]:
+    """Return the lines of a table of Floquet multipliers, with their moduli."""
+    rows = [(f"{value.real:+.9f} {value.imag:+.9f}i", f"{abs(value):.9f}") for value in values]
+    return table((heading, "modulus"), rows)
+
+
 def ranges(result: Result) -> list[str]:
     """Return one line per array of a result: shape, least and greatest value."""
     import numpy as np

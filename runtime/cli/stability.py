@@ -122,11 +122,7 @@ def _multiplier_lines(result: FloquetMultipliers, scene: Scene) -> list[str]:
     multipliers = result.multipliers.reshape(len(speeds), -1)
     stable = np.atleast_1d(result.stable)
     if len(speeds) == 1:
-        rows = [
-            (f"{value.real:+.9f} {value.imag:+.9f}i", f"{abs(value):.9f}")
-            for value in multipliers[0]
-        ]
-        lines = opt.table(("multiplier", "modulus"), rows)
+        lines = opt.multipliers("multiplier", multipliers[0])
         verdict = "stable" if stable[0] else "unstable"
         return [*lines, "", f"{verdict} at {_crank(float(speeds[0]), scene)}"]
     lines = [f"{int(stable.sum())} of {len(speeds)} speeds stable; unstable ones:"]

@@ -213,26 +213,21 @@ class LinearPeriodic:
         """Return True where no term of ``array`` depends on the crank angle."""
         return all(term.constant for term in self.terms if term.array == array)
 
-    @cached_property
-    def spectra(self) -> tuple[Array, ...]:
-        """Largest Fourier amplitude of an entry of each term, per harmonic of the period.
-
-        One array per term: of length 1 where it is constant, else as long as it takes.
-
-        Raises
-        ------
-        BadInput
-            If a term is not finite at a sample, or returns a wrong shape for many angles.
-        """
-        return tuple(self.spectrum(row) for row in range(len(self.terms)))
-
     def spectrum(self, row: int) -> Array:
-        """Return one of the :attr:`spectra`; a term that nobody asks about is never sampled.
+        """Largest Fourier amplitude of an entry of a term, per harmonic of the period.
+
+        Of length 1 where the term is constant, else as long as it takes; a term that nobody asks
+        about is never sampled.
 
         Parameters
         ----------
         row : int
             Place of the term among :attr:`terms`.
+
+        Raises
+        ------
+        BadInput
+            If the term is not finite at a sample, or returns a wrong shape for many angles.
         """
         known = self._spectrum_of.get(row)
         if known is None:

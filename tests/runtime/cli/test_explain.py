@@ -78,7 +78,7 @@ def test_damping_is_zero_until_there_is_some(coupler):
 
 def test_what_a_sweep_shares_is_every_term_that_acts_at_constant_speed(coupler):
     system = el.load_scene(RIG).system()
-    acting = [t for t, a in zip(system.terms, system.spectra, strict=True) if np.any(a)]
+    acting = [term for row, term in enumerate(system.terms) if np.any(system.spectrum(row))]
     assert coupler.samples == sum(t.array not in {"S", "g", "C"} for t in acting)
     steady = {key: names for key, names in coupler.powers.items() if key != "acceleration"}
     assert sum(map(len, steady.values())) <= coupler.samples
@@ -211,7 +211,8 @@ def test_the_counter_sees_calls_points_and_modules(monkeypatch):
 
 def test_what_the_command_loads_is_not_counted_as_the_scene_s():
     code = (
-        "import sys, elastolink.runtime.scenes as scenes; scenes.load_scene('mathieu')\n"
+        "import sys, elastolink.runtime.core.lazy, elastolink.runtime.scenes as scenes\n"
+        "scenes.load_scene('mathieu')\n"
         "print(sum(name.startswith('elastolink') for name in sys.modules))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -128,7 +128,7 @@ def _rigid(stage: Step, scene: Any) -> None:
     if theta is None or machine is None:
         return
     speed = float(scene.get("operation.speed", 1.0))
-    forces = ("pins", "torque", "shaking_force", "shaking_moment")
+    forces: tuple[Any, ...] = ("pins", "torque", "shaking_force", "shaking_moment")
     for name, outputs in (*((force, (force,)) for force in forces), ("everything", forces)):
         with stage(f"rigid_forces {name}"):
             from ..rigid import rigid_forces

@@ -28,28 +28,14 @@ class CollocationTableau:
     together give the order, and what the family adds to them: ``b_i a_ij + b_j a_ji = b_i b_j`` of
     the symplectic Gauss methods, a last stage that is the step itself of Radau's.
 
-    Attributes
-    ----------
-    family : {'gauss', 'radau'}
-        Which points.
-    stages : int
-        Number s of stages.
-    c, b : ndarray
-        Nodes and weights, shape ``(s,)``.
-    a : ndarray
-        Stage weights, shape ``(s, s)``.
-
-    Raises
-    ------
-    SelfCheckFailed
-        If one of the conditions does not hold to round-off.
+    Where one of the conditions does not hold to round-off, it raises `SelfCheckFailed`.
     """
 
     family: Literal["gauss", "radau"]
     stages: int
-    c: Array
-    b: Array
-    a: Array
+    c: Array  # nodes, (s,)
+    b: Array  # weights, (s,)
+    a: Array  # stage weights, (s, s)
 
     @property
     def order(self) -> int:

@@ -19,12 +19,7 @@ _TOGETHER = 4096
 class PeriodicArray:
     """An array-valued periodic function, ``Re sum_k c_k exp(2 pi i k theta / period)``.
 
-    Attributes
-    ----------
-    coefficients : ndarray of complex
-        Shape ``(harmonics + 1, *shape)``, those beyond the mean counted twice already.
-    period : float
-        Period [rad].
+    Its coefficients ``(harmonics + 1, *shape)`` beyond the mean count twice already.
     """
 
     coefficients: ComplexArray

@@ -33,20 +33,9 @@ class WorkersLost(ElastolinkError):  # noqa: N818 - reads as what it is
 class Workers:
     """Does the same work on many items, with a subject that every worker prepares once.
 
-    Parameters
-    ----------
-    executor : concurrent.futures.Executor or None
-        Threads, processes, or what :meth:`distributed.Client.get_executor` returns; None does
-        everything here.
-    prepare : callable
-        Makes the subject from ``arguments``.
-    *arguments : object
-        They, and ``prepare``, must bear pickling for anything but threads.
-
-    Raises
-    ------
-    BadInput
-        If the executor is none, or the subject cannot be sent to it.
+    The executor is of threads, of processes, or what :meth:`distributed.Client.get_executor`
+    returns; None does everything here.  ``prepare`` makes the subject from ``arguments``: for
+    anything but threads they must bear pickling, or are refused.
     """
 
     def __init__(
@@ -66,12 +55,8 @@ class Workers:
     ) -> Iterator[tuple[int, Any]]:
         """Yield the number of an item and ``work(subject, item)``, as they are done.
 
-        Raises
-        ------
-        WorkersLost
-            If the executor's workers end, for example for want of memory.
-        BadInput
-            If the executor was shut down.
+        Workers that end, for example for want of memory, raise `WorkersLost`; an executor that was
+        shut down, BadInput.
         """
         queue = enumerate(items)
         if self._executor is None:
@@ -79,7 +64,9 @@ class Workers:
                 yield number, work(self._subject, item)
             return
         submit = self._executor.submit
-        given = (work, self._subject) if self._sent is None else (_call, self._sent, work)
+        given: tuple[Any, ...] = (_call, self._sent, work)
+        if self._sent is None:
+            given = (work, self._subject)
         # Dask's executor does not tell how many workers it has.
         count = getattr(self._executor, "_max_workers", None) or os.cpu_count() or 1
         waiting: dict[Future[Any], int] = {}

@@ -87,8 +87,8 @@ def _balance(options: argparse.Namespace) -> int:
     if speed == acceleration == 0.0:
         fix = "give --speed or --acceleration"
         raise bad("--speed", "a crank at rest", "a speed or an acceleration", fix)
-    offset = _size(options.offset, "length", "--offset")
-    mass = _size(options.mass, "mass", "--mass")
+    offset = _size(options, "offset", "length")
+    mass = _size(options, "mass", "mass")
 
     from ..rigid import Bounds, balance
 
@@ -165,12 +165,11 @@ def _lines(found: Balancing) -> list[str]:
     return lines
 
 
-def _size(text: str | None, dimension: str, where: str) -> float | None:
-    if text is None:
-        return None
-    value = opt.quantity(text, dimension, where)
-    if not value > 0.0:
-        raise bad(where, repr(text), "a positive quantity", "correct the sign")
+def _size(options: argparse.Namespace, name: str, dimension: str) -> float | None:
+    value = opt.given(options, name, dimension)
+    if value is not None and not value > 0.0:
+        text = repr(getattr(options, name))
+        raise bad(f"--{name}", text, "a positive quantity", "correct the sign")
     return value
 
 

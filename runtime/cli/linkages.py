@@ -163,11 +163,9 @@ def drive_of(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
 
     Both may have either sign, or be zero.
     """
-    if options.acceleration is None:
+    acceleration = opt.given(options, "acceleration", "angular_acceleration")
+    if acceleration is None:
         acceleration = float(scene.get("operation.acceleration", 0.0))
-    else:
-        where = "--acceleration"
-        acceleration = opt.quantity(options.acceleration, "angular_acceleration", where)
     return _speed(options, scene), acceleration
 
 
@@ -210,9 +208,9 @@ def refuse_frame(scene: Scene) -> None:
 
 
 def _speed(options: argparse.Namespace, scene: Scene) -> float:
-    if options.speed is not None:
-        return opt.quantity(options.speed, "frequency", "--speed")
-    speed = scene.get("operation.speed", None)
+    speed = opt.given(options, "speed", "frequency")
+    if speed is None:
+        speed = scene.get("operation.speed", None)
     if speed is None:
         raise bad("--speed", "nothing", "a crank speed", "give --speed '500 rpm'")
     return float(speed)

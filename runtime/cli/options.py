@@ -106,6 +106,12 @@ def quantity(text: str, dimension: str, where: str) -> float:
     return to_si(text, dimension, where)
 
 
+def given(options: argparse.Namespace, name: str, dimension: str) -> float | None:
+    """Return the quantity of an option in SI units; None where it was not given."""
+    text = getattr(options, name.replace("-", "_"))
+    return None if text is None else quantity(text, dimension, f"--{name}")
+
+
 def values(text: str, dimension: str, where: str) -> list[float]:
     """Return evenly spaced values from ``START:STOP:COUNT[UNIT]``.
 

@@ -101,15 +101,12 @@ def _tolerances(options: argparse.Namespace) -> int:
 
 def _drive(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
     """Return crank speed and acceleration; without either, rates are over the crank's."""
-    speed, acceleration = 1.0, 0.0
+    speed = 1.0
     if options.forces or options.speed is not None:
         speed = speed_of(options, scene)
-    if options.acceleration is not None:
-        where = "--acceleration"
-        if not options.forces and options.speed is None:
-            raise bad(where, "no --speed beside it", "both", "give --speed '500 rpm' too")
-        acceleration = opt.quantity(options.acceleration, "angular_acceleration", where)
-    return speed, acceleration
+    elif options.acceleration is not None:
+        raise bad("--acceleration", "no --speed beside it", "both", "give --speed '500 rpm' too")
+    return speed, opt.given(options, "acceleration", "angular_acceleration") or 0.0
 
 
 def _width(pair: str) -> tuple[str, float]:

@@ -63,7 +63,7 @@ class Workers:
             for number, item in queue:
                 yield number, work(self._subject, item)
             return
-        submit = self._executor.submit
+        submit: Any = self._executor.submit
         given: tuple[Any, ...] = (_call, self._sent, work)
         if self._sent is None:
             given = (work, self._subject)

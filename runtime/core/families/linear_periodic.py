@@ -383,7 +383,7 @@ class LinearPeriodic:
             terms=self.terms + terms,
             parameters={**self.parameters, **extra},
             scales=merged if extra else self.scales,
-            **self._remade(methodcaller("with_terms", *terms, scales=extra)),
+            **self.remade(methodcaller("with_terms", *terms, scales=extra)),
         )
 
     def with_changed_terms(self, change: Callable[[Term], Term]) -> LinearPeriodic:
@@ -401,7 +401,7 @@ class LinearPeriodic:
         return replace(
             self,
             terms=tuple(change(term) for term in self.terms),
-            **self._remade(methodcaller("with_changed_terms", change)),
+            **self.remade(methodcaller("with_changed_terms", change)),
         )
 
     def without(self, *arrays: str) -> LinearPeriodic:
@@ -409,11 +409,17 @@ class LinearPeriodic:
         return replace(
             self,
             terms=tuple(term for term in self.terms if term.array not in arrays),
-            **self._remade(methodcaller("without", *arrays)),
+            **self.remade(methodcaller("without", *arrays)),
         )
 
-    def _remade(self, change: Callable[[LinearPeriodic], LinearPeriodic]) -> dict[str, Any]:
-        """Return what makes the system anew, and changes it then as this one is changed."""
+    def remade(self, change: Callable[[LinearPeriodic], LinearPeriodic]) -> dict[str, Any]:
+        """Return ``rebuild`` and ``remesh`` of the system that a change makes of this one.
+
+        Parameters
+        ----------
+        change : callable
+            From this system, or one made anew of another geometry or mesh, to the changed one.
+        """
         makers = {"rebuild": self.rebuild, "remesh": self.remesh}
         return {
             name: None if make is None else partial(_made_then, make, change)

@@ -308,17 +308,9 @@ def _known() -> dict[str, tuple[Path, Entry]]:
 
 
 def read_cost(path: Path) -> EmittedUse:
-    """Read the cost of an emitted module from its header: nothing of it is imported or run.
+    """Read the cost of an emitted module from the header of its file; refuse any other file.
 
-    Parameters
-    ----------
-    path : Path
-        Of the ``.py`` file.
-
-    Raises
-    ------
-    BadInput
-        If it is no emitted module.
+    Nothing of it is imported or run.
     """
     content = path.read_bytes()
     header = content.decode().partition('"""')[2].partition('"""')[0]

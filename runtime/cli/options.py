@@ -163,22 +163,11 @@ def finish(
     more: Mapping[str, Any] | None = None,
     beside: Sequence[Result] = (),
 ) -> int:
-    """Write what was requested and return the exit status: 1 where a self-check failed.
+    """Write a result as requested and return the exit status: 1 where a self-check failed.
 
-    Parameters
-    ----------
-    options : Namespace
-        With ``json`` and ``plot``.
-    result : Result
-        What was found.
-    lines : sequence of str
-        The same for people; the error and the checks are added.
-    draw : callable, optional
-        Draws into axes; ``result.plot`` by default.
-    more : mapping of str, optional
-        What the JSON holds beside the result.
-    beside : sequence of Result
-        Other results whose self-checks count too.
+    The ``lines`` say the same for people, to which the error and the checks are added; the picture
+    is ``result.plot`` where nothing else draws; the JSON holds ``more`` beside the result; and the
+    self-checks of the results ``beside`` count too.
     """
     draw_into(options, draw or result.plot)
     checks = dict(result.checks)

@@ -330,12 +330,9 @@ def _netcdf(result: Result) -> bytes:
 
 
 def provenance(extra: Mapping[str, str] | None = None) -> dict[str, str]:
-    """Return the provenance of a result: what is known of its input, and the versions in use.
+    """Return the provenance of a result: the versions in use, and what is known of its input.
 
-    Parameters
-    ----------
-    extra : mapping of str to str, optional
-        Scene, module hash, changed parameters, lengths.
+    That is ``extra``: scene, module hash, changed parameters, lengths.
     """
     from ... import __version__
 

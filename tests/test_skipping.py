@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from elastolink.derive.spec import read_manifest
 from elastolink.runtime import recovery
-from elastolink.runtime.cli.skipping import read_cost
+from elastolink.runtime.cli.explanation import read_cost
 from elastolink.runtime.rigid import evaluation, forces
 from elastolink.runtime.systems import assembly
 
@@ -36,12 +36,12 @@ PARTS = {
 
 def test_a_function_of_a_module_costs_less_than_the_module():
     for name, cost in COSTS.items():
-        busy = {function: n for function, n in cost.operations.items() if n}
-        assert len(busy) < 2 or max(busy.values()) < cost.total, name
+        busy = {function: n for function, n in cost.functions.items() if n}
+        assert len(busy) < 2 or max(busy.values()) < cost.operations, name
         for whole, parts in PARTS.items():
             for part in parts:
-                if whole in cost.operations and part in cost.operations:
-                    assert cost.operations[part] < cost.operations[whole], (name, part)
+                if whole in cost.functions and part in cost.functions:
+                    assert cost.functions[part] < cost.functions[whole], (name, part)
 
 
 MEASURE = """
@@ -97,7 +97,7 @@ def counted(monkeypatch):
 
 
 def operations(calls):
-    return sum(COSTS[module].operations[name] * n for (module, name), n in calls.items())
+    return sum(COSTS[module].functions[name] * n for (module, name), n in calls.items())
 
 
 @pytest.mark.parametrize("acceleration", [0.0, 3.0])
@@ -155,7 +155,7 @@ QUESTIONS = {
 def test_a_question_evaluates_the_functions_that_it_needs_alone(question, monkeypatch):
     """Stability takes no forcing; a constant speed, nothing of the crank's acceleration."""
     system = el.load_scene(RIG, {"coupler.damping_ratio": 0.01}).system()
-    kernels = {name for name in COSTS[FAMILY].operations if name.endswith("_functions")}
+    kernels = {name for name in COSTS[FAMILY].functions if name.endswith("_functions")}
     assert kernels > QUESTIONS[question] | {"acceleration_functions"}
     calls = _Calls(monkeypatch)
     if question == "stability_chart":

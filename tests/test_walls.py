@@ -248,15 +248,3 @@ def test_emitted_modules_load_with_everything_but_numpy_blocked():
     alone = [path.stem for path in plain if path.stem != "__init__"]
     assert python(code, *alone) == "[]\n"
     assert python(code, *names) == "['numpy']\n"
-
-
-def test_importing_elastolink_loads_nothing_of_weight():
-    code = (
-        "import sys, elastolink as el\n"
-        "heavy = 'numpy scipy sympy jinja2 matplotlib pint tqdm mpmath xarray'.split()\n"
-        "print([name for name in heavy if name in sys.modules])\n"
-        "el.load_scene('mathieu').system(), el.FourBar, el.simulate, el.stability_chart\n"
-        "print([name for name in heavy if name in sys.modules])\n"
-    )
-    alone, used = map(ast.literal_eval, python(code).splitlines())
-    assert alone == [] and set(used) <= {"numpy", "scipy"}

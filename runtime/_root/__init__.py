@@ -55,7 +55,7 @@ _PUBLIC = {
     "discriminant": "hill",
     "driving_torque": "rigid",
     "dynamic_stiffness": "frequencies",
-    "explain": "cli.skipping",
+    "explain": "cli.explanation",
     "fatigue": "design",
     "floquet_multipliers": "periodic",
     "flywheel_inertia": "rigid",

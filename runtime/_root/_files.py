@@ -11,19 +11,9 @@ from typing import BinaryIO
 
 
 def write_whole(path: Path, content: bytes) -> Path:
-    """Write a file beside its final place and move it there in one step.
+    """Write a file beside its final place and move it there in one step, over an older one.
 
-    Parameters
-    ----------
-    path : Path
-        Final place; an older file there is replaced.
-    content : bytes
-        All of the file.
-
-    Raises
-    ------
-    OSError
-        If the folder does not exist or cannot be written; nothing is left behind.
+    An OSError, where the folder does not exist or cannot be written, leaves nothing behind.
     """
     with whole_file(path) as stream:
         stream.write(content)
@@ -32,18 +22,7 @@ def write_whole(path: Path, content: bytes) -> Path:
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[BinaryIO]:
-    """Open a file beside its final place; what was written moves there when the block ends well.
-
-    Parameters
-    ----------
-    path : Path
-        Final place; an older file there is replaced.
-
-    Raises
-    ------
-    OSError
-        If the folder does not exist or cannot be written; nothing is left behind.
-    """
+    """Open a file beside its final place; what was written moves there when the block ends well."""
     handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:
         with os.fdopen(handle, "wb") as stream:

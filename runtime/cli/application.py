@@ -93,13 +93,7 @@ def build_parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command and return its exit status.
-
-    Parameters
-    ----------
-    arguments : sequence of str, optional
-        Command line without the program's name; ``sys.argv`` by default.
-    """
+    """Run a command line, ``sys.argv`` by default, and return the exit status."""
     options = build_parser().parse_args(arguments)
     prefix = f"elastolink {options.command}"
     use_one_thread()

@@ -83,34 +83,29 @@ def _balance(options: argparse.Namespace) -> int:
         raise bad("--case", "--trade-off beside it", "one of the two", "leave one out")
     _refuse_unused(options)
     scene = opt.load(options)
-    drive, machine = drive_of(options, scene), scene.machine()
-    if not any(drive):
+    (speed, acceleration), machine = drive_of(options, scene), scene.machine()
+    if speed == acceleration == 0.0:
         fix = "give --speed or --acceleration"
         raise bad("--speed", "a crank at rest", "a speed or an acceleration", fix)
-    offset = _size(options.offset, "length", "--offset")
-    mass = _size(options.mass, "mass", "--mass")
-    if options.case is not None:
-        return _case(options, machine, drive, offset)
+    offset = _size(options, "offset", "length")
+    mass = _size(options, "mass", "mass")
 
-    from ..rigid import Bounds
+    from ..rigid import Bounds, balance
 
-    bounds = Bounds(mass=mass, offset=offset)
-    links = None if options.links is None else [name.strip() for name in options.links.split(",")]
-    if options.trade_off is not None:
-        return _trade_off(options, machine, drive, {"links": links, "bounds": bounds}, offset)
-
-    from ..rigid import balance
-
-    found = balance(
-        machine,
-        drive[0],
-        acceleration=drive[1],
-        weights=_pairs(options.weights, "--weights"),
-        limits=_pairs(options.limits, "--limits"),
-        links=links,
-        bounds=bounds,
-        measure=options.measure or "peak",
-    )
+    given: dict[str, Any] = {"case": options.case, "offsets": offset}
+    if options.case is None:
+        links = None
+        if options.links is not None:
+            links = [name.strip() for name in options.links.split(",")]
+        given = {"links": links, "bounds": Bounds(mass=mass, offset=offset)}
+        if options.trade_off is not None:
+            return _trade_off(
+                options, machine, speed, acceleration=acceleration, offsets=offset, **given
+            )
+        given["weights"] = _pairs(options.weights, "--weights")
+        given["limits"] = _pairs(options.limits, "--limits")
+        given["measure"] = options.measure or "peak"
+    found = balance(machine, speed, acceleration=acceleration, **given)
     return opt.finish(options, found, _lines(found))
 
 
@@ -126,22 +121,7 @@ def _refuse_unused(options: argparse.Namespace) -> None:
         opt.refuse_unused(options, ("points",), "--trade-off beside it")
 
 
-def _case(
-    options: argparse.Namespace, machine: Machine, drive: tuple[float, float], offset: float | None
-) -> int:
-    from ..rigid import balance
-
-    found = balance(machine, drive[0], acceleration=drive[1], case=options.case, offsets=offset)
-    return opt.finish(options, found, _lines(found))
-
-
-def _trade_off(
-    options: argparse.Namespace,
-    machine: Machine,
-    drive: tuple[float, float],
-    where: dict[str, Any],
-    offset: float | None,
-) -> int:
+def _trade_off(options: argparse.Namespace, machine: Machine, speed: float, **given: Any) -> int:
     names = [name.strip() for name in options.trade_off.split(",")]
     if len(names) != 2:
         fix = "write --trade-off shaking_force,torque"
@@ -150,9 +130,7 @@ def _trade_off(
 
     first, second = names
     points = _POINTS if options.points is None else options.points
-    curve = trade_off(
-        *(machine, drive[0], first, second, points), acceleration=drive[1], offsets=offset, **where
-    )
+    curve = trade_off(machine, speed, first, second, points, **given)
     lines = opt.columns((first, ".6f", curve.first_values), (second, ".6f", curve.second_values))
     rows = [(f"({name})", f"{x:.6f}", f"{y:.6f}") for name, (x, y) in curve.cases.items()]
     lines += ["", *opt.table(("case", first, second), rows), ""]
@@ -187,12 +165,11 @@ def _lines(found: Balancing) -> list[str]:
     return lines
 
 
-def _size(text: str | None, dimension: str, where: str) -> float | None:
-    if text is None:
-        return None
-    value = opt.quantity(text, dimension, where)
-    if not value > 0.0:
-        raise bad(where, repr(text), "a positive quantity", "correct the sign")
+def _size(options: argparse.Namespace, name: str, dimension: str) -> float | None:
+    value = opt.given(options, name, dimension)
+    if value is not None and not value > 0.0:
+        text = repr(getattr(options, name))
+        raise bad(f"--{name}", text, "a positive quantity", "correct the sign")
     return value
 
 

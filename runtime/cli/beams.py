@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ...derive.spec import BEAM_FORMULATIONS
 from ..core.errors import bad
 from . import options as opt
-from .linkages import refuse_frame, speed_of
+from .linkages import refuse_frame, speed_of, speed_range
 
 if TYPE_CHECKING:
     from ..core.families import LinearPeriodic
@@ -99,21 +99,6 @@ def _range_option(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _speeds(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
-    """Return the range of speeds [rad/s]: the option, or that of the scene."""
-    if options.range is None:
-        found = scene.get("operation.speed_range", None)
-        if found is None:
-            raise bad("--range", "nothing", "LOW:HIGH", "give --range 5:70")
-        return float(found[0]), float(found[1])
-    if options.range.count(":") != 1:
-        raise bad("--range", repr(options.range), "LOW:HIGH", "write it like 5:70")
-    low, high = opt.values(f"{options.range}:2", "frequency", "--range")
-    if low <= 0:
-        raise bad("--range", repr(options.range), "positive speeds", "raise the lower end")
-    return low, high
-
-
 def _of_beams(options: argparse.Namespace, *, moving: bool = False) -> tuple[Scene, LinearPeriodic]:
     """Return the scene and its system, refused where the links are no beams."""
     scene = opt.load(options)
@@ -163,7 +148,7 @@ def _critical(options: argparse.Namespace) -> int:
 
     scene = opt.load(options)
     refuse_frame(scene)
-    speeds = _speeds(options, scene)
+    speeds = speed_range(options.range, scene, "--range")
     system = scene.linear_system()
     found = critical_speeds(system, speeds, method=options.method, progress=opt.progress(options))
     lines = opt.columns(
@@ -182,8 +167,7 @@ def _campbell(options: argparse.Namespace) -> int:
 
     scene = opt.load(options)
     refuse_frame(scene)
-    low, high = _speeds(options, scene)
-    speeds = np.linspace(low, high, 27)
+    speeds = np.linspace(*speed_range(options.range, scene, "--range"), 27)
     found = campbell(scene.linear_system(), speeds, progress=opt.progress(options))
     return opt.finish(options, found, opt.ranges(found))
 
@@ -273,7 +257,8 @@ def _running(options: argparse.Namespace) -> int:
 
     scene, system = _of_beams(options, moving=True)
     limit = _limit(options.limit)
-    found = running_speed(system, _speeds(options, scene), limit, progress=opt.progress(options))
+    speeds = speed_range(options.range, scene, "--range")
+    found = running_speed(system, speeds, limit, progress=opt.progress(options))
     lines = [
         f"running speed: {found.speed:.5g} rad/s, stress over limit {found.band.ratio:.3g}",
         f"quiet from {found.band.low:.5g} to {found.band.high:.5g} rad/s",

@@ -4,24 +4,21 @@ from __future__ import annotations
 
 import argparse
 import re
+from itertools import chain
 from math import pi, sqrt
 from typing import TYPE_CHECKING, Any
 
 from ..core.errors import bad
 from . import options as opt
-from .linkages import speed_of
+from .linkages import speed_of, speed_range
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import numpy as np
-    from numpy.typing import NDArray
-
+    from ..core.families import LinearPeriodic
     from ..core.periodic_function import PeriodicFunction
     from ..hill import Boundaries, BoundarySeries, HillForm, PerturbationBoundaries
     from ..scenes import Scene
-
-    Array = NDArray[np.float64]
 
 _REGIONS = "1:4"
 _HIGHEST = 8
@@ -126,33 +123,37 @@ def _regions(given: str | None) -> tuple[int, ...]:
 def _boundaries(options: argparse.Namespace) -> int:
     regions = _regions(options.regions)
     scene = opt.load(options)
+    from ..hill.form import hill_form, is_hill
+
     if scene.model["mechanism"] == "hill":
         opt.refuse_unused(options, ("speed",), "a scene of a linkage")
-        return _of_hill(options, scene, regions)
-    return _of_linkage(options, scene, regions)
+        return _of_hill(options, scene, hill_form(scene.linear_system()), regions)
+    opt.refuse_unused(options, ("mu",), "a scene of Hill's equation")
+    system = scene.linear_system()
+    if is_hill(system):
+        form = hill_form(system)
+        if not form.elastic and form.damping() == 0.0 and options.speed is None:
+            return _of_mode(options, form, regions)
+    unused = ("regions", "order", "certified")
+    opt.refuse_unused(options, unused, "one undamped mode, and no range of speeds")
+    return _of_modes(options, system, speed_range(options.speed, scene, "--speed"))
 
 
-def _of_hill(options: argparse.Namespace, scene: Scene, regions: tuple[int, ...]) -> int:
-    import numpy as np
-
-    from ..hill import hill_form
-
-    form = hill_form(scene.linear_system())
-    f = form.function(1.0, mu=1.0)
+def _of_hill(
+    options: argparse.Namespace, scene: Scene, form: HillForm, regions: tuple[int, ...]
+) -> int:
+    """Boundaries in lam2 at the values of mu: a row for each of their ends."""
     mu = _values(options.mu) if options.mu is not None else [float(scene["parameters"]["mu"])]
     damping = 0.5 * form.damping()
-    exact, others = _solved(options, f, np.array(mu), regions, damping)
-    rows = []
-    for i, n in enumerate(regions):
-        for j in _shown(len(mu)):
-            cells = [_number(item) for one in (exact, *others) for item in _ends(one, i, j)]
-            rows.append((str(n), f"{mu[j]:g}", *cells))
-    header = ["region", "mu", "lam2 from", "to"]
-    if others:
-        header += [f"order {options.order} from", "to"]
-    lines = opt.table(header, rows)
-    lines += _remarks(others)
-    if len(mu) > len(_shown(len(mu))):
+    exact, others = _solved(options, form.function(1.0, mu=1.0), mu, regions, damping)
+    shown = (0,) if len(mu) == 1 else (0, len(mu) - 1)
+    rows = [
+        (str(n), f"{mu[j]:g}", *map(_number, chain(*_ends(exact, others, i, j))))
+        for i, n in enumerate(regions)
+        for j in shown
+    ]
+    lines = _table(options, ("region", "mu", "lam2 from", "to"), rows, others)
+    if len(mu) > len(shown):
         lines.append(f"(the ends of {len(mu)} values of mu; --json gives all)")
 
     def draw(ax: Any) -> None:
@@ -162,47 +163,38 @@ def _of_hill(options: argparse.Namespace, scene: Scene, regions: tuple[int, ...]
                 ax.plot(low, one.mu, "k--", lw=0.9)
                 ax.plot(high, one.mu, "k--", lw=0.9)
 
+    return opt.finish(options, exact, lines, draw, more=_perturbation(others))
+
+
+def _of_mode(options: argparse.Namespace, form: HillForm, regions: tuple[int, ...]) -> int:
+    """Boundaries in crank speed of the only mode, without damping."""
+    frequency = sqrt(form.stiffness())
+    exact, others = _solved(options, form.function(1.0), [1.0], regions, 0.0)
+    # A region without a lower end in lam2 has no upper end in speed.
+    rows = [
+        (str(n), *(_speed(frequency, x) for pair in _ends(exact, others, i, 0) for x in pair[::-1]))
+        for i, n in enumerate(regions)
+    ]
     return opt.finish(
-        options, exact, lines, draw, more={"perturbation": [one.to_dict() for one in others]}
-    )
-
-
-def _solved(
-    options: argparse.Namespace,
-    f: PeriodicFunction,
-    mu: Array,
-    regions: tuple[int, ...],
-    damping: float,
-) -> tuple[Boundaries, list[PerturbationBoundaries]]:
-    """Return the exact boundaries, and those by perturbation where they are wanted."""
-    from ..hill import hill_boundaries, perturbation_boundaries
-
-    more: dict[str, Any] = {"certified": True} if options.certified else {}
-    exact = hill_boundaries(f, mu, regions, damping=damping, **more)
-    if options.order is None:
-        return exact, []
-    return exact, [perturbation_boundaries(f, mu, regions, order=options.order, damping=damping)]
-
-
-def _of_linkage(options: argparse.Namespace, scene: Scene, regions: tuple[int, ...]) -> int:
-    """Boundaries in crank speed: of the regions of one mode, or of all modes in a range."""
-    opt.refuse_unused(options, ("mu",), "a scene of Hill's equation")
-    from ..hill.form import hill_form, is_hill
-
-    system = scene.linear_system()
-    if is_hill(system):
-        form = hill_form(system)
-        if not form.elastic and form.damping() == 0.0 and options.speed is None:
-            return _of_mode(options, form, regions)
-    opt.refuse_unused(
         options,
-        ("regions", "order", "certified"),
-        "one undamped mode, and no range of speeds",
+        exact,
+        [
+            f"natural frequency {_speed(frequency, 1.0)}; crank speeds:",
+            "",
+            *_table(options, ("region", "from", "to"), rows, others),
+        ],
+        lambda ax: _bars(ax, exact, frequency),
+        more={"natural_frequency": frequency, **_perturbation(others)},
     )
+
+
+def _of_modes(
+    options: argparse.Namespace, system: LinearPeriodic, speeds: tuple[float, float]
+) -> int:
+    """Boundaries in crank speed of all modes in a range."""
     from ..stability import stability_edges
 
-    low, high = _speeds(options, scene)
-    edges = stability_edges(system, (low, high))
+    edges = stability_edges(system, speeds)
     rows = [
         (f"{label} ?" if doubtful else label, _rpm(first), _rpm(last), _rpm(last - first, 3))
         for label, doubtful, first, last, error in zip(
@@ -219,54 +211,47 @@ def _of_linkage(options: argparse.Namespace, scene: Scene, regions: tuple[int, .
     return opt.finish(options, edges, lines)
 
 
-def _speeds(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
-    """Return the range of crank speeds, of the option or of the scene."""
-    if options.speed is None:
-        span = scene.get("operation.speed_range", None)
-        if span is None:
-            raise bad("--speed", "nothing", "a range of speeds", "give --speed LOW:HIGH")
-        return float(span[0]), float(span[1])
-    ends = [opt.quantity(part, "frequency", "--speed") for part in options.speed.split(":")]
-    if len(ends) != 2 or not 0.0 < ends[0] < ends[1]:
-        raise bad(
-            "--speed", repr(options.speed), "two rising speeds", "write it like 300rpm:900rpm"
+def _solved(
+    options: argparse.Namespace,
+    f: PeriodicFunction,
+    mu: Sequence[float],
+    regions: tuple[int, ...],
+    damping: float,
+) -> tuple[Boundaries, list[PerturbationBoundaries]]:
+    """Return the exact boundaries, and those by perturbation where they are wanted."""
+    from ..hill import hill_boundaries, perturbation_boundaries
+
+    more: dict[str, Any] = {"certified": True} if options.certified else {}
+    exact = hill_boundaries(f, mu, regions, damping=damping, **more)
+    if options.order is None:
+        return exact, []
+    return exact, [perturbation_boundaries(f, mu, regions, order=options.order, damping=damping)]
+
+
+def _ends(
+    exact: Boundaries, others: Sequence[PerturbationBoundaries], i: int, j: int
+) -> list[tuple[float, float]]:
+    return [(float(one.lower[i, j]), float(one.upper[i, j])) for one in (exact, *others)]
+
+
+def _table(
+    options: argparse.Namespace,
+    header: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    others: Sequence[PerturbationBoundaries],
+) -> list[str]:
+    """Return a table of ends, and why there is no number where the perturbation gives none."""
+    more = (f"order {options.order} from", "to") if others else ()
+    lines = opt.table((*header, *more), rows)
+    if any(one.outside.any() for one in others):
+        lines.append(
+            "no number of the perturbation: outside the range in which its orders converge"
         )
-    return ends[0], ends[1]
+    return lines
 
 
-def _of_mode(options: argparse.Namespace, form: HillForm, regions: tuple[int, ...]) -> int:
-    """Boundaries in crank speed of the only mode, without damping."""
-    import numpy as np
-
-    frequency = float(np.sqrt(form.stiffness()))
-    exact, others = _solved(options, form.function(1.0), np.array([1.0]), regions, 0.0)
-    rows = []
-    for i, n in enumerate(regions):
-        cells = []
-        for one in (exact, *others):
-            low, high = _ends(one, i, 0)
-            # A region without a lower end in lam2 has no upper end in speed.
-            cells += [_speed(frequency, high), _speed(frequency, low)]
-        rows.append((str(n), *cells))
-    header = ["region", "from", "to"]
-    if others:
-        header += [f"order {options.order} from", "to"]
-    lines = [f"natural frequency {_speed(frequency, 1.0)}; crank speeds:", ""]
-    lines += [*opt.table(header, rows), *_remarks(others)]
-    return opt.finish(
-        options,
-        exact,
-        lines,
-        lambda ax: _bars(ax, exact, frequency),
-        more={"natural_frequency": frequency, "perturbation": [one.to_dict() for one in others]},
-    )
-
-
-def _remarks(others: Sequence[PerturbationBoundaries]) -> list[str]:
-    """Say why there is no number where the perturbation gives none."""
-    if not any(one.outside.any() for one in others):
-        return []
-    return ["no number of the perturbation: outside the range in which its orders converge"]
+def _perturbation(others: Sequence[PerturbationBoundaries]) -> dict[str, Any]:
+    return {"perturbation": [one.to_dict() for one in others]}
 
 
 def _bars(ax: Any, exact: Boundaries, frequency: float) -> None:
@@ -374,14 +359,6 @@ def _values(text: str) -> list[float]:
     if ":" in text:
         return opt.values(text, "dimensionless", "--mu")
     return [opt.quantity(text, "dimensionless", "--mu")]
-
-
-def _shown(count: int) -> Sequence[int]:
-    return (0,) if count == 1 else (0, count - 1)
-
-
-def _ends(one: Boundaries, i: int, j: int) -> tuple[float, float]:
-    return float(one.lower[i, j]), float(one.upper[i, j])
 
 
 def _number(value: float) -> str:

@@ -46,11 +46,8 @@ def stability(options: argparse.Namespace, scene: Scene) -> int:
     if not orbit.converged:
         return opt.finish(options, orbit, [f"no periodic motion: {orbit.message}"])
     result = orbit_multipliers(orbit)
-    rows = [
-        (f"{value.real:+.9f} {value.imag:+.9f}i", f"{abs(value):.9f}") for value in result.physical
-    ]
     lines = [
-        *opt.table(("physical multiplier", "modulus"), rows),
+        *opt.multipliers("physical multiplier", result.physical),
         "",
         f"{_verdict(orbit, result)}; largest deflection {orbit.deflection:.3g} of the "
         f"length; {len(result.others)} more multipliers belong to the constraints and are 1",

@@ -55,7 +55,7 @@ def _run_up(options: argparse.Namespace) -> int:
     scene = opt.load(options)
     machine = scene.machine()
     torque = _torque(options, scene)
-    duration = _given(options, "duration", "time")
+    duration = opt.given(options, "duration", "time")
     revolutions = options.revolutions
     if revolutions is None and duration is None:
         revolutions = _REVOLUTIONS
@@ -64,26 +64,20 @@ def _run_up(options: argparse.Namespace) -> int:
         torque,
         revolutions=revolutions,
         duration=duration,
-        speed0=_given(options, "start-speed", "frequency") or 0.0,
-        theta0=_given(options, "start-angle", "angle") or 0.0,
+        speed0=opt.given(options, "start-speed", "frequency") or 0.0,
+        theta0=opt.given(options, "start-angle", "angle") or 0.0,
         flywheel=float(scene.get("motor.flywheel", 0.0)),
     )
     return opt.finish(options, found, _lines(found))
-
-
-def _given(options: argparse.Namespace, name: str, dimension: str) -> float | None:
-    """Return the quantity of an option in SI units, or None."""
-    text = getattr(options, name.replace("-", "_"))
-    return None if text is None else opt.quantity(text, dimension, f"--{name}")
 
 
 def _torque(options: argparse.Namespace, scene: Scene) -> TorqueLine | float:
     """Return what drives: the constant torque, or the torque line of options and scene."""
     from ..rigid import TorqueLine
 
-    constant = _given(options, "torque", "moment")
-    stall = _given(options, "stall-torque", "moment")
-    free = _given(options, "no-load-speed", "frequency")
+    constant = opt.given(options, "torque", "moment")
+    stall = opt.given(options, "stall-torque", "moment")
+    free = opt.given(options, "no-load-speed", "frequency")
     if constant is not None:
         if stall is not None or free is not None:
             found = "a constant torque and a torque line"

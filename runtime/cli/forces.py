@@ -101,19 +101,15 @@ def _evenness(
     """Return mean torque, energy fluctuation and flywheel in lines, in numbers, as results."""
     from ..rigid import flywheel_inertia, torque_fluctuation
 
-    for lacking, words, expected, fix in (
-        (
-            not machine.linkage.crank_turns,
-            "a crank that does not turn fully",
-            "one that does",
-            "change a length",
-        ),
-        (speed == 0.0, "a crank without speed", "one that runs", "give --speed"),
-    ):
-        if lacking and wanted is not None:
-            raise bad("--fluctuation", words, expected, fix)
-        if lacking:
-            return [f"{words}: no mean torque over a revolution"], {}, ()
+    lacking = None
+    if not machine.linkage.crank_turns:
+        lacking = "a crank that does not turn fully", "one that does", "change a length"
+    elif speed == 0.0:
+        lacking = "a crank without speed", "one that runs", "give --speed"
+    if lacking and wanted is not None:
+        raise bad("--fluctuation", *lacking)
+    if lacking:
+        return [f"{lacking[0]}: no mean torque over a revolution"], {}, ()
     steady = torque_fluctuation(machine, speed)
     size = float(abs(steady.torque).max())
     # Round-off of a mean that is zero reads as zero.

@@ -51,11 +51,7 @@ def add(commands: Any) -> None:
             " --revolutions 3 --method DOP853 --plot wave.png"
         ),
     )
-    simulate.add_argument(
-        "--speed",
-        metavar="SPEED",
-        help="crank speed, e.g. '195 rpm', rad/s without a unit; default operation.speed",
-    )
+    speed_option(simulate, "default operation.speed")
     simulate.add_argument(
         "--revolutions", type=float, default=2.0, metavar="N", help="default %(default)s"
     )
@@ -141,18 +137,24 @@ def angles_of(options: argparse.Namespace, linkage: Linkage, *, margin: float) -
     return opt.spaced(low + inset, high - inset, 721)
 
 
-def drive_options(parser: argparse.ArgumentParser, default: str) -> None:
-    """Add crank speed and acceleration; ``default`` says what holds without a speed."""
+def speed_option(parser: argparse.ArgumentParser, default: str) -> None:
+    """Add the crank speed; ``default`` says what holds without it."""
     parser.add_argument(
         "--speed",
         metavar="SPEED",
         help=f"crank speed, e.g. '195 rpm', rad/s without a unit; {default}",
     )
+
+
+def drive_options(
+    parser: argparse.ArgumentParser, default: str, rest: str = "operation.acceleration"
+) -> None:
+    """Add crank speed and acceleration; ``default`` and ``rest`` say what holds without them."""
+    speed_option(parser, default)
     parser.add_argument(
         "--acceleration",
         metavar="ALPHA",
-        help="crank acceleration, e.g. '25 rad/s**2', the unit of a plain number; default"
-        " operation.acceleration",
+        help=f"crank acceleration, e.g. '25 rad/s**2', the unit of a plain number; default {rest}",
     )
 
 
@@ -161,11 +163,9 @@ def drive_of(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
 
     Both may have either sign, or be zero.
     """
-    if options.acceleration is None:
+    acceleration = opt.given(options, "acceleration", "angular_acceleration")
+    if acceleration is None:
         acceleration = float(scene.get("operation.acceleration", 0.0))
-    else:
-        where = "--acceleration"
-        acceleration = opt.quantity(options.acceleration, "angular_acceleration", where)
     return _speed(options, scene), acceleration
 
 
@@ -177,6 +177,29 @@ def speed_of(options: argparse.Namespace, scene: Scene) -> float:
     return speed
 
 
+def speeds_of(options: argparse.Namespace, scene: Scene) -> list[float]:
+    """Return the crank speeds [rad/s] of ``--speed``: many, one, or that of the scene."""
+    if options.speed is None or ":" not in options.speed:
+        return [speed_of(options, scene)]
+    speeds = opt.values(options.speed, "frequency", "--speed")
+    if speeds[0] <= 0:
+        raise bad("--speed", repr(options.speed), "positive speeds", "raise the lower end")
+    return speeds
+
+
+def speed_range(text: str | None, scene: Scene, where: str) -> tuple[float, float]:
+    """Return a range of crank speeds [rad/s]: the option's, or ``operation.speed_range``."""
+    if text is None:
+        span = scene.get("operation.speed_range", None)
+        if span is None:
+            raise bad(where, "nothing", "a range of speeds", f"give {where} LOW:HIGH")
+        return float(span[0]), float(span[1])
+    ends = [opt.quantity(part, "frequency", where) for part in text.split(":")]
+    if len(ends) != 2 or not 0.0 < ends[0] < ends[1]:
+        raise bad(where, repr(text), "two rising speeds", "write it like 300rpm:900rpm")
+    return ends[0], ends[1]
+
+
 def refuse_frame(scene: Scene) -> None:
     """Refuse a scene without a crank."""
     if scene.model["mechanism"] == "frame":
@@ -185,9 +208,9 @@ def refuse_frame(scene: Scene) -> None:
 
 
 def _speed(options: argparse.Namespace, scene: Scene) -> float:
-    if options.speed is not None:
-        return opt.quantity(options.speed, "frequency", "--speed")
-    speed = scene.get("operation.speed", None)
+    speed = opt.given(options, "speed", "frequency")
+    if speed is None:
+        speed = scene.get("operation.speed", None)
     if speed is None:
         raise bad("--speed", "nothing", "a crank speed", "give --speed '500 rpm'")
     return float(speed)

@@ -106,6 +106,12 @@ def quantity(text: str, dimension: str, where: str) -> float:
     return to_si(text, dimension, where)
 
 
+def given(options: argparse.Namespace, name: str, dimension: str) -> float | None:
+    """Return the quantity of an option in SI units; None where it was not given."""
+    text = getattr(options, name.replace("-", "_"))
+    return None if text is None else quantity(text, dimension, f"--{name}")
+
+
 def values(text: str, dimension: str, where: str) -> list[float]:
     """Return evenly spaced values from ``START:STOP:COUNT[UNIT]``.
 
@@ -157,22 +163,11 @@ def finish(
     more: Mapping[str, Any] | None = None,
     beside: Sequence[Result] = (),
 ) -> int:
-    """Write what was requested and return the exit status: 1 where a self-check failed.
+    """Write a result as requested and return the exit status: 1 where a self-check failed.
 
-    Parameters
-    ----------
-    options : Namespace
-        With ``json`` and ``plot``.
-    result : Result
-        What was found.
-    lines : sequence of str
-        The same for people; the error and the checks are added.
-    draw : callable, optional
-        Draws into axes; ``result.plot`` by default.
-    more : mapping of str, optional
-        What the JSON holds beside the result.
-    beside : sequence of Result
-        Other results whose self-checks count too.
+    The ``lines`` say the same for people, to which the error and the checks are added; the picture
+    is ``result.plot`` where nothing else draws; the JSON holds ``more`` beside the result; and the
+    self-checks of the results ``beside`` count too.
     """
     draw_into(options, draw or result.plot)
     checks = dict(result.checks)
@@ -234,14 +229,6 @@ def progress(options: argparse.Namespace) -> bool:
     return sys.stderr.isatty() and not options.json
 
 
-def crank_speeds(text: str) -> list[float]:
-    """Return a range of positive crank speeds [rad/s] as ``--speed`` takes it."""
-    speeds = values(text, "frequency", "--speed")
-    if speeds[0] <= 0:
-        raise bad("--speed", repr(text), "positive speeds", "raise the lower end")
-    return speeds
-
-
 def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     """Return the lines of a table, columns aligned, the first to the left."""
     columns = list(zip(header, *rows, strict=True))
@@ -259,6 +246,12 @@ def columns(*columns: tuple[str, str, Iterable[Any]]) -> list[str]:
     header = [heading for heading, _, _ in columns]
     cells = ([format(value, form) for value in values] for _, form, values in columns)
     return table(header, list(zip(*cells, strict=True)))
+
+
+def multipliers(heading: str, values: Iterable[complex]) -> list[str]:
+    """Return the lines of a table of Floquet multipliers, with their moduli."""
+    rows = [(f"{value.real:+.9f} {value.imag:+.9f}i", f"{abs(value):.9f}") for value in values]
+    return table((heading, "modulus"), rows)
 
 
 def ranges(result: Result) -> list[str]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..core.errors import bad
 from . import options as opt
-from .linkages import refuse_frame, speed_of
+from .linkages import refuse_frame, speeds_of
 
 if TYPE_CHECKING:
     from ..core.families import Array, LinearPeriodic
@@ -52,14 +52,11 @@ def _steady_state(options: argparse.Namespace) -> int:
         raise bad("--at", f"{options.at:g}", "a place from 0 to 1", "divide by the length")
     scene = opt.load(options)
     refuse_frame(scene)
-    if options.speed is not None and ":" in options.speed:
-        speeds = opt.crank_speeds(options.speed)
-    else:
-        speeds = [speed_of(options, scene)]
+    speeds = np.array(speeds_of(options, scene))
     system = scene.linear_system()
     if system.structure is not None:
-        return _of_beams(options, system, np.array(speeds))
-    result = _solved(options, system, np.array(speeds))
+        return _of_beams(options, system, speeds)
+    result = _solved(options, system, speeds)
     places = np.linspace(0.0, 1.0, 41) if options.at is None else np.array([options.at])
     reached = result.peak(places)
     largest, place = np.max(reached, axis=1), places[np.argmax(reached, axis=1)]

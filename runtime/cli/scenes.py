@@ -79,7 +79,7 @@ def _show(options: argparse.Namespace) -> int:
 
 
 def _explain(options: argparse.Namespace) -> int:
-    from .skipping import explain
+    from .explanation import explain
 
     result = explain(options.scene, opt.settings(options.set))
     return opt.finish(options, result, result.lines())

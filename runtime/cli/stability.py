@@ -1,21 +1,30 @@
-"""``elastolink stability`` and ``elastolink chart``: where the motion is stable."""
+"""``elastolink stability`` and ``elastolink chart``: where the motion is stable.
+
+Large charts are made by several processes, in pieces that are kept and resumed, and estimated.
+"""
 
 from __future__ import annotations
 
 import argparse
 import math
+from contextlib import AbstractContextManager, nullcontext
 from typing import TYPE_CHECKING, Any
 
 from ..core.errors import bad
-from . import constrained, stored_chart
+from . import constrained
 from . import options as opt
-from .linkages import speed_of
+from .linkages import speed_of, speeds_of
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    from ..core.families import LinearPeriodic
     from ..periodic import FloquetMultipliers
     from ..scenes import Scene
     from ..stability import StabilityChart
+    from ..sweeps.result import AnyArray
 
+Axis = tuple[str, list[float]]
 _POINTS = 201
 
 
@@ -66,7 +75,7 @@ def add(commands: Any) -> None:
         help="crank speed where that is no axis, e.g. '500 rpm', rad/s without a unit; default "
         "operation.speed, 1 without crank",
     )
-    stored_chart.add_options(chart)
+    _scale_options(chart)
     for axis in ("x", "y"):
         chart.add_argument(
             f"--{axis}",
@@ -75,24 +84,35 @@ def add(commands: Any) -> None:
         )
 
 
+def _scale_options(chart: argparse.ArgumentParser) -> None:
+    """Add what concerns large charts to the subcommand."""
+    chart.add_argument(
+        "--workers", metavar="N", help="work in N processes; the answer does not depend on it"
+    )
+    chart.add_argument(
+        "--store",
+        metavar="PATH",
+        help="keep the chart, without boundaries, in this folder or .npz file, piece by piece; the "
+        "same command goes on from there after it was stopped",
+    )
+    chart.add_argument(
+        "--estimate",
+        action="store_true",
+        help="with --store: tell time and memory, and work nothing out",
+    )
+
+
 def _stability(options: argparse.Namespace) -> int:
     scene = opt.load(options)
     if constrained.is_constrained(scene):
         return constrained.stability(options, scene)
-    speeds = _speeds(options, scene)
+    plain = scene.model["mechanism"] == "hill" and options.speed is None
+    speeds = [1.0] if plain else speeds_of(options, scene)
     system = scene.linear_system()
     from ..periodic import floquet_multipliers
 
     result = floquet_multipliers(system, speeds if len(speeds) > 1 else speeds[0])
     return opt.finish(options, result, _multiplier_lines(result, scene))
-
-
-def _speeds(options: argparse.Namespace, scene: Scene) -> list[float]:
-    if scene.model["mechanism"] == "hill" and options.speed is None:
-        return [1.0]
-    if options.speed is not None and ":" in options.speed:
-        return opt.crank_speeds(options.speed)
-    return [speed_of(options, scene)]
 
 
 def _multiplier_lines(result: FloquetMultipliers, scene: Scene) -> list[str]:
@@ -102,11 +122,7 @@ def _multiplier_lines(result: FloquetMultipliers, scene: Scene) -> list[str]:
     multipliers = result.multipliers.reshape(len(speeds), -1)
     stable = np.atleast_1d(result.stable)
     if len(speeds) == 1:
-        rows = [
-            (f"{value.real:+.9f} {value.imag:+.9f}i", f"{abs(value):.9f}")
-            for value in multipliers[0]
-        ]
-        lines = opt.table(("multiplier", "modulus"), rows)
+        lines = opt.multipliers("multiplier", multipliers[0])
         verdict = "stable" if stable[0] else "unstable"
         return [*lines, "", f"{verdict} at {_crank(float(speeds[0]), scene)}"]
     lines = [f"{int(stable.sum())} of {len(speeds)} speeds stable; unstable ones:"]
@@ -127,7 +143,7 @@ def _crank(speed: float, scene: Scene) -> str:
 
 
 def _chart(options: argparse.Namespace) -> int:
-    stored_chart.check(options)
+    count = _check_scale(options)
     scene = opt.load(options)
     system = scene.linear_system()
     x, y = (_axis(getattr(options, axis), axis, scene) for axis in ("x", "y"))
@@ -135,11 +151,11 @@ def _chart(options: argparse.Namespace) -> int:
         raise bad("--y", repr(y[0]), "another parameter than along x", "choose one")
     speed = _fixed_speed(options, scene, (x[0], y[0]))
     if options.store is not None:
-        return stored_chart.run(options, system, x, y, speed)
+        return _stored(options, system, (x, y), speed, count)
     from ..stability import stability_chart
 
     name = "coupler frequency" if tuple(scene.get("model.flexible", ())) == ("coupler",) else None
-    with stored_chart.workers(options) as pool:
+    with _workers(count) as pool:
         chart = stability_chart(
             system,
             x=x,
@@ -174,7 +190,7 @@ def _marks(scene: Scene, y: tuple[str, list[float]]) -> dict[str, tuple[float, .
 def _chart_lines(chart: StabilityChart, scene: Scene) -> list[str]:
     """Return the unstable share, and the ends of each region at the ends of the other axis."""
     names = chart.x_name, chart.y_name
-    first, *lines = stored_chart.shares(names, chart.stable, chart.kind)
+    first, *lines = _shares(names, chart.stable, chart.kind)
     lines = [first, chart.method, *lines]
     if min(chart.nodes) > 0:
         lines.append(f"sampled at {chart.nodes[0]} x {chart.nodes[1]} nodes")
@@ -269,3 +285,73 @@ def _default_axis(axis: str, scene: Scene) -> tuple[str, list[float]]:
         "a parameter and its values",
         f"give --{axis} NAME=START:STOP:COUNT",
     )
+
+
+def _check_scale(options: argparse.Namespace) -> int:
+    """Refuse options that do not go together, and return the number of processes."""
+    count = 1
+    if options.workers is not None:
+        from ..core.workers import check_workers
+
+        text = options.workers.strip()
+        count = check_workers(int(text) if text.isdecimal() else text, "--workers")
+    if options.store is None:
+        opt.refuse_unused(options, ("estimate",), "--store PATH")
+        return count
+    opt.refuse_unused(options, ("edges",), "a chart without --store")
+    if options.order != 1:
+        fix = "leave one of them out"
+        raise bad("--order", options.order, "none beside --store, which has no boundaries", fix)
+    return count
+
+
+def _workers(count: int) -> AbstractContextManager[Executor | None]:
+    """Open as many processes; none for one."""
+    if count == 1:
+        return nullcontext()
+    from ..sweeps import process_pool
+
+    return process_pool(count)
+
+
+def _stored(
+    options: argparse.Namespace,
+    system: LinearPeriodic,
+    axes: tuple[Axis, Axis],
+    speed: float | None,
+    count: int,
+) -> int:
+    """Work out a chart piece by piece, or estimate what that takes."""
+    from ..sweeps import estimate_sweep, sweep
+
+    (x, _), (y, _) = axes
+    what = "stability_chart", system, dict(reversed(axes))
+    fixed = {} if speed is None else {"speed": speed}
+    if options.estimate:
+        found = estimate_sweep(*what, options=fixed, workers=count)
+        if options.json:
+            opt.print_json(vars(found))
+        else:
+            print(found)
+        return 0
+    shown = opt.progress(options)
+    with _workers(count) as pool:
+        chart = sweep(*what, options=fixed, executor=pool, store=options.store, progress=shown)
+    left = 100.0 * float(chart["undecided"].mean())
+    lines = [
+        *_shares((x, y), chart["stable"], chart["kind"]),
+        f"{left:.3g} % undecided",
+        f"{chart.pieces} pieces, {chart.resumed} of them found there, in {chart.store}: "
+        + ", ".join(sorted(chart.outputs)),
+    ]
+    return opt.finish(options, chart, lines)
+
+
+def _shares(names: tuple[str, str], stable: AnyArray, kind: AnyArray) -> list[str]:
+    """Return what share of a chart ``(ny, nx)`` is unstable, and how much of it by combination."""
+    ny, nx = stable.shape
+    unstable, mixed = 100.0 * float((~stable).mean()), 100.0 * float((kind == 2).mean())
+    lines = [f"{names[0]} x {names[1]}: {nx} x {ny} points, {unstable:.3g} % unstable"]
+    if mixed > 0:
+        lines.append(f"{mixed:.3g} % by combination (complex multipliers)")
+    return lines

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..core.errors import bad
 from . import options as opt
-from .linkages import WHOLE_TURN, angles_of, speed_of
+from .linkages import WHOLE_TURN, angles_of, drive_options, speed_of
 
 if TYPE_CHECKING:
     from ..linkages.length_tolerances import Tolerances, ToleranceTrial
@@ -56,16 +56,10 @@ def add(commands: Any) -> None:
         default="fixed",
         help="whether masses stay, or grow with the links as those of bars; default %(default)s",
     )
-    parser.add_argument(
-        "--speed",
-        metavar="SPEED",
-        help="crank speed, e.g. '195 rpm', rad/s without a unit; without it rates are over the "
-        "crank's; default with --forces operation.speed",
-    )
-    parser.add_argument(
-        "--acceleration",
-        metavar="ALPHA",
-        help="crank acceleration, e.g. '25 rad/s**2', the unit of a plain number; default 0",
+    drive_options(
+        parser,
+        "without it rates are over the crank's; default with --forces operation.speed",
+        rest="0",
     )
     parser.add_argument(
         "--monte-carlo",
@@ -107,15 +101,12 @@ def _tolerances(options: argparse.Namespace) -> int:
 
 def _drive(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
     """Return crank speed and acceleration; without either, rates are over the crank's."""
-    speed, acceleration = 1.0, 0.0
+    speed = 1.0
     if options.forces or options.speed is not None:
         speed = speed_of(options, scene)
-    if options.acceleration is not None:
-        where = "--acceleration"
-        if not options.forces and options.speed is None:
-            raise bad(where, "no --speed beside it", "both", "give --speed '500 rpm' too")
-        acceleration = opt.quantity(options.acceleration, "angular_acceleration", where)
-    return speed, acceleration
+    elif options.acceleration is not None:
+        raise bad("--acceleration", "no --speed beside it", "both", "give --speed '500 rpm' too")
+    return speed, opt.given(options, "acceleration", "angular_acceleration") or 0.0
 
 
 def _width(pair: str) -> tuple[str, float]:

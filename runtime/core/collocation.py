@@ -28,28 +28,14 @@ class CollocationTableau:
     together give the order, and what the family adds to them: ``b_i a_ij + b_j a_ji = b_i b_j`` of
     the symplectic Gauss methods, a last stage that is the step itself of Radau's.
 
-    Attributes
-    ----------
-    family : {'gauss', 'radau'}
-        Which points.
-    stages : int
-        Number s of stages.
-    c, b : ndarray
-        Nodes and weights, shape ``(s,)``.
-    a : ndarray
-        Stage weights, shape ``(s, s)``.
-
-    Raises
-    ------
-    SelfCheckFailed
-        If one of the conditions does not hold to round-off.
+    Where one of the conditions does not hold to round-off, it raises `SelfCheckFailed`.
     """
 
     family: Literal["gauss", "radau"]
     stages: int
-    c: Array
-    b: Array
-    a: Array
+    c: Array  # nodes, (s,)
+    b: Array  # weights, (s,)
+    a: Array  # stage weights, (s, s)
 
     @property
     def order(self) -> int:
@@ -125,21 +111,9 @@ def gauss_maps(stages: int, generator: Generator, theta: Array, step: float) -> 
     The stage slopes solve the linear system ``K_i = L_i (I + h sum_j a_ij K_j)``, all steps at
     once.  Forcing enters as one more state that stays 1.
 
-    Parameters
-    ----------
-    stages : int
-        Number of stages.
-    generator : callable
-        From angles ``(nt,)`` to L, ``(*batch, nt, m, m)``.
-    theta : ndarray
-        Left ends of the steps [rad], ``(ns,)``.
-    step : float
-        Their common length [rad].
-
-    Returns
-    -------
-    ndarray
-        ``(*batch, ns, m, m)`` with ``y(theta + step) = matrix y(theta)``.
+    ``generator`` takes angles ``(nt,)`` to L, ``(*batch, nt, m, m)``; the steps begin at ``theta``
+    ``(ns,)`` [rad], all of one length.  Returns ``(*batch, ns, m, m)`` with
+    ``y(theta + step) = matrix y(theta)``.
     """
     tableau = gauss_tableau(stages)
     angles = theta[:, None] + step * tableau.c

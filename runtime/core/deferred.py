@@ -10,13 +10,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Deferred:
-    """A value to be: ``make()`` returns it.
-
-    Parameters
-    ----------
-    make : callable
-        Takes nothing; must bear pickling where the result should.
-    """
+    """A value to be: ``make()`` returns it; it must bear pickling where the result should."""
 
     make: Callable[[], Any]
 
@@ -49,10 +43,7 @@ class DeferredField:
 class DeferredGroup:
     """Fields that are computed together, when the first of them is looked at.
 
-    Parameters
-    ----------
-    make : callable
-        Takes nothing and returns the values by name; must bear pickling where the result should.
+    ``make()`` returns the values by name; it must bear pickling where the result should.
     """
 
     make: Callable[[], Mapping[str, Any]]

@@ -14,15 +14,7 @@ from .errors import BadInput, Problem, bad
 
 
 def is_whole(value: object, least: int, most: int | None = None) -> TypeGuard[int]:
-    """Return True for a whole number of any integer type, no truth value, within bounds.
-
-    Parameters
-    ----------
-    value : object
-        What was given.
-    least, most : int
-        Bounds, both allowed; none above by default.
-    """
+    """Return True for a whole number of any integer type, no truth value, within bounds."""
     if isinstance(value, bool) or not isinstance(value, Integral):
         return False
     number = int(value)
@@ -30,19 +22,7 @@ def is_whole(value: object, least: int, most: int | None = None) -> TypeGuard[in
 
 
 def require_whole(where: str, value: object, least: int, most: int, fix: str = "correct it") -> int:
-    """Return a whole number within bounds; refuse anything else.
-
-    Parameters
-    ----------
-    where : str
-        What is to be one.
-    value : object
-        What was given.
-    least, most : int
-        Bounds, both allowed.
-    fix : str
-        What to do where it is none.
-    """
+    """Return a whole number within bounds, both allowed; refuse anything else."""
     if not is_whole(value, least, most):
         raise bad(where, repr(value), f"a whole number from {least} to {most}", fix)
     return int(value)

@@ -12,12 +12,8 @@ def on_first_use(
 ) -> tuple[list[str], Callable[[str], Any], Callable[[], list[str]]]:
     """Return ``__all__``, ``__getattr__`` and ``__dir__`` of a package whose names load when used.
 
-    Parameters
-    ----------
-    namespace : dict
-        ``globals()`` of the package; a name that was loaded is kept there.
-    public : mapping of str to tuple of str
-        From each module, as it is imported from the package, to its public names.
+    ``namespace`` is ``globals()`` of the package, where a name that was loaded is kept; ``public``
+    takes each module, as it is imported from the package, to its public names.
     """
     package = namespace["__name__"]
     modules = {name: module for module, names in public.items() for name in names}

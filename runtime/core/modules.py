@@ -21,19 +21,10 @@ from .errors import bad
 
 @dataclass(frozen=True)
 class EmittedModule:
-    """A loaded module with what its manifest says of it.
+    """A loaded module with what its manifest says of it, and where it lies.
 
-    Attributes
-    ----------
-    entry : Entry
-        Of the manifest.
-    folder : Path
-        Where the module lies.
-    module : module
-        Emitted.
-    dropped : tuple of str
-        Terms that the wanted model leaves out and the module still has: its ``DROPS`` says what
-        has to vanish.
+    What is ``dropped`` are terms that the wanted model leaves out and the module still has: its
+    ``DROPS`` says what has to vanish.
     """
 
     entry: Entry

@@ -268,20 +268,9 @@ class PeriodicFunction:
 
 
 def segment_values(f: PeriodicFunction, segments: int, nodes: tuple[float, ...]) -> Array:
-    """Evaluate at the nodes of equal segments of the circle, by one short FFT per node.
+    """Evaluate at nodes in ``[-1, 1]`` of equal segments of the circle, by one short FFT per node.
 
-    Parameters
-    ----------
-    f : PeriodicFunction
-        The function.
-    segments : int
-        Number of equal parts of ``[0, 2 pi]``.
-    nodes : tuple of float
-        Node positions within a segment, in ``[-1, 1]``.
-
-    Returns
-    -------
-    ndarray, shape (segments, len(nodes))
+    Returns an array of shape ``(segments, len(nodes))``.
     """
     turned = (f.a - 1j * f.b) * _phases(f.harmonics, segments, nodes)
     # Harmonics that differ by a multiple of the number of segments agree at equal nodes.

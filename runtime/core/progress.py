@@ -17,18 +17,9 @@ _bars: list[object] = []
 def bar(
     wanted: bool, total: int, *, begun: int = 0, unit: str = "it"
 ) -> Iterator[Callable[[int], None] | None]:
-    """Show a progress bar; yield a function that is told how much is done, or None.
+    """Show a progress bar where it is wanted; yield a function of how much is done, or None.
 
-    Parameters
-    ----------
-    wanted : bool
-        Whether to show it.
-    total : int
-        Amount of work.
-    begun : int
-        What of it was there beforehand: the time left is reckoned from the rest.
-    unit : str
-        What is counted.
+    What was ``begun`` of the ``total`` beforehand does not count in the time left.
     """
     if not wanted:
         yield None

@@ -51,12 +51,8 @@ class DeferredChecks(Mapping[str, Check]):
     """Self-checks that are made when they are first looked at, and then kept.
 
     For results so quick that a check would take longer than the work.  ``checks``, ``passed``,
-    ``require``, ``to_dict`` and ``save`` to JSON look at them.
-
-    Parameters
-    ----------
-    make : callable
-        Makes the checks by name; it and what it holds must bear pickling where the result should.
+    ``require``, ``to_dict`` and ``save`` to JSON look at them.  ``make()`` returns the checks by
+    name; it and what it holds must bear pickling where the result should.
     """
 
     def __init__(self, make: Callable[[], Mapping[str, Check]]) -> None:
@@ -334,12 +330,9 @@ def _netcdf(result: Result) -> bytes:
 
 
 def provenance(extra: Mapping[str, str] | None = None) -> dict[str, str]:
-    """Return the provenance of a result: what is known of its input, and the versions in use.
+    """Return the provenance of a result: the versions in use, and what is known of its input.
 
-    Parameters
-    ----------
-    extra : mapping of str to str, optional
-        Scene, module hash, changed parameters, lengths.
+    That is ``extra``: scene, module hash, changed parameters, lengths.
     """
     from ... import __version__
 

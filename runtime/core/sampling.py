@@ -21,26 +21,9 @@ def finite_angles(theta: ArrayLike) -> Array:
 
 
 def values_at(f: Callable[[Array], ArrayLike], theta: Array, name: str) -> Array:
-    """Return values of a function, one for each angle.
+    """Return the values of a function ``name`` of the angle, one for each angle, ``(nt,)``.
 
-    Parameters
-    ----------
-    f : callable
-        From angles ``(nt,)`` to as many values, or to one for all.
-    theta : ndarray, shape (nt,)
-        Angles [rad].
-    name : str
-        Of the function, for messages.
-
-    Returns
-    -------
-    ndarray, shape (nt,)
-        The caller's own.
-
-    Raises
-    ------
-    BadInput
-        If there is not one finite value for each angle.
+    It may return one for all; what is not one finite value for each angle is refused.
     """
     values = np.array(f(theta), dtype=float)
     if values.shape == ():

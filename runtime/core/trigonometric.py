@@ -19,12 +19,7 @@ _TOGETHER = 4096
 class PeriodicArray:
     """An array-valued periodic function, ``Re sum_k c_k exp(2 pi i k theta / period)``.
 
-    Attributes
-    ----------
-    coefficients : ndarray of complex
-        Shape ``(harmonics + 1, *shape)``, those beyond the mean counted twice already.
-    period : float
-        Period [rad].
+    Its coefficients ``(harmonics + 1, *shape)`` beyond the mean count twice already.
     """
 
     coefficients: ComplexArray
@@ -59,16 +54,9 @@ def even_angles(period: float, count: int) -> Array:
 
 
 def interpolated(values: Array, period: float, noise: float = 0.0) -> PeriodicArray:
-    """Return the series through even samples, less the last harmonics that are round-off.
+    """Return the series through samples ``(nt, ...)`` at even angles, from 0.
 
-    Parameters
-    ----------
-    values : ndarray, shape (nt, ...)
-        Samples at angles that divide the period evenly, from 0.
-    period : float
-        Period [rad].
-    noise : float
-        Amplitude over the largest up to which the last harmonics are left out; at least eps.
+    The last harmonics up to ``noise`` times the largest, at least round-off, are left out.
     """
     amplitude = np.fft.rfft(values, axis=0) / len(values)
     amplitude[1:] *= 2.0

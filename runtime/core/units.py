@@ -27,21 +27,11 @@ from .errors import BadInput, Problem, bad
 
 @dataclass(frozen=True)
 class Dimension:
-    """What kind of quantity is expected.
+    """What kind of quantity is expected."""
 
-    Attributes
-    ----------
-    words : str
-        The noun with its article, for messages.
-    si : str
-        The SI unit, in a spelling that this module reads.
-    example : str
-        A quantity as a user may write it.
-    """
-
-    words: str
-    si: str
-    example: str
+    words: str  # the noun with its article, for messages
+    si: str  # the SI unit, in a spelling that this module reads
+    example: str  # a quantity as a user may write it
 
 
 DIMENSIONS: Mapping[str, Dimension] = MappingProxyType(
@@ -75,21 +65,11 @@ DIMENSIONS: Mapping[str, Dimension] = MappingProxyType(
 
 @dataclass(frozen=True)
 class _Unit:
-    """A unit, or a product of units.
+    """A unit, or a product of units."""
 
-    Attributes
-    ----------
-    factor : Decimal
-        To the SI unit; not a number where it is no multiple of it (degrees Celsius).
-    powers : mapping of str to Fraction
-        Of the base dimensions, by pint's names, such as ``[length]``; zeros are left out.
-    counts : frozenset of str
-        ``cycles`` or ``angle`` where it counts them.
-    """
-
-    factor: Decimal
-    powers: Mapping[str, Fraction]
-    counts: frozenset[str] = frozenset()
+    factor: Decimal  # to the SI unit; not a number where it is no multiple of it (degrees Celsius)
+    powers: Mapping[str, Fraction]  # of the base dimensions, by pint's names; no zeros
+    counts: frozenset[str] = frozenset()  # "cycles" or "angle" where it counts them
 
 
 _ANGLES = ("radian", "degree", "turn", "arcminute", "arcsecond", "revolution")
@@ -171,15 +151,7 @@ def to_si(value: object, dimension: str = "dimensionless", where: str = "quantit
 
 
 def describe(value: float, dimension: str) -> str:
-    """Return a value in SI units as text with its unit, and rpm beside rad/s.
-
-    Parameters
-    ----------
-    value : float
-        Value in the SI unit of the dimension.
-    dimension : str
-        One of :data:`DIMENSIONS`.
-    """
+    """Return a value in the SI unit of a dimension as text with its unit, and rpm beside rad/s."""
     unit = DIMENSIONS[dimension].si
     text = f"{value:.6g} {unit}".rstrip()
     if dimension == "frequency":

@@ -33,20 +33,9 @@ class WorkersLost(ElastolinkError):  # noqa: N818 - reads as what it is
 class Workers:
     """Does the same work on many items, with a subject that every worker prepares once.
 
-    Parameters
-    ----------
-    executor : concurrent.futures.Executor or None
-        Threads, processes, or what :meth:`distributed.Client.get_executor` returns; None does
-        everything here.
-    prepare : callable
-        Makes the subject from ``arguments``.
-    *arguments : object
-        They, and ``prepare``, must bear pickling for anything but threads.
-
-    Raises
-    ------
-    BadInput
-        If the executor is none, or the subject cannot be sent to it.
+    The executor is of threads, of processes, or what :meth:`distributed.Client.get_executor`
+    returns; None does everything here.  ``prepare`` makes the subject from ``arguments``: for
+    anything but threads they must bear pickling, or are refused.
     """
 
     def __init__(
@@ -61,42 +50,39 @@ class Workers:
         else:
             self._sent = _pickled(prepare, arguments)
 
-    @property
-    def in_flight(self) -> int:
-        """How many items are handed over at a time, which bounds the memory."""
-        if self._executor is None:
-            return 1
-        # Dask's executor does not tell how many workers it has.
-        count = getattr(self._executor, "_max_workers", None) or os.cpu_count() or 1
-        return _EACH * int(count)
-
     def run(
         self, work: Callable[[Any, Any], Any], items: Iterable[Any]
     ) -> Iterator[tuple[int, Any]]:
         """Yield the number of an item and ``work(subject, item)``, as they are done.
 
-        Raises
-        ------
-        WorkersLost
-            If the executor's workers end, for example for want of memory.
-        BadInput
-            If the executor was shut down.
+        Workers that end, for example for want of memory, raise `WorkersLost`; an executor that was
+        shut down, BadInput.
         """
         queue = enumerate(items)
         if self._executor is None:
             for number, item in queue:
                 yield number, work(self._subject, item)
             return
+        submit: Any = self._executor.submit
+        given: tuple[Any, ...] = (_call, self._sent, work)
+        if self._sent is None:
+            given = (work, self._subject)
+        # Dask's executor does not tell how many workers it has.
+        count = getattr(self._executor, "_max_workers", None) or os.cpu_count() or 1
         waiting: dict[Future[Any], int] = {}
         try:
             while True:
-                for number, item in islice(queue, self.in_flight - len(waiting)):
-                    waiting[self._submit(work, item)] = number
+                for number, item in islice(queue, _EACH * int(count) - len(waiting)):
+                    with _refusals(of=RuntimeError):
+                        waiting[submit(*given, item)] = number
                 if not waiting:
                     return
                 done, _ = wait(waiting, return_when=FIRST_COMPLETED)
                 for future in sorted(done, key=waiting.__getitem__):
-                    yield waiting.pop(future), _result(future)
+                    number = waiting.pop(future)
+                    with _refusals():
+                        found = future.result()
+                    yield number, found
         finally:
             for future in waiting:
                 future.cancel()
@@ -105,22 +91,6 @@ class Workers:
         """Return ``work(subject, item)`` of all items, in their order."""
         found = dict(self.run(work, items))
         return [found[number] for number in range(len(found))]
-
-    def _submit(self, work: Callable[[Any, Any], Any], item: Any) -> Future[Any]:
-        executor = self._executor
-        if executor is None:
-            raise ValueError("no executor")
-        try:
-            if self._sent is None:
-                return executor.submit(work, self._subject, item)
-            return executor.submit(_call, self._sent, work, item)
-        except BrokenExecutor as reason:
-            raise _lost(reason) from reason
-        except RuntimeError as reason:
-            fix = "do the work inside its with block"
-            raise bad(
-                "executor", f"one that says: {reason}", "one that takes work", fix
-            ) from reason
 
 
 def check_executor(executor: object) -> None:
@@ -195,15 +165,16 @@ def _pickled(prepare: Callable[..., Any], arguments: tuple[Any, ...]) -> bytes:
         ) from reason
 
 
-def _result(future: Future[Any]) -> Any:
+@contextmanager
+def _refusals(of: type[RuntimeError] = BrokenExecutor) -> Iterator[None]:
+    """Say in the toolkit's words that workers ended, or ``of`` an executor that takes no work."""
     try:
-        return future.result()
+        yield
     except BrokenExecutor as reason:
-        raise _lost(reason) from reason
-
-
-def _lost(reason: BaseException) -> WorkersLost:
-    return WorkersLost(
-        f"executor: found workers that ended ({reason}); expected them to live until the work is "
-        "done; give fewer workers or smaller chunks, and the same store to go on from there"
-    )
+        raise WorkersLost(
+            f"executor: found workers that ended ({reason}); expected them to live until the work "
+            "is done; give fewer workers or smaller chunks, and the same store to go on from there"
+        ) from reason
+    except of as reason:
+        found, fix = f"one that says: {reason}", "do the work inside its with block"
+        raise bad("executor", found, "one that takes work", fix) from reason

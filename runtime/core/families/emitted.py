@@ -17,17 +17,7 @@ Values: TypeAlias = Mapping[str, ArrayLike]
 
 
 def check_module(module: ModuleType, family: str, given: Values) -> tuple[str, ...]:
-    """Return the parameter names of a module, having checked its family and that none is missing.
-
-    Parameters
-    ----------
-    module : module
-        Emitted.
-    family : str
-        The family that is wanted.
-    given : mapping
-        Values by name.
-    """
+    """Return the parameter names of a module of a family, having checked that none is missing."""
     found = getattr(module, "FAMILY", None)
     if found != family:
         raise bad(module.__name__, f"family {found}", family, "ask for a model of that family")
@@ -46,15 +36,7 @@ def parameter_values(module: ModuleType, family: str, given: Values) -> dict[str
 
 
 def dropped_names(module: ModuleType, drop: Collection[str]) -> tuple[Any, ...]:
-    """Return what vanishes or changes in a general module that can leave terms out.
-
-    Parameters
-    ----------
-    module : module
-        Emitted for all terms, with the table ``DROPS``.
-    drop : collection of str
-        Terms to leave out.
-    """
+    """Return what vanishes or changes in a module, by its ``DROPS``, where terms are left out."""
     if not drop:
         return ()
     known = getattr(module, "DROPS", {})
@@ -113,21 +95,10 @@ def nothing(*arguments: object, **named: object) -> tuple[()]:
 
 
 def stacked(places: Places, returned: object, batch: tuple[int, ...] = ()) -> dict[str, Array]:
-    """Return the arrays of an emitted function, entries that it leaves out being zero.
+    """Return the arrays ``(*batch, rows, columns)`` of an emitted function by name.
 
-    Parameters
-    ----------
-    places : mapping
-        Array name to shape and to ``(row, column, position in the returned tuple)``.
-    returned : tuple or array
-        What the function returned; each entry broadcasts to ``batch``.
-    batch : tuple of int
-        Shape in front of the arrays' own.
-
-    Returns
-    -------
-    dict of ndarray
-        Shape ``(*batch, rows, columns)`` each.
+    ``places`` gives the shape of each and the ``(row, column, position in what was returned)`` of
+    its entries, which broadcast to ``batch``; all others are zero.
     """
     entries = returned if isinstance(returned, tuple) else (returned,)
     arrays = {}

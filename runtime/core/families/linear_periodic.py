@@ -213,26 +213,21 @@ class LinearPeriodic:
         """Return True where no term of ``array`` depends on the crank angle."""
         return all(term.constant for term in self.terms if term.array == array)
 
-    @cached_property
-    def spectra(self) -> tuple[Array, ...]:
-        """Largest Fourier amplitude of an entry of each term, per harmonic of the period.
-
-        One array per term: of length 1 where it is constant, else as long as it takes.
-
-        Raises
-        ------
-        BadInput
-            If a term is not finite at a sample, or returns a wrong shape for many angles.
-        """
-        return tuple(self.spectrum(row) for row in range(len(self.terms)))
-
     def spectrum(self, row: int) -> Array:
-        """Return one of the :attr:`spectra`; a term that nobody asks about is never sampled.
+        """Largest Fourier amplitude of an entry of a term, per harmonic of the period.
+
+        Of length 1 where the term is constant, else as long as it takes; a term that nobody asks
+        about is never sampled.
 
         Parameters
         ----------
         row : int
             Place of the term among :attr:`terms`.
+
+        Raises
+        ------
+        BadInput
+            If the term is not finite at a sample, or returns a wrong shape for many angles.
         """
         known = self._spectrum_of.get(row)
         if known is None:
@@ -388,8 +383,7 @@ class LinearPeriodic:
             terms=self.terms + terms,
             parameters={**self.parameters, **extra},
             scales=merged if extra else self.scales,
-            rebuild=_then(self.rebuild, methodcaller("with_terms", *terms, scales=extra)),
-            remesh=_then(self.remesh, methodcaller("with_terms", *terms, scales=extra)),
+            **self.remade(methodcaller("with_terms", *terms, scales=extra)),
         )
 
     def with_changed_terms(self, change: Callable[[Term], Term]) -> LinearPeriodic:
@@ -407,8 +401,7 @@ class LinearPeriodic:
         return replace(
             self,
             terms=tuple(change(term) for term in self.terms),
-            rebuild=_then(self.rebuild, methodcaller("with_changed_terms", change)),
-            remesh=_then(self.remesh, methodcaller("with_changed_terms", change)),
+            **self.remade(methodcaller("with_changed_terms", change)),
         )
 
     def without(self, *arrays: str) -> LinearPeriodic:
@@ -416,9 +409,22 @@ class LinearPeriodic:
         return replace(
             self,
             terms=tuple(term for term in self.terms if term.array not in arrays),
-            rebuild=_then(self.rebuild, methodcaller("without", *arrays)),
-            remesh=_then(self.remesh, methodcaller("without", *arrays)),
+            **self.remade(methodcaller("without", *arrays)),
         )
+
+    def remade(self, change: Callable[[LinearPeriodic], LinearPeriodic]) -> dict[str, Any]:
+        """Return ``rebuild`` and ``remesh`` of the system that a change makes of this one.
+
+        Parameters
+        ----------
+        change : callable
+            From this system, or one made anew of another geometry or mesh, to the changed one.
+        """
+        makers = {"rebuild": self.rebuild, "remesh": self.remesh}
+        return {
+            name: None if make is None else partial(_made_then, make, change)
+            for name, make in makers.items()
+        }
 
     @cached_property
     def _rebuilds_itself(self) -> bool:
@@ -477,13 +483,6 @@ def _merged(
     """Return a system's monomials and those that are parameters themselves."""
     new = {name: np.asarray(values[name], dtype=float) for name in extra}
     return {**scales({name: values[name] for name in own}), **new}
-
-
-def _then(
-    make: Callable[[Any], LinearPeriodic] | None, change: Callable[[LinearPeriodic], LinearPeriodic]
-) -> Callable[[Any], LinearPeriodic] | None:
-    """Return what makes a system anew and changes it as this one is changed."""
-    return None if make is None else partial(_made_then, make, change)
 
 
 def _made_then(

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from numbers import Real
-from typing import Any
 
 import numpy as np
 
@@ -62,22 +61,14 @@ def with_modal_damping(system: LinearPeriodic, ratio: float) -> LinearPeriodic:
     if system.moving_shape is not None and system.has("A"):
         terms.append(Term("D", "damping_ratio", partial(_carried, system, matrices)))
     damped = system.with_terms(*terms, scales={"damping_ratio": float(ratio)})
-    more: dict[str, Any] = {}
-    if system.rebuild is not None:
-        more["rebuild"] = partial(_damped_anew, system.rebuild, system.parameters, ratio)
-    if system.remesh is not None:
-        more["remesh"] = partial(_damped_anew, system.remesh, system.parameters, ratio)
-    return replace(damped, **more)
+    return replace(damped, **system.remade(partial(_damped_again, system.parameters, ratio)))
 
 
-def _damped_anew(
-    make: Callable[[Any], LinearPeriodic],
-    parameters: Mapping[str, float],
-    ratio: float,
-    changed: object,
+def _damped_again(
+    parameters: Mapping[str, float], ratio: float, made: LinearPeriodic
 ) -> LinearPeriodic:
     """Return the system of another geometry or mesh with its own modes damped."""
-    return with_modal_damping(replace(make(changed), parameters=dict(parameters)), ratio)
+    return with_modal_damping(replace(made, parameters=dict(parameters)), ratio)
 
 
 def _carried(system: LinearPeriodic, matrices: _DampedModes, theta: Array) -> Array:

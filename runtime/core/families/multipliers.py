@@ -26,19 +26,9 @@ def powers_of_two(values: Array) -> Array:
 def scaling(mass: Array, jacobian: Array) -> tuple[Array, Array]:
     """Return factors of columns and rows that make masses and constraint rows of unit size.
 
-    Parameters
-    ----------
-    mass : ndarray, shape (*batch, n, n)
-        Mass matrix.
-    jacobian : ndarray, shape (*batch, k, n)
-        Jacobian of the constraints.
-
-    Returns
-    -------
-    columns : ndarray, shape (*batch, n)
-        ``S``: ``q = S q'``; the coordinates are measured by their inertia.
-    rows : ndarray, shape (*batch, k)
-        ``R``: the rows of ``R Phi_q S`` have unit length.
+    Of masses ``(*batch, n, n)`` and a Jacobian ``(*batch, k, n)`` return S ``(*batch, n)``,
+    ``q = S q'``, so that the coordinates are measured by their inertia, and R ``(*batch, k)``, so
+    that the rows of ``R Phi_q S`` have unit length.
     """
     columns = powers_of_two(np.sqrt(np.abs(np.diagonal(mass, axis1=-2, axis2=-1))))
     rows = powers_of_two(np.linalg.norm(jacobian * columns[..., None, :], axis=-1))
@@ -46,17 +36,9 @@ def scaling(mass: Array, jacobian: Array) -> tuple[Array, Array]:
 
 
 def check_rank(jacobian: Array, columns: Array, rows: Array) -> None:
-    """Refuse a Jacobian whose rows depend on each other.
+    """Refuse a Jacobian whose rows depend on each other, ``columns`` and ``rows`` as of `scaling`.
 
-    Parameters
-    ----------
-    jacobian, columns, rows : ndarray
-        As in :func:`scaling`.
-
-    Raises
-    ------
-    RedundantConstraints
-        If the smallest singular value of the scaled Jacobian is below 1e-11 of the largest.
+    That is where the smallest singular value of the scaled one is below 1e-11 of the largest.
     """
     k, n = jacobian.shape[-2:]
     if k == 0:
@@ -99,29 +81,9 @@ def solve_multipliers(
     The matrix is solved whole, which wants inertia only in what the constraints allow; rows and
     columns are scaled by powers of two.
 
-    Parameters
-    ----------
-    mass : ndarray, shape (*batch, n, n)
-        Mass matrix.
-    jacobian : ndarray, shape (*batch, k, n)
-        Jacobian of the constraints.
-    forces : ndarray, shape (*batch, n)
-        Right-hand side of the motion.
-    gamma : ndarray, shape (*batch, k)
-        Right-hand side of the constraints.
-
-    Returns
-    -------
-    a : ndarray, shape (*batch, n)
-        Accelerations.
-    lam : ndarray, shape (*batch, k)
-        Multipliers.
-
-    Raises
-    ------
-    RedundantConstraints
-        If the rows of the Jacobian depend on each other, or a motion that they allow has no
-        inertia.
+    Of masses ``(*batch, n, n)``, a Jacobian ``(*batch, k, n)`` and right-hand sides ``(*batch, n)``
+    and ``(*batch, k)`` return accelerations and multipliers.  Rows of the Jacobian that depend on
+    each other, or a motion that they allow without inertia, raise `RedundantConstraints`.
     """
     columns, rows = scaling(mass, jacobian)
     check_rank(jacobian, columns, rows)

@@ -27,25 +27,10 @@ _BETWEEN = np.arange(1, 14) * ((np.sqrt(5.0) - 1.0) / 2.0) % 1.0
 def term_spectrum(term: Term, expected: tuple[int, ...], period: float) -> Array:
     """Return the largest Fourier amplitude of an entry of a term, per harmonic.
 
-    Parameters
-    ----------
-    term : Term
-        The term.
-    expected : tuple of int
-        Shape of its value at an angle.
-    period : float
-        Period [rad].
-
-    Returns
-    -------
-    ndarray
-        Of length 1 where the term is constant, else one more than half the angles it took: they
-        are doubled until the upper half is round-off and the series meets the term between them.
-
-    Raises
-    ------
-    BadInput
-        If the term is not finite at a sample, or returns a wrong shape for many angles.
+    ``expected`` is the shape of its value at an angle.  Of a constant term there is one; else one
+    more than half the angles it took: they are doubled until the upper half is round-off and the
+    series meets the term between them.  Values that are not finite, or of a wrong shape for many
+    angles, are refused.
     """
     if term.constant:
         value = _checked(term, expected, np.zeros(1))

@@ -16,6 +16,9 @@ kinematics smith_1972_2122 --angles 0:360 |
 kinematics smith_1972_2122 --angles 0:360:0deg |
 kinematics smith_1972_2122 --angles 0:360:13kg |
 kinematics smith_1972_2122 --angles 360:0:13 |
+kinematics smith_1972_2122 --angles 0:1:9999999 |
+kinematics smith_1972_2122 --angles 1:2:3:4 |
+critical-speeds aannaque_1996_table_4_1 --range 70:20 | two rising speeds
 simulate smith_1972_5152_sixteenth_inch --speed '0 rpm' |
 simulate smith_1972_5152_sixteenth_inch --speed '3 kg' |
 simulate smith_1972_5152_sixteenth_inch --revolutions -1 |
@@ -46,11 +49,7 @@ clearance smith_1972_10_8_10_10 --at '55=0.1 in' | --at
 clearance smith_1972_10_8_10_10 --at 34 | --at
 clearance smith_1972_10_8_10_10 --at '34=0.1 in' --clearance '0.1 in' | --at
 clearance smith_1972_10_8_10_10 --clearance '0.1 in' --link wheel | link
-clearance smith_1972_10_8_10_10 --clearance '0.1 in' --plot fig10.xyz | fig10.xyz
 forces smith_1972_12_6_12_12 --speed 0 --fluctuation 0.02 | --fluctuation
-forces smith_1972_12_6_12_12 --speed '10 kg' | --speed
-forces smith_1972_12_6_12_12 --speed 10 --angles 0:90 | --angles
-forces smith_1972_12_6_12_12 --speed 10 --plot f.bmp | ending
 forces smith_1972_12_6_12_12 --speed 10 --fluctuation 2 | fluctuation
 kinematics slider_crank_example --speed fast | --speed
 kinematics slider_crank_example --speed '3 kg' | --speed
@@ -68,7 +67,6 @@ curve smith_1972_12_6_12_12 --point 0.5,0.3 --link rod | link
 harmonics smith_1972_12_6_12_12 --of theta9 | theta9
 harmonics smith_1972_12_6_12_12 --of theta4 --order 0 | order
 harmonics mathieu --of theta4 | a linkage
-balance smith_1972_12_6_12_12 --weights torq=1 | torq
 balance smith_1972_12_6_12_12 --links rod | rod
 balance smith_1972_10_8_10_10 --speed 10 | no mass
 balance smith_1972_12_6_12_12 --speed 0 | --speed
@@ -94,7 +92,6 @@ run-up slider_crank_example --torque '5 N*m' --no-load-speed 90 | --torque
 run-up slider_crank_example --torque '5 kg' | --torque
 run-up slider_crank_example --revolutions -1 | revolutions
 run-up slider_crank_example --duration 'nan s' | duration
-run-up slider_crank_example --plot f.bmp | ending
 tolerances smith_1972_12_6_12_12 | NAME=WIDTH
 tolerances smith_1972_12_6_12_12 --tolerance crank | NAME=WIDTH
 tolerances smith_1972_12_6_12_12 --tolerance 'crank=3 s' | a length
@@ -107,7 +104,6 @@ tolerances smith_1972_12_6_12_12 {widths} --plot band.txt | txt
 balance smith_1972_12_6_12_12 --speed 10 --weights torque |
 balance smith_1972_12_6_12_12 --speed 10 --weights torque=x |
 balance smith_1972_12_6_12_12 --speed 10 --weights noise=1 |
-balance smith_1972_12_6_12_12 --speed 10 --links rod |
 balance smith_1972_12_6_12_12 --speed 10 --offset '-1 in' |
 balance smith_1972_12_6_12_12 --speed 10 --offset '3 kg' |
 balance smith_1972_12_6_12_12 --speed 10 --mass '0 kg' |

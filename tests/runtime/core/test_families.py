@@ -19,7 +19,6 @@ from elastolink.runtime.core.families import (
     Transcendental,
     array_function,
 )
-from elastolink.runtime.core.families.emitted import check_module, parameter_values
 from elastolink.runtime.systems import assemble
 from periodic_systems import named, wave
 
@@ -83,18 +82,6 @@ def test_parameters_and_terms_are_exchanged_by_copy():
     again = damped.with_terms(Term("K", "spring", np.eye(2)), scales={"spring": 1.0})
     assert set(again.parameters) == {"mass", "load", "loss", "spring"}
     np.testing.assert_array_equal(again.array("C", 0.0), damped.array("C", 0.0))
-
-
-def test_parameters_broadcast():
-    loads = np.linspace(0.0, 1.0, 3)
-    found = system().scale_values(load=loads, mass=np.ones((2, 1)))
-    assert found["load"].shape == (3,)
-    assert found["mass"].shape == (2, 1)
-
-
-def test_labels_are_given_or_counted():
-    assert system().labels == ("q1", "q2")
-    assert system(labels=("a", "b")).labels == ("a", "b")
 
 
 @pytest.mark.parametrize(
@@ -183,18 +170,6 @@ def test_unknown_functions_of_arrays_are_refused():
         array_function(module(), "dynamics")
     with pytest.raises(BadInput, match="motion"):
         array_function(types.SimpleNamespace(__name__="closed", FAMILY="closed_form"), "motion")
-
-
-def test_family_and_parameters_are_checked():
-    assert check_module(module(), "closed_form", {"m": 1.0, "k": 2.0, "more": 3.0}) == ("m", "k")
-    with pytest.raises(BadInput, match="family closed_form"):
-        check_module(module(), "constrained", {"m": 1.0, "k": 2.0})
-    with pytest.raises(BadInput, match=r"\['k'\]"):
-        check_module(module(), "closed_form", {"m": 1.0})
-    values = parameter_values(module(), "closed_form", {"m": 1, "k": [1, 2], "more": 3})
-    assert set(values) == {"m", "k"}
-    assert isinstance(values["m"], float)
-    np.testing.assert_array_equal(values["k"], [1.0, 2.0])
 
 
 def test_modules_of_another_family_are_refused():

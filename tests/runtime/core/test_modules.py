@@ -15,7 +15,7 @@ import elastolink.generated
 import pytest
 from elastolink.derive.regenerate import main
 from elastolink.derive.spec import MANIFEST, ModelSpec
-from elastolink.runtime.core.modules import find_module, search_path
+from elastolink.runtime.core.modules import find_module
 
 PACKAGED = Path(elastolink.generated.__path__[0])
 HILL = ModelSpec("hill", "plain")
@@ -38,17 +38,6 @@ def test_the_packaged_modules_are_found():
     assert found.folder == PACKAGED
     assert found.entry.content == found.module.CONTENT
     assert found.provenance == {"module": "hill_plain", "module_hash": found.entry.content}
-
-
-def test_folders_are_searched_in_the_order_of_the_design(monkeypatch, empty_cache):
-    monkeypatch.setenv("ELASTOLINK_GENERATED", "named")
-    assert list(search_path(["given", Path("second")])) == [
-        Path("given"),
-        Path("second"),
-        Path("named"),
-        empty_cache,
-        PACKAGED,
-    ]
 
 
 def test_the_first_folder_that_has_it_wins(tmp_path, monkeypatch, empty_cache):

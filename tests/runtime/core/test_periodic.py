@@ -43,14 +43,6 @@ def test_samples_give_the_coefficients_back(a, b, spare):
     np.testing.assert_allclose(again.b[:size], f.b, rtol=0, atol=1e-12)
 
 
-def test_the_mean_has_no_factor_one_half():
-    assert PeriodicFunction.from_samples([3.0, 3.0, 3.0]).a[0] == 3.0
-    f = PeriodicFunction(a=[1.5, 2.0], b=[0.0, 0.5])
-    assert f.mean == 1.5
-    assert f(0.0) == pytest.approx(3.5, abs=1e-15)
-    assert f(np.pi / 2) == pytest.approx(2.0, abs=1e-15)
-
-
 def test_even_sample_counts_put_the_highest_harmonic_into_the_cosine():
     f = PeriodicFunction.from_samples([1.0, -1.0, 1.0, -1.0])
     np.testing.assert_allclose(f.a, [0.0, 0.0, 1.0], atol=1e-16)

@@ -191,9 +191,6 @@ class Columns:
         return Table(title, tuple(header), texts)
 
 
-Value = SupportsFloat | tuple[SupportsFloat, ...]
-
-
 @dataclass(frozen=True)
 class Drawn:
     """What drawing a figure gives beside the picture.
@@ -201,15 +198,14 @@ class Drawn:
     Attributes
     ----------
     values : sequence
-        The computed values of the record's quoted numbers, in their order; a tuple of computed,
-        expected and perhaps tolerance, where the record does not hold the expected value.
+        The computed values of the record's quoted numbers, in their order.
     words : mapping
-        What stands in the braces of the record's texts.
+        What stands in the braces of the record's notes and of the titles of its tables.
     tables : sequence
         The rows of each of the record's tables, their cells numbers and texts.
     """
 
-    values: Sequence[Value] = ()
+    values: Sequence[SupportsFloat] = ()
     words: Mapping[str, object] = field(default_factory=dict)
     tables: Sequence[Iterable[Sequence[Any]]] = ()
 
@@ -307,22 +303,17 @@ class FigureEntry:
         """Draw the figure and put the computed values beside the quoted ones."""
         drawn = self.draw(axes)
         words = drawn.words
-        rows = []
-        for row, value in zip(self.quoted, drawn.values, strict=True):
-            names = ("computed", "expected", "tolerance")
-            given = value if isinstance(value, tuple) else (value,)
-            changes: dict[str, Any] = {n: float(v) for n, v in zip(names, given, strict=False)}
-            if words:
-                for name in ("number", "meaning", "differs"):
-                    changes[name] = getattr(row, name).format_map(words)
-            rows.append(replace(row, **changes))
+        rows = tuple(
+            replace(row, computed=float(value))
+            for row, value in zip(self.quoted, drawn.values, strict=True)
+        )
         notes = tuple(note.format_map(words) if words else note for note in self.notes)
         tables = tuple(
             one.filled(cells, words) for one, cells in zip(self.tables, drawn.tables, strict=True)
         )
         page = self.page
         files = ((page.file, page.text(notes, tables)),) if page else ()
-        return Shown(self, tuple(rows), notes, tables, files)
+        return Shown(self, rows, notes, tables, files)
 
 
 @dataclass(frozen=True)

@@ -83,10 +83,8 @@ def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> F
 
 
 def _quoted(common: Mapping[str, Any], row: Mapping[str, Any]) -> Quoted:
-    """Return one comparison; the key of the expected value, if it has one here, is its kind."""
-    given = {**common, **row}
-    values = {kind: given.pop(kind) for kind in KINDS if kind in given}
-    kinds = [kind for kind in values if kind in row] or list(values)
-    if kinds:
-        given = {"kind": kinds[0], "expected": values[kinds[0]], **given}
-    return Quoted(**given)
+    """Return one comparison; the key of its expected value is its kind."""
+    (kind,) = (row if row.keys() & KINDS.keys() else common).keys() & KINDS.keys()
+    given = {name: value for name, value in {**common, **row}.items() if name not in KINDS}
+    expected = row.get(kind, common.get(kind))
+    return Quoted(**given, kind=kind, expected=expected)

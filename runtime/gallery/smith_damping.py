@@ -16,7 +16,7 @@ from ..hill.bloch import effective_operator
 from ..periodic import floquet_multipliers
 from ..stability import stability_edges
 from .drawing import COLOURS, Array, panel_title
-from .records import Drawn, Value
+from .records import Drawn
 from .registry import contents
 from .smith_linkages import LBF_IN_S2, RIG, RPM, OfRig, region_name
 
@@ -92,7 +92,7 @@ def at_rest(estimate: Estimate) -> tuple[float, float]:
 
 def estimates_table(axes: Sequence[Axes]) -> Drawn:
     """Draw the damping that closes each region over the follower's inertia."""
-    values: list[Value] = []
+    values = []
     for ax, one in zip(axes, ESTIMATES, strict=True):
         measured = one.rig.inertias / LBF_IN_S2
         inertia = np.linspace(0.95 * measured[0], 1.02 * measured[-1], 31)
@@ -107,7 +107,7 @@ def estimates_table(axes: Sequence[Axes]) -> Drawn:
         ax.fill_between(inertia, *at_rest(one), color="0.92", lw=0, label="decrements at rest")
         ax.hlines(one.quoted, one.stable, one.unstable, color="black", lw=3.0, label="quoted")
         panel_title(ax, f"{one.name}, {one.rig.name}")
-        values.append((0.5 * sum(one.both("reduced", 1)), one.quoted, 0.15 * one.quoted))
+        values.append(0.5 * sum(one.both("reduced", 1)))
     return Drawn(values, _estimate_words(), [_estimates()])
 
 
@@ -266,7 +266,6 @@ def _damped(chart: str, modes: int) -> LinearPeriodic:
 def modes_table(axes: Sequence[Axes]) -> Drawn:
     """Draw the widths of all regions of two modes over the crank speed."""
     tables, titles = [], []
-    values: list[Value] = []
     for ax, (chart, inertia) in zip(axes, _CASES, strict=True):
         opened, closed = regions(chart, inertia)
         for kind, (label, colour) in _KINDS.items():
@@ -289,12 +288,7 @@ def modes_table(axes: Sequence[Axes]) -> Drawn:
         titles.append(
             f"{RIG[chart].name}, follower inertia {inertia:g} lbf in s²: widest regions{rest}"
         )
-        # The first mode's regions with two modes beside those of the first mode alone.
-        for n in (3, 4):
-            alone, lower = _first_mode(chart, inertia)[n], np.array([one.lower for one in opened])
-            nearest = float(lower[np.argmin(np.abs(lower - alone))])
-            values.append((nearest, alone, _NEAR * alone))
-    return Drawn(values, {**_mode_words(), "titles": titles}, tables)
+    return Drawn(words={**_mode_words(), "titles": titles}, tables=tables)
 
 
 def _mode_words() -> dict[str, object]:

@@ -7,16 +7,14 @@ from math import acos, cos, degrees, pi, radians, sin, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from ..core.errors import BadInput
 from ..core.periodic_function import PeriodicFunction
 from ..linkages import FourBar, FourBarMotion
 from ..linkages.clearance import clearance_range
 from ..linkages.transmission import transmission_angle
 from . import sketch
 from .drawing import COLOURS, Array
-from .records import Drawn, Value
+from .records import Drawn
 from .smith_linkages import PROPORTIONS, end_load, four_bar_of, linkage_of
 
 if TYPE_CHECKING:
@@ -133,14 +131,6 @@ def _with_coupler(linkage: FourBar, change: float, crossed: bool = False) -> Fou
     return FourBar(*sizes, assembly="crossed" if crossed else "open")
 
 
-def _phi(linkage: FourBar, theta: ArrayLike) -> Array:
-    """Return the angle BDC."""
-    motion = linkage.motion(theta)
-    to_crank = motion.joints["B"] - motion.joints["D"]
-    turned = np.arctan2(to_crank[..., 1], to_crank[..., 0]) - motion.theta4
-    return np.asarray(np.abs(np.angle(np.exp(1j * turned))))
-
-
 def _reach(linkage: FourBar, distance: float) -> float:
     """Return the crank angle at which B is so far from D."""
     l1, l2 = linkage.frame, linkage.crank
@@ -166,22 +156,7 @@ def figure_8(axes: Sequence[Axes]) -> Drawn:
     ):
         sketch.arc(ax, d, radius, (_direction(b - d), _direction(places[name] - d)), text)
     sketch.arc(ax, a, 1.1, (0.0, _ANGLE), r"$\theta_2$")
-    # (3.1) to (3.3) beside the computed range, and beside other linkages.
-    l3, l4, c = _GENERAL.coupler, _GENERAL.follower, 0.2
-    distance, phi = float(np.hypot(*(b - d))), float(_phi(_GENERAL, _ANGLE))
-    values: list[Value] = []
-    moves = clearance_range(_GENERAL, c, _ANGLE)
-    # The follower turns back by delta phi', and on by delta phi''.
-    for sign, move in ((1.0, moves.below), (-1.0, moves.above)):
-        printed = (l3 * c + sign * c**2 / 4.0) / (2.0 * distance * l4)
-        other = float(_phi(_with_coupler(_GENERAL, 0.5 * sign * c), _ANGLE))
-        angles = (phi + sign * float(move), other)
-        values += [(sign * (cos(phi) - cos(angle)), printed) for angle in angles]
-    for small in (0.2, 0.02):
-        printed = degrees(l3 * small / (distance * l4 * sin(phi)))
-        total = float(clearance_range(_GENERAL, small, _ANGLE).width)
-        values.append((degrees(total), printed, printed * (small / l4) ** 2))
-    return Drawn(values)
+    return Drawn()
 
 
 def _draw_extremes(
@@ -248,20 +223,7 @@ def figure_9a(axes: Sequence[Axes]) -> Drawn:
     sketch.pin(ax, b, middle)
     sketch.write(ax, b, "B", (-11.0, 9.0), style="italic")
     sketch.write(ax, middle, "C", (10.0, 8.0), style="italic")
-    c = 0.1
-    printed = 1.0 - (l3 * c + c**2 / 4.0) / (2.0 * l4 * (l3 + l4))
-    shorter = 1.0 + (l3 * c - c**2 / 4.0) / (2.0 * l4 * (l3 + l4))
-    moves = clearance_range(_IN_LINE, c, theta)
-    back, on = float(moves.below), float(moves.above)
-    quarter = float(clearance_range(_IN_LINE, 0.25 * c, theta).below)
-    try:
-        _with_coupler(_IN_LINE, -0.5 * c).motion(theta)
-        outcome = "that linkage closes here"
-    except BadInput:
-        outcome = "that linkage is refused here"
-    return Drawn(
-        [(cos(back), printed), (cos(on), printed), shorter, back / quarter], {"outcome": outcome}
-    )
+    return Drawn()
 
 
 def figure_9b(axes: Sequence[Axes]) -> Drawn:
@@ -276,12 +238,7 @@ def figure_9b(axes: Sequence[Axes]) -> Drawn:
     first, second = (0.55 * (at - d) / np.hypot(*(at - d)) for at in (b, places["C"]))
     ax.plot(*np.transpose([d + first, d + first + second, d + second]), color=sketch.GROUND, lw=0.9)
     sketch.arc(ax, d, 2.6, (_direction(b - d), _direction(places["C'"] - d)), r"$\phi'$")
-    values: list[Value] = []
-    for c in (0.1, 0.01):
-        sine = (l3 * c + c**2 / 4.0) / (2.0 * sqrt(l3**2 - l4**2) * l4)
-        move = float(clearance_range(_SQUARE, c, theta).below)
-        values += [(sin(move), sine), (degrees(move), degrees(sine), degrees(sine**3))]
-    return Drawn(values)
+    return Drawn()
 
 
 def figure_10(axes: Sequence[Axes]) -> Drawn:
@@ -296,40 +253,13 @@ def figure_10(axes: Sequence[Axes]) -> Drawn:
     apart = max(degrees(float(np.max(np.abs(moves.width - moves.small)))) for moves in ranges)
     greatest = [degrees(theta[int(np.argmax(moves.below[:-1]))]) for moves in ranges]
     least, near = ranges[0], np.abs(theta - pi) < radians(60.0)
-    values: list[Value] = [(at + 180.0) % 360.0 - 180.0 for at in greatest]
+    values = [(at + 180.0) % 360.0 - 180.0 for at in greatest]
     values.append(degrees(theta[near][int(np.argmax(least.below[near]))]))
-    # The extremes of the transmission angle, and (3.3) where it is square.
-    extremes, mu = transmission_angle(linkage), linkage.motion(theta).transmission_angle
-    first_half = slice(len(mu) // 2)
-    square = int(np.argmin(np.abs(mu - pi / 2.0)[first_half]))
-    narrow = int(np.argmin((least.below + least.above)[first_half]))
-    printed = _CLEARANCES[0] * unit / (linkage.follower * np.sin(mu[square]))
-    values += [
-        degrees(extremes.least),
-        degrees(extremes.greatest),
-        (degrees(theta[narrow]), degrees(theta[square])),
-        printed / least.below[square],
-        printed / (least.below[square] + least.above[square]),
-    ]
+    extremes = transmission_angle(linkage)
+    values += [degrees(extremes.least), degrees(extremes.greatest)]
     # The case in which the transmission angle stays below 90 degrees.
     equal = [FourBar(10.0, crank, 10.0, 10.0) for crank in (4.0, 4.3)]
     values += [degrees(transmission_angle(linkage).greatest) for linkage in equal]
     longer = clearance_range(equal[0], 0.05, theta).below
-    values += [degrees(theta[int(np.argmin(longer))]), _crank_pin_gap(linkage, unit)]
+    values.append(degrees(theta[int(np.argmin(longer))]))
     return Drawn(values, {"apart": apart})
-
-
-def _crank_pin_gap(linkage: FourBar, unit: float) -> float:
-    """Return the free motion with the clearance at B, by trial, less that with it at C."""
-    theta, c = np.radians(np.arange(0.0, 360.0, 30.0)), _CLEARANCES[-1] * unit
-    joints = linkage.motion(theta).joints
-    trial = np.exp(1j * np.linspace(0.0, 2.0 * pi, 7201))
-    way = (joints["B"] - joints["D"]) @ np.array([1.0, 1.0j])
-    moved = way[:, np.newaxis] + 0.5 * c * trial
-    size = np.abs(moved)
-    l3, l4 = linkage.coupler, linkage.follower
-    inner = (size**2 + l4**2 - l3**2) / (2.0 * size * l4)
-    # Seen from the nominal direction of DB, so that no angle passes half a turn.
-    turned = np.angle(moved / way[:, np.newaxis]) - np.arccos(inner)
-    gap = np.ptp(turned, axis=1) - clearance_range(linkage, c, theta, joint="34").width
-    return degrees(float(gap[int(np.argmax(np.abs(gap)))]))

@@ -268,7 +268,7 @@ def equations_table(axes: Sequence[Axes]) -> Drawn:
     count = sum(one.nearest == "complete" for one in _COMPARED)
     first, complete = _trend("first order"), _trend("complete")
     ratio = min(b / a for a, b in left)
-    values = [_gap_of_two_routes(), ratio, count / len(_COMPARED)]
+    values = [ratio, count / len(_COMPARED)]
     return Drawn([*values, first[1] / first[0], complete[1] / complete[0]], _words(count), tables)
 
 
@@ -285,18 +285,6 @@ def _parts(linkage: str) -> tuple[float, float]:
     """Return the peaks of the coupler part that (6.17) keeps and of the one it leaves out."""
     phi, f1, f2, tension, more = _terms(linkage, _TURN).values()
     return _peak(f1 + f2 - phi), _peak(tension + more)
-
-
-def _gap_of_two_routes() -> float:
-    """Return the largest difference of what (6.17) leaves out, by the modules and by hand."""
-    gaps = []
-    for rig in RIGS:
-        complete, printed = (
-            rig.function(name, float(rig.inertias[0]))(_TURN) for name in ("complete", "printed")
-        )
-        *_, tension, more = _terms(rig.linkage, _TURN).values()
-        gaps.append(_peak(complete - printed - tension - more))
-    return max(gaps)
 
 
 @dataclass(frozen=True)

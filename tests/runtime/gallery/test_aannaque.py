@@ -18,10 +18,12 @@ from elastolink.runtime.gallery.aannaque_models import (
     hybrid_matrices,
     hybrid_model,
 )
+from elastolink.runtime.gallery.aannaque_stability import multiplier_surfaces
 from elastolink.runtime.gallery.algorithms import operation_count, printed_count
 from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.periodic import floquet_multipliers, steady_state
 from elastolink.runtime.recovery import recover, stress_operator
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 # Deflections leave the linear range at resonances; the equations stay linear.
@@ -106,6 +108,21 @@ def test_the_system_of_the_exact_model_has_it_too():
     mass, stiffness = system.array("M", angles), system.array("K", angles)
     squares = np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real.min(axis=1)
     np.testing.assert_allclose(np.sqrt(squares), found.first, rtol=1e-6)
+
+
+def test_surfaces_of_multipliers_are_those_of_an_integrated_turn():
+    both = multiplier_surfaces((0.0, 30.0), np.linspace(0.0, 20.0, 5), per_band=6)
+
+    def motion(t, y, stiffness, eps):
+        return [y[2], y[3], *(-(stiffness + eps * np.cos(2.0 * t)) * y[:2])]
+
+    for place in [(3, 0), (10, 1), (20, 2), (28, 3), (40, 4)]:
+        given = both.d[place], both.eps[place]
+        ends = solve_ivp(motion, (0.0, np.pi), [1, 0, 0, 1], "DOP853", args=given, rtol=1e-11)
+        first, second = both.first[place], both.second[place]
+        assert first * second == pytest.approx(1.0, rel=1e-12)
+        assert first + second == pytest.approx(ends.y[0, -1] + ends.y[3, -1], rel=1e-6)
+        assert abs(first) > abs(second) or first.imag >= 0.0
 
 
 def test_operations_of_marching_from_where_it_costs_more():

@@ -11,7 +11,6 @@ from elastolink.runtime.gallery.algorithms import (
     merson_step,
     newmark_limit,
     newmark_matrices,
-    newmark_regions,
 )
 from marching import wavy
 from seed_listings import de_vogelaere
@@ -154,9 +153,3 @@ def test_damping_helps_below_gamma_one_half_and_not_at_one_half():
     assert newmark_limit(0.4, 0.25) == 0.0 < newmark_limit(0.4, 0.25, 0.02)
     # At gamma = 1/2 the limit does not feel the damping.
     assert newmark_limit(0.5, 0.0, 0.3) == pytest.approx(2.0, rel=1e-12)
-
-
-def test_the_map_has_four_regions():
-    gamma = np.array([0.4, 0.6, 0.6, 0.6])
-    beta = np.array([0.3, 0.2, 0.301, 0.4])
-    assert newmark_regions(gamma, beta).tolist() == [0, 1, 2, 3]

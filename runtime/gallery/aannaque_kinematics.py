@@ -27,10 +27,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _SCENE = "aannaque_1996_table_3_2"
-_INPUT = radians(130.0)
-_SPACE_LAMBDA = 1.5
-# Below, at and above the plane through the linkage of four equal links.
-_PLANES = {r"\lambda<\sqrt{3}": 1.0, r"\lambda=\sqrt{3}": sqrt(3.0), r"\lambda>\sqrt{3}": 3.0}
 # The projection of the three axes on the paper, the third upwards.
 _TURN, _TILT = radians(38.0), radians(24.0)
 _VIEW = np.array(
@@ -39,30 +35,29 @@ _VIEW = np.array(
         [-cos(_TURN) * sin(_TILT), -sin(_TURN) * sin(_TILT), cos(_TILT)],
     ]
 )
-_PLANE_NAMES = (
-    r"$1=\lambda_2+\lambda_3+\lambda_4$",
-    r"$\lambda_2=1+\lambda_3+\lambda_4$",
-    r"$\lambda_3=\lambda_2+1+\lambda_4$",
-    r"$\lambda_4=\lambda_2+\lambda_3+1$",
-)
 
 
 def figure_3_4(axes: Sequence[Axes]) -> Drawn:
     """Draw the solution space up to a base plane, seen obliquely."""
-    ax, plane, total = axes[0], base_plane(_SPACE_LAMBDA), sqrt(3.0) * _SPACE_LAMBDA
+    ax, plane = axes[0], base_plane(1.5)
+    total = sqrt(3.0) * plane.lam
     ax.set_axis_off()
     ax.set_aspect("equal")
     far, near = 0.5 * (total + 1.0), 0.5 * (total - 1.0)
-    for i in range(3):
+    faces = (
+        (r"$\lambda_2=1+\lambda_3+\lambda_4$", (-96, -14)),
+        (r"$\lambda_3=\lambda_2+1+\lambda_4$", (96, -14)),
+        (r"$\lambda_4=\lambda_2+\lambda_3+1$", (104, 44)),
+    )
+    for i, (name, shift) in enumerate(faces):
         corners = np.full((3, 3), 0.0)
         corners[:, i] = 1.0, far, far
         corners[1, (i + 1) % 3] = near
         corners[2, (i + 2) % 3] = near
         _face(ax, corners, COLOURS[i], 0.30)
-        shift = ((-96, -14), (96, -14), (104, 44))[i]
-        _call(ax, corners.mean(axis=0), _PLANE_NAMES[i + 1], shift)
+        _call(ax, corners.mean(axis=0), name, shift)
     _face(ax, np.eye(3), COLOURS[3], 0.45)
-    _call(ax, np.full(3, 1.0 / 3.0), _PLANE_NAMES[0], (-172, 62))
+    _call(ax, np.full(3, 1.0 / 3.0), r"$1=\lambda_2+\lambda_3+\lambda_4$", (-172, 62))
     _face(ax, plane.outline, "0.55", 0.25)
     _call(ax, total * np.array([0.08, 0.46, 0.46]), "base plane", (84, 20))
     for i, axis in enumerate(np.eye(3)):
@@ -71,7 +66,7 @@ def figure_3_4(axes: Sequence[Axes]) -> Drawn:
         sketch.write(
             ax, ends[1], rf"$\lambda_{i + 2}$", 8.0 * ends[1] / np.hypot(*ends[1]), fontsize=11
         )
-    line = np.array([np.zeros(3), np.full(3, _SPACE_LAMBDA / sqrt(3.0))]) @ _VIEW.T
+    line = np.array([np.zeros(3), np.full(3, plane.lam / sqrt(3.0))]) @ _VIEW.T
     ax.plot(*line.T, "--", color="0.2", lw=1.0, zorder=8)
     ax.plot(*line[1], "o", color="0.2", ms=3.5, zorder=8)
     sketch.write(ax, line[1], r"$\lambda$", (8.0, 8.0), fontsize=11)
@@ -101,14 +96,15 @@ def _call(ax: Axes, place: Array, text: str, shift: tuple[float, float]) -> None
 
 def figure_3_5(axes: Sequence[Axes]) -> Drawn:
     """Draw three base planes with the class of each region."""
-    planes = [base_plane(lam) for lam in _PLANES.values()]
-    for ax, plane, name in zip(axes, planes, _PLANES, strict=True):
+    # Below, at and above the plane through the linkage of four equal links.
+    planes = [base_plane(lam) for lam in (1.0, sqrt(3.0), 3.0)]
+    for ax, plane, sign in zip(axes, planes, "<=>", strict=True):
         plane.plot(ax)
         for text in ax.texts:
             text.set_fontsize(7.0)
         for axis in (ax.xaxis, ax.yaxis):
             axis.label.set_fontsize(8.0)
-        panel_title(ax, f"${name}$: {plane.lam:.4g}")
+        panel_title(ax, rf"$\lambda{sign}\sqrt{{3}}$: {plane.lam:.4g}")
         ax.set_title("")
         ax.grid(visible=False)
     rows = [
@@ -137,10 +133,10 @@ def cycle(frame: float | None = None) -> FourBarMotion:
 
 def figure_3_6(axes: Sequence[Axes]) -> Drawn:
     """Draw both assemblies at one crank angle."""
-    ax, bars = axes[0], linkage()
+    ax, bars, theta = axes[0], linkage(), radians(130.0)
     sketch.canvas(ax)
     other = FourBar(bars.frame, bars.crank, bars.coupler, bars.follower, assembly="crossed")
-    both = [item.motion(_INPUT) for item in (bars, other)]
+    both = [item.motion(theta) for item in (bars, other)]
     a, b, d = (np.asarray(both[0].joints[name]) for name in "ABD")
     ax.plot(*np.transpose([b, d]), ":", color="0.4", lw=1.0)
     for motion, name, style in zip(both, ("B", "B'"), ("-", (0, (3, 1.2))), strict=True):
@@ -156,7 +152,7 @@ def figure_3_6(axes: Sequence[Axes]) -> Drawn:
     sketch.pin(ax, b)
     sketch.write(ax, b, "A", (-10.0, 10.0), style="italic")
     ax.plot([0.0, 0.12 * bars.frame], [0.0, 0.0], color="0.35", lw=0.8)
-    sketch.arc(ax, a, 0.07 * bars.frame, (0.0, _INPUT), "$t_1$")
+    sketch.arc(ax, a, 0.07 * bars.frame, (0.0, theta), "$t_1$")
     return Drawn()
 
 

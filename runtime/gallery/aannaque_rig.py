@@ -51,8 +51,6 @@ _LOW, _HIGH, _LONG_HIGH = 5.0, 40.0, 30.0
 # Speeds at which the stresses of several L4 are compared: one far below the critical speeds, and
 # that of Fig. 8.24 [rad/s].
 _QUIET, _SHOWN = 6.0, 17.0
-# What is near, of a critical speed.
-_NEAR = 0.03
 
 
 @lru_cache(maxsize=12)
@@ -219,8 +217,8 @@ def _orders(scene: str, frame: float, over: StressCurve, link: str) -> list[floa
     for speed in _critical(over, link):
         ratios = [mean_frequency(scene, frame, mode) / float(speed) for mode in (1, 2)]
         apart = [abs(ratio / round(ratio) - 1.0) for ratio in ratios]
-        # The second mode only where the first does not explain it.
-        values.append(ratios[0 if apart[0] <= _NEAR else int(np.argmin(apart))])
+        # The second mode only where the first does not explain it to 3 %.
+        values.append(ratios[0 if apart[0] <= 0.03 else int(np.argmin(apart))])
     return values
 
 

@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 Relation = Literal["=", "<", ">"]
 Kind = Literal["printed", "words", "check"]
 
-# What each kind of expected number is called beside the computed one.
-KINDS: Mapping[Kind, str] = {
-    "printed": "printed",
-    "words": "by the text's words",
-    "check": "for a check",
+# Of each kind of comparison: what it is, and what its expected number is called.
+KINDS: Mapping[Kind, tuple[str, str]] = {
+    "printed": ("numbers that the documents print", "printed"),
+    "words": ("statements in words, read as numbers", "read as"),
+    "check": ("printed tables checked as a whole", "expected"),
 }
 
 
@@ -50,8 +50,8 @@ class Quoted:
         Why the two are known to differ; empty where they should agree.
     kind : {"printed", "words", "check"}
         Where ``expected`` comes from: the document prints it; words of the document such as "an
-        order of magnitude" are read as it; or it is no number of the document but that of another
-        route to an equation of the document or to a result of ours.
+        order of magnitude" are read as it; or a whole table of printed numbers is
+        compared by its worst one.
     """
 
     number: str
@@ -122,11 +122,7 @@ class Quoted:
 def counts(rows: Sequence[Quoted]) -> list[str]:
     """Return for each kind of comparison, in words, how many there are and how they come out."""
     lines = []
-    for kind, what in (
-        ("printed", "numbers that the documents print"),
-        ("words", "statements in words, read as numbers"),
-        ("check", "checks of equations and of results"),
-    ):
+    for kind, (what, _) in KINDS.items():
         chosen = [row for row in rows if row.kind == kind]
         agree = sum(row.agrees for row in chosen)
         known = sum(bool(row.differs) and not row.agrees for row in chosen)
@@ -390,8 +386,8 @@ class Gallery(Result):
                 sign = "" if row.relation == "=" else f"{row.relation} "
                 unit = f" {row.unit}" if row.unit else ""
                 out.append(
-                    f"  {row.number}: {sign}{row.expected:.4g}{unit} {KINDS[row.kind]}, "
-                    f"{row.computed:.4g} computed: {row.verdict}"
+                    f"  {row.number}: {KINDS[row.kind][1]} {sign}{row.expected:.4g}{unit}, "
+                    f"computed {row.computed:.4g}: {row.verdict}"
                 )
         out += ["", *counts([row for _, row in self.rows])]
         if self.folder:

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
 INK, GROUND = "#2b2b2b", "0.45"
 LINK_COLOURS = {"crank": "#c8641e", "coupler": "#1f5a8c", "follower": "#3a7d44"}
-_HALO = 2.5
 
 
 def canvas(ax: Axes) -> None:
@@ -87,7 +86,7 @@ def write(
         _pair(place),
         xytext=_pair(shift),
         textcoords="offset points",
-        path_effects=[patheffects.withStroke(linewidth=_HALO, foreground="w")],
+        path_effects=[patheffects.withStroke(linewidth=2.5, foreground="w")],
         **{"ha": "center", "va": "center", "fontsize": 9, "zorder": 9, **style},
     )
 

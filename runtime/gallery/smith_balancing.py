@@ -41,17 +41,12 @@ if TYPE_CHECKING:
 
 # Steel discs half an inch thick, 6 in from the pins, as the thesis states none of these.
 _STEEL, _THICKNESS, _OFFSET = 7850.0, 0.5 * INCH, 6.0 * INCH
-_POUND_MASS = 0.45359237
 _NAMES: Mapping[Case, str] = {
     "a": "unbalanced",
     "b": "crank and follower balanced",
     "c": "fully balanced, 3 counterweights",
     "d": "fully balanced, 2 counterweights",
 }
-_MASS, _LENGTH, _DISC = 1.0, 1.0, 0.1
-_DENSITIES = {"A": 5.0, "B": 10.0, "C": 20.0, "D": 40.0, "E": 80.0}
-# So light that no counterweight at all is best.
-_LIGHT = 2.5
 
 
 def _weights(
@@ -88,7 +83,7 @@ def figure_20(axes: Sequence[Axes]) -> Drawn:
             ax.add_patch(Circle(tuple(centre), radius, zorder=2, alpha=0.45, **look))
             ax.update_datalim([centre - radius, centre + radius])
             sizes = (weight.offset / INCH, weight.disc_radius / INCH)
-            rows.append((f"({case})", link, weight.mass / _POUND_MASS, *sizes))
+            rows.append((f"({case})", link, weight.mass / 0.45359237, *sizes))
         sketch.four_bar(ax, motion.joints, 0.1 * linkage.lengths["frame"])
     # All panels have the limits that hold every one of them.
     boxes = np.array([ax.dataLim.get_points() for ax in axes])
@@ -244,16 +239,11 @@ def optimal_offset(density_number: Any) -> Any:
     return np.where(k >= 0.5, 1.0, 1.0 / s)
 
 
-def _number(density: float) -> float:
-    return density_number(_MASS, _LENGTH, _DISC, density)
-
-
 def _best() -> list[tuple[str, float, float, float]]:
-    """Return letter, density, K and best offset of the five counterweights."""
-    return [
-        (letter, density, _number(density), float(optimal_offset(_number(density))))
-        for letter, density in _DENSITIES.items()
-    ]
+    """Return letter, density, K and best offset of five counterweights, M = L = 1 and h = 0.1."""
+    densities = (5.0, 10.0, 20.0, 40.0, 80.0)
+    numbers = [density_number(1.0, 1.0, 0.1, density) for density in densities]
+    return list(zip("ABCDE", densities, numbers, optimal_offset(numbers).tolist(), strict=True))
 
 
 def figure_23a(axes: Sequence[Axes]) -> Drawn:
@@ -280,8 +270,9 @@ def _densities(ax: Axes, delta: Array, beside: float) -> None:
 def figure_23b(axes: Sequence[Axes]) -> Drawn:
     """Draw the inertia over the offset for a range of densities."""
     ax, delta = axes[0], np.linspace(0.06, 1.0, 471)
-    light = BalancedLink(delta, _number(_LIGHT))
-    ax.plot(delta, light.inertia, "--", color="0.45", label=rf"$\rho$ = {_LIGHT:g}")
+    # So light that no counterweight at all is best.
+    light = BalancedLink(delta, density_number(1.0, 1.0, 0.1, 2.5))
+    ax.plot(delta, light.inertia, "--", color="0.45", label=r"$\rho$ = 2.5")
     _densities(ax, delta, 0.0)
     offsets = [best for *_, best in _best()]
     rows = []

@@ -25,8 +25,6 @@ from .smith_linkages import end_load, f3_series, linkage_of
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_UNSTABLE = "#f4dcc8"
-_EXACT, _FIRST, _SECOND = COLOURS[5], COLOURS[0], COLOURS[2]
 _LINKAGE = "(2,1,2,2)"
 # Of the space: the region, the parameters' range, where limits for small ones are taken; second
 # order adds less than twice this.
@@ -53,8 +51,8 @@ def _shade(ax: Axes, f: PeriodicFunction, mu: Array, regions: Sequence[int], lef
     """Shade the unstable regions of a chart and draw their exact boundaries."""
     exact = hill_boundaries(f, mu, regions)
     for low, high in zip(exact.lower, exact.upper, strict=True):
-        ax.fill_betweenx(mu, np.maximum(low, left), high, color=_UNSTABLE, lw=0)
-    _edges(ax, mu, np.stack([exact.lower, exact.upper]), "-", _EXACT, "exact")
+        ax.fill_betweenx(mu, np.maximum(low, left), high, color="#f4dcc8", lw=0)
+    _edges(ax, mu, np.stack([exact.lower, exact.upper]), "-", COLOURS[5], "exact")
 
 
 def figure_34(axes: Sequence[Axes]) -> Drawn:
@@ -64,8 +62,8 @@ def figure_34(axes: Sequence[Axes]) -> Drawn:
     _shade(ax, f, mu, (0, *regions, 5, 6), -1.5)
     exact, gaps = hill_boundaries(f, mu, (1,)), []
     for order, style, colour, label in (
-        (1, "--", _FIRST, "first order"),
-        (2, ":", _SECOND, "second order"),
+        (1, "--", COLOURS[0], "first order"),
+        (2, ":", COLOURS[2], "second order"),
     ):
         near = _to_order(f, mu, (*regions, 5), order)
         _edges(ax, mu, near, style, colour, label)
@@ -79,7 +77,7 @@ def figure_35(axes: Sequence[Axes]) -> Drawn:
     for ax, crank in zip(axes, (0.5, 1.5, 3.0, 4.0), strict=True):
         f = _series(FourBar(frame=6.0, crank=crank, coupler=6.0, follower=6.0), "f3")
         _shade(ax, f, mu, (0, *regions, 4), -1.0)
-        _edges(ax, mu, _to_order(f, mu, regions, 2), ":", _SECOND, "second order")
+        _edges(ax, mu, _to_order(f, mu, regions, 2), ":", COLOURS[2], "second order")
         widths.append(hill_boundaries(f, 1.0, regions).width)
     short = widths[0]
     growth = min(float(np.min(b / a)) for a, b in pairwise(widths))

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 INCH, POUND = 0.0254, 4.4482216152605
 TURN = np.linspace(0.0, 2.0 * pi, 1441)
-_JOINTS = ("12", "23", "34", "41")
 
 
 @lru_cache(maxsize=1)
@@ -66,7 +65,8 @@ def figure_11(axes: Sequence[Axes]) -> Drawn:
     for place, (force, text) in zip(ground, on_frame, strict=True):
         sketch.arrow(ax, place, scale * np.asarray(force), COLOURS[3], text)
     sketch.scale_bar(ax, (0.15 * frame, -0.8 * frame), scale, sketch.round_force(largest))
-    rows = [(f"F{joint}", *(getattr(forces, f"f{joint}") / POUND)) for joint in _JOINTS]
+    names = ("f12", "f23", "f34", "f41")
+    rows = [(name.upper(), *(getattr(forces, name) / POUND)) for name in names]
     return Drawn(tables=[rows])
 
 

@@ -21,14 +21,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _CRANKS = (2.0, 4.0, 6.0, 8.0, 9.0, 9.9)
-# Distance from a limit (crank 0 or 10) at which it is read off; deviations are of its order.
-_NEAR = 1e-7
-_CLEARANCES = (0.05, 0.1, 0.2, 0.4)
-# Lengths of the schematic figures, chosen so that their angles are reached.
-_GENERAL = FourBar(frame=10.0, crank=4.0, coupler=9.0, follower=7.0)
-_IN_LINE = FourBar(frame=16.0, crank=8.0, coupler=7.0, follower=8.0)
-_SQUARE = FourBar(frame=10.0, crank=4.0, coupler=10.0, follower=6.0)
-_ANGLE = radians(70.0)
 _DASHED = (0, (3.5, 1.5))
 
 
@@ -54,9 +46,10 @@ def output(axes: Sequence[Axes], rate: str, small: float, slope: float, level: f
     ends = [level, 360.0 * slope + level]
     ax.plot([0, 360], ends, "--", color="0.4", lw=1.0, label="parallelogram")
     halves = [np.radians(np.arange(start, start + 170.0, 10.0)) for start in (10.0, 190.0)]
-    tiny = value(10.0 * _NEAR, np.concatenate(halves))
+    # Both limits, crank 0 and 10, are read off beside them; deviations are of that order.
+    tiny = value(10.0 * 1e-7, np.concatenate(halves))
     gaps = [
-        value(10.0 * (1.0 - _NEAR), half) - (slope * np.degrees(half) + level) for half in halves
+        value(10.0 * (1.0 - 1e-7), half) - (slope * np.degrees(half) + level) for half in halves
     ]
     fine = np.linspace(0.0, 2 * pi, 36001)
     peaks = (f"{np.max(np.abs(value(one, fine))):.3g} (crank {one:g})" for one in _CRANKS[3:])
@@ -145,7 +138,8 @@ def figure_8(axes: Sequence[Axes]) -> Drawn:
     """Draw the nominal position and the two extremes for one crank angle."""
     ax = axes[0]
     sketch.canvas(ax)
-    places = _draw_extremes(ax, _GENERAL, _ANGLE, 1.6, (0.5, -0.5))
+    linkage, theta = FourBar(frame=10.0, crank=4.0, coupler=9.0, follower=7.0), radians(70.0)
+    places = _draw_extremes(ax, linkage, theta, 1.6, (0.5, -0.5))
     a, b, d = places["A"], places["B"], places["D"]
     ax.plot(*np.transpose([b, d]), ":", color="0.4", lw=1.0)
     ax.plot(*np.transpose([a, d]), color="0.6", lw=0.8, zorder=1)
@@ -155,7 +149,7 @@ def figure_8(axes: Sequence[Axes]) -> Drawn:
         (1.2, "C''", r"$\phi''$"),
     ):
         sketch.arc(ax, d, radius, (_direction(b - d), _direction(places[name] - d)), text)
-    sketch.arc(ax, a, 1.1, (0.0, _ANGLE), r"$\theta_2$")
+    sketch.arc(ax, a, 1.1, (0.0, theta), r"$\theta_2$")
     return Drawn()
 
 
@@ -203,15 +197,16 @@ def figure_9a(axes: Sequence[Axes]) -> Drawn:
     """Draw the extreme position in which coupler and follower lie in one line."""
     ax = axes[0]
     sketch.canvas(ax)
-    l3, l4 = _IN_LINE.coupler, _IN_LINE.follower
-    theta, a = _reach(_IN_LINE, l3 + l4), np.zeros(2)
-    b = _IN_LINE.crank * np.array([cos(theta), sin(theta)])
-    d = np.array([_IN_LINE.frame, 0.0])
+    linkage = FourBar(frame=16.0, crank=8.0, coupler=7.0, follower=8.0)
+    l3, l4 = linkage.coupler, linkage.follower
+    theta, a = _reach(linkage, l3 + l4), np.zeros(2)
+    b = linkage.crank * np.array([cos(theta), sin(theta)])
+    d = np.array([linkage.frame, 0.0])
     middle = d + l4 * (b - d) / (l3 + l4)
     for start, end, link in ((b, middle, "coupler"), (d, middle, "follower"), (a, b, "crank")):
         sketch.bar(ax, start, end, sketch.LINK_COLOURS[link], zorder=3)
     for name, up in (("C'", True), ("C''", False)):
-        moved = _with_coupler(_IN_LINE, 0.4, crossed=not up).motion(theta)
+        moved = _with_coupler(linkage, 0.4, crossed=not up).motion(theta)
         at = np.asarray(moved.joints["C"])
         for start, link in ((b, "coupler"), (d, "follower")):
             sketch.bar(ax, start, at, sketch.LINK_COLOURS[link], lw=1.8, alpha=0.6, ls=_DASHED)
@@ -230,9 +225,9 @@ def figure_9b(axes: Sequence[Axes]) -> Drawn:
     """Draw the position in which BD and the follower are square."""
     ax = axes[0]
     sketch.canvas(ax)
-    l3, l4 = _SQUARE.coupler, _SQUARE.follower
-    theta = _reach(_SQUARE, sqrt(l3**2 - l4**2))
-    places = _draw_extremes(ax, _SQUARE, theta, 1.4, (0.5,))
+    linkage = FourBar(frame=10.0, crank=4.0, coupler=10.0, follower=6.0)
+    theta = _reach(linkage, sqrt(linkage.coupler**2 - linkage.follower**2))
+    places = _draw_extremes(ax, linkage, theta, 1.4, (0.5,))
     b, d = places["B"], places["D"]
     ax.plot(*np.transpose([b, d]), ":", color="0.4", lw=1.0)
     first, second = (0.55 * (at - d) / np.hypot(*(at - d)) for at in (b, places["C"]))
@@ -245,16 +240,17 @@ def figure_10(axes: Sequence[Axes]) -> Drawn:
     """Draw the free motion of the follower over the crank angle for several clearances."""
     ax, linkage = axes[0], four_bar_of("smith_1972_10_8_10_10")
     unit, theta = linkage.frame / 10.0, np.linspace(0.0, 2.0 * pi, 3601)
-    ranges = [clearance_range(linkage, c * unit, theta) for c in _CLEARANCES]
-    for c, moves, colour in zip(_CLEARANCES, ranges, COLOURS, strict=False):
+    ranges = {c: clearance_range(linkage, c * unit, theta) for c in (0.05, 0.1, 0.2, 0.4)}
+    for (c, moves), colour in zip(ranges.items(), COLOURS, strict=False):
         ax.plot(np.degrees(theta), np.degrees(moves.width), color=colour, label=f"c = {c:g}")
         ax.plot(np.degrees(theta), np.degrees(moves.small), ":", color="0.15", lw=1.1, zorder=5)
     ax.plot([], [], ":", color="0.15", lw=1.1, label="small clearance, (3.3)")
-    apart = max(degrees(float(np.max(np.abs(moves.width - moves.small)))) for moves in ranges)
-    greatest = [degrees(theta[int(np.argmax(moves.below[:-1]))]) for moves in ranges]
-    least, near = ranges[0], np.abs(theta - pi) < radians(60.0)
+    every = ranges.values()
+    apart = max(degrees(float(np.max(np.abs(moves.width - moves.small)))) for moves in every)
+    greatest = [degrees(theta[int(np.argmax(moves.below[:-1]))]) for moves in every]
+    near = np.abs(theta - pi) < radians(60.0)
     values = [(at + 180.0) % 360.0 - 180.0 for at in greatest]
-    values.append(degrees(theta[near][int(np.argmax(least.below[near]))]))
+    values.append(degrees(theta[near][int(np.argmax(ranges[0.05].below[near]))]))
     extremes = transmission_angle(linkage)
     values += [degrees(extremes.least), degrees(extremes.greatest)]
     # The case in which the transmission angle stays below 90 degrees.

@@ -21,11 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _RIG = RIG["84"]
-# Between the least and the greatest logarithmic decrement measured at 1/16 in (section 9.5.5).
-_DECREMENT = 0.075
 _LEAST = 0.0058
-# Largest deflection drawn, and that up to which linear equations hold, over the coupler's length.
-_DRAWN, _LINEAR = 0.15, 0.05
 
 
 def figure_45(axes: Sequence[Axes]) -> Drawn:
@@ -40,7 +36,8 @@ def figure_45(axes: Sequence[Axes]) -> Drawn:
 def wave_form(axes: Sequence[Axes], divisor: float) -> Drawn:
     """Draw the wave-form at the speed Omega/divisor (Figs. 47 to 51)."""
     ax, speed = axes[0], _RIG.frequency / divisor
-    damped = {name: _RIG.system(name, decrement=_DECREMENT) for name in ("reduced", "complete")}
+    # Between the least and the greatest logarithmic decrement measured at 1/16 in (9.5.5).
+    damped = {name: _RIG.system(name, decrement=0.075) for name in ("reduced", "complete")}
     length = 1e3 * damped["complete"].reference_length
     for equation, label, colour in (
         ("reduced", "equation of the thesis (6.18)", COLOURS[0]),
@@ -148,12 +145,13 @@ def response(
     ax.fill_between(
         ends.speed, 0.0, 1.0, color="#f7e3d3", lw=0, zorder=0, transform=across, **unstable
     )
-    # The axis is kept to what can be read; dashed lines say how far linear equations hold.
+    # The axis is kept to what can be read, 15 % of the length; dashed lines say that up to 5 %
+    # linear equations hold.
     length = 1e3 * one.rig.system(inertia=inertia).reference_length
     top = max(float(np.max(np.abs(values))) for values in (ends.least, ends.greatest))
-    end = min(1.15 * top, _DRAWN * length)
-    if _LINEAR * length < end:
-        for level in (_LINEAR * length, -_LINEAR * length):
+    end = min(1.15 * top, 0.15 * length)
+    if 0.05 * length < end:
+        for level in (0.05 * length, -0.05 * length):
             ax.axhline(level, color="0.5", lw=0.7, ls="--", zorder=1)
     mark_fractions(ax, one.rig.frequency / RPM, range(1, 13), "Ω/{}", (low, high), low=False)
     ax.set(xlim=(low, high), ylim=(-end, end))

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 _REGIONS = (3, 4, 5, 6, 7, 8)
 _TURN = np.linspace(0.0, 2 * pi, 1441)
-_THESIS, _COMPLETE, _FILL = COLOURS[0], COLOURS[1], "#f7e3d3"
+_FILL = "#f7e3d3"
 _NAMES = {"reduced": "(6.18)", "printed": "(6.17)", "complete": "complete"}
 
 
@@ -134,9 +134,9 @@ def _boundaries(ax: Axes, rig: Rig, inertia: Array, high: float) -> None:
             else (":", r"(6.18), instability alone, $2\Omega/n$")
         )
         for k in (0, 1):
-            ax.plot(across, complete[k, i], color=_COMPLETE, lw=0.8)
+            ax.plot(across, complete[k, i], color=COLOURS[1], lw=0.8)
             named = label if i < 2 and k == 0 else None
-            ax.plot(across, thesis[k, i], style, color=_THESIS, lw=1.3, label=named)
+            ax.plot(across, thesis[k, i], style, color=COLOURS[0], lw=1.3, label=named)
 
 
 def _points(ax: Axes, seen: Sequence[Observation]) -> None:

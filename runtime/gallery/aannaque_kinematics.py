@@ -37,7 +37,7 @@ _VIEW = np.array(
 )
 
 
-def figure_3_4(axes: Sequence[Axes]) -> Drawn:
+def figure_3_4(axes: Sequence[Axes]) -> None:
     """Draw the solution space up to a base plane, seen obliquely."""
     ax, plane = axes[0], base_plane(1.5)
     total = sqrt(3.0) * plane.lam
@@ -70,7 +70,6 @@ def figure_3_4(axes: Sequence[Axes]) -> Drawn:
     ax.plot(*line.T, "--", color="0.2", lw=1.0, zorder=8)
     ax.plot(*line[1], "o", color="0.2", ms=3.5, zorder=8)
     sketch.write(ax, line[1], r"$\lambda$", (8.0, 8.0), fontsize=11)
-    return Drawn()
 
 
 def _face(ax: Axes, corners: Array, colour: str, alpha: float) -> None:
@@ -131,7 +130,7 @@ def cycle(frame: float | None = None) -> FourBarMotion:
     return chosen.motion(np.linspace(0.0, 2.0 * pi, 3601))
 
 
-def figure_3_6(axes: Sequence[Axes]) -> Drawn:
+def figure_3_6(axes: Sequence[Axes]) -> None:
     """Draw both assemblies at one crank angle."""
     ax, bars, theta = axes[0], linkage(), radians(130.0)
     sketch.canvas(ax)
@@ -153,17 +152,16 @@ def figure_3_6(axes: Sequence[Axes]) -> Drawn:
     sketch.write(ax, b, "A", (-10.0, 10.0), style="italic")
     ax.plot([0.0, 0.12 * bars.frame], [0.0, 0.0], color="0.35", lw=0.8)
     sketch.arc(ax, a, 0.07 * bars.frame, (0.0, theta), "$t_1$")
-    return Drawn()
 
 
-def rates(axes: Sequence[Axes], kind: str) -> Drawn:
+def rates(axes: Sequence[Axes], kind: str) -> Drawn | None:
     """Draw speeds ``omega`` or accelerations ``alpha`` of both links (Figs. 3.7 and 3.8)."""
     motion = cycle()
     for number, link in ((3, "coupler"), (4, "follower")):
         rate = getattr(motion, f"{kind}{number}")
         axes[0].plot(np.degrees(motion.theta2), rate, label=link)
     if kind == "omega":
-        return Drawn()
+        return None
     theta, alpha = motion.theta2[:-1], motion.alpha4[:-1]
     size = np.abs(np.gradient(motion.alpha4, motion.theta2)[:-1])
     peaks = (size >= np.roll(size, 1)) & (size > np.roll(size, -1)) & (size > 0.5 * size.max())
@@ -186,7 +184,7 @@ def figure_3_9(axes: Sequence[Axes]) -> Drawn:
     return Drawn([degrees(mu.least), degrees(mu.greatest)])
 
 
-def figure_3_10(axes: Sequence[Axes]) -> Drawn:
+def figure_3_10(axes: Sequence[Axes]) -> None:
     """Draw the mechanism at several positions, and the paths of some points of its coupler."""
     ax, bars = axes[0], linkage()
     sketch.canvas(ax)
@@ -218,7 +216,6 @@ def figure_3_10(axes: Sequence[Axes]) -> Drawn:
         ax.plot(*at, "o", color="0.15", ms=4.0, zorder=8)
         sketch.write(ax, at, name, (8.0, 8.0), style="italic")
     sketch.four_bar(ax, joints, 0.07 * bars.frame, "OABC")
-    return Drawn()
 
 
 def free_body(axes: Sequence[Axes], link: str) -> Drawn:

@@ -247,7 +247,8 @@ class FigureEntry:
     title : str
         What it shows.
     draw : callable
-        From the axes, in the order of rows and columns, to a :class:`Drawn`.
+        From the axes, in the order of rows and columns, to a :class:`Drawn`, or None where
+        nothing goes with the picture.
     panels : tuple of int
         Rows and columns of axes.
     size : tuple of float
@@ -273,7 +274,7 @@ class FigureEntry:
     document: str
     label: str
     title: str
-    draw: Callable[[Sequence[Axes]], Drawn]
+    draw: Callable[[Sequence[Axes]], Drawn | None]
     panels: tuple[int, int] = (1, 1)
     size: tuple[float, float] = (7.2, 4.6)
     projection: str | None = None
@@ -297,7 +298,7 @@ class FigureEntry:
 
     def show(self, axes: Sequence[Axes]) -> Shown:
         """Draw the figure and put the computed values beside the quoted ones."""
-        drawn = self.draw(axes)
+        drawn = self.draw(axes) or Drawn()
         words = drawn.words
         rows = tuple(
             replace(row, computed=float(value))

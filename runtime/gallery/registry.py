@@ -60,10 +60,12 @@ def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> F
     common = record.pop("common", {})
     place, arguments = record.pop("draw"), record.pop("arguments", ())
 
-    def draw(axes: Sequence[Axes]) -> Drawn:
+    def draw(axes: Sequence[Axes]) -> Drawn | None:
         # The module that draws is loaded only now.
         module, _, name = place.partition(".")
-        drawn: Drawn = getattr(import_module(f".{module}", __package__), name)(axes, *arguments)
+        drawn: Drawn | None = getattr(import_module(f".{module}", __package__), name)(
+            axes, *arguments
+        )
         return drawn
 
     if "page" in record:

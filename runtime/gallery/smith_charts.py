@@ -88,7 +88,7 @@ def _series(linkage: FourBar, name: str) -> PeriodicFunction:
     return PeriodicFunction.from_callable(lambda theta: getattr(end_load(linkage, theta), name))
 
 
-def damped(axes: Sequence[Axes], regions: list[int], dampings: list[float], top: float) -> Drawn:
+def damped(axes: Sequence[Axes], regions: list[int], dampings: list[float], top: float) -> None:
     """Draw regions up to a mu for several dampings, exact and, of a single one, to first order.
 
     Figs. 36 and 37.
@@ -110,7 +110,6 @@ def damped(axes: Sequence[Axes], regions: list[int], dampings: list[float], top:
             for low, high in zip(ends.lower, ends.upper, strict=True):
                 label = f"K = {damping:g}, {name}"
                 ax.plot(*outline(low, high, mu), style, color=colour, label=label)
-    return Drawn()
 
 
 @dataclass(frozen=True)

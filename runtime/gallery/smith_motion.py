@@ -134,7 +134,7 @@ def _direction(vector: Array) -> float:
     return float(np.arctan2(vector[1], vector[0]))
 
 
-def figure_8(axes: Sequence[Axes]) -> Drawn:
+def figure_8(axes: Sequence[Axes]) -> None:
     """Draw the nominal position and the two extremes for one crank angle."""
     ax = axes[0]
     sketch.canvas(ax)
@@ -150,7 +150,6 @@ def figure_8(axes: Sequence[Axes]) -> Drawn:
     ):
         sketch.arc(ax, d, radius, (_direction(b - d), _direction(places[name] - d)), text)
     sketch.arc(ax, a, 1.1, (0.0, theta), r"$\theta_2$")
-    return Drawn()
 
 
 def _draw_extremes(
@@ -193,7 +192,7 @@ def _ground(ax: Axes, a: Array, d: Array, unit: float) -> None:
         sketch.write(ax, place, name, (side, 4.0), style="italic")
 
 
-def figure_9a(axes: Sequence[Axes]) -> Drawn:
+def figure_9a(axes: Sequence[Axes]) -> None:
     """Draw the extreme position in which coupler and follower lie in one line."""
     ax = axes[0]
     sketch.canvas(ax)
@@ -218,10 +217,9 @@ def figure_9a(axes: Sequence[Axes]) -> Drawn:
     sketch.pin(ax, b, middle)
     sketch.write(ax, b, "B", (-11.0, 9.0), style="italic")
     sketch.write(ax, middle, "C", (10.0, 8.0), style="italic")
-    return Drawn()
 
 
-def figure_9b(axes: Sequence[Axes]) -> Drawn:
+def figure_9b(axes: Sequence[Axes]) -> None:
     """Draw the position in which BD and the follower are square."""
     ax = axes[0]
     sketch.canvas(ax)
@@ -233,7 +231,6 @@ def figure_9b(axes: Sequence[Axes]) -> Drawn:
     first, second = (0.55 * (at - d) / np.hypot(*(at - d)) for at in (b, places["C"]))
     ax.plot(*np.transpose([d + first, d + first + second, d + second]), color=sketch.GROUND, lw=0.9)
     sketch.arc(ax, d, 2.6, (_direction(b - d), _direction(places["C'"] - d)), r"$\phi'$")
-    return Drawn()
 
 
 def figure_10(axes: Sequence[Axes]) -> Drawn:

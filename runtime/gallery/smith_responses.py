@@ -81,10 +81,6 @@ class Response(OfRig):
     low: float
     high: float
 
-    def envelope(self, decrement: float) -> Envelope:
-        """Return the extreme deflections over the range, for a logarithmic decrement."""
-        return _envelope(self, decrement)
-
 
 @dataclass(frozen=True)
 class Envelope:
@@ -107,7 +103,8 @@ class Envelope:
 
 
 @lru_cache(maxsize=64)
-def _envelope(one: Response, decrement: float) -> Envelope:
+def envelope(one: Response, decrement: float) -> Envelope:
+    """Return the extreme deflections over the range, for a logarithmic decrement."""
     system = one.rig.system(decrement=decrement, inertia=one.inertia)
     speed = np.linspace(one.low, one.high, 241)
     motion = steady_state(system, speed * RPM)
@@ -133,11 +130,11 @@ def response(
         (middle, COLOURS[0], 1.3, 3.0),
         (most, COLOURS[2], 0.8, 2.0),
     ):
-        ends = one.envelope(decrement)
+        ends = envelope(one, decrement)
         label = f"decrement {decrement:.3g}"
         ax.plot(ends.speed, ends.greatest, color=colour, lw=width, label=label, zorder=front)
         ax.plot(ends.speed, ends.least, color=colour, lw=width, zorder=front)
-    ends = one.envelope(middle)
+    ends = envelope(one, middle)
     unstable: dict[str, Any] = {"where": list(~ends.stable), "step": "mid"}
     if not np.all(ends.stable):
         unstable["label"] = "unstable"
@@ -160,7 +157,7 @@ def response(
 
 def resonance(one: Response, speed: float) -> float:
     """Return the crank speed [rpm] of the greatest deflection's maximum nearest to a speed."""
-    ends = one.envelope(one.rig.decrements[0])
+    ends = envelope(one, one.rig.decrements[0])
     height = ends.height
     inner = (height[1:-1] > height[:-2]) & (height[1:-1] >= height[2:])
     places = ends.speed[1:-1][inner]
@@ -183,7 +180,7 @@ def _increment(one: Response) -> list[float]:
     sizes = []
     for inertia in (one.inertia, 0.0069):
         other = Response(one.chart, inertia, one.low, one.high)
-        ends = other.envelope(one.rig.decrements[0])
+        ends = envelope(other, one.rig.decrements[0])
         sizes.append(float(np.interp(300.0, ends.speed, ends.height)))
     return [sizes[0] / sizes[1]]
 
@@ -195,7 +192,7 @@ def _unstable(
 
     With the least measured decrement, the middle or the greatest one (0, 1, 2).
     """
-    speeds = one.envelope(one.rig.decrements[damping]).unstable
+    speeds = envelope(one, one.rig.decrements[damping]).unstable
     inside = speeds[(speeds > low) & (speeds < high)]
     first, last = float(inside[0]), float(inside[-1])
     return [first, 0.5 * (first + last), last]
@@ -203,7 +200,7 @@ def _unstable(
 
 def _between(one: Response) -> list[float]:
     """Return at how many speeds about 500 rpm the periodic motion is largest."""
-    ends = one.envelope(one.rig.decrements[0])
+    ends = envelope(one, one.rig.decrements[0])
     inside = np.flatnonzero(np.abs(ends.speed - 500.0) < 15.0)
     beside = np.maximum(ends.height[inside - 1], ends.height[inside + 1])
     return [int(np.count_nonzero(ends.height[inside] > beside))]

@@ -1,7 +1,5 @@
 """What the gallery computes for Smith's figures, by other routes."""
 
-from math import radians
-
 import mpmath
 import numpy as np
 import pytest
@@ -24,7 +22,7 @@ from elastolink.runtime.gallery.smith_linkages import (
     four_bar_of,
     linkage_of,
 )
-from elastolink.runtime.gallery.smith_responses import Response
+from elastolink.runtime.gallery.smith_responses import Response, envelope
 from elastolink.runtime.gallery.smith_speeds import OBSERVATIONS
 from elastolink.runtime.hill import hill_boundaries
 from elastolink.runtime.periodic import steady_peaks
@@ -116,30 +114,6 @@ def test_point_masses_alone_would_have_no_best_offset():
     assert np.all(np.diff(peaks) > 0.0)
 
 
-def test_the_unbalanced_peaks_are_those_by_newton_and_euler():
-    # Smith's example at its worst angle: nine equations, written down here once more.
-    machine, speed = example()
-    theta = radians(18.0)
-    motion = machine.linkage.motion(theta, speed)
-    a, b = np.zeros((9, 9)), np.zeros(9)
-    # Unknowns: x12, y12, x23, y23, x34, y34, x41, y41, torque.
-    plan = (("crank", "AB"), ("coupler", "BC"), ("follower", "CD"))
-    for row, (link, pins) in enumerate(plan):
-        mass = machine.mass(link)
-        place = motion.point(link, mass.along / mass.mass)
-        arms = [motion.joints[name] - place.position for name in pins]
-        for start, arm, way in ((2 * row, arms[0], 1.0), (2 * row + 2, arms[1], -1.0)):
-            a[3 * row, start] = a[3 * row + 1, start + 1] = way
-            a[3 * row + 2, start : start + 2] = -way * arm[1], way * arm[0]
-        b[3 * row : 3 * row + 2] = mass.mass * place.acceleration
-        b[3 * row + 2] = mass.inertia_about_centre * motion.link(link).angular_acceleration
-    a[2, 8] = 1.0
-    solved = np.linalg.solve(a, b)
-    found = rigid_forces(machine, theta, speed)
-    expected = np.concatenate([found.f12, found.f23, found.f34, found.f41, [found.torque]])
-    np.testing.assert_allclose(solved, expected, rtol=0.0, atol=1e-11 * np.max(np.abs(expected)))
-
-
 def test_only_a_scene_with_a_four_bar_gives_one():
     assert four_bar_of("smith_1972_10_8_10_10").lengths["crank"] == pytest.approx(8.0 * INCH)
     with pytest.raises(BadInput, match="four-bar"):
@@ -162,7 +136,7 @@ def test_the_surfaces_of_the_space_are_those_of_the_sum_of_both_functions():
 
 def test_extremes_are_those_of_the_steady_peaks():
     decrement = LAST.rig.decrements[1]
-    ends = LAST.envelope(decrement)
+    ends = envelope(LAST, decrement)
     system = LAST.rig.system(decrement=decrement, inertia=LAST.inertia)
     chosen = [0, 100, 200]
     peaks = steady_peaks(system, ends.speed[chosen] * RPM, x=[0.5])
@@ -174,7 +148,7 @@ def test_extremes_are_those_of_the_steady_peaks():
 
 
 def test_more_damping_lowers_a_resonance():
-    heights = [np.max(FIRST.envelope(value).greatest) for value in FIRST.rig.decrements]
+    heights = [np.max(envelope(FIRST, value).greatest) for value in FIRST.rig.decrements]
     assert heights[0] > heights[1] > heights[2]
 
 

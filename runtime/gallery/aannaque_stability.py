@@ -25,8 +25,6 @@ from .records import Drawn
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Which = Literal["first", "second"]
-
 COSINE = PeriodicFunction(a=[0.0, 1.0])
 _interval: Callable[..., tuple[Array, Array]] = hill_meissner.interval
 _two_intervals: Callable[..., tuple[Array, ...]] = hill_meissner.two_intervals
@@ -52,23 +50,6 @@ class MultiplierSurfaces(NamedTuple):
     eps: Array
     first: NDArray[np.complex128]
     second: NDArray[np.complex128]
-
-    def plot(self, ax: Axes, which: Which) -> Axes:
-        """Draw the real part of one multiplier as a surface, cut off at -1 and 1."""
-        from matplotlib import colormaps
-
-        space: Any = ax
-        height = np.clip((self.first if which == "first" else self.second).real, -1.0, 1.0)
-        faces = colormaps["cividis"](0.15 + 0.2 * (height[1:, 1:] + height[:-1, :-1] + 2.0))
-        faces[..., :3] *= _light(self.d, self.eps, height)[..., None]
-        look: dict[str, Any] = {"facecolors": faces, "shade": False, "antialiased": False}
-        drawn = space.plot_surface(
-            self.d, self.eps, height, rstride=1, cstride=1, linewidth=0.0, **look
-        )
-        # By the nearest corner: thin ridges then hide what is behind them.
-        drawn.set_zsort("max")
-        space.set(zlim=(-1.0, 1.0), xlabel="d", ylabel="ε", zlabel="real part")
-        return ax
 
 
 def _light(d: Array, eps: Array, height: Array) -> Array:
@@ -166,10 +147,21 @@ def _surfaces() -> MultiplierSurfaces:
     return multiplier_surfaces((0.0, 30.0), eps, per_band=28)
 
 
-def surface(axes: Sequence[Axes], which: Which) -> Drawn:
-    """Draw the real part of one multiplier over (d, eps), Figs. E.1 and E.2."""
+def surface(axes: Sequence[Axes], which: Literal["first", "second"]) -> Drawn:
+    """Draw the real part of one multiplier over (d, eps), cut off at -1 and 1 (E.1 and E.2)."""
+    from matplotlib import colormaps
+
+    space: Any = axes[0]
     both = _surfaces()
-    space: Any = both.plot(axes[0], which)
+    height = np.clip(getattr(both, which).real, -1.0, 1.0)
+    faces = colormaps["cividis"](0.15 + 0.2 * (height[1:, 1:] + height[:-1, :-1] + 2.0))
+    faces[..., :3] *= _light(both.d, both.eps, height)[..., None]
+    look: dict[str, Any] = {"facecolors": faces, "shade": False, "antialiased": False}
+    drawn = space.plot_surface(
+        both.d, both.eps, height, rstride=1, cstride=1, linewidth=0.0, **look
+    )
+    # By the nearest corner: thin ridges then hide what is behind them.
+    drawn.set_zsort("max")
     space.view_init(elev=46.0, azim=-66.0)
     space.set_box_aspect((1.5, 1.1, 0.6), zoom=1.1)
     size = np.abs(both.first)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 from itertools import zip_longest
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, SupportsFloat
 
 import numpy as np
 
@@ -51,7 +51,7 @@ def elements(axes: Sequence[Axes], mode: int) -> Drawn:
         label = f"{name}, {size} freedoms"
         turn(axes[0], even_angles(2.0 * np.pi, 120), curve, style, color=colour, label=label)
     one, two, three, p1, p2 = curves.values()
-    values = [
+    values: list[SupportsFloat] = [
         float(np.max(three / two)) - 1.0,
         float(np.max(p2 / one)),
         np.mean(p2) / np.mean(p1),

@@ -30,10 +30,6 @@ _interval: Callable[..., tuple[Array, Array]] = hill_meissner.interval
 _two_intervals: Callable[..., tuple[Array, ...]] = hill_meissner.two_intervals
 _half_turn: Callable[..., tuple[Array, ...]] = hill_meissner.half_turn
 
-_PLUS, _MINUS = COLOURS[0], COLOURS[1]
-# The largest phase that Fig. 7.2 shows, over pi.
-_WIDEST = 4
-
 
 def _reaching(highest: float, eps: Array) -> tuple[int, ...]:
     """Return the regions whose ends may lie left of the chart's right edge."""
@@ -102,8 +98,9 @@ def _half_trace_2(x1: Array, x2: Array) -> Array:
 
 def figure_7_2(axes: Sequence[Axes]) -> Drawn:
     """Draw the curves J_2 = 1 and J_2 = -1 over the phases of the two intervals."""
-    ax = axes[0]
-    phase = np.linspace(1e-9, _WIDEST * pi, 601)
+    # The largest phase that is shown, over pi.
+    ax, widest = axes[0], 4
+    phase = np.linspace(1e-9, widest * pi, 601)
     x1, x2 = np.meshgrid(phase, phase, indexing="ij")
     # A signed measure that stays of order one keeps the contours smooth.
     excess = np.tanh(np.abs(_half_trace_2(x1, x2)) - 1.0)
@@ -112,20 +109,21 @@ def figure_7_2(axes: Sequence[Axes]) -> Drawn:
     levels = [(x / pi) ** 2 for x in (x1, x2)]
     (c1, s1), (c2, s2) = (_interval(q, 0.5 * pi) for q in levels)
     factors = _half_turn(c1, s1, levels[0], c2, s2, levels[1])
-    for factor, colour in zip(factors, (_MINUS, _PLUS, _PLUS, _MINUS), strict=True):
+    plus, minus = COLOURS[:2]
+    for factor, colour in zip(factors, (minus, plus, plus, minus), strict=True):
         ax.contour(across, across, factor.T, levels=[0.0], colors=[colour], linewidths=1.2)
-    for n in range(1, 2 * _WIDEST):
-        ends = np.clip([0.0, float(n)], n - _WIDEST, _WIDEST)
+    for n in range(1, 2 * widest):
+        ends = np.clip([0.0, float(n)], n - widest, widest)
         ax.plot(ends, n - ends, color="0.55", lw=0.6, ls=(0, (1, 3)))
-    for value, colour in ((1, _PLUS), (-1, _MINUS)):
+    for value, colour in ((1, plus), (-1, minus)):
         ax.plot([], [], color=colour, label=rf"$J_2 = {value}$")
-    whole = range(1, _WIDEST + 1)
+    whole = range(1, widest + 1)
     pinched = np.array([*((j, k) for j in whole for k in whole), *((j - 0.5,) * 2 for j in whole)])
     ax.plot(*pinched.T, "o", color="0.15", ms=3.2, label="regions without width", clip_on=False)
     ax.plot([], [], color="0.55", lw=0.8, ls=(0, (1, 3)), label=r"$x_1 + x_2 = n\pi$")
-    ax.set(xlim=(0.0, _WIDEST), ylim=(0.0, _WIDEST))
+    ax.set(xlim=(0.0, widest), ylim=(0.0, widest))
     for axis, name in ((ax.xaxis, "x_1"), (ax.yaxis, "x_2")):
-        axis.set_ticks(range(_WIDEST + 1), ["0", "π", *(f"{i}π" for i in range(2, _WIDEST + 1))])
+        axis.set_ticks(range(widest + 1), ["0", "π", *(f"{i}π" for i in range(2, widest + 1))])
         axis.set_label_text(f"${name} = T v_{name[-1]} / 2$")
     return Drawn([_branches()])
 

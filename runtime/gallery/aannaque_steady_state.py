@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _SPEED = 35.0
-# Newmark's steps in a revolution, half a degree each.
-_STEPS = 720
 _FORMS = ((THESIS, "the thesis' form"), (FULL, "full form with stiffening"))
 # Tables 6.2 and 6.3 as printed.
 _TABLES = contents("aannaque")["table_6"]
@@ -146,8 +144,8 @@ def march(
 
     Newmark's steps, 720 in a revolution, 62 rad/s, one element for each link.
     """
-    system = beams(1, drop, ratio=ratio)
-    maps, loads = newmark_maps(system, CRITICAL, _STEPS)
+    system, steps = beams(1, drop, ratio=ratio), 720
+    maps, loads = newmark_maps(system, CRITICAL, steps)
     state, whole = np.zeros(maps.shape[-1]), np.eye(maps.shape[-1])
     states = np.empty((40, *loads.shape))
     for cycle in states:
@@ -157,7 +155,7 @@ def march(
     for step in maps:
         whole = step @ whole
     values = np.linalg.eigvals(whole).astype(complex)
-    theta = even_angles(2.0 * np.pi, _STEPS)
+    theta = even_angles(2.0 * np.pi, steps)
     return moved(system, "follower", theta, states[..., : system.size]), values
 
 

@@ -86,7 +86,7 @@ def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> F
 
 def _quoted(common: Mapping[str, Any], row: Mapping[str, Any]) -> Quoted:
     """Return one comparison; the key of its expected value is its kind."""
-    (kind,) = (row if row.keys() & KINDS.keys() else common).keys() & KINDS.keys()
-    given = {name: value for name, value in {**common, **row}.items() if name not in KINDS}
-    expected = row.get(kind, common.get(kind))
-    return Quoted(**given, kind=kind, expected=expected)
+    kind = next(kind for source in (row, common) for kind in KINDS if kind in source)
+    given = {**common, **row}
+    rest = {name: value for name, value in given.items() if name not in KINDS}
+    return Quoted(kind=kind, expected=given[kind], **rest)

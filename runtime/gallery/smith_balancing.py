@@ -39,8 +39,8 @@ from .smith_forces import INCH, TURN, example, example_forces, finish_polar, pea
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-# Steel discs half an inch thick, 6 in from the pins, as the thesis states none of these.
-_STEEL, _THICKNESS, _OFFSET = 7850.0, 0.5 * INCH, 6.0 * INCH
+# Discs half an inch thick, 6 in from the pins, as the thesis states none of these.
+_THICKNESS, _OFFSET = 0.5 * INCH, 6.0 * INCH
 _NAMES: Mapping[Case, str] = {
     "a": "unbalanced",
     "b": "crank and follower balanced",
@@ -52,7 +52,8 @@ _NAMES: Mapping[Case, str] = {
 def _weights(
     case: Case, offset: float = _OFFSET, thickness: float = _THICKNESS
 ) -> dict[str, Counterweight]:
-    return case_counterweights(example()[0], case, offset, density=_STEEL, thickness=thickness)
+    """Return the counterweights of a case, steel discs."""
+    return case_counterweights(example()[0], case, offset, density=7850.0, thickness=thickness)
 
 
 @lru_cache(maxsize=8)

@@ -26,9 +26,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _LINKAGE = "(2,1,2,2)"
-# Of the space: the region, the parameters' range, where limits for small ones are taken; second
-# order adds less than twice this.
-_REGION, _REACH, _SMALL = 2, 0.6, 1e-4
+# Of the space: the region and the parameters' range.
+_REGION, _REACH = 2, 0.6
 
 
 def _to_order(f: PeriodicFunction, mu: Array, regions: Sequence[int], order: int) -> Array:
@@ -200,9 +199,10 @@ def _order_errors(pair: _Pair) -> dict[str, float]:
 
 def _space_values(pair: _Pair) -> list[float]:
     """Return the least width over small parameters in all directions, and how harmonics fall."""
-    around = []
+    # Parameters so small that second order adds less than twice their size.
+    around, small = [], np.array([1e-4])
     for t in np.linspace(0.0, 2.0 * pi, 73):
-        lower, upper = pair.along(float(np.cos(t)), float(np.sin(t)), np.array([_SMALL]))
-        around.append(float(upper[0] - lower[0]) / _SMALL)
+        lower, upper = pair.along(float(np.cos(t)), float(np.sin(t)), small)
+        around.append(float((upper - lower)[0] / small[0]))
     falls = [float(f.amplitudes[8] / f.amplitudes[1]) for f in (pair.first, pair.second)]
     return [min(around), max(falls)]

@@ -23,8 +23,6 @@ from .smith_linkages import LBF_IN_S2, RIG, RPM, OfRig, region_name
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_SCAN = np.linspace(0.0, 0.5, 5001)
-
 
 @dataclass(frozen=True)
 class Estimate(OfRig):
@@ -66,7 +64,9 @@ def critical(estimate: Estimate, inertia: float, equation: str, order: int | Non
     n = estimate.region
     if order is None:
         return float(critical_damping(f, 1.0, (n,)).damping[0])
-    points = np.stack([np.ones_like(_SCAN), _SCAN])
+    # Up to K = 0.5, several times what was measured.
+    scan = np.linspace(0.0, 0.5, 5001)
+    points = np.stack([np.ones_like(scan), scan])
     a, b = effective_operator([f], n, order, damped=True).components(points)
     left = np.abs(b.sum(axis=0)) - np.abs(a.sum(axis=0).imag)
     (crossings,) = np.nonzero((left[:-1] > 0.0) & (left[1:] <= 0.0))
@@ -74,7 +74,7 @@ def critical(estimate: Estimate, inertia: float, equation: str, order: int | Non
         return float("nan")
     k = int(crossings[0])
     share = left[k] / (left[k] - left[k + 1])
-    return float(_SCAN[k] + share * (_SCAN[k + 1] - _SCAN[k]))
+    return float(scan[k] + share * (scan[k + 1] - scan[k]))
 
 
 def at_rest(estimate: Estimate) -> tuple[float, float]:

@@ -212,12 +212,6 @@ def test_the_slow_path_moves_as_the_squared_speed():
     assert slow.largest / slower.largest == pytest.approx(4.0, rel=0.02)
 
 
-@pytest.mark.slow
-def test_the_second_mode_explains_what_the_first_does_not():
-    assert aannaque_rig.mean_frequency(aannaque_rig.LONG, 0.547, 1) < 130.0
-    assert aannaque_rig.mean_frequency(aannaque_rig.LONG, 0.547, 2) > 150.0
-
-
 def test_operations_of_an_algorithm_by_hand():
     # N (38 n^3 + 37 n^2 + 7 n) + 16 n^3 + 8 n^2 with N = 90, n = 10.
     assert printed_count("transition_matrix", intervals=90, freedoms=10) == 3776100

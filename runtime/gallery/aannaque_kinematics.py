@@ -132,8 +132,7 @@ def cycle(frame: float | None = None) -> FourBarMotion:
 
 def figure_3_6(axes: Sequence[Axes]) -> None:
     """Draw both assemblies at one crank angle."""
-    ax, bars, theta = axes[0], linkage(), radians(130.0)
-    sketch.canvas(ax)
+    ax, bars, theta = sketch.canvas(axes[0]), linkage(), radians(130.0)
     other = FourBar(bars.frame, bars.crank, bars.coupler, bars.follower, assembly="crossed")
     both = [item.motion(theta) for item in (bars, other)]
     a, b, d = (np.asarray(both[0].joints[name]) for name in "ABD")
@@ -186,8 +185,7 @@ def figure_3_9(axes: Sequence[Axes]) -> Drawn:
 
 def figure_3_10(axes: Sequence[Axes]) -> None:
     """Draw the mechanism at several positions, and the paths of some points of its coupler."""
-    ax, bars = axes[0], linkage()
-    sketch.canvas(ax)
+    ax, bars = sketch.canvas(axes[0]), linkage()
     length, start = bars.coupler, radians(70.0)
     points = {
         "A": (0.0, 0.0),
@@ -220,14 +218,13 @@ def figure_3_10(axes: Sequence[Axes]) -> None:
 
 def free_body(axes: Sequence[Axes], link: str) -> Drawn:
     """Draw one link cut free (Fig. 3.11)."""
-    ax, scene = axes[0], load_scene(_SCENE)
+    ax, scene = sketch.canvas(axes[0]), load_scene(_SCENE)
     machine, speed = scene.machine(), scene["operation"]["speed"]
     body = sketch.free_bodies(machine, radians(105.0), speed)[0][link]
     letters, names = contents("aannaque")["bodies"][link].values()
     largest = max(float(np.hypot(*force)) for force in body.forces)
     length = float(np.hypot(*(body.places[1] - body.places[0])))
     scale = 0.55 * length / largest
-    sketch.canvas(ax)
     sketch.draw_body(ax, body, letters, names, scale)
     heads = np.array(body.places) + scale * np.array(body.forces)
     low = np.min([*body.places, *heads], axis=0) - 0.22 * length

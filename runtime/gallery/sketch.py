@@ -20,11 +20,12 @@ INK, GROUND = "#2b2b2b", "0.45"
 LINK_COLOURS = {"crank": "#c8641e", "coupler": "#1f5a8c", "follower": "#3a7d44"}
 
 
-def canvas(ax: Axes) -> None:
-    """Make the axes a sheet to draw on: equal scales, no frame, no grid."""
+def canvas(ax: Axes) -> Axes:
+    """Make the axes a sheet to draw on, without frame and grid, in equal scales; return them."""
     ax.set_axis_off()
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.08)
+    return ax
 
 
 def bar(ax: Axes, start: ArrayLike, end: ArrayLike, colour: str = INK, **style: Any) -> None:

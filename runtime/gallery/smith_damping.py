@@ -202,7 +202,7 @@ def regions(chart: str, inertia: float) -> tuple[list[_Region], int]:
     rig = RIG[chart]
     speeds = (0.45 * rig.frequency, 0.95 * rig.frequency)
     bare = stability_edges(rig.system(modes=2), speeds, follower_inertia=inertia * LBF_IN_S2)
-    width = bare.upper - bare.lower
+    width = bare.width
     kept = np.flatnonzero(width > 2.0 * bare.error)
     left = _left_by_damping(chart, inertia, bare.lower[kept], width[kept])
     beginnings = _first_mode(chart, inertia)

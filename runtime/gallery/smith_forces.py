@@ -47,8 +47,7 @@ def peak(values: Array) -> tuple[float, float]:
 
 def figure_11(axes: Sequence[Axes]) -> Drawn:
     """Draw the links cut free, every force to one scale."""
-    ax = axes[0]
-    sketch.canvas(ax)
+    ax = sketch.canvas(axes[0])
     machine, speed = example()
     bodies, forces = sketch.free_bodies(machine, radians(30.0), speed)
     largest = max(float(np.hypot(*force)) for body in bodies.values() for force in body.forces)

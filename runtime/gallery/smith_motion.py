@@ -136,8 +136,7 @@ def _direction(vector: Array) -> float:
 
 def figure_8(axes: Sequence[Axes]) -> None:
     """Draw the nominal position and the two extremes for one crank angle."""
-    ax = axes[0]
-    sketch.canvas(ax)
+    ax = sketch.canvas(axes[0])
     linkage, theta = FourBar(frame=10.0, crank=4.0, coupler=9.0, follower=7.0), radians(70.0)
     places = _draw_extremes(ax, linkage, theta, 1.6, (0.5, -0.5))
     a, b, d = places["A"], places["B"], places["D"]
@@ -194,8 +193,7 @@ def _ground(ax: Axes, a: Array, d: Array, unit: float) -> None:
 
 def figure_9a(axes: Sequence[Axes]) -> None:
     """Draw the extreme position in which coupler and follower lie in one line."""
-    ax = axes[0]
-    sketch.canvas(ax)
+    ax = sketch.canvas(axes[0])
     linkage = FourBar(frame=16.0, crank=8.0, coupler=7.0, follower=8.0)
     l3, l4 = linkage.coupler, linkage.follower
     theta, a = _reach(linkage, l3 + l4), np.zeros(2)
@@ -221,8 +219,7 @@ def figure_9a(axes: Sequence[Axes]) -> None:
 
 def figure_9b(axes: Sequence[Axes]) -> None:
     """Draw the position in which BD and the follower are square."""
-    ax = axes[0]
-    sketch.canvas(ax)
+    ax = sketch.canvas(axes[0])
     linkage = FourBar(frame=10.0, crank=4.0, coupler=10.0, follower=6.0)
     theta = _reach(linkage, sqrt(linkage.coupler**2 - linkage.follower**2))
     places = _draw_extremes(ax, linkage, theta, 1.4, (0.5,))

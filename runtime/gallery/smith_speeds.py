@@ -264,11 +264,9 @@ def equations_table(axes: Sequence[Axes]) -> Drawn:
         for one in _COMPARED
     ]
     tables = (peaks, _shifts(), observed, _summary())
-    left = [_parts(name) for name in _rig_linkages()]
     count = sum(one.nearest == "complete" for one in _COMPARED)
     first, complete = _trend("first order"), _trend("complete")
-    ratio = min(b / a for a, b in left)
-    values = [ratio, count / len(_COMPARED)]
+    values = [min(map(_ratio, rigs)), count / len(_COMPARED)]
     return Drawn([*values, first[1] / first[0], complete[1] / complete[0]], _words(count), tables)
 
 
@@ -276,15 +274,10 @@ def _rig_linkages() -> list[str]:
     return list(dict.fromkeys(rig.linkage for rig in RIGS))
 
 
-def _ratio(linkage: str) -> str:
-    kept, left = _parts(linkage)
-    return f"{left / kept:.2f}"
-
-
-def _parts(linkage: str) -> tuple[float, float]:
-    """Return the peaks of the coupler part that (6.17) keeps and of the one it leaves out."""
+def _ratio(linkage: str) -> float:
+    """Return the peak of the coupler part that (6.17) leaves out over that of the one it keeps."""
     phi, f1, f2, tension, more = _terms(linkage, _TURN).values()
-    return _peak(f1 + f2 - phi), _peak(tension + more)
+    return _peak(tension + more) / _peak(f1 + f2 - phi)
 
 
 @dataclass(frozen=True)
@@ -386,7 +379,7 @@ def _words(count: int) -> dict[str, object]:
     shifts = np.abs([one.ends["complete"] - one.ends["reduced"] for one in _moved()])
     second = [np.max(np.abs(one.two_modes - one.ends["complete"])) for one in _moved()]
     words: dict[str, object] = {
-        "ratios": " and ".join(_ratio(name) for name in _rig_linkages()),
+        "ratios": " and ".join(f"{_ratio(name):.2f}" for name in _rig_linkages()),
         "count": count,
         "all": len(_COMPARED),
         "least": float(np.min(shifts)),

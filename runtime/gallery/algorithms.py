@@ -216,21 +216,17 @@ def _oscillator_steps(squares: Array, drag: Array, push: Array, step: float) -> 
     return np.asarray(expm(scaled) * scale[..., :, None] / scale[..., None, :])
 
 
-def newmark_limit(gamma: ArrayLike, beta: ArrayLike, damping: ArrayLike = 0.0) -> Array:
-    """Return the largest stable phase ``omega h`` of a step, of one freedom; parameters broadcast.
+def newmark_limit(gamma: ArrayLike, beta: ArrayLike) -> Array:
+    """Return the largest stable phase ``omega h`` of an undamped step; parameters broadcast.
 
     By Routh's margins of a step (Aannaque (6.9)-(6.11)) a pair of multipliers leaves the unit
-    circle where ``2 zeta + (gamma - 1/2) p`` becomes negative, a real one passes -1 where
-    ``2 + 2 zeta (2 gamma - 1) p + (2 beta - gamma) p^2`` does.  Infinite where no step is too
-    long, 0 where none is short enough.
+    circle where gamma < 1/2, a real one passes -1 where ``2 + (2 beta - gamma) p^2`` is negative.
+    Infinite where no step is too long, 0 where none is short enough.
     """
-    g, b, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (gamma, beta, damping)))
-    half, last = z * (2.0 * g - 1.0), 2.0 * b - g
-    with np.errstate(divide="ignore", invalid="ignore"):
-        pair = np.where(g < 0.5, 2.0 * z / (0.5 - g), np.inf)
-        below = np.sqrt(half**2 - 2.0 * last) - half
-        flip = np.where(below > 0.0, 2.0 / below, np.inf)
-    return np.minimum(pair, flip)
+    g, b = np.broadcast_arrays(np.asarray(gamma, dtype=float), np.asarray(beta, dtype=float))
+    with np.errstate(divide="ignore"):
+        flip = np.sqrt(2.0 / np.maximum(g - 2.0 * b, 0.0))
+    return np.where(g < 0.5, 0.0, flip)
 
 
 def printed_count(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
-from math import atan, cos, degrees, pi, radians, sin, sqrt
+from math import cos, degrees, pi, radians, sin, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,11 +14,12 @@ from ..linkages.base_planes import base_plane
 from ..linkages.classification import SYMBOLS, classify
 from ..linkages.curves import coupler_curve
 from ..linkages.transmission import transmission_angle
+from ..rigid import rigid_forces
 from ..scenes import load_scene
 from . import sketch
 from .aannaque_models import FRAMES
 from .drawing import COLOURS, Array, panel_title
-from .records import Drawn, Value
+from .records import Drawn
 from .registry import contents
 from .smith_linkages import four_bar_of
 
@@ -26,11 +27,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _SCENE = "aannaque_1996_table_3_2"
-_INPUT = radians(130.0)
-_SPACE_LAMBDA = 1.5
-# Below, at and above the plane through the linkage of four equal links.
-_PLANES = {r"\lambda<\sqrt{3}": 1.0, r"\lambda=\sqrt{3}": sqrt(3.0), r"\lambda>\sqrt{3}": 3.0}
-_DIRECTIONS = np.vstack([np.ones(3), 2.0 * np.eye(3) - 1.0])
 # The projection of the three axes on the paper, the third upwards.
 _TURN, _TILT = radians(38.0), radians(24.0)
 _VIEW = np.array(
@@ -39,30 +35,29 @@ _VIEW = np.array(
         [-cos(_TURN) * sin(_TILT), -sin(_TURN) * sin(_TILT), cos(_TILT)],
     ]
 )
-_PLANE_NAMES = (
-    r"$1=\lambda_2+\lambda_3+\lambda_4$",
-    r"$\lambda_2=1+\lambda_3+\lambda_4$",
-    r"$\lambda_3=\lambda_2+1+\lambda_4$",
-    r"$\lambda_4=\lambda_2+\lambda_3+1$",
-)
 
 
-def figure_3_4(axes: Sequence[Axes]) -> Drawn:
+def figure_3_4(axes: Sequence[Axes]) -> None:
     """Draw the solution space up to a base plane, seen obliquely."""
-    ax, plane, total = axes[0], base_plane(_SPACE_LAMBDA), sqrt(3.0) * _SPACE_LAMBDA
+    ax, plane = axes[0], base_plane(1.5)
+    total = sqrt(3.0) * plane.lam
     ax.set_axis_off()
     ax.set_aspect("equal")
     far, near = 0.5 * (total + 1.0), 0.5 * (total - 1.0)
-    for i in range(3):
+    faces = (
+        (r"$\lambda_2=1+\lambda_3+\lambda_4$", (-96, -14)),
+        (r"$\lambda_3=\lambda_2+1+\lambda_4$", (96, -14)),
+        (r"$\lambda_4=\lambda_2+\lambda_3+1$", (104, 44)),
+    )
+    for i, (name, shift) in enumerate(faces):
         corners = np.full((3, 3), 0.0)
         corners[:, i] = 1.0, far, far
         corners[1, (i + 1) % 3] = near
         corners[2, (i + 2) % 3] = near
         _face(ax, corners, COLOURS[i], 0.30)
-        shift = ((-96, -14), (96, -14), (104, 44))[i]
-        _call(ax, corners.mean(axis=0), _PLANE_NAMES[i + 1], shift)
+        _call(ax, corners.mean(axis=0), name, shift)
     _face(ax, np.eye(3), COLOURS[3], 0.45)
-    _call(ax, np.full(3, 1.0 / 3.0), _PLANE_NAMES[0], (-172, 62))
+    _call(ax, np.full(3, 1.0 / 3.0), r"$1=\lambda_2+\lambda_3+\lambda_4$", (-172, 62))
     _face(ax, plane.outline, "0.55", 0.25)
     _call(ax, total * np.array([0.08, 0.46, 0.46]), "base plane", (84, 20))
     for i, axis in enumerate(np.eye(3)):
@@ -71,14 +66,10 @@ def figure_3_4(axes: Sequence[Axes]) -> Drawn:
         sketch.write(
             ax, ends[1], rf"$\lambda_{i + 2}$", 8.0 * ends[1] / np.hypot(*ends[1]), fontsize=11
         )
-    line = np.array([np.zeros(3), np.full(3, _SPACE_LAMBDA / sqrt(3.0))]) @ _VIEW.T
+    line = np.array([np.zeros(3), np.full(3, plane.lam / sqrt(3.0))]) @ _VIEW.T
     ax.plot(*line.T, "--", color="0.2", lw=1.0, zorder=8)
     ax.plot(*line[1], "o", color="0.2", ms=3.5, zorder=8)
     sketch.write(ax, line[1], r"$\lambda$", (8.0, 8.0), fontsize=11)
-    inside, outside = (np.mean(classify(_beside(step)) > 0) for step in (1e-6, -1e-6))
-    gaps = np.abs(plane.outline @ _DIRECTIONS.T - 1.0)
-    distance = np.abs(plane.outline @ np.full(3, 1.0 / sqrt(3.0)) - plane.lam)
-    return Drawn([inside, outside, np.max(np.min(gaps, axis=1)), np.max(distance)])
 
 
 def _face(ax: Axes, corners: Array, colour: str, alpha: float) -> None:
@@ -102,49 +93,25 @@ def _call(ax: Axes, place: Array, text: str, shift: tuple[float, float]) -> None
     )
 
 
-def _beside(step: float) -> Array:
-    """Return linkages a step off the four zero-mobility planes, (n, 4); inwards positive."""
-    generator = np.random.default_rng(34)
-    places = []
-    for normal in _DIRECTIONS:
-        part = generator.dirichlet(np.ones(3), 500)
-        if np.all(normal > 0):
-            places.append(part + step * normal)
-            continue
-        # Free ratios first, then the one that closes the linkage.
-        closing, place = int(np.argmax(normal)), generator.uniform(0.05, 3.0, (500, 3))
-        place[:, closing] = 0.0
-        place[:, closing] = 1.0 + place.sum(axis=1)
-        places.append(place - step * normal)
-    coupler, output, frame = np.concatenate(places).T
-    return np.stack([frame, np.ones_like(frame), coupler, output], axis=-1)
-
-
 def figure_3_5(axes: Sequence[Axes]) -> Drawn:
     """Draw three base planes with the class of each region."""
-    planes = [base_plane(lam) for lam in _PLANES.values()]
-    for ax, plane, name in zip(axes, planes, _PLANES, strict=True):
+    # Below, at and above the plane through the linkage of four equal links.
+    planes = [base_plane(lam) for lam in (1.0, sqrt(3.0), 3.0)]
+    for ax, plane, sign in zip(axes, planes, "<=>", strict=True):
         plane.plot(ax)
         for text in ax.texts:
             text.set_fontsize(7.0)
         for axis in (ax.xaxis, ax.yaxis):
             axis.label.set_fontsize(8.0)
-        panel_title(ax, f"${name}$: {plane.lam:.4g}")
+        panel_title(ax, rf"$\lambda{sign}\sqrt{{3}}$: {plane.lam:.4g}")
         ax.set_title("")
         ax.grid(visible=False)
     rows = [
         (symbol, *(plane.shares.get(symbol, 0.0) for plane in planes)) for symbol in SYMBOLS[1:9]
     ]
-    counted = [
-        abs(np.mean(plane.numbers[plane.numbers > 0] == SYMBOLS.index(symbol)) - share)
-        for plane in planes
-        for symbol, share in plane.shares.items()
-    ]
     values = [
         len(SYMBOLS) - 1,
         len({symbol for plane in planes for symbol in plane.regions}),
-        max(abs(sum(plane.shares.values()) - 1.0) for plane in planes),
-        max(counted),
         int(classify(np.ones((1, 4)))[0]),
     ]
     return Drawn(values, tables=[rows])
@@ -163,12 +130,11 @@ def cycle(frame: float | None = None) -> FourBarMotion:
     return chosen.motion(np.linspace(0.0, 2.0 * pi, 3601))
 
 
-def figure_3_6(axes: Sequence[Axes]) -> Drawn:
+def figure_3_6(axes: Sequence[Axes]) -> None:
     """Draw both assemblies at one crank angle."""
-    ax, bars = axes[0], linkage()
-    sketch.canvas(ax)
+    ax, bars, theta = sketch.canvas(axes[0]), linkage(), radians(130.0)
     other = FourBar(bars.frame, bars.crank, bars.coupler, bars.follower, assembly="crossed")
-    both = [item.motion(_INPUT) for item in (bars, other)]
+    both = [item.motion(theta) for item in (bars, other)]
     a, b, d = (np.asarray(both[0].joints[name]) for name in "ABD")
     ax.plot(*np.transpose([b, d]), ":", color="0.4", lw=1.0)
     for motion, name, style in zip(both, ("B", "B'"), ("-", (0, (3, 1.2))), strict=True):
@@ -184,84 +150,22 @@ def figure_3_6(axes: Sequence[Axes]) -> Drawn:
     sketch.pin(ax, b)
     sketch.write(ax, b, "A", (-10.0, 10.0), style="italic")
     ax.plot([0.0, 0.12 * bars.frame], [0.0, 0.0], color="0.35", lw=0.8)
-    sketch.arc(ax, a, 0.07 * bars.frame, (0.0, _INPUT), "$t_1$")
-    follower, coupler = _printed_angles(_INPUT)
-    gammas = [degrees(float(m.transmission_angle)) for m in both]
-
-    def gap(printed: Sequence[float], angles: Sequence[Array]) -> float:
-        apart = [min(abs(np.angle(np.exp(1j * (p - q)))) for p in printed) for q in angles]
-        return degrees(max(apart))
-
-    gaps = gap(follower, [m.theta4 for m in both]), gap(coupler, [m.theta3 for m in both])
-    return Drawn([*gaps, gammas[1] - gammas[0]])
+    sketch.arc(ax, a, 0.07 * bars.frame, (0.0, theta), "$t_1$")
 
 
-def _printed_angles(theta: float) -> list[list[float]]:
-    """Return t3 by (3.6) and t2 by (3.8), as printed, with either sign of the root."""
-    bars = linkage()
-    r2, r3, r4 = (part / bars.crank for part in (bars.coupler, bars.follower, bars.frame))
-    k1, k2, k4 = r4, r4 / r3, r4 / r2
-    k3 = (1.0 - r2**2 + r3**2 + r4**2) / (2.0 * r3)
-    k5 = (r3**2 - r4**2 - 1.0 - r2**2) / (2.0 * r2)
-    angles = []
-    for first, last in (
-        ((1.0 - k2) * cos(theta) + k3 - k1, k1 + k3 - (1.0 + k2) * cos(theta)),
-        ((1.0 + k4) * cos(theta) + k5 - k1, k1 + (k4 - 1.0) * cos(theta) + k5),
-    ):
-        root = sqrt(4.0 * sin(theta) ** 2 - 4.0 * first * last)
-        angles.append(
-            [2.0 * atan((2.0 * sin(theta) + sign * root) / (2.0 * first)) for sign in (1.0, -1.0)]
-        )
-    return angles
-
-
-def _rates(ax: Axes, kind: str, *printed: Array) -> list[float]:
-    """Draw a rate of coupler and follower; return the largest gaps of the printed equations."""
-    motion, gaps = cycle(), []
-    for number, link, values in zip((3, 4), ("coupler", "follower"), printed, strict=True):
+def rates(axes: Sequence[Axes], kind: str) -> Drawn | None:
+    """Draw speeds ``omega`` or accelerations ``alpha`` of both links (Figs. 3.7 and 3.8)."""
+    motion = cycle()
+    for number, link in ((3, "coupler"), (4, "follower")):
         rate = getattr(motion, f"{kind}{number}")
-        ax.plot(np.degrees(motion.theta2), rate, label=link)
-        gaps.append(float(np.max(np.abs(values - rate))))
-    return gaps
-
-
-def figure_3_7(axes: Sequence[Axes]) -> Drawn:
-    """Draw speeds of coupler and follower over the crank's."""
-    motion, bars = cycle(), linkage()
-    t1, t2, t3 = motion.theta2, motion.theta3, motion.theta4
-    gaps = _rates(
-        axes[0],
-        "omega",
-        -bars.crank * np.sin(t3 - t1) / (bars.coupler * np.sin(t3 - t2)),
-        -bars.crank * np.sin(t2 - t1) / (bars.follower * np.sin(t3 - t2)),
-    )
-    # (3.1) at the input angle of Fig. 3.6, as printed, with the frame, and as it must be.
-    here = bars.motion(_INPUT)
-    sines = abs(sin(float(here.transmission_angle)) / sin(float(here.theta3 - here.theta2)))
-    ratio = abs(1.0 / float(here.omega4))
-    advantage = (bars.follower * sines / length - ratio for length in (bars.frame, bars.crank))
-    return Drawn([*gaps, *advantage])
-
-
-def figure_3_8(axes: Sequence[Axes]) -> Drawn:
-    """Draw accelerations of coupler and follower over the crank's speed squared."""
-    motion, bars = cycle(), linkage()
-    t1, t2, t3 = motion.theta2, motion.theta3, motion.theta4
-    l1, l2, l3 = bars.crank, bars.coupler, bars.follower
-    w2, w3 = motion.omega3**2, motion.omega4**2
-    coupler = l1 * np.cos(t3 - t1) + l2 * w2 * np.cos(t3 - t2) - l3 * w3
-    follower = l1 * np.cos(t2 - t1) - l3 * w3 * np.cos(t2 - t3) + l2 * w2
-    gaps = _rates(
-        axes[0],
-        "alpha",
-        coupler / (l2 * np.sin(t3 - t2)),
-        follower / (l3 * np.sin(t3 - t2)),
-    )
+        axes[0].plot(np.degrees(motion.theta2), rate, label=link)
+    if kind == "omega":
+        return None
     theta, alpha = motion.theta2[:-1], motion.alpha4[:-1]
     size = np.abs(np.gradient(motion.alpha4, motion.theta2)[:-1])
     peaks = (size >= np.roll(size, 1)) & (size > np.roll(size, -1)) & (size > 0.5 * size.max())
     rise = degrees((theta[int(np.argmax(alpha))] - theta[int(np.argmin(alpha))]) % (2.0 * pi))
-    return Drawn([*gaps, np.count_nonzero(peaks), rise / 360.0])
+    return Drawn([np.count_nonzero(peaks), rise / 360.0])
 
 
 def figure_3_9(axes: Sequence[Axes]) -> Drawn:
@@ -276,26 +180,12 @@ def figure_3_9(axes: Sequence[Axes]) -> Drawn:
     ):
         ax.plot(angles, [degrees(value)] * len(angles), "o", color=COLOURS[1], ms=5)
         sketch.write(ax, (angles[0], degrees(value)), f"{name}: {degrees(value):.2f}°", shift)
-    values: list[Value] = []
-    for angle, value, sign in (
-        (mu.at_least, mu.least, 1.0),
-        (mu.at_greatest, mu.greatest, -1.0),
-    ):
-        cosine = (
-            bars.coupler**2
-            + bars.follower**2
-            + sign * 2.0 * bars.crank * bars.frame
-            - bars.crank**2
-            - bars.frame**2
-        ) / (2.0 * bars.coupler * bars.follower)
-        values += [degrees(abs(float(angle[0]))), (degrees(value), degrees(np.arccos(cosine)))]
-    return Drawn([*values, degrees(mu.least), degrees(mu.greatest)])
+    return Drawn([degrees(mu.least), degrees(mu.greatest)])
 
 
-def figure_3_10(axes: Sequence[Axes]) -> Drawn:
+def figure_3_10(axes: Sequence[Axes]) -> None:
     """Draw the mechanism at several positions, and the paths of some points of its coupler."""
-    ax, bars = axes[0], linkage()
-    sketch.canvas(ax)
+    ax, bars = sketch.canvas(axes[0]), linkage()
     length, start = bars.coupler, radians(70.0)
     points = {
         "A": (0.0, 0.0),
@@ -324,31 +214,25 @@ def figure_3_10(axes: Sequence[Axes]) -> Drawn:
         ax.plot(*at, "o", color="0.15", ms=4.0, zorder=8)
         sketch.write(ax, at, name, (8.0, 8.0), style="italic")
     sketch.four_bar(ax, joints, 0.07 * bars.frame, "OABC")
-    swing = transmission_angle(bars).swing or 0.0
-    pins = (("A", np.zeros(2), bars.crank), ("B", np.array([bars.frame, 0.0]), bars.follower))
-    off = [np.abs(np.hypot(*(curves[n].position - at).T) - r).max() for n, at, r in pins]
-    around = curves["A"].length / (2.0 * pi * bars.crank)
-    return Drawn([max(off), around, curves["B"].length / (2.0 * bars.follower * swing)])
 
 
 def free_body(axes: Sequence[Axes], link: str) -> Drawn:
     """Draw one link cut free (Fig. 3.11)."""
-    ax, scene = axes[0], load_scene(_SCENE)
+    ax, scene = sketch.canvas(axes[0]), load_scene(_SCENE)
     machine, speed = scene.machine(), scene["operation"]["speed"]
     body = sketch.free_bodies(machine, radians(105.0), speed)[0][link]
     letters, names = contents("aannaque")["bodies"][link].values()
     largest = max(float(np.hypot(*force)) for force in body.forces)
     length = float(np.hypot(*(body.places[1] - body.places[0])))
     scale = 0.55 * length / largest
-    sketch.canvas(ax)
     sketch.draw_body(ax, body, letters, names, scale)
     heads = np.array(body.places) + scale * np.array(body.forces)
     low = np.min([*body.places, *heads], axis=0) - 0.22 * length
     sketch.scale_bar(ax, low, scale, sketch.round_force(largest))
-    whole = sketch.free_bodies(machine, np.linspace(0.0, 2.0 * pi, 361), speed)[0][link]
-    values = [whole.unbalanced_force, whole.unbalanced_moment]
+    values = []
     if link == "crank":
-        values.append(float(np.min(whole.torque)))
+        turn = np.linspace(0.0, 2.0 * pi, 361)
+        values.append(float(np.min(rigid_forces(machine, turn, speed).torque)))
     rows = []
     for letter, force in zip(letters, body.forces, strict=True):
         name = "".join(c for c in names[letter] if c not in "${}")

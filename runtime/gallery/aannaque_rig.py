@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from math import degrees, radians
 from typing import TYPE_CHECKING, Any
@@ -51,8 +50,6 @@ _LOW, _HIGH, _LONG_HIGH = 5.0, 40.0, 30.0
 # Speeds at which the stresses of several L4 are compared: one far below the critical speeds, and
 # that of Fig. 8.24 [rad/s].
 _QUIET, _SHOWN = 6.0, 17.0
-# What is near, of a critical speed.
-_NEAR = 0.03
 
 
 @lru_cache(maxsize=12)
@@ -219,8 +216,8 @@ def _orders(scene: str, frame: float, over: StressCurve, link: str) -> list[floa
     for speed in _critical(over, link):
         ratios = [mean_frequency(scene, frame, mode) / float(speed) for mode in (1, 2)]
         apart = [abs(ratio / round(ratio) - 1.0) for ratio in ratios]
-        # The second mode only where the first does not explain it.
-        values.append(ratios[0 if apart[0] <= _NEAR else int(np.argmin(apart))])
+        # The second mode only where the first does not explain it to 3 %.
+        values.append(ratios[0 if apart[0] <= 0.03 else int(np.argmin(apart))])
     return values
 
 
@@ -246,11 +243,11 @@ def figure_8_24(axes: Sequence[Axes]) -> Drawn:
     ax, motion = axes[0], cycle(0.662)
     values = []
     for frame, style, colour in ((0.662, "-", COLOURS[0]), (FRAME, "--", COLOURS[4])):
-        shown = cycles(SHORT, frame, (_SHOWN,))
-        stress = shown.stress["follower", 0.5][0] / 1e6
-        turn(ax, shown.theta, stress, style, color=colour, label=f"$L_4$ = {frame:.3f} m")
+        theta, by_station = cycles(SHORT, frame, (_SHOWN,))
+        stress = by_station["follower", 0.5][0] / 1e6
+        turn(ax, theta, stress, style, color=colour, label=f"$L_4$ = {frame:.3f} m")
         if frame != FRAME:
-            values.append(np.degrees(shown.theta[int(np.argmax(np.abs(stress)))]))
+            values.append(np.degrees(theta[int(np.argmax(np.abs(stress)))]))
     ax.axvline(180.0, color="0.6", lw=0.7, ls=(0, (1, 3)))
     widest = degrees(float(motion.theta2[int(np.argmax(motion.transmission_angle))]))
     lowest = min(float(_held(scene).least[:, 0].min()) for scene in (SHORT, LONG)) / (2 * np.pi)
@@ -272,22 +269,15 @@ def long_coupler(axes: Sequence[Axes], link: str) -> Drawn:
     return Drawn([*_orders(LONG, FRAME, long, link), growth])
 
 
-@dataclass(frozen=True)
-class Cycles:
-    """Stresses [Pa] at the gauges over the cycle, ``(ns, nt)``, by link and place x/length.
+@lru_cache(maxsize=16)
+def cycles(
+    scene: str, frame: float, speeds: tuple[float, ...]
+) -> tuple[Array, Mapping[tuple[str, float], Array]]:
+    """Return crank angles [rad] and stresses [Pa] at the gauges, ``(ns, nt)``, by link and place.
 
     Those of the outer fibre to the left of the link's direction, tension positive, at crank speeds
-    [rad/s] and angles [rad].
+    [rad/s].
     """
-
-    speed: Array
-    theta: Array
-    stress: Mapping[tuple[str, float], Array]
-
-
-@lru_cache(maxsize=16)
-def cycles(scene: str, frame: float, speeds: tuple[float, ...]) -> Cycles:
-    """Return the stresses at the gauges over the cycle."""
     system = rig(scene, frame)
     motion = steady_state(system, np.array(speeds), rtol=1e-5)
     form, stations = stress_operator(system, motion.theta, STATIONS)
@@ -299,14 +289,14 @@ def cycles(scene: str, frame: float, speeds: tuple[float, ...]) -> Cycles:
     )
     # Of each station the fibre on the positive side comes first.
     by_station = {(one.beam, one.place): values[:, :, k] for k, one in enumerate(stations)}
-    return Cycles(np.array(speeds), motion.theta, by_station)
+    return motion.theta, by_station
 
 
 def sheet(axes: Sequence[Axes], letter: str, first: int, last: int) -> Drawn:
     """Draw some figures of appendix C or D, a row of links for each."""
     numbers = range(first, last + 1)
     speeds = tuple(SPEEDS[letter][number - 1] for number in numbers)
-    shown = cycles({"C": SHORT, "D": LONG}[letter], FRAME, speeds)
+    theta, stress = cycles({"C": SHORT, "D": LONG}[letter], FRAME, speeds)
     names = {"crank": "input link", "coupler": "coupler", "follower": "follower"}
     looks: dict[float, dict[str, Any]] = {
         0.5: {"color": COLOURS[0], "lw": 1.0, "label": "midpoint"},
@@ -315,16 +305,16 @@ def sheet(axes: Sequence[Axes], letter: str, first: int, last: int) -> Drawn:
     for row, number in enumerate(numbers):
         for ax, (link, name) in zip(axes[3 * row :], names.items(), strict=False):
             for place, look in looks.items():
-                if (link, place) in shown.stress:
-                    turn(ax, shown.theta, shown.stress[link, place][row] / 1e6, **look)
+                if (link, place) in stress:
+                    turn(ax, theta, stress[link, place][row] / 1e6, **look)
             ax.locator_params(axis="y", nbins=4)
             panel_title(ax, f"{letter}.{number}: {name}, {speeds[row]:g} rad/s")
             ax.tick_params(labelbottom=number == last)
     highest = 0.0
-    for values in shown.stress.values():
+    for values in stress.values():
         waves = np.abs(np.fft.rfft(values))[:, 1:]
         kept = waves >= 0.01 * np.max(waves, axis=1, keepdims=True)
         last_kept = waves.shape[1] - np.argmax(kept[:, ::-1], axis=1)
-        highest = max(highest, float(np.max(last_kept * shown.speed)) / (2 * np.pi))
-    peaks = [np.max(np.abs(shown.stress["crank", place]), axis=1) for place in (0.0, 0.5)]
+        highest = max(highest, float(np.max(last_kept * speeds)) / (2 * np.pi))
+    peaks = [np.max(np.abs(stress["crank", place]), axis=1) for place in (0.0, 0.5)]
     return Drawn([highest, float(np.min(peaks[0] / peaks[1]))])

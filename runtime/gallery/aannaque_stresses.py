@@ -39,13 +39,10 @@ from .records import Drawn
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-# Speeds [rad/s] of Figs. 7.1 and 7.3; of 7.4 and 7.6, and of 7.5; of 7.7 to 7.11, the last fewer.
-_SPEEDS = np.linspace(20.0, 75.0, 221)
-_COARSE, _FINE = np.linspace(20.0, 70.0, 81), np.linspace(20.0, 70.0, 251)
-_WIDE, _FEWER = np.linspace(5.0, 70.0, 326), np.linspace(10.0, 70.0, 121)
+# Speeds [rad/s] of Figs. 7.1 and 7.3, of 7.4 and 7.6, of 7.7 to 7.11.
+_SPEEDS, _COARSE = np.linspace(20.0, 75.0, 221), np.linspace(20.0, 70.0, 81)
+_WIDE = np.linspace(5.0, 70.0, 326)
 _MODES = 4
-# The range of L4 up to which the stresses fall.
-_LATE = 0.632
 
 
 def _apart(places: Array, others: Array) -> float:
@@ -154,8 +151,9 @@ def six_frames(axes: Sequence[Axes], quantity: str) -> Drawn:
     The rms displacement of the follower's midpoint, the crank's largest stress, or the peak of the
     strain energy.
     """
-    ax, speed = axes[0], _FINE if quantity == "stress" else _COARSE
+    ax, speed = axes[0], _COARSE
     if quantity == "stress":
+        speed = np.linspace(20.0, 70.0, 251)
         curves = [1e-6 * stresses(beams(1, frame=frame), speed).of("crank") for frame in FRAMES]
     else:
         curves = [_response(frame)[quantity == "energy"] for frame in FRAMES]
@@ -174,7 +172,8 @@ def six_frames(axes: Sequence[Axes], quantity: str) -> Drawn:
 
 def _falls(speed: Array, curves: Sequence[Array]) -> list[float]:
     """Return how curves change with L4: in the mean, and at their peaks up to 65 rad/s."""
-    chosen = [values for frame, values in zip(FRAMES, curves, strict=True) if frame <= _LATE]
+    # Up to this L4 the stresses fall.
+    chosen = [values for frame, values in zip(FRAMES, curves, strict=True) if frame <= 0.632]
     ratios = [float(np.exp(np.mean(np.log(later / one)))) for one, later in pairwise(chosen)]
     slow = [values[speed < 65.0] for values in chosen]
     peaks = [float(np.max(values)) for values in slow]
@@ -214,13 +213,14 @@ def figure_7_8(axes: Sequence[Axes]) -> Drawn:
     for count, values in zip(counts, largest, strict=True):
         label = f"{count} element{'s' if count > 1 else ''}"
         ax.semilogy(_WIDE, 1e-6 * values, label=label)
-    motion = steady_state(hybrid_model(), _FEWER, rtol=1e-3)
+    speeds = np.linspace(10.0, 70.0, 121)
+    motion = steady_state(hybrid_model(), speeds, rtol=1e-3)
     form = stress_operator(beams(1), motion.theta, 7, method="shape")[0]
     exact = [
         1e-6 * np.max(np.abs(form.values(float(speed), q, qd / speed)))
-        for speed, q, qd in zip(_FEWER, motion.q, motion.qd, strict=True)
+        for speed, q, qd in zip(speeds, motion.q, motion.qd, strict=True)
     ]
-    ax.semilogy(_FEWER, exact, "--", color="0.2", label='"exact"')
+    ax.semilogy(speeds, exact, "--", color="0.2", label='"exact"')
     second, third = (nearest(maxima(_WIDE, values), 23.5) for values in largest[1:])
     means = [float(natural_frequencies(beams(count), 0.0, 1).mean[0]) for count in counts]
     means.append(float(np.mean(hybrid(1e-10).first)))

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.families import Array, LinearPeriodic
 from ..core.trigonometric import differentiated, even_angles
@@ -173,25 +173,6 @@ def newmark_maps(system: LinearPeriodic, speed: float, intervals: int) -> tuple[
     return newmark_matrices(mass, rate, stiffness, force, system.period / intervals)
 
 
-def transition_nodes(maps: Array, loads: Array) -> Array:
-    """Return the states of a period by its transition matrix, algorithm 1, (6.15)-(6.19).
-
-    The period is passed through from the unit matrix and from rest at once, which gives R and
-    y_c(T); ``y_s(0) = (I - R)^-1 y_c(T)`` (6.18); and once more from there.
-    """
-    m = loads.shape[1]
-    whole = np.concatenate([np.eye(m), np.zeros((m, 1))], axis=1)
-    for matrix, load in zip(maps, loads, strict=True):
-        whole = matrix @ whole
-        whole[:, -1] += load
-    nodes = np.empty_like(loads)
-    state = np.linalg.solve(np.eye(m) - whole[:, :-1], whole[:, -1])
-    for k, (matrix, load) in enumerate(zip(maps, loads, strict=True)):
-        nodes[k] = state
-        state = matrix @ state + load
-    return nodes
-
-
 def modal_motion(system: LinearPeriodic, speed: float, intervals: int, modes: int) -> Array:
     """Return q ``(N, n)`` at even angles by uncoupled modes of each interval, (6.12), after Midha.
 
@@ -235,40 +216,17 @@ def _oscillator_steps(squares: Array, drag: Array, push: Array, step: float) -> 
     return np.asarray(expm(scaled) * scale[..., :, None] / scale[..., None, :])
 
 
-def newmark_limit(gamma: ArrayLike, beta: ArrayLike, damping: ArrayLike = 0.0) -> Array:
-    """Return the largest stable phase ``omega h`` of a step, of one freedom; parameters broadcast.
+def newmark_limit(gamma: ArrayLike, beta: ArrayLike) -> Array:
+    """Return the largest stable phase ``omega h`` of an undamped step; parameters broadcast.
 
     By Routh's margins of a step (Aannaque (6.9)-(6.11)) a pair of multipliers leaves the unit
-    circle where ``2 zeta + (gamma - 1/2) p`` becomes negative, a real one passes -1 where
-    ``2 + 2 zeta (2 gamma - 1) p + (2 beta - gamma) p^2`` does.  Infinite where no step is too
-    long, 0 where none is short enough.
+    circle where gamma < 1/2, a real one passes -1 where ``2 + (2 beta - gamma) p^2`` is negative.
+    Infinite where no step is too long, 0 where none is short enough.
     """
-    g, b, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (gamma, beta, damping)))
-    half, last = z * (2.0 * g - 1.0), 2.0 * b - g
-    with np.errstate(divide="ignore", invalid="ignore"):
-        pair = np.where(g < 0.5, 2.0 * z / (0.5 - g), np.inf)
-        below = np.sqrt(half**2 - 2.0 * last) - half
-        flip = np.where(below > 0.0, 2.0 / below, np.inf)
-    return np.minimum(pair, flip)
-
-
-def newmark_regions(gamma: Array, beta: Array) -> NDArray[np.int64]:
-    """Return the region of Fig. 6.1 that undamped schemes lie in, by multipliers of their steps.
-
-    0 unstable at every step, 1 stable up to a step, 2 stable without condition with two real
-    multipliers at long steps, 3 stable without condition with a pair at every step.
-    """
-    one, none = np.ones((4, 1, 1)), np.zeros((4, 1))
-    # A short step and a long one.
-    squares = np.array([0.1, 0.1, 1e4, 1e4])[:, None, None] ** 2
-    regions = []
-    for g, b in zip(gamma.ravel(), beta.ravel(), strict=True):
-        steps = newmark_matrices(one, 0.0 * one, squares * one, none, 1.0, gamma=g, beta=b)
-        short, long = np.linalg.eigvals(steps[0][::2])
-        stable = [bool(np.max(np.abs(values)) <= 1.0 + 1e-9) for values in (short, long)]
-        pair = bool(np.iscomplex(long[0]))
-        regions.append((2 + pair if stable[1] else 1) if stable[0] else 0)
-    return np.array(regions).reshape(gamma.shape)
+    g, b = np.broadcast_arrays(np.asarray(gamma, dtype=float), np.asarray(beta, dtype=float))
+    with np.errstate(divide="ignore"):
+        flip = np.sqrt(2.0 / np.maximum(g - 2.0 * b, 0.0))
+    return np.where(g < 0.5, 0.0, flip)
 
 
 def printed_count(

@@ -22,11 +22,8 @@ if TYPE_CHECKING:
 
 _RATIO, _QUOTED = 0.2, 900.0
 _COMPLETE: tuple[str, ...] = ()
-_TURNS = 60
-# Damping of the resonance curves: internal, this part of critical in the first mode.
-_DAMPING, _STIFFNESS = 0.01, 0.7e11 * 0.5208e-6
-# The chart.
-_SPEEDS, _RATIOS = np.linspace(500.0, 4000.0, 1401), np.linspace(0.01, 0.2, 191)
+# Speeds of the chart [rad/s].
+_SPEEDS = np.linspace(500.0, 4000.0, 1401)
 _PANELS = [
     (formulation, modes, drop, words)
     for formulation, modes in (("polynomial", 3), ("overhang", 4))
@@ -37,8 +34,6 @@ _KINDS = (
     (1, "#c9783c", "multiplier above 1"),
     (2, "#a58fc9", "complex multipliers: combination"),
 )
-# Marks closer than this [rad/s] share one label.
-_CLOSE = 150.0
 
 
 @lru_cache(maxsize=16)
@@ -70,7 +65,7 @@ def figure_11(axes: Sequence[Axes]) -> Drawn:
 
 def figure_12(axes: Sequence[Axes]) -> Drawn:
     """Draw the tip from rest near the mean frequency: three polynomials, and converged modes."""
-    mean, heights = mean_frequency(), []
+    mean, heights, turns = mean_frequency(), [], 60
     for k, (formulation, modes, drop, speed) in enumerate(
         (
             ("polynomial", 3, AS_PRINTED, mean),
@@ -80,11 +75,11 @@ def figure_12(axes: Sequence[Axes]) -> Drawn:
         )
     ):
         system = _rod(formulation, modes, drop)
-        theta, tip = tip_from_rest(system, speed, turns=_TURNS, steps=192)
+        theta, tip = tip_from_rest(system, speed, turns=turns, steps=192)
         physics = "as printed" if drop else "with tension"
         label = f"{modes} {formulation} modes, {physics}, {speed:.4g} rad/s"
         axes[k // 2].plot(theta / (2 * np.pi), tip, color=COLOURS[k], lw=0.7, label=label)
-        heights.append(np.abs(tip[1:]).reshape(_TURNS, -1).max(axis=1))
+        heights.append(np.abs(tip[1:]).reshape(turns, -1).max(axis=1))
     three = heights[0]
     values = [np.max(three), np.min(three) / np.max(three)]
     values += [_largest("polynomial", 3, mean), _largest("overhang", ENOUGH, _QUOTED)]
@@ -113,7 +108,8 @@ def resonances(ratio: float) -> ResonanceCurve:
     Two overhang modes, with tension; internal damping, 1 % of critical in the first mode.
     """
     system = _rod("overhang", 2, _COMPLETE, ratio)
-    drag = 2 * _DAMPING * _STIFFNESS / mean_frequency("overhang", 2, ratio)
+    stiffness = 0.7e11 * 0.5208e-6
+    drag = 2 * 0.01 * stiffness / mean_frequency("overhang", 2, ratio)
     speeds = np.geomspace(150.0, 1000.0, 240)
     return resonance_curve(system.with_parameters(internal_damping=drag), speeds)
 
@@ -139,7 +135,7 @@ def figure_resonances(axes: Sequence[Axes]) -> Drawn:
 def chart(formulation: str, modes: int, drop: tuple[str, ...]) -> StabilityChart:
     """Return the flexible rod's stability over crank speed and crank ratio."""
     system = _rod(formulation, modes, drop, 0.1)
-    return stability_chart(system, ("speed", _SPEEDS), ("crank_ratio", _RATIOS))
+    return stability_chart(system, ("speed", _SPEEDS), ("crank_ratio", np.linspace(0.01, 0.2, 191)))
 
 
 @lru_cache(maxsize=4)
@@ -178,7 +174,8 @@ def _mark(ax: Axes, omega: Array) -> None:
         if not _SPEEDS[0] <= place[0] <= _SPEEDS[-1]:
             continue
         ax.plot([place[0]], [0.0], "^", color="0.2", ms=4, zorder=6)
-        if groups and place[0] - groups[-1][-1][0] < _CLOSE:
+        # Marks closer than 150 rad/s share one label.
+        if groups and place[0] - groups[-1][-1][0] < 150.0:
             groups[-1].append(place)
         else:
             groups.append([place])

@@ -10,7 +10,7 @@ from html import escape
 from pathlib import Path
 
 from ..core.errors import bad
-from .records import Quoted, Shown, Table, counts
+from .records import KINDS, Quoted, Shown, Table, counts
 
 _CSS = """
 body { font: 15px/1.5 Georgia, serif; color: #222; max-width: 62rem; margin: 2rem auto;
@@ -27,13 +27,6 @@ td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: 
 .differs { color: #b00020; font-weight: bold; }
 .note { font-size: 0.85rem; color: #444; }
 """.strip()
-
-# Of each kind of comparison: a heading, and what the expected value is called.
-_KINDS = {
-    "printed": ("Numbers that the text prints", "printed"),
-    "words": ("Words of the text, read as numbers", "read as"),
-    "check": ("Checks of equations and of results", "expected"),
-}
 
 
 def page(title: str, shown: Sequence[Shown]) -> str:
@@ -55,9 +48,9 @@ def page(title: str, shown: Sequence[Shown]) -> str:
 
 def _summary(shown: Sequence[Shown]) -> str:
     lines = ["<table>\n<tr><th>figure</th><th>title</th>"]
-    lines.append("<th>printed</th><th>in words</th><th>checks</th><th>agree</th></tr>")
+    lines.append("<th>printed</th><th>in words</th><th>tables</th><th>agree</th></tr>")
     for item in shown:
-        numbers = [sum(row.kind == kind for row in item.quoted) for kind in _KINDS]
+        numbers = [sum(row.kind == kind for row in item.quoted) for kind in KINDS]
         numbers.append(sum(row.agrees for row in item.quoted))
         lines.append(
             f'<tr><td><a href="#{item.entry.stem}">{escape(item.entry.label)}</a></td>'
@@ -76,10 +69,10 @@ def _figure(item: Shown) -> str:
         f'<p><img src="{entry.stem}.png" alt="{escape(entry.title, quote=True)}"></p>',
     ]
     lines += [f'<p class="note">{escape(note)}</p>' for note in item.notes]
-    for kind, (heading, name) in _KINDS.items():
+    for kind, (what, name) in KINDS.items():
         rows = [row for row in item.quoted if row.kind == kind]
         if rows:
-            lines += [f"<h3>{heading}</h3>", _quoted(rows, name)]
+            lines += [f"<h3>{what.capitalize()}</h3>", _quoted(rows, name)]
     lines += [_table(table) for table in item.tables]
     return "\n".join(lines)
 

@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 Relation = Literal["=", "<", ">"]
 Kind = Literal["printed", "words", "check"]
 
-# What each kind of expected number is called beside the computed one.
-KINDS: Mapping[Kind, str] = {
-    "printed": "printed",
-    "words": "by the text's words",
-    "check": "for a check",
+# Of each kind of comparison: what it is, and what its expected number is called.
+KINDS: Mapping[Kind, tuple[str, str]] = {
+    "printed": ("numbers that the documents print", "printed"),
+    "words": ("statements in words, read as numbers", "read as"),
+    "check": ("printed tables checked as a whole", "expected"),
 }
 
 
@@ -50,8 +50,8 @@ class Quoted:
         Why the two are known to differ; empty where they should agree.
     kind : {"printed", "words", "check"}
         Where ``expected`` comes from: the document prints it; words of the document such as "an
-        order of magnitude" are read as it; or it is no number of the document but that of another
-        route to an equation of the document or to a result of ours.
+        order of magnitude" are read as it; or a whole table of printed numbers is
+        compared by its worst one.
     """
 
     number: str
@@ -122,11 +122,7 @@ class Quoted:
 def counts(rows: Sequence[Quoted]) -> list[str]:
     """Return for each kind of comparison, in words, how many there are and how they come out."""
     lines = []
-    for kind, what in (
-        ("printed", "numbers that the documents print"),
-        ("words", "statements in words, read as numbers"),
-        ("check", "checks of equations and of results"),
-    ):
+    for kind, (what, _) in KINDS.items():
         chosen = [row for row in rows if row.kind == kind]
         agree = sum(row.agrees for row in chosen)
         known = sum(bool(row.differs) and not row.agrees for row in chosen)
@@ -191,9 +187,6 @@ class Columns:
         return Table(title, tuple(header), texts)
 
 
-Value = SupportsFloat | tuple[SupportsFloat, ...]
-
-
 @dataclass(frozen=True)
 class Drawn:
     """What drawing a figure gives beside the picture.
@@ -201,15 +194,14 @@ class Drawn:
     Attributes
     ----------
     values : sequence
-        The computed values of the record's quoted numbers, in their order; a tuple of computed,
-        expected and perhaps tolerance, where the record does not hold the expected value.
+        The computed values of the record's quoted numbers, in their order.
     words : mapping
-        What stands in the braces of the record's texts.
+        What stands in the braces of the record's notes and of the titles of its tables.
     tables : sequence
         The rows of each of the record's tables, their cells numbers and texts.
     """
 
-    values: Sequence[Value] = ()
+    values: Sequence[SupportsFloat] = ()
     words: Mapping[str, object] = field(default_factory=dict)
     tables: Sequence[Iterable[Sequence[Any]]] = ()
 
@@ -255,7 +247,8 @@ class FigureEntry:
     title : str
         What it shows.
     draw : callable
-        From the axes, in the order of rows and columns, to a :class:`Drawn`.
+        From the axes, in the order of rows and columns, to a :class:`Drawn`, or None where
+        nothing goes with the picture.
     panels : tuple of int
         Rows and columns of axes.
     size : tuple of float
@@ -281,7 +274,7 @@ class FigureEntry:
     document: str
     label: str
     title: str
-    draw: Callable[[Sequence[Axes]], Drawn]
+    draw: Callable[[Sequence[Axes]], Drawn | None]
     panels: tuple[int, int] = (1, 1)
     size: tuple[float, float] = (7.2, 4.6)
     projection: str | None = None
@@ -305,24 +298,19 @@ class FigureEntry:
 
     def show(self, axes: Sequence[Axes]) -> Shown:
         """Draw the figure and put the computed values beside the quoted ones."""
-        drawn = self.draw(axes)
+        drawn = self.draw(axes) or Drawn()
         words = drawn.words
-        rows = []
-        for row, value in zip(self.quoted, drawn.values, strict=True):
-            names = ("computed", "expected", "tolerance")
-            given = value if isinstance(value, tuple) else (value,)
-            changes: dict[str, Any] = {n: float(v) for n, v in zip(names, given, strict=False)}
-            if words:
-                for name in ("number", "meaning", "differs"):
-                    changes[name] = getattr(row, name).format_map(words)
-            rows.append(replace(row, **changes))
+        rows = tuple(
+            replace(row, computed=float(value))
+            for row, value in zip(self.quoted, drawn.values, strict=True)
+        )
         notes = tuple(note.format_map(words) if words else note for note in self.notes)
         tables = tuple(
             one.filled(cells, words) for one, cells in zip(self.tables, drawn.tables, strict=True)
         )
         page = self.page
         files = ((page.file, page.text(notes, tables)),) if page else ()
-        return Shown(self, tuple(rows), notes, tables, files)
+        return Shown(self, rows, notes, tables, files)
 
 
 @dataclass(frozen=True)
@@ -399,8 +387,8 @@ class Gallery(Result):
                 sign = "" if row.relation == "=" else f"{row.relation} "
                 unit = f" {row.unit}" if row.unit else ""
                 out.append(
-                    f"  {row.number}: {sign}{row.expected:.4g}{unit} {KINDS[row.kind]}, "
-                    f"{row.computed:.4g} computed: {row.verdict}"
+                    f"  {row.number}: {KINDS[row.kind][1]} {sign}{row.expected:.4g}{unit}, "
+                    f"computed {row.computed:.4g}: {row.verdict}"
                 )
         out += ["", *counts([row for _, row in self.rows])]
         if self.folder:

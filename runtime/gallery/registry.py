@@ -60,10 +60,12 @@ def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> F
     common = record.pop("common", {})
     place, arguments = record.pop("draw"), record.pop("arguments", ())
 
-    def draw(axes: Sequence[Axes]) -> Drawn:
+    def draw(axes: Sequence[Axes]) -> Drawn | None:
         # The module that draws is loaded only now.
         module, _, name = place.partition(".")
-        drawn: Drawn = getattr(import_module(f".{module}", __package__), name)(axes, *arguments)
+        drawn: Drawn | None = getattr(import_module(f".{module}", __package__), name)(
+            axes, *arguments
+        )
         return drawn
 
     if "page" in record:
@@ -83,10 +85,8 @@ def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> F
 
 
 def _quoted(common: Mapping[str, Any], row: Mapping[str, Any]) -> Quoted:
-    """Return one comparison; the key of the expected value, if it has one here, is its kind."""
+    """Return one comparison; the key of its expected value is its kind."""
+    kind = next(kind for source in (row, common) for kind in KINDS if kind in source)
     given = {**common, **row}
-    values = {kind: given.pop(kind) for kind in KINDS if kind in given}
-    kinds = [kind for kind in values if kind in row] or list(values)
-    if kinds:
-        given = {"kind": kinds[0], "expected": values[kinds[0]], **given}
-    return Quoted(**given)
+    rest = {name: value for name, value in given.items() if name not in KINDS}
+    return Quoted(kind=kind, expected=given[kind], **rest)

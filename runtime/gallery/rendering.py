@@ -20,8 +20,6 @@ from .records import FigureEntry, Gallery, Shown
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_DPI = 150
-
 
 def figures(document: str | None = None, figure: str | None = None) -> tuple[FigureEntry, ...]:
     """Return the figures that a document's name and a label choose.
@@ -134,7 +132,7 @@ def render(entry: FigureEntry, *, picture: bool = True) -> tuple[Shown, bytes | 
 
 def _png(canvas: Figure) -> bytes:
     buffer = io.BytesIO()
-    canvas.savefig(buffer, format="png", dpi=_DPI, metadata={"Software": None})
+    canvas.savefig(buffer, format="png", dpi=150, metadata={"Software": None})
     return buffer.getvalue()
 
 

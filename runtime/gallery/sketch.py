@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
 INK, GROUND = "#2b2b2b", "0.45"
 LINK_COLOURS = {"crank": "#c8641e", "coupler": "#1f5a8c", "follower": "#3a7d44"}
-_HALO = 2.5
 
 
-def canvas(ax: Axes) -> None:
-    """Make the axes a sheet to draw on: equal scales, no frame, no grid."""
+def canvas(ax: Axes) -> Axes:
+    """Make the axes a sheet to draw on, without frame and grid, in equal scales; return them."""
     ax.set_axis_off()
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.08)
+    return ax
 
 
 def bar(ax: Axes, start: ArrayLike, end: ArrayLike, colour: str = INK, **style: Any) -> None:
@@ -87,7 +87,7 @@ def write(
         _pair(place),
         xytext=_pair(shift),
         textcoords="offset points",
-        path_effects=[patheffects.withStroke(linewidth=_HALO, foreground="w")],
+        path_effects=[patheffects.withStroke(linewidth=2.5, foreground="w")],
         **{"ha": "center", "va": "center", "fontsize": 9, "zorder": 9, **style},
     )
 
@@ -168,9 +168,9 @@ _PINS = {
 
 @dataclass(frozen=True)
 class Body:
-    """A link with all that acts on it, inertia included, at some crank angles.
+    """A link with all that acts on it, inertia included.
 
-    Places [m] of first joint, second joint and centre of mass, ``(..., 2)``; at these the two pin
+    Places [m] of first joint, second joint and centre of mass; at these the two pin
     forces on the link and minus mass times acceleration [N]; minus inertia about the centre times
     angular acceleration, and the driving torque, zero but on the crank [N m].
     """
@@ -181,32 +181,17 @@ class Body:
     inertia_couple: Array
     torque: Array
 
-    @property
-    def unbalanced_force(self) -> float:
-        """Largest sum of the forces over the largest of them."""
-        largest = max(float(np.max(np.hypot(*part.T))) for part in self.forces)
-        return float(np.max(np.abs(sum(self.forces)))) / largest
-
-    @property
-    def unbalanced_moment(self) -> float:
-        """Largest sum of moments about the centre of mass over the largest of its terms."""
-        terms = [self.inertia_couple, self.torque]
-        for place, force in zip(self.places, self.forces, strict=True):
-            arm = place - self.places[2]
-            terms.append(arm[..., 0] * force[..., 1] - arm[..., 1] * force[..., 0])
-        return float(np.max(np.abs(sum(terms)))) / max(float(np.max(np.abs(t))) for t in terms)
-
 
 def free_bodies(
-    machine: Machine, theta: ArrayLike, speed: float, acceleration: float = 0.0
+    machine: Machine, theta: float, speed: float
 ) -> tuple[dict[str, Body], RigidForces]:
     """Return the links of a four-bar machine cut free, and the forces that were computed.
 
-    Without gravity and loads, at crank angles [rad], crank speed [rad/s] and acceleration.  The pin
+    Without gravity and loads, at a crank angle [rad] and an even crank speed [rad/s].  The pin
     forces come from the closed form, the inertia forces from the motion of the centres.
     """
-    forces = rigid_forces(machine, theta, speed, acceleration, ("pins", "torque"))
-    motion = machine.linkage.motion(theta, speed, acceleration)
+    forces = rigid_forces(machine, theta, speed, outputs=("pins", "torque"))
+    motion = machine.linkage.motion(theta, speed)
     joints = motion.joints
     bodies = {}
     for link, ends in _PINS.items():

@@ -39,25 +39,21 @@ from .smith_forces import INCH, TURN, example, example_forces, finish_polar, pea
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-# Steel discs half an inch thick, 6 in from the pins, as the thesis states none of these.
-_STEEL, _THICKNESS, _OFFSET = 7850.0, 0.5 * INCH, 6.0 * INCH
-_POUND_MASS = 0.45359237
+# Discs half an inch thick, 6 in from the pins, as the thesis states none of these.
+_THICKNESS, _OFFSET = 0.5 * INCH, 6.0 * INCH
 _NAMES: Mapping[Case, str] = {
     "a": "unbalanced",
     "b": "crank and follower balanced",
     "c": "fully balanced, 3 counterweights",
     "d": "fully balanced, 2 counterweights",
 }
-_MASS, _LENGTH, _DISC = 1.0, 1.0, 0.1
-_DENSITIES = {"A": 5.0, "B": 10.0, "C": 20.0, "D": 40.0, "E": 80.0}
-# So light that no counterweight at all is best.
-_LIGHT = 2.5
 
 
 def _weights(
     case: Case, offset: float = _OFFSET, thickness: float = _THICKNESS
 ) -> dict[str, Counterweight]:
-    return case_counterweights(example()[0], case, offset, density=_STEEL, thickness=thickness)
+    """Return the counterweights of a case, steel discs."""
+    return case_counterweights(example()[0], case, offset, density=7850.0, thickness=thickness)
 
 
 @lru_cache(maxsize=8)
@@ -88,7 +84,7 @@ def figure_20(axes: Sequence[Axes]) -> Drawn:
             ax.add_patch(Circle(tuple(centre), radius, zorder=2, alpha=0.45, **look))
             ax.update_datalim([centre - radius, centre + radius])
             sizes = (weight.offset / INCH, weight.disc_radius / INCH)
-            rows.append((f"({case})", link, weight.mass / _POUND_MASS, *sizes))
+            rows.append((f"({case})", link, weight.mass / 0.45359237, *sizes))
         sketch.four_bar(ax, motion.joints, 0.1 * linkage.lengths["frame"])
     # All panels have the limits that hold every one of them.
     boxes = np.array([ax.dataLim.get_points() for ax in axes])
@@ -101,9 +97,7 @@ def figure_20(axes: Sequence[Axes]) -> Drawn:
 
 
 def _balance_values() -> list[float]:
-    """Return counts of weights, what force is left, growth of pin forces and of the torque."""
-    whole = peak(_forces("a").shaking_force)[0]
-    left = {case: peak(_forces(case).shaking_force)[0] / whole for case in ("c", "d")}
+    """Return counts of weights, growth of pin forces and of the torque, inertia of two masses."""
 
     def growth(*names: str) -> float:
         return min(
@@ -115,11 +109,7 @@ def _balance_values() -> list[float]:
     # The two masses at B and C have the coupler's mass and centre, but not its inertia.
     coupler, length = example()[0].mass("coupler"), example()[0].linkage.lengths["coupler"]
     return [
-        len(_weights("b")),
-        len(_weights("c")),
-        left["c"],
-        len(_weights("d")),
-        left["d"],
+        *(len(_weights(case)) for case in CASES[1:]),
         growth("f12", "f23", "f34", "f41"),
         growth("torque"),
         coupler.along / length * length**2 / coupler.inertia,
@@ -212,13 +202,6 @@ class BalancedLink:
         return bars + k / 4.0 * ((1.0 - delta) * (1.0 + delta) / delta) ** 2
 
     @property
-    def slope(self) -> Any:
-        """Derivative of the inertia by the offset."""
-        delta = np.asarray(self.offset)
-        rest = 1.0 - self.density_number / offset_function(delta)
-        return (1.0 - delta) * (1.0 + delta) / 2.0 * rest
-
-    @property
     def counterweight(self) -> Any:
         """Mass of the counterweight over that of the link."""
         delta = np.asarray(self.offset)
@@ -257,16 +240,11 @@ def optimal_offset(density_number: Any) -> Any:
     return np.where(k >= 0.5, 1.0, 1.0 / s)
 
 
-def _number(density: float) -> float:
-    return density_number(_MASS, _LENGTH, _DISC, density)
-
-
 def _best() -> list[tuple[str, float, float, float]]:
-    """Return letter, density, K and best offset of the five counterweights."""
-    return [
-        (letter, density, _number(density), float(optimal_offset(_number(density))))
-        for letter, density in _DENSITIES.items()
-    ]
+    """Return letter, density, K and best offset of five counterweights, M = L = 1 and h = 0.1."""
+    densities = (5.0, 10.0, 20.0, 40.0, 80.0)
+    numbers = [density_number(1.0, 1.0, 0.1, density) for density in densities]
+    return list(zip("ABCDE", densities, numbers, optimal_offset(numbers).tolist(), strict=True))
 
 
 def figure_23a(axes: Sequence[Axes]) -> Drawn:
@@ -277,20 +255,7 @@ def figure_23a(axes: Sequence[Axes]) -> Drawn:
         ax.plot([best, best, 0.0], [0.0, number, number], ":", color="0.6", lw=0.9)
         ax.plot(best, number, "o", color=COLOURS[1], ms=5)
         sketch.write(ax, (best, number), letter, (-10.0, 8.0))
-    ends = [offset_function(0.0), offset_function(1.0), np.diff(offset_function(delta)).min()]
-    # The printed inertia, its derivative and the quintic less what holds.
-    delta, number = delta[1:], _number(_DENSITIES["C"])
-    link = BalancedLink(delta, number)
-    bars, exact = 0.5 * (1.0 + delta**2), (1.0 + delta**3) / 3.0
-    rest = 0.25 * number * (1.0 / delta - delta) ** 2 + 0.5 * (delta - delta**3)
-    slope = 0.5 * (1.0 - delta**2) + 0.5 * number * (delta - delta**-3.0)
-    gaps = [
-        np.max(np.abs(bars + rest - link.inertia)),
-        np.max(np.abs(exact + rest - link.inertia)) / link.inertia.max(),
-        np.max(np.abs(slope - link.slope)) / np.abs(link.slope).max(),
-        max(abs(d**5 - k * d**4 - d**3 + k) for _, _, k, d in _best()),
-    ]
-    return Drawn([*ends, optimal_offset(0.6), *gaps])
+    return Drawn([offset_function(1.0)])
 
 
 def _densities(ax: Axes, delta: Array, beside: float) -> None:
@@ -306,25 +271,17 @@ def _densities(ax: Axes, delta: Array, beside: float) -> None:
 def figure_23b(axes: Sequence[Axes]) -> Drawn:
     """Draw the inertia over the offset for a range of densities."""
     ax, delta = axes[0], np.linspace(0.06, 1.0, 471)
-    light = BalancedLink(delta, _number(_LIGHT))
-    ax.plot(delta, light.inertia, "--", color="0.45", label=rf"$\rho$ = {_LIGHT:g}")
+    # So light that no counterweight at all is best.
+    light = BalancedLink(delta, density_number(1.0, 1.0, 0.1, 2.5))
+    ax.plot(delta, light.inertia, "--", color="0.45", label=r"$\rho$ = 2.5")
     _densities(ax, delta, 0.0)
-    end = BalancedLink(1.0, _number(_LIGHT))
     offsets = [best for *_, best in _best()]
-    pivoted = 2.0 * _MASS * (2.0 * _LENGTH) ** 2 / 12.0
-    values = [
-        optimal_offset(_number(_LIGHT)),
-        (float(end.inertia), pivoted),
-        end.radius,
-        max(offsets),
-        min(offsets),
-    ]
     rows = []
     for letter, density, number, best in _best():
         link = BalancedLink(best, number)
         sizes = (link.inertia, link.counterweight, link.radius)
         rows.append((letter, density, number, best, *sizes))
-    return Drawn(values, tables=[rows])
+    return Drawn([max(offsets), min(offsets)], tables=[rows])
 
 
 def figure_23c(axes: Sequence[Axes]) -> Drawn:
@@ -333,10 +290,5 @@ def figure_23c(axes: Sequence[Axes]) -> Drawn:
     line = BalancedLink(delta, offset_function(delta))
     ax.plot(delta, line.inertia, "--", color="0.3", lw=1.3, label="minima of all densities")
     _densities(ax, delta, 6.0)
-    # Each lettered offset beside the least of the sampled inertia: another route.
-    fine, best = np.linspace(0.05, 1.0, 9501), _best()
-    sampled = [fine[int(np.argmin(BalancedLink(fine, number).inertia))] for *_, number, _ in best]
-    offsets = [offset for *_, offset in best]
-    least = [float(BalancedLink(offset, number).inertia) for *_, number, offset in best]
-    falls = max(np.max(np.diff(offsets)), np.max(np.diff(least)))
-    return Drawn([*zip(offsets, sampled, strict=True), falls])
+    minima = [(best, float(BalancedLink(best, number).inertia)) for *_, number, best in _best()]
+    return Drawn([np.max(np.diff(minima, axis=0))])

@@ -14,25 +14,20 @@ from ..core.periodic_function import PeriodicFunction
 from ..hill import (
     boundary_series,
     critical_damping,
-    discriminant,
     hill_boundaries,
     perturbation_boundaries,
 )
 from ..linkages import FourBar
 from .drawing import COLOURS, Array, outline
-from .records import Drawn, Value
+from .records import Drawn
 from .smith_linkages import end_load, f3_series, linkage_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_UNSTABLE = "#f4dcc8"
-_EXACT, _FIRST, _SECOND = COLOURS[5], COLOURS[0], COLOURS[2]
 _LINKAGE = "(2,1,2,2)"
-_DAMPINGS = (0.0, 0.02, 0.05, 0.1)
-# Of the space: the region, the parameters' range, where limits for small ones are taken; second
-# order adds less than twice this.
-_REGION, _REACH, _SMALL = 2, 0.6, 1e-4
+# Of the space: the region and the parameters' range.
+_REGION, _REACH = 2, 0.6
 
 
 def _to_order(f: PeriodicFunction, mu: Array, regions: Sequence[int], order: int) -> Array:
@@ -55,8 +50,8 @@ def _shade(ax: Axes, f: PeriodicFunction, mu: Array, regions: Sequence[int], lef
     """Shade the unstable regions of a chart and draw their exact boundaries."""
     exact = hill_boundaries(f, mu, regions)
     for low, high in zip(exact.lower, exact.upper, strict=True):
-        ax.fill_betweenx(mu, np.maximum(low, left), high, color=_UNSTABLE, lw=0)
-    _edges(ax, mu, np.stack([exact.lower, exact.upper]), "-", _EXACT, "exact")
+        ax.fill_betweenx(mu, np.maximum(low, left), high, color="#f4dcc8", lw=0)
+    _edges(ax, mu, np.stack([exact.lower, exact.upper]), "-", COLOURS[5], "exact")
 
 
 def figure_34(axes: Sequence[Axes]) -> Drawn:
@@ -66,17 +61,13 @@ def figure_34(axes: Sequence[Axes]) -> Drawn:
     _shade(ax, f, mu, (0, *regions, 5, 6), -1.5)
     exact, gaps = hill_boundaries(f, mu, (1,)), []
     for order, style, colour, label in (
-        (1, "--", _FIRST, "first order"),
-        (2, ":", _SECOND, "second order"),
+        (1, "--", COLOURS[0], "first order"),
+        (2, ":", COLOURS[2], "second order"),
     ):
         near = _to_order(f, mu, (*regions, 5), order)
         _edges(ax, mu, near, style, colour, label)
         gaps.append(_largest(near[:, 0], np.concatenate([exact.lower, exact.upper])))
-    start = hill_boundaries(f, 1e-7, regions)
-    gap = _largest(np.stack([start.lower, start.upper]), np.array([0.25 * n * n for n in regions]))
-    levels = discriminant(f, hill_boundaries(f, 1.0, regions).lower, 1.0).value
-    half = _largest(levels, np.array([(-1.0) ** n for n in regions]))
-    return Drawn([gap, half], {"first": gaps[0], "second": gaps[1]})
+    return Drawn(words={"first": gaps[0], "second": gaps[1]})
 
 
 def figure_35(axes: Sequence[Axes]) -> Drawn:
@@ -85,7 +76,7 @@ def figure_35(axes: Sequence[Axes]) -> Drawn:
     for ax, crank in zip(axes, (0.5, 1.5, 3.0, 4.0), strict=True):
         f = _series(FourBar(frame=6.0, crank=crank, coupler=6.0, follower=6.0), "f3")
         _shade(ax, f, mu, (0, *regions, 4), -1.0)
-        _edges(ax, mu, _to_order(f, mu, regions, 2), ":", _SECOND, "second order")
+        _edges(ax, mu, _to_order(f, mu, regions, 2), ":", COLOURS[2], "second order")
         widths.append(hill_boundaries(f, 1.0, regions).width)
     short = widths[0]
     growth = min(float(np.min(b / a)) for a, b in pairwise(widths))
@@ -96,12 +87,10 @@ def _series(linkage: FourBar, name: str) -> PeriodicFunction:
     return PeriodicFunction.from_callable(lambda theta: getattr(end_load(linkage, theta), name))
 
 
-def damped(
-    axes: Sequence[Axes], regions: list[int], dampings: list[float], top: float, at: float
-) -> Drawn:
+def damped(axes: Sequence[Axes], regions: list[int], dampings: list[float], top: float) -> None:
     """Draw regions up to a mu for several dampings, exact and, of a single one, to first order.
 
-    The least mu of each region is computed at one of the dampings (Figs. 36 and 37).
+    Figs. 36 and 37.
     """
     f, ax = f3_series(_LINKAGE), axes[0]
     for damping, colour in zip(dampings, COLOURS, strict=False):
@@ -120,9 +109,6 @@ def damped(
             for low, high in zip(ends.lower, ends.upper, strict=True):
                 label = f"K = {damping:g}, {name}"
                 ax.plot(*outline(low, high, mu), style, color=colour, label=label)
-    exact = critical_damping(f, None, regions, damping=at).mu
-    printed = [2.0 * at * n / float(f.amplitudes[n]) for n in regions]
-    return Drawn([(mu, near, 0.05 * near) for mu, near in zip(exact, printed, strict=True)])
 
 
 @dataclass(frozen=True)
@@ -211,29 +197,12 @@ def _order_errors(pair: _Pair) -> dict[str, float]:
     return words
 
 
-def _space_values(pair: _Pair) -> list[Value]:
-    """Return start, widths and slopes at small parameters beside (8.43), and the other claims."""
-    n = _REGION
-    a, b, c, d = pair.first.a[n], pair.first.b[n], pair.second.a[n], pair.second.b[n]
-    squares = [a * a + b * b, c * c + d * d, 2.0 * (a * c + b * d)]
-    start = pair.along(1.0, 1.0, np.zeros(1))
-    widths: list[Value] = []
-    slopes = []
-    for eps1, eps2 in ((1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, -0.5)):
-        printed = np.sqrt(eps1**2 * squares[0] + eps2**2 * squares[1] + eps1 * eps2 * squares[2])
-        low, high = (float(end[0]) for end in pair.along(eps1, eps2, np.array([_SMALL])))
-        slopes.append((0.5 * (low + high) - 0.25 * n * n) / _SMALL)
-        widths.append(((high - low) / _SMALL, printed))
-    around = []
+def _space_values(pair: _Pair) -> list[float]:
+    """Return the least width over small parameters in all directions, and how harmonics fall."""
+    # Parameters so small that second order adds less than twice their size.
+    around, small = [], np.array([1e-4])
     for t in np.linspace(0.0, 2.0 * pi, 73):
-        lower, upper = pair.along(float(np.cos(t)), float(np.sin(t)), np.array([_SMALL]))
-        around.append(float(upper[0] - lower[0]) / _SMALL)
-    return [
-        float(start[0][0] + start[1][0]) / 2.0,
-        *widths,
-        (slopes[0], -pair.first.mean),
-        (slopes[1], -pair.second.mean),
-        (slopes[1], -pair.first.mean),
-        min(around),
-        max(f.amplitudes[8] / f.amplitudes[1] for f in (pair.first, pair.second)),
-    ]
+        lower, upper = pair.along(float(np.cos(t)), float(np.sin(t)), small)
+        around.append(float((upper - lower)[0] / small[0]))
+    falls = [float(f.amplitudes[8] / f.amplitudes[1]) for f in (pair.first, pair.second)]
+    return [min(around), max(falls)]

@@ -16,15 +16,12 @@ from ..hill.bloch import effective_operator
 from ..periodic import floquet_multipliers
 from ..stability import stability_edges
 from .drawing import COLOURS, Array, panel_title
-from .records import Drawn, Value
+from .records import Drawn
 from .registry import contents
 from .smith_linkages import LBF_IN_S2, RIG, RPM, OfRig, region_name
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-_ORDERS = (1, 2, 3, 4, 6)
-_SCAN = np.linspace(0.0, 0.5, 5001)
 
 
 @dataclass(frozen=True)
@@ -67,7 +64,9 @@ def critical(estimate: Estimate, inertia: float, equation: str, order: int | Non
     n = estimate.region
     if order is None:
         return float(critical_damping(f, 1.0, (n,)).damping[0])
-    points = np.stack([np.ones_like(_SCAN), _SCAN])
+    # Up to K = 0.5, several times what was measured.
+    scan = np.linspace(0.0, 0.5, 5001)
+    points = np.stack([np.ones_like(scan), scan])
     a, b = effective_operator([f], n, order, damped=True).components(points)
     left = np.abs(b.sum(axis=0)) - np.abs(a.sum(axis=0).imag)
     (crossings,) = np.nonzero((left[:-1] > 0.0) & (left[1:] <= 0.0))
@@ -75,7 +74,7 @@ def critical(estimate: Estimate, inertia: float, equation: str, order: int | Non
         return float("nan")
     k = int(crossings[0])
     share = left[k] / (left[k] - left[k + 1])
-    return float(_SCAN[k] + share * (_SCAN[k + 1] - _SCAN[k]))
+    return float(scan[k] + share * (scan[k + 1] - scan[k]))
 
 
 def at_rest(estimate: Estimate) -> tuple[float, float]:
@@ -92,7 +91,7 @@ def at_rest(estimate: Estimate) -> tuple[float, float]:
 
 def estimates_table(axes: Sequence[Axes]) -> Drawn:
     """Draw the damping that closes each region over the follower's inertia."""
-    values: list[Value] = []
+    values = []
     for ax, one in zip(axes, ESTIMATES, strict=True):
         measured = one.rig.inertias / LBF_IN_S2
         inertia = np.linspace(0.95 * measured[0], 1.02 * measured[-1], 31)
@@ -107,7 +106,7 @@ def estimates_table(axes: Sequence[Axes]) -> Drawn:
         ax.fill_between(inertia, *at_rest(one), color="0.92", lw=0, label="decrements at rest")
         ax.hlines(one.quoted, one.stable, one.unstable, color="black", lw=3.0, label="quoted")
         panel_title(ax, f"{one.name}, {one.rig.name}")
-        values.append((0.5 * sum(one.both("reduced", 1)), one.quoted, 0.15 * one.quoted))
+        values.append(0.5 * sum(one.both("reduced", 1)))
     return Drawn(values, _estimate_words(), [_estimates()])
 
 
@@ -118,16 +117,17 @@ def _estimates() -> list[list[str]]:
         ends = one.both(equation, order)
         return "-".join("none" if np.isnan(end) else f"{end:.3f}" for end in ends)
 
-    def refused(one: Estimate, order: int) -> bool:
-        """Whether the order does not visibly converge at the stable inertia."""
+    def by_order(one: Estimate, order: int) -> str:
+        """Return the span, starred where the order does not converge at the stable inertia."""
         f, numbers = one.rig.function("reduced", one.stable * LBF_IN_S2), (one.region,)
         closing = critical_damping(f, 1.0, numbers).damping[0]
-        return bool(perturbation_boundaries(f, 1.0, numbers, order, closing).outside[0])
+        outside = perturbation_boundaries(f, 1.0, numbers, order, closing).outside[0]
+        return span(one, "reduced", order) + ("*" if outside else "")
 
     rows = []
     for one in ESTIMATES:
         cells = [one.name, f"{one.stable:g}-{one.unstable:g}", f"{one.quoted:g}"]
-        cells += [span(one, "reduced", k) + ("*" if refused(one, k) else "") for k in _ORDERS]
+        cells += [by_order(one, order) for order in (1, 2, 3, 4, 6)]
         cells += [span(one, name, None) for name in ("reduced", "complete")]
         rows.append([*cells, "-".join(f"{end:.2f}" for end in at_rest(one))])
     return rows
@@ -166,11 +166,6 @@ def _estimate_words() -> dict[str, object]:
 
 # The second mode: charts of the 1/16 in coupler, the least and greatest inertia [lbf in s^2].
 _CASES = tuple((chart, inertia) for chart in ("84", "87") for inertia in (0.0058, 0.0190))
-# Range of speeds over the first natural frequency.
-_SPAN = (0.45, 0.95)
-# Regions of the first mode alone, and how near to them, of the speed, those of two modes begin.
-_NUMBERS = (2, 3, 4, 5, 6)
-_NEAR = 0.005
 _KINDS = {
     "principal 1": ("mode 1", COLOURS[0]),
     "principal 2": ("mode 2", COLOURS[1]),
@@ -205,14 +200,15 @@ def regions(chart: str, inertia: float) -> tuple[list[_Region], int]:
     Regions that reach beyond the range, with an end that is not known, are left out.
     """
     rig = RIG[chart]
-    low, high = (share * rig.frequency for share in _SPAN)
-    bare = stability_edges(rig.system(modes=2), (low, high), follower_inertia=inertia * LBF_IN_S2)
-    width = bare.upper - bare.lower
+    speeds = (0.45 * rig.frequency, 0.95 * rig.frequency)
+    bare = stability_edges(rig.system(modes=2), speeds, follower_inertia=inertia * LBF_IN_S2)
+    width = bare.width
     kept = np.flatnonzero(width > 2.0 * bare.error)
     left = _left_by_damping(chart, inertia, bare.lower[kept], width[kept])
     beginnings = _first_mode(chart, inertia)
+    # Regions of the first mode begin within half a per cent of where they do alone.
     first = {
-        i: next((n for n, end in beginnings.items() if abs(low - end) < _NEAR * end), 0)
+        i: next((n for n, end in beginnings.items() if abs(low - end) < 0.005 * end), 0)
         for i, low in zip(kept.tolist(), (bare.lower[kept] / RPM).tolist(), strict=True)
         if bare.kind[i] == "principal"
     }
@@ -234,10 +230,10 @@ def regions(chart: str, inertia: float) -> tuple[list[_Region], int]:
 
 def _first_mode(chart: str, inertia: float) -> Mapping[int, float]:
     """Return the speeds [rpm] at which regions of the first mode alone begin, by number."""
-    rig = RIG[chart]
+    rig, numbers = RIG[chart], range(2, 7)
     f = rig.function("complete", inertia * LBF_IN_S2)
-    upper = hill_boundaries(f, 1.0, _NUMBERS).upper.tolist()
-    begins = zip(_NUMBERS, upper, strict=True)
+    upper = hill_boundaries(f, 1.0, numbers).upper.tolist()
+    begins = zip(numbers, upper, strict=True)
     return {n: float(rig.frequency / np.sqrt(end) / RPM) for n, end in begins if end > 0.0}
 
 
@@ -266,7 +262,6 @@ def _damped(chart: str, modes: int) -> LinearPeriodic:
 def modes_table(axes: Sequence[Axes]) -> Drawn:
     """Draw the widths of all regions of two modes over the crank speed."""
     tables, titles = [], []
-    values: list[Value] = []
     for ax, (chart, inertia) in zip(axes, _CASES, strict=True):
         opened, closed = regions(chart, inertia)
         for kind, (label, colour) in _KINDS.items():
@@ -289,12 +284,7 @@ def modes_table(axes: Sequence[Axes]) -> Drawn:
         titles.append(
             f"{RIG[chart].name}, follower inertia {inertia:g} lbf in s²: widest regions{rest}"
         )
-        # The first mode's regions with two modes beside those of the first mode alone.
-        for n in (3, 4):
-            alone, lower = _first_mode(chart, inertia)[n], np.array([one.lower for one in opened])
-            nearest = float(lower[np.argmin(np.abs(lower - alone))])
-            values.append((nearest, alone, _NEAR * alone))
-    return Drawn(values, {**_mode_words(), "titles": titles}, tables)
+    return Drawn(words={**_mode_words(), "titles": titles}, tables=tables)
 
 
 def _mode_words() -> dict[str, object]:

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 INCH, POUND = 0.0254, 4.4482216152605
 TURN = np.linspace(0.0, 2.0 * pi, 1441)
-_JOINTS = ("12", "23", "34", "41")
 
 
 @lru_cache(maxsize=1)
@@ -43,17 +42,12 @@ def peak(values: Array) -> tuple[float, float]:
     """Return the largest size of vectors over the turn, and its crank angle [deg] from 0."""
     size = np.hypot(*values.T) if values.ndim > 1 else np.abs(values)
     at = int(np.argmax(size))
-    return float(size[at]), _signed_degrees(TURN[at])
-
-
-def _signed_degrees(angle: float) -> float:
-    return (degrees(angle) + 180.0) % 360.0 - 180.0
+    return float(size[at]), (degrees(TURN[at]) + 180.0) % 360.0 - 180.0
 
 
 def figure_11(axes: Sequence[Axes]) -> Drawn:
     """Draw the links cut free, every force to one scale."""
-    ax = axes[0]
-    sketch.canvas(ax)
+    ax = sketch.canvas(axes[0])
     machine, speed = example()
     bodies, forces = sketch.free_bodies(machine, radians(30.0), speed)
     largest = max(float(np.hypot(*force)) for body in bodies.values() for force in body.forces)
@@ -70,72 +64,9 @@ def figure_11(axes: Sequence[Axes]) -> Drawn:
     for place, (force, text) in zip(ground, on_frame, strict=True):
         sketch.arrow(ax, place, scale * np.asarray(force), COLOURS[3], text)
     sketch.scale_bar(ax, (0.15 * frame, -0.8 * frame), scale, sketch.round_force(largest))
-    rows = [(f"F{joint}", *(getattr(forces, f"f{joint}") / POUND)) for joint in _JOINTS]
-    return Drawn(_equations(machine, speed, 40.0), tables=[rows])
-
-
-def _equations(machine: Machine, speed: float, acceleration: float) -> list[float]:
-    """Return how well the equations (4.4) to (4.13) hold, at a crank that speeds up too."""
-    drive = (speed, acceleration)
-    bodies = sketch.free_bodies(machine, TURN, *drive)[0]
-    forces = rigid_forces(machine, TURN, *drive)
-    pin, torque = _printed_forces(machine, *drive)
-    moment, complete = machine.linkage.lengths["frame"] * forces["y41"], forces.shaking_moment
-    pairs = (
-        _accelerations(machine, drive),
-        (pin, forces.f34),
-        (torque, forces.torque),
-        (forces.f41 - forces.f12, forces.shaking_force),
-        (moment, complete),
-        (moment - forces.torque, complete),
-    )
-    return [
-        *(
-            value
-            for body in bodies.values()
-            for value in (body.unbalanced_force, body.unbalanced_moment)
-        ),
-        *(float(np.max(np.abs(one - other)) / np.max(np.abs(other))) for one, other in pairs),
-    ]
-
-
-def _accelerations(machine: Machine, drive: tuple[float, float]) -> tuple[Array, Array]:
-    """Return those of the centres by (4.1) to (4.3) as printed, and by the motion of points."""
-    motion: Any = machine.linkage.motion(TURN, *drive)
-
-    def swung(radius: float, angle: Array, speed: Any, acceleration: Any) -> Array:
-        along = speed**2 * np.cos(angle) + acceleration * np.sin(angle)
-        up = speed**2 * np.sin(angle) - acceleration * np.cos(angle)
-        return -radius * np.stack([along, up], axis=-1)
-
-    radii = {link: machine.mass(link).centre[0] for link in machine.linkage.links}
-    crank_pin = swung(machine.linkage.lengths["crank"], TURN, *drive)
-    printed = [
-        swung(radii["crank"], TURN, *drive),
-        crank_pin + swung(radii["coupler"], motion.theta3, motion.omega3, motion.alpha3),
-        swung(radii["follower"], motion.theta4, motion.omega4, motion.alpha4),
-    ]
-    points = [motion.point(link, radius).acceleration for link, radius in radii.items()]
-    return np.array(printed), np.array(points)
-
-
-def _printed_forces(machine: Machine, speed: float, acceleration: float) -> tuple[Array, Array]:
-    """Return the pin force (4.7) and the torque (4.11) as printed, over the turn."""
-    motion: Any = machine.linkage.motion(TURN, speed, acceleration)
-    l2, l3, l4 = (machine.linkage.lengths[name] for name in ("crank", "coupler", "follower"))
-    coupler, follower = machine.mass("coupler"), machine.mass("follower")
-    t2, t3, t4 = motion.theta2, motion.theta3, motion.theta4
-    bracket = speed**2 * np.sin(t2 - t3) - acceleration * np.cos(t2 - t3)
-    parts = [
-        coupler.inertia * motion.alpha3 * l4 * part(t4)
-        + follower.inertia * motion.alpha4 * l3 * part(t3)
-        - coupler.along * l2 * l4 * part(t4) * bracket
-        for part in (np.cos, np.sin)
-    ]
-    pin = np.stack(parts, axis=-1) / (l3 * l4 * np.sin(t3 - t4))[:, np.newaxis]
-    forces = rigid_forces(machine, TURN, speed, acceleration, ("pins",))
-    arm = forces["y23"] * l2 * np.cos(t2) - forces["x23"] * l2 * np.sin(t2)
-    return pin, machine.mass("crank").inertia * acceleration + arm
+    names = ("f12", "f23", "f34", "f41")
+    rows = [(name.upper(), *(getattr(forces, name) / POUND)) for name in names]
+    return Drawn(tables=[rows])
 
 
 def polar(axes: Sequence[Axes], joint: str) -> Drawn:
@@ -148,7 +79,6 @@ def polar(axes: Sequence[Axes], joint: str) -> Drawn:
     if joint == "12":
         motion: Any = example()[0].linkage.motion(TURN)
         values += [peak(motion.alpha3)[1], peak(motion.alpha4)[1]]
-        values.append(_signed_degrees(TURN[int(np.argmin(motion.transmission_angle))]))
     return Drawn(values)
 
 

@@ -7,30 +7,20 @@ from math import acos, cos, degrees, pi, radians, sin, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from ..core.errors import BadInput
 from ..core.periodic_function import PeriodicFunction
 from ..linkages import FourBar, FourBarMotion
 from ..linkages.clearance import clearance_range
 from ..linkages.transmission import transmission_angle
 from . import sketch
 from .drawing import COLOURS, Array
-from .records import Drawn, Value
+from .records import Drawn
 from .smith_linkages import PROPORTIONS, end_load, four_bar_of, linkage_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _CRANKS = (2.0, 4.0, 6.0, 8.0, 9.0, 9.9)
-# Distance from a limit (crank 0 or 10) at which it is read off; deviations are of its order.
-_NEAR = 1e-7
-_CLEARANCES = (0.05, 0.1, 0.2, 0.4)
-# Lengths of the schematic figures, chosen so that their angles are reached.
-_GENERAL = FourBar(frame=10.0, crank=4.0, coupler=9.0, follower=7.0)
-_IN_LINE = FourBar(frame=16.0, crank=8.0, coupler=7.0, follower=8.0)
-_SQUARE = FourBar(frame=10.0, crank=4.0, coupler=10.0, follower=6.0)
-_ANGLE = radians(70.0)
 _DASHED = (0, (3.5, 1.5))
 
 
@@ -56,9 +46,10 @@ def output(axes: Sequence[Axes], rate: str, small: float, slope: float, level: f
     ends = [level, 360.0 * slope + level]
     ax.plot([0, 360], ends, "--", color="0.4", lw=1.0, label="parallelogram")
     halves = [np.radians(np.arange(start, start + 170.0, 10.0)) for start in (10.0, 190.0)]
-    tiny = value(10.0 * _NEAR, np.concatenate(halves))
+    # Both limits, crank 0 and 10, are read off beside them; deviations are of that order.
+    tiny = value(10.0 * 1e-7, np.concatenate(halves))
     gaps = [
-        value(10.0 * (1.0 - _NEAR), half) - (slope * np.degrees(half) + level) for half in halves
+        value(10.0 * (1.0 - 1e-7), half) - (slope * np.degrees(half) + level) for half in halves
     ]
     fine = np.linspace(0.0, 2 * pi, 36001)
     peaks = (f"{np.max(np.abs(value(one, fine))):.3g} (crank {one:g})" for one in _CRANKS[3:])
@@ -133,14 +124,6 @@ def _with_coupler(linkage: FourBar, change: float, crossed: bool = False) -> Fou
     return FourBar(*sizes, assembly="crossed" if crossed else "open")
 
 
-def _phi(linkage: FourBar, theta: ArrayLike) -> Array:
-    """Return the angle BDC."""
-    motion = linkage.motion(theta)
-    to_crank = motion.joints["B"] - motion.joints["D"]
-    turned = np.arctan2(to_crank[..., 1], to_crank[..., 0]) - motion.theta4
-    return np.asarray(np.abs(np.angle(np.exp(1j * turned))))
-
-
 def _reach(linkage: FourBar, distance: float) -> float:
     """Return the crank angle at which B is so far from D."""
     l1, l2 = linkage.frame, linkage.crank
@@ -151,11 +134,11 @@ def _direction(vector: Array) -> float:
     return float(np.arctan2(vector[1], vector[0]))
 
 
-def figure_8(axes: Sequence[Axes]) -> Drawn:
+def figure_8(axes: Sequence[Axes]) -> None:
     """Draw the nominal position and the two extremes for one crank angle."""
-    ax = axes[0]
-    sketch.canvas(ax)
-    places = _draw_extremes(ax, _GENERAL, _ANGLE, 1.6, (0.5, -0.5))
+    ax = sketch.canvas(axes[0])
+    linkage, theta = FourBar(frame=10.0, crank=4.0, coupler=9.0, follower=7.0), radians(70.0)
+    places = _draw_extremes(ax, linkage, theta, 1.6, (0.5, -0.5))
     a, b, d = places["A"], places["B"], places["D"]
     ax.plot(*np.transpose([b, d]), ":", color="0.4", lw=1.0)
     ax.plot(*np.transpose([a, d]), color="0.6", lw=0.8, zorder=1)
@@ -165,23 +148,7 @@ def figure_8(axes: Sequence[Axes]) -> Drawn:
         (1.2, "C''", r"$\phi''$"),
     ):
         sketch.arc(ax, d, radius, (_direction(b - d), _direction(places[name] - d)), text)
-    sketch.arc(ax, a, 1.1, (0.0, _ANGLE), r"$\theta_2$")
-    # (3.1) to (3.3) beside the computed range, and beside other linkages.
-    l3, l4, c = _GENERAL.coupler, _GENERAL.follower, 0.2
-    distance, phi = float(np.hypot(*(b - d))), float(_phi(_GENERAL, _ANGLE))
-    values: list[Value] = []
-    moves = clearance_range(_GENERAL, c, _ANGLE)
-    # The follower turns back by delta phi', and on by delta phi''.
-    for sign, move in ((1.0, moves.below), (-1.0, moves.above)):
-        printed = (l3 * c + sign * c**2 / 4.0) / (2.0 * distance * l4)
-        other = float(_phi(_with_coupler(_GENERAL, 0.5 * sign * c), _ANGLE))
-        angles = (phi + sign * float(move), other)
-        values += [(sign * (cos(phi) - cos(angle)), printed) for angle in angles]
-    for small in (0.2, 0.02):
-        printed = degrees(l3 * small / (distance * l4 * sin(phi)))
-        total = float(clearance_range(_GENERAL, small, _ANGLE).width)
-        values.append((degrees(total), printed, printed * (small / l4) ** 2))
-    return Drawn(values)
+    sketch.arc(ax, a, 1.1, (0.0, theta), r"$\theta_2$")
 
 
 def _draw_extremes(
@@ -224,19 +191,19 @@ def _ground(ax: Axes, a: Array, d: Array, unit: float) -> None:
         sketch.write(ax, place, name, (side, 4.0), style="italic")
 
 
-def figure_9a(axes: Sequence[Axes]) -> Drawn:
+def figure_9a(axes: Sequence[Axes]) -> None:
     """Draw the extreme position in which coupler and follower lie in one line."""
-    ax = axes[0]
-    sketch.canvas(ax)
-    l3, l4 = _IN_LINE.coupler, _IN_LINE.follower
-    theta, a = _reach(_IN_LINE, l3 + l4), np.zeros(2)
-    b = _IN_LINE.crank * np.array([cos(theta), sin(theta)])
-    d = np.array([_IN_LINE.frame, 0.0])
+    ax = sketch.canvas(axes[0])
+    linkage = FourBar(frame=16.0, crank=8.0, coupler=7.0, follower=8.0)
+    l3, l4 = linkage.coupler, linkage.follower
+    theta, a = _reach(linkage, l3 + l4), np.zeros(2)
+    b = linkage.crank * np.array([cos(theta), sin(theta)])
+    d = np.array([linkage.frame, 0.0])
     middle = d + l4 * (b - d) / (l3 + l4)
     for start, end, link in ((b, middle, "coupler"), (d, middle, "follower"), (a, b, "crank")):
         sketch.bar(ax, start, end, sketch.LINK_COLOURS[link], zorder=3)
     for name, up in (("C'", True), ("C''", False)):
-        moved = _with_coupler(_IN_LINE, 0.4, crossed=not up).motion(theta)
+        moved = _with_coupler(linkage, 0.4, crossed=not up).motion(theta)
         at = np.asarray(moved.joints["C"])
         for start, link in ((b, "coupler"), (d, "follower")):
             sketch.bar(ax, start, at, sketch.LINK_COLOURS[link], lw=1.8, alpha=0.6, ls=_DASHED)
@@ -248,88 +215,41 @@ def figure_9a(axes: Sequence[Axes]) -> Drawn:
     sketch.pin(ax, b, middle)
     sketch.write(ax, b, "B", (-11.0, 9.0), style="italic")
     sketch.write(ax, middle, "C", (10.0, 8.0), style="italic")
-    c = 0.1
-    printed = 1.0 - (l3 * c + c**2 / 4.0) / (2.0 * l4 * (l3 + l4))
-    shorter = 1.0 + (l3 * c - c**2 / 4.0) / (2.0 * l4 * (l3 + l4))
-    moves = clearance_range(_IN_LINE, c, theta)
-    back, on = float(moves.below), float(moves.above)
-    quarter = float(clearance_range(_IN_LINE, 0.25 * c, theta).below)
-    try:
-        _with_coupler(_IN_LINE, -0.5 * c).motion(theta)
-        outcome = "that linkage closes here"
-    except BadInput:
-        outcome = "that linkage is refused here"
-    return Drawn(
-        [(cos(back), printed), (cos(on), printed), shorter, back / quarter], {"outcome": outcome}
-    )
 
 
-def figure_9b(axes: Sequence[Axes]) -> Drawn:
+def figure_9b(axes: Sequence[Axes]) -> None:
     """Draw the position in which BD and the follower are square."""
-    ax = axes[0]
-    sketch.canvas(ax)
-    l3, l4 = _SQUARE.coupler, _SQUARE.follower
-    theta = _reach(_SQUARE, sqrt(l3**2 - l4**2))
-    places = _draw_extremes(ax, _SQUARE, theta, 1.4, (0.5,))
+    ax = sketch.canvas(axes[0])
+    linkage = FourBar(frame=10.0, crank=4.0, coupler=10.0, follower=6.0)
+    theta = _reach(linkage, sqrt(linkage.coupler**2 - linkage.follower**2))
+    places = _draw_extremes(ax, linkage, theta, 1.4, (0.5,))
     b, d = places["B"], places["D"]
     ax.plot(*np.transpose([b, d]), ":", color="0.4", lw=1.0)
     first, second = (0.55 * (at - d) / np.hypot(*(at - d)) for at in (b, places["C"]))
     ax.plot(*np.transpose([d + first, d + first + second, d + second]), color=sketch.GROUND, lw=0.9)
     sketch.arc(ax, d, 2.6, (_direction(b - d), _direction(places["C'"] - d)), r"$\phi'$")
-    values: list[Value] = []
-    for c in (0.1, 0.01):
-        sine = (l3 * c + c**2 / 4.0) / (2.0 * sqrt(l3**2 - l4**2) * l4)
-        move = float(clearance_range(_SQUARE, c, theta).below)
-        values += [(sin(move), sine), (degrees(move), degrees(sine), degrees(sine**3))]
-    return Drawn(values)
 
 
 def figure_10(axes: Sequence[Axes]) -> Drawn:
     """Draw the free motion of the follower over the crank angle for several clearances."""
     ax, linkage = axes[0], four_bar_of("smith_1972_10_8_10_10")
     unit, theta = linkage.frame / 10.0, np.linspace(0.0, 2.0 * pi, 3601)
-    ranges = [clearance_range(linkage, c * unit, theta) for c in _CLEARANCES]
-    for c, moves, colour in zip(_CLEARANCES, ranges, COLOURS, strict=False):
+    ranges = {c: clearance_range(linkage, c * unit, theta) for c in (0.05, 0.1, 0.2, 0.4)}
+    for (c, moves), colour in zip(ranges.items(), COLOURS, strict=False):
         ax.plot(np.degrees(theta), np.degrees(moves.width), color=colour, label=f"c = {c:g}")
         ax.plot(np.degrees(theta), np.degrees(moves.small), ":", color="0.15", lw=1.1, zorder=5)
     ax.plot([], [], ":", color="0.15", lw=1.1, label="small clearance, (3.3)")
-    apart = max(degrees(float(np.max(np.abs(moves.width - moves.small)))) for moves in ranges)
-    greatest = [degrees(theta[int(np.argmax(moves.below[:-1]))]) for moves in ranges]
-    least, near = ranges[0], np.abs(theta - pi) < radians(60.0)
-    values: list[Value] = [(at + 180.0) % 360.0 - 180.0 for at in greatest]
-    values.append(degrees(theta[near][int(np.argmax(least.below[near]))]))
-    # The extremes of the transmission angle, and (3.3) where it is square.
-    extremes, mu = transmission_angle(linkage), linkage.motion(theta).transmission_angle
-    first_half = slice(len(mu) // 2)
-    square = int(np.argmin(np.abs(mu - pi / 2.0)[first_half]))
-    narrow = int(np.argmin((least.below + least.above)[first_half]))
-    printed = _CLEARANCES[0] * unit / (linkage.follower * np.sin(mu[square]))
-    values += [
-        degrees(extremes.least),
-        degrees(extremes.greatest),
-        (degrees(theta[narrow]), degrees(theta[square])),
-        printed / least.below[square],
-        printed / (least.below[square] + least.above[square]),
-    ]
+    every = ranges.values()
+    apart = max(degrees(float(np.max(np.abs(moves.width - moves.small)))) for moves in every)
+    greatest = [degrees(theta[int(np.argmax(moves.below[:-1]))]) for moves in every]
+    near = np.abs(theta - pi) < radians(60.0)
+    values = [(at + 180.0) % 360.0 - 180.0 for at in greatest]
+    values.append(degrees(theta[near][int(np.argmax(ranges[0.05].below[near]))]))
+    extremes = transmission_angle(linkage)
+    values += [degrees(extremes.least), degrees(extremes.greatest)]
     # The case in which the transmission angle stays below 90 degrees.
     equal = [FourBar(10.0, crank, 10.0, 10.0) for crank in (4.0, 4.3)]
     values += [degrees(transmission_angle(linkage).greatest) for linkage in equal]
     longer = clearance_range(equal[0], 0.05, theta).below
-    values += [degrees(theta[int(np.argmin(longer))]), _crank_pin_gap(linkage, unit)]
+    values.append(degrees(theta[int(np.argmin(longer))]))
     return Drawn(values, {"apart": apart})
-
-
-def _crank_pin_gap(linkage: FourBar, unit: float) -> float:
-    """Return the free motion with the clearance at B, by trial, less that with it at C."""
-    theta, c = np.radians(np.arange(0.0, 360.0, 30.0)), _CLEARANCES[-1] * unit
-    joints = linkage.motion(theta).joints
-    trial = np.exp(1j * np.linspace(0.0, 2.0 * pi, 7201))
-    way = (joints["B"] - joints["D"]) @ np.array([1.0, 1.0j])
-    moved = way[:, np.newaxis] + 0.5 * c * trial
-    size = np.abs(moved)
-    l3, l4 = linkage.coupler, linkage.follower
-    inner = (size**2 + l4**2 - l3**2) / (2.0 * size * l4)
-    # Seen from the nominal direction of DB, so that no angle passes half a turn.
-    turned = np.angle(moved / way[:, np.newaxis]) - np.arccos(inner)
-    gap = np.ptp(turned, axis=1) - clearance_range(linkage, c, theta, joint="34").width
-    return degrees(float(gap[int(np.argmax(np.abs(gap)))]))

@@ -21,11 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _RIG = RIG["84"]
-# Between the least and the greatest logarithmic decrement measured at 1/16 in (section 9.5.5).
-_DECREMENT = 0.075
 _LEAST = 0.0058
-# Largest deflection drawn, and that up to which linear equations hold, over the coupler's length.
-_DRAWN, _LINEAR = 0.15, 0.05
 
 
 def figure_45(axes: Sequence[Axes]) -> Drawn:
@@ -40,7 +36,8 @@ def figure_45(axes: Sequence[Axes]) -> Drawn:
 def wave_form(axes: Sequence[Axes], divisor: float) -> Drawn:
     """Draw the wave-form at the speed Omega/divisor (Figs. 47 to 51)."""
     ax, speed = axes[0], _RIG.frequency / divisor
-    damped = {name: _RIG.system(name, decrement=_DECREMENT) for name in ("reduced", "complete")}
+    # Between the least and the greatest logarithmic decrement measured at 1/16 in (9.5.5).
+    damped = {name: _RIG.system(name, decrement=0.075) for name in ("reduced", "complete")}
     length = 1e3 * damped["complete"].reference_length
     for equation, label, colour in (
         ("reduced", "equation of the thesis (6.18)", COLOURS[0]),
@@ -84,10 +81,6 @@ class Response(OfRig):
     low: float
     high: float
 
-    def envelope(self, decrement: float) -> Envelope:
-        """Return the extreme deflections over the range, for a logarithmic decrement."""
-        return _envelope(self, decrement)
-
 
 @dataclass(frozen=True)
 class Envelope:
@@ -110,7 +103,8 @@ class Envelope:
 
 
 @lru_cache(maxsize=64)
-def _envelope(one: Response, decrement: float) -> Envelope:
+def envelope(one: Response, decrement: float) -> Envelope:
+    """Return the extreme deflections over the range, for a logarithmic decrement."""
     system = one.rig.system(decrement=decrement, inertia=one.inertia)
     speed = np.linspace(one.low, one.high, 241)
     motion = steady_state(system, speed * RPM)
@@ -136,11 +130,11 @@ def response(
         (middle, COLOURS[0], 1.3, 3.0),
         (most, COLOURS[2], 0.8, 2.0),
     ):
-        ends = one.envelope(decrement)
+        ends = envelope(one, decrement)
         label = f"decrement {decrement:.3g}"
         ax.plot(ends.speed, ends.greatest, color=colour, lw=width, label=label, zorder=front)
         ax.plot(ends.speed, ends.least, color=colour, lw=width, zorder=front)
-    ends = one.envelope(middle)
+    ends = envelope(one, middle)
     unstable: dict[str, Any] = {"where": list(~ends.stable), "step": "mid"}
     if not np.all(ends.stable):
         unstable["label"] = "unstable"
@@ -148,12 +142,13 @@ def response(
     ax.fill_between(
         ends.speed, 0.0, 1.0, color="#f7e3d3", lw=0, zorder=0, transform=across, **unstable
     )
-    # The axis is kept to what can be read; dashed lines say how far linear equations hold.
+    # The axis is kept to what can be read, 15 % of the length; dashed lines say that up to 5 %
+    # linear equations hold.
     length = 1e3 * one.rig.system(inertia=inertia).reference_length
     top = max(float(np.max(np.abs(values))) for values in (ends.least, ends.greatest))
-    end = min(1.15 * top, _DRAWN * length)
-    if _LINEAR * length < end:
-        for level in (_LINEAR * length, -_LINEAR * length):
+    end = min(1.15 * top, 0.15 * length)
+    if 0.05 * length < end:
+        for level in (0.05 * length, -0.05 * length):
             ax.axhline(level, color="0.5", lw=0.7, ls="--", zorder=1)
     mark_fractions(ax, one.rig.frequency / RPM, range(1, 13), "Ω/{}", (low, high), low=False)
     ax.set(xlim=(low, high), ylim=(-end, end))
@@ -162,7 +157,7 @@ def response(
 
 def resonance(one: Response, speed: float) -> float:
     """Return the crank speed [rpm] of the greatest deflection's maximum nearest to a speed."""
-    ends = one.envelope(one.rig.decrements[0])
+    ends = envelope(one, one.rig.decrements[0])
     height = ends.height
     inner = (height[1:-1] > height[:-2]) & (height[1:-1] >= height[2:])
     places = ends.speed[1:-1][inner]
@@ -185,7 +180,7 @@ def _increment(one: Response) -> list[float]:
     sizes = []
     for inertia in (one.inertia, 0.0069):
         other = Response(one.chart, inertia, one.low, one.high)
-        ends = other.envelope(one.rig.decrements[0])
+        ends = envelope(other, one.rig.decrements[0])
         sizes.append(float(np.interp(300.0, ends.speed, ends.height)))
     return [sizes[0] / sizes[1]]
 
@@ -197,7 +192,7 @@ def _unstable(
 
     With the least measured decrement, the middle or the greatest one (0, 1, 2).
     """
-    speeds = one.envelope(one.rig.decrements[damping]).unstable
+    speeds = envelope(one, one.rig.decrements[damping]).unstable
     inside = speeds[(speeds > low) & (speeds < high)]
     first, last = float(inside[0]), float(inside[-1])
     return [first, 0.5 * (first + last), last]
@@ -205,7 +200,7 @@ def _unstable(
 
 def _between(one: Response) -> list[float]:
     """Return at how many speeds about 500 rpm the periodic motion is largest."""
-    ends = one.envelope(one.rig.decrements[0])
+    ends = envelope(one, one.rig.decrements[0])
     inside = np.flatnonzero(np.abs(ends.speed - 500.0) < 15.0)
     beside = np.maximum(ends.height[inside - 1], ends.height[inside + 1])
     return [int(np.count_nonzero(ends.height[inside] > beside))]

@@ -17,20 +17,15 @@ from ..scenes import load_scene
 from .algorithms import de_vogelaere_maps, de_vogelaere_start, kutta_merson, second_order_form
 from .drawing import COLOURS, Array, panel_title
 from .records import Drawn
-from .smith_linkages import f3_series, linkage_of
+from .smith_linkages import f3_series
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 # A wave of 20 degrees, as the text says of Fig. 28.
 _LAMBDA = 18.0
-_KUTTA_MERSON_RTOL = 1e-4
-_MU = 0.5
 # Crank angles, a coordinate and its derivative by the angle.
 _Run = tuple[Array, Array, Array]
-_UNITS = ((1.0, 0.0), (0.0, 1.0))
-# lambda^2 of Fig. 33: unstable and stable ones by turns.
-_HILL = (0.25, 0.5, 1.0, 1.5, 2.25, 3.0)
 
 
 @lru_cache(maxsize=2)
@@ -90,7 +85,7 @@ def _kutta_merson(turns: int) -> _Run:
     begin = simulate(_system(1), _speed(_system(1)), 0.25 / _LAMBDA, samples=16 * round(_LAMBDA))
     sizes = [np.max(np.abs(values)) for values in (begin.q, begin.qd / begin.speed, 1.0)]
     theta = np.radians(np.arange(360.0 * turns + 1.0))
-    rtol = _KUTTA_MERSON_RTOL
+    rtol = 1e-4
     states = kutta_merson(
         generator,
         theta,
@@ -104,7 +99,8 @@ def _kutta_merson(turns: int) -> _Run:
 
 def _remaining(step: float) -> float:
     """Return the amplitude of a free vibration after one turn over that at its start."""
-    ends = [[q[-1], slope[-1]] for _, q, slope in (_march(step, 1, start) for start in _UNITS)]
+    runs = (_march(step, 1, start) for start in ((1.0, 0.0), (0.0, 1.0)))
+    ends = [[q[-1], slope[-1]] for _, q, slope in runs]
     return float(np.sqrt(abs(np.linalg.det(ends))))
 
 
@@ -130,7 +126,7 @@ def figure_28(axes: Sequence[Axes]) -> Drawn:
     maps = de_vogelaere_maps(lambda t: np.full((len(t), 1, 1), -waves * waves), np.zeros(1), h)
     decay = float(np.max(np.abs(np.linalg.eigvals(maps[0]))) ** (pi / h))
     left = [_remaining(step) for step in (2.0, 1.0, 0.1)]
-    return Drawn([360.0 / (20.0 * _LAMBDA), left[0], decay, *left[1:]])
+    return Drawn([left[0], decay, *left[1:]])
 
 
 def methods(axes: Sequence[Axes], other: str) -> Drawn:
@@ -185,28 +181,25 @@ def figure_32(axes: Sequence[Axes]) -> Drawn:
     forcing = _system(3).array("f", theta)
     for m in (1, 2):
         axes[0].plot(np.degrees(theta), forcing[:, m - 1], label=f"mode {m}: $g_{m}$")
-    # The right sides of (6.16) for the first two modes.
-    linkage = linkage_of("(2,1,2,2)")
-    motion = linkage.motion(theta)
-    carried = 2.0 * linkage.crank / linkage.coupler * np.sin(motion.theta2 - motion.theta3)
-    right = np.stack([2.0 / pi * (carried - motion.alpha3), motion.alpha3 / pi], axis=-1)
     peaks = np.max(np.abs(forcing), axis=0)
     odd = np.max(np.abs(forcing[:, 2] - forcing[:, 0] / 3.0))
-    return Drawn([np.max(np.abs(forcing[:, :2] - right)), peaks[0] / peaks[2], odd])
+    return Drawn([peaks[0] / peaks[2], odd])
 
 
 def figure_33(axes: Sequence[Axes]) -> Drawn:
     """Draw three unstable and three stable solutions of the homogeneous equation."""
-    f = f3_series("(2,1,2,2)")
+    f, mu = f3_series("(2,1,2,2)"), 0.5
+    # Unstable and stable ones by turns.
+    squares = (0.25, 0.5, 1.0, 1.5, 2.25, 3.0)
     changes = {
         "function.a": [float(v) for v in f.a],
         "function.b": [float(v) for v in f.b],
-        "parameters.mu": _MU,
+        "parameters.mu": mu,
         "parameters.damping": 0.0,
     }
     system = load_scene("hill_example", overrides=changes).linear_system()
-    half = discriminant(f, np.array(_HILL), _MU).value
-    for ax, lam2, colour in zip(axes, _HILL, 3 * (COLOURS[1], COLOURS[0]), strict=True):
+    half = discriminant(f, squares, mu).value
+    for ax, lam2, colour in zip(axes, squares, 3 * (COLOURS[1], COLOURS[0]), strict=True):
         run = simulate(system.with_parameters(lam2=lam2), 1.0, 6.0, initial=(1.0, 0.0))
         ax.plot(run.theta / (2 * pi), run.q[:, 0], color=colour, lw=1.0)
     # The unstable ones, at the left, come first.

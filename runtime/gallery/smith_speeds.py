@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 _REGIONS = (3, 4, 5, 6, 7, 8)
 _TURN = np.linspace(0.0, 2 * pi, 1441)
-_THESIS, _COMPLETE, _FILL = COLOURS[0], COLOURS[1], "#f7e3d3"
+_FILL = "#f7e3d3"
 _NAMES = {"reduced": "(6.18)", "printed": "(6.17)", "complete": "complete"}
 
 
@@ -134,9 +134,9 @@ def _boundaries(ax: Axes, rig: Rig, inertia: Array, high: float) -> None:
             else (":", r"(6.18), instability alone, $2\Omega/n$")
         )
         for k in (0, 1):
-            ax.plot(across, complete[k, i], color=_COMPLETE, lw=0.8)
+            ax.plot(across, complete[k, i], color=COLOURS[1], lw=0.8)
             named = label if i < 2 and k == 0 else None
-            ax.plot(across, thesis[k, i], style, color=_THESIS, lw=1.3, label=named)
+            ax.plot(across, thesis[k, i], style, color=COLOURS[0], lw=1.3, label=named)
 
 
 def _points(ax: Axes, seen: Sequence[Observation]) -> None:
@@ -264,11 +264,9 @@ def equations_table(axes: Sequence[Axes]) -> Drawn:
         for one in _COMPARED
     ]
     tables = (peaks, _shifts(), observed, _summary())
-    left = [_parts(name) for name in _rig_linkages()]
     count = sum(one.nearest == "complete" for one in _COMPARED)
     first, complete = _trend("first order"), _trend("complete")
-    ratio = min(b / a for a, b in left)
-    values = [_gap_of_two_routes(), ratio, count / len(_COMPARED)]
+    values = [min(map(_ratio, rigs)), count / len(_COMPARED)]
     return Drawn([*values, first[1] / first[0], complete[1] / complete[0]], _words(count), tables)
 
 
@@ -276,27 +274,10 @@ def _rig_linkages() -> list[str]:
     return list(dict.fromkeys(rig.linkage for rig in RIGS))
 
 
-def _ratio(linkage: str) -> str:
-    kept, left = _parts(linkage)
-    return f"{left / kept:.2f}"
-
-
-def _parts(linkage: str) -> tuple[float, float]:
-    """Return the peaks of the coupler part that (6.17) keeps and of the one it leaves out."""
+def _ratio(linkage: str) -> float:
+    """Return the peak of the coupler part that (6.17) leaves out over that of the one it keeps."""
     phi, f1, f2, tension, more = _terms(linkage, _TURN).values()
-    return _peak(f1 + f2 - phi), _peak(tension + more)
-
-
-def _gap_of_two_routes() -> float:
-    """Return the largest difference of what (6.17) leaves out, by the modules and by hand."""
-    gaps = []
-    for rig in RIGS:
-        complete, printed = (
-            rig.function(name, float(rig.inertias[0]))(_TURN) for name in ("complete", "printed")
-        )
-        *_, tension, more = _terms(rig.linkage, _TURN).values()
-        gaps.append(_peak(complete - printed - tension - more))
-    return max(gaps)
+    return _peak(tension + more) / _peak(f1 + f2 - phi)
 
 
 @dataclass(frozen=True)
@@ -398,7 +379,7 @@ def _words(count: int) -> dict[str, object]:
     shifts = np.abs([one.ends["complete"] - one.ends["reduced"] for one in _moved()])
     second = [np.max(np.abs(one.two_modes - one.ends["complete"])) for one in _moved()]
     words: dict[str, object] = {
-        "ratios": " and ".join(_ratio(name) for name in _rig_linkages()),
+        "ratios": " and ".join(f"{_ratio(name):.2f}" for name in _rig_linkages()),
         "count": count,
         "all": len(_COMPARED),
         "least": float(np.min(shifts)),

@@ -25,7 +25,6 @@ from boundary_cases import (
     slow1,
 )
 from boundary_truth import MP
-from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.hill import boundary_series, perturbation_boundaries
 
 EPS = float(np.finfo(float).eps)
@@ -119,13 +118,3 @@ def test_the_coefficients_of_the_series(name):
             exact = problem.coefficients(side)
             gap = np.array([float(abs(MP.mpf(x) - y)) for x, y in zip(ours, exact, strict=True)])
             assert np.all(gap <= figure)
-
-
-@pytest.mark.parametrize("share", [1.02, 3.0])
-def test_beyond_critical_damping(share):
-    problem = curve((function("mixed"),), 1, share)
-    for order in ORDERS:
-        low, high = found_at(problem, order, POINTS[6:])
-        assert np.all(np.isnan(low) & np.isnan(high))
-    with pytest.raises(BadInput, match="damping"):
-        boundary_series(doubles(function("mixed")), 1, 4, float(problem.drag[0]))

@@ -201,6 +201,7 @@ MISUSE = {
     "order as a truth": (lambda: boundary_latex(True), "order"),
     "region": (lambda: boundary_latex(1, -1), "region"),
     "half region": (lambda: boundary_latex(1, 0.5), "region"),
+    "closed": (lambda: boundary_series(PeriodicFunction([0, 1], [0, 0]), 1, 4, 2.0), "damping"),
 }
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from documented_tables import DOCS, compare, filled
+from documented import documented_rows, last_digit
 from elastolink.runtime.constrained import periodic_orbit
 from free_free_loads import (
     about,
@@ -13,9 +13,9 @@ from free_free_loads import (
     linear,
     loaded,
     part_of_inertia,
+    phases,
     rod,
 )
-from free_free_table import TABLES
 from orders import slope
 
 SPEED = 150.0
@@ -133,7 +133,41 @@ def test_beyond_the_linear_range_shooting_diverges_and_says_so():
     assert not orbit.checks["linear range"].passed
 
 
+# ---------------------------------------------------------------- the page
+
+
+def rows(table):
+    return documented_rows("free_free_stability", table)
+
+
+def assert_written(cell, value):
+    assert value == pytest.approx(float(cell), abs=last_digit(cell))
+
+
+def away(found, *form, drop=()):
+    """Return the largest difference of a phase from that of a linear form."""
+    return np.max(np.abs(difference(found.physical, linear(*form, SPEED, drop).multipliers)))
+
+
 @pytest.mark.slow
-def test_the_document_holds_what_is_computed():
-    written = (DOCS / "free_free_stability.md").read_text()
-    compare(written, filled(written, TABLES))
+def test_the_numbers_of_the_page():
+    for modes, told, _, without in rows("undeformed"):
+        found = about(loaded(rod(int(modes), 0.2, SPEED), part_of_inertia(0.0)))[1]
+        for cell, phase in zip(told.split(", "), phases(found.physical), strict=True):
+            assert_written(cell, phase)
+        assert away(found, int(modes), 0.2) < 1e-12
+        assert_written(without, away(found, int(modes), 0.2, drop=("frame",)))
+    for ratio, *cells in rows("orbits"):
+        orbit, found = about(rod(1, float(ratio), SPEED))
+        bent, gap = orbit.deflection, away(found, 1, float(ratio))
+        for cell, value in zip(cells, (bent, gap, gap / bent**2), strict=True):
+            assert_written(cell, value)
+    for part, *cells in rows("loads"):
+        found = about(loaded(rod(1, 0.1, SPEED), part_of_inertia(float(part))))[1]
+        for cell, drop in zip(cells, ((), ("frame",)), strict=True):
+            assert_written(cell, away(found, 1, 0.1, drop=drop))
+    for ratio, *cells in rows("tongue"):
+        orbit, found = about(rod(2, float(ratio), 1725.0))
+        growth = np.max(np.abs(linear(2, float(ratio), 1725.0).multipliers))
+        for cell, value in zip(cells, (orbit.deflection, found.largest, growth), strict=True):
+            assert_written(cell, value)

@@ -61,7 +61,7 @@ def emitted_functions() -> dict[str, dict[str, tuple[str, ...]]]:
 
     Without the recursions: their functions take an algebra, not numbers.  What they compute in
     double precision is compared with exact fractions in
-    ``tests/convergence/test_boundary_orders_in_doubles.py``.
+    ``tests/runtime/hill/test_perturbation.py``.
     """
     entries = json.loads(MANIFEST.read_text())["modules"].values()
     names = sorted(entry["module"] for entry in entries)

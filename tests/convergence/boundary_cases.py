@@ -115,10 +115,6 @@ PARTS = {
 RAYS = ((1, Fraction(-5, 8), Fraction(3, 4)), (Fraction(1, 4), 1, Fraction(-1, 2)))
 
 
-def whole(names, regions, shares):
-    return [(f, n, share) for f in names for n in regions for share in shares]
-
-
 def slow(cases):
     return [pytest.param(*case, marks=pytest.mark.slow) for case in cases]
 
@@ -126,13 +122,3 @@ def slow(cases):
 def closes(name, n, share):
     """Drag closes the region at once where f has no such harmonic."""
     return n > 0 and SHARES[share] > 0.0 and not any(function(name).harmonic(n))
-
-
-def rest(names, regions, shares, without):
-    """Return every fifth of all cases: each function, region and damping with most others."""
-    cases = [case for case in whole(names, regions, shares) if not closes(*case)]
-    return [case for case in cases[::5] if case not in without]
-
-
-def slow1(names):
-    return [pytest.param(name, marks=pytest.mark.slow) for name in names]

@@ -6,6 +6,7 @@ the first omitted coefficient that is not zero times its power of t.
 """
 
 from fractions import Fraction
+from itertools import product
 
 import pytest
 from boundary_cases import (
@@ -18,13 +19,12 @@ from boundary_cases import (
     REGIONS,
     SHARES,
     SYMMETRIC,
+    closes,
     curve,
     function,
-    rest,
     slow,
 )
 from boundary_truth import MP
-from exact_hill import ExactHarmonics
 from omitted_orders import FORMS, Curve, real
 
 # So small that the next power changes a slope by 1e-5 at most, near critical damping too.
@@ -82,10 +82,12 @@ FAST = [
     ("second harmonic", 2, "damped"),
     ("odd harmonics", 2, "undamped"),
 ]
-REST = rest((*MIXED, *SYMMETRIC, *LINKAGES), (0, *REGIONS), SHARES, FAST)
+ALL = product((*MIXED, *SYMMETRIC, *LINKAGES), (0, *REGIONS), SHARES)
+# Every fifth of all: each function, region and damping with most others.
+REST = set([case for case in ALL if not closes(*case)][::5]) - set(FAST)
 
 
-@pytest.mark.parametrize(("name", "n", "share"), [*FAST, *slow(REST)])
+@pytest.mark.parametrize(("name", "n", "share"), [*FAST, *slow(sorted(REST))])
 def test_one_parameter(name, n, share):
     all_orders(curve((function(name),), n, SHARES[share]))
 
@@ -109,30 +111,6 @@ def test_where_the_harmonic_of_the_region_vanishes(name, n):
 
 
 @pytest.mark.parametrize("n", [1, pytest.param(3, marks=pytest.mark.slow)])
-def test_the_uniform_form_through_a_vanishing_harmonic(n):
-    """c_n of the size t^2 and of either sign: the worst error still falls with t^(N+1).
-
-    There the ends change over from parting at order 1 to parting at order 2, and the series, whose
-    coefficients divide by c_n, has nothing to say.
-    """
-    row = [Fraction(int(m == n)) for m in range(1, 4)]
-    parts = (function("mixed").without(n), ExactHarmonics.of(0, row))
-    for order in (1, 2, 4, 6):
-        worst = []
-        for t in (SMALL, SMALL / 4):
-            errors = []
-            for factor in (-4, -1, Fraction(-1, 4), 0, Fraction(1, 4), 1, 4):
-                problem = Curve(parts, (Fraction(1), factor * t), (Fraction(0),), n, 7)
-                errors += [gaps(problem, "uniform", order, side, (t,))[0] for side in (-1, 1)]
-            worst.append(max(map(abs, errors)))
-        assert abs(slope(*worst) / 2 - (order + 1)) < SLOPE
-    steep = Curve(parts, (Fraction(1), SMALL), (Fraction(0),), n, 7)
-    _, root, square = steep.expansion(7)
-    alphas = [abs(real(r) * MP.sqrt(real(square))) for r in root]
-    assert alphas[3] > 1e5 * alphas[1]
-
-
-@pytest.mark.parametrize("n", [1, pytest.param(3, marks=pytest.mark.slow)])
 def test_damping_of_the_second_order_where_the_harmonic_vanishes(n):
     """K = beta t^2 leaves such a region open; both ends in all orders again."""
     f = function("mixed").without(n)
@@ -144,17 +122,6 @@ def test_damping_of_the_second_order_where_the_harmonic_vanishes(n):
         for order in (2, 3, 4, 5, 6):
             agrees(problem, "uniform", order, side)
             agrees(problem, "series", order, side)
-
-
-@pytest.mark.parametrize(("name", "share"), [("mixed", 1.02), ("cosine", 3.0)])
-def test_beyond_critical_damping_no_route_has_a_real_end(name, share):
-    for n in (1, 2) if name != "cosine" else (1,):
-        problem = curve((function(name),), n, share)
-        assert problem.expansion(HIGHEST) is None
-        for side in (-1, 1):
-            assert problem.truth(side, SMALL) is None
-            for order in ORDERS:
-                assert problem.approximation("uniform", order, side, SMALL) is None
 
 
 SEVERAL_FAST = [("two mixed", 1, "damped"), ("one harmonic each", 3, "undamped")]

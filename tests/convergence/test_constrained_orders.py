@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from constrained_truth import Circle
-from elastolink.runtime.constrained import constrained_motion
 from elastolink.runtime.constrained.equations import Equations
 from elastolink.runtime.constrained.orbits import Ring, Shooting
 from elastolink.runtime.core.families import Constrained
@@ -59,16 +57,3 @@ def test_steps_of_an_orbit_are_of_order_twice_their_nodes(stages, counts):
         errors.append(max(np.max(np.abs(shot.ring.x - x)), np.max(np.abs(shot.ring.v - v))))
     assert errors[-1] > 1e-13, "round-off hides the order"
     np.testing.assert_allclose(-slopes(counts, errors), 2 * stages, atol=0.5)
-
-
-def test_errors_fall_with_the_tolerance():
-    circle = Circle(
-        start=7.5, oblique=np.array([[1.0, 0.3], [0.0, 0.2]]), pivot=np.array([0.4, -0.2]), row=5.0
-    )
-    errors = []
-    for rtol in (1e-4, 1e-6, 1e-8, 1e-10):
-        found = constrained_motion(circle.system, *circle.state, 4.0, rtol=rtol, samples=20)
-        errors.append(np.max(np.abs(found.q - circle.exact(found.time)[0])))
-        # Some ten windows, or a hundred steps, each to its tolerance.
-        assert errors[-1] <= 1e3 * rtol
-    assert np.all(np.diff(np.log10(errors)) < -1.0)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import frame_truth
 import numpy as np
 import pytest
 from elastolink.runtime.frequencies import (
@@ -51,19 +50,3 @@ def test_inextensible_bars_are_the_limit_of_stiff_ones():
     moved = np.arange(6) != 3
     assert np.all(np.abs(gaps[1][moved]) < 1e-5)
     np.testing.assert_allclose(gaps[0][moved] / gaps[1][moved], 10.0, rtol=1e-2)
-
-
-@pytest.mark.slow
-def test_random_frames_against_finite_elements():
-    """15 frames: the lowest frequencies of quintic elements come down on the exact ones."""
-    rng = np.random.default_rng(55)
-    for _ in range(15):
-        state = rng.bit_generator.state
-        structure = frame_truth.random_frame(rng)
-        rng.bit_generator.state = state
-        fine = frame_truth.random_frame(rng, elements=4, kind="internal_node")
-        found = wittrick_williams(dynamic_stiffness(structure), count=6)
-        reference = element_frequencies(fine, 6)
-        assert found.passed
-        np.testing.assert_allclose(found.frequencies, reference, rtol=5e-3)
-        assert np.all(reference >= found.frequencies * (1 - 1e-7))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from documented_tables import DOCS, compare, filled
+from documented import documented_rows, last_digit
 from elastolink.runtime.constrained import periodic_orbit
 from free_free_loads import (
     about,
@@ -13,9 +13,9 @@ from free_free_loads import (
     linear,
     loaded,
     part_of_inertia,
+    phases,
     rod,
 )
-from free_free_table import TABLES
 from orders import slope
 
 SPEED = 150.0
@@ -91,31 +91,6 @@ def test_a_fraction_of_the_inertia_load_leaves_a_product_with_the_motion_too(dro
     np.testing.assert_allclose(even[0] / even[1], 4.0, atol=0.1)
 
 
-@pytest.mark.parametrize("drop", PHYSICS)
-def test_without_the_frame_term_the_difference_does_not_fall_with_the_load(drop):
-    frameless, same = linear(2, 0.1, SPEED, FRAMELESS[drop]), linear(2, 0.1, SPEED, drop)
-    term = np.max(np.abs(difference(same.multipliers, frameless.multipliers)))
-    away = []
-    for part in (0.1, 0.01, 0.001):
-        found = about(loaded(rod(2, 0.1, SPEED, drop), part_of_inertia(part)))[1]
-        away.append(np.max(np.abs(difference(found.physical, frameless.multipliers))))
-        rest = np.max(np.abs(difference(found.physical, same.multipliers)))
-        assert rest < 0.05 * part  # with the term it falls
-    np.testing.assert_allclose(away, term, rtol=0.05)
-    assert term > 1e-3
-
-
-def test_the_verdict_in_a_tongue_is_that_of_the_linear_form():
-    """Principal resonance of the first mode; the orbit deflects by 0.5 % of the length."""
-    orbit, found = about(rod(2, 0.005, 1725.0))
-    linear_form = linear(2, 0.005, 1725.0)
-    assert not found.stable
-    assert not linear_form.stable
-    growth = np.max(np.abs(linear_form.multipliers)) - 1.0
-    assert found.largest - 1.0 == pytest.approx(growth, rel=0.02)
-    assert 0.004 < orbit.deflection < 0.006
-
-
 def test_the_practical_range_of_the_paper_is_stable_in_ground_coordinates_too():
     """Its fastest corner: 20 rad/s, ratio 0.3."""
     orbit, found = about(rod(2, 0.3, 20.0))
@@ -133,7 +108,41 @@ def test_beyond_the_linear_range_shooting_diverges_and_says_so():
     assert not orbit.checks["linear range"].passed
 
 
+# ---------------------------------------------------------------- the page
+
+
+def rows(table):
+    return documented_rows("free_free_stability", table)
+
+
+def assert_written(cell, value):
+    assert value == pytest.approx(float(cell), abs=last_digit(cell))
+
+
+def away(found, *form, drop=()):
+    """Return the largest difference of a phase from that of a linear form."""
+    return np.max(np.abs(difference(found.physical, linear(*form, SPEED, drop).multipliers)))
+
+
 @pytest.mark.slow
-def test_the_document_holds_what_is_computed():
-    written = (DOCS / "free_free_stability.md").read_text()
-    compare(written, filled(written, TABLES))
+def test_the_numbers_of_the_page():
+    for modes, told, _, without in rows("undeformed"):
+        found = about(loaded(rod(int(modes), 0.2, SPEED), part_of_inertia(0.0)))[1]
+        for cell, phase in zip(told.split(", "), phases(found.physical), strict=True):
+            assert_written(cell, phase)
+        assert away(found, int(modes), 0.2) < 1e-12
+        assert_written(without, away(found, int(modes), 0.2, drop=("frame",)))
+    for ratio, *cells in rows("orbits"):
+        orbit, found = about(rod(1, float(ratio), SPEED))
+        bent, gap = orbit.deflection, away(found, 1, float(ratio))
+        for cell, value in zip(cells, (bent, gap, gap / bent**2), strict=True):
+            assert_written(cell, value)
+    for part, *cells in rows("loads"):
+        found = about(loaded(rod(1, 0.1, SPEED), part_of_inertia(float(part))))[1]
+        for cell, drop in zip(cells, ((), ("frame",)), strict=True):
+            assert_written(cell, away(found, 1, 0.1, drop=drop))
+    for ratio, *cells in rows("tongue"):
+        orbit, found = about(rod(2, float(ratio), 1725.0))
+        growth = np.max(np.abs(linear(2, float(ratio), 1725.0).multipliers))
+        for cell, value in zip(cells, (orbit.deflection, found.largest, growth), strict=True):
+            assert_written(cell, value)

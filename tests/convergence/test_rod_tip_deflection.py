@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from elastolink.runtime.systems.rod import (
     OverhangBasis,
-    TwoSegmentBasis,
 )
 from rod_bases import STEPS, transient_tip
 from rod_reference import CASES, flexible, mesh_for, tip_motion
@@ -64,12 +63,3 @@ def test_the_motion_at_900_rad_s_grows_on_the_fixed_mesh_as_in_overhang_modes():
     # This mesh and these steps are good to a few per cent of the peak, by refining both.
     gap = np.abs(found - tips[samples // 8 :: samples // 8])
     assert np.max(gap) < 0.05 * np.max(peaks)
-
-
-@pytest.mark.slow
-def test_two_segment_polynomials_converge_to_the_reference():
-    name = "flexible, ratio 0.2, 300 rad/s"
-    errors = [_error(TwoSegmentBasis(n), name, True) for n in (4, 6, 8)]
-    assert errors[1] < errors[0] / 10
-    assert errors[2] < errors[1] / 10
-    assert errors[2] < 1e-3

@@ -1,21 +1,26 @@
-"""Machines that the balancing tests share: Smith's of Figs. 12-16 and random ones."""
+"""Machines that the balancing tests share, and their forces from the equations of free bodies."""
 
 from __future__ import annotations
 
-import balancing_truth as truth
 import numpy as np
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.rigid import Bounds, MassDistribution, balance
 from elastolink.runtime.rigid.machine import Machine
+from seed_rigid import joint_forces
+
+INCH = 0.0254
+# The weights of Smith's example become masses with g = 384 in/s^2, the value with which a uniform
+# bar of 1 lbf and 12 in has the printed 0.125 lbf in s^2 about its end.
+POUND = 4.4482216152605 / (384.0 * INCH)
 
 
 def smith():
     """Return the machine of Smith Figs. 12-16 and 20-23."""
-    lengths, bars = truth.smith_bars()
-    links = FourBar.links
-    masses = {name: MassDistribution(*bar) for name, bar in zip(links, bars, strict=True)}
-    return Machine(FourBar(*lengths), masses)
+    linkage = FourBar(*(INCH * length for length in (12.0, 6.0, 12.0, 12.0)))
+    weights = zip(linkage.links, (0.5 * POUND, POUND, POUND), strict=True)
+    bars = {k: MassDistribution.uniform_bar(m, linkage.lengths[k]) for k, m in weights}
+    return Machine(linkage, bars)
 
 
 def random_machine(rng):
@@ -49,14 +54,25 @@ def with_crank_counterweight(machine, speed):
 
 
 def nine_equations(machine, theta, speed, acceleration=0.0):
-    """Return the forces of a machine by name from the 9 x 9 system."""
-    linkage = machine.linkage
-    masses = [
-        (own.mass, own.along, own.across, own.inertia)
-        for own in (machine.mass(link) for link in linkage.links)
-    ]
-    lengths = tuple(linkage.lengths.values())
-    return truth.forces(lengths, masses, theta, speed, acceleration, linkage.branch)
+    """Return the forces of a machine by name, the three links' equations solved at once."""
+    motion, bodies = machine.linkage.motion(theta, speed, acceleration), []
+
+    def plane(pairs):
+        return pairs[..., 0] + 1j * pairs[..., 1]
+
+    for link in machine.linkage.links:
+        body = machine.mass(link)
+        at, spin = motion.point(link, *body.centre), motion.link(link).angular_acceleration
+        places = plane(at.position), plane(at.acceleration)
+        bodies.append((body.mass, body.inertia_about_centre, *places, spin))
+    joints = [plane(motion.joints[letter]) for letter in "ABCD"]
+    *pins, torque = joint_forces(joints, bodies)
+    found = dict(zip(("f12", "f23", "f34", "f41"), pins, strict=True))
+    found["shaking_force"] = found["f41"] - found["f12"]
+    # Frame: -f12 at A, f41 at D, and the drive's reaction -T.
+    moment = machine.linkage.frame * found["f41"].imag - torque
+    vectors = {name: np.stack([v.real, v.imag], axis=-1) for name, v in found.items()}
+    return {**vectors, "torque": torque, "shaking_moment": moment}
 
 
 def sampled_peaks(machine, theta, speed, acceleration=0.0):

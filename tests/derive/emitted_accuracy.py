@@ -1,7 +1,7 @@
 """The error of every emitted function, measured against 80 digits.
 
-After a change of a model or of the lowering:  python tests/write_tables.py accuracy
-writes the table of docs/accuracy.md, a line a module;  this script prints every output.
+After a change of a model or of the lowering:  python tests/derive/emitted_accuracy.py
+writes the tables of docs/accuracy.md, a line a module, and prints every output.
 """
 
 from __future__ import annotations
@@ -9,12 +9,12 @@ from __future__ import annotations
 import importlib
 import json
 import math
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from documented_tables import DOCS, table
 from elastolink import generated
 from forces_truth import exact_points as exact_forces
 from free_free_truth import MODES_MODULE, ROD_MODULE, WithModes, exact_modes, exact_rod
@@ -26,7 +26,7 @@ from sensitivity_truth import EXACT as SENSITIVITIES
 from sliding_truth import EXACT as SLIDING
 from unlowered import exact_unlowered, judged_unlowered
 
-PAGE = DOCS / "accuracy.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "accuracy.md"
 MANIFEST = Path(generated.__path__[0]) / "manifest.json"
 _SHORT_FRAME = (
     "frame 1e-6 of the links, crank in line with it: link 3 moves as one with the crank, and the "
@@ -61,7 +61,7 @@ def emitted_functions() -> dict[str, dict[str, tuple[str, ...]]]:
 
     Without the recursions: their functions take an algebra, not numbers.  What they compute in
     double precision is compared with exact fractions in
-    ``tests/convergence/test_boundary_orders_in_doubles.py``.
+    ``tests/runtime/hill/test_perturbation.py``.
     """
     entries = json.loads(MANIFEST.read_text())["modules"].values()
     names = sorted(entry["module"] for entry in entries)
@@ -119,15 +119,15 @@ def _judged() -> dict[str, tuple[Row, ...]]:
 
 def _modules() -> str:
     """Return the table of the worst measure of each module."""
-    lines = []
+    lines = ["| module | outputs | points | worst measure at most | of |", "| --- " * 5 + "|"]
     for module, judged in _judged().items():
         kept = [row for row in judged if row.key not in EXCEPTIONS]
         last = max(kept, key=lambda row: row.judgement.measure)
         points = max(row.points for row in judged)
         of = f"`{last.function}`: `{last.judgement.output}`"
         worst_of = bound(last.judgement.measure)
-        lines.append((module, *map(str, (len(judged), points, worst_of)), of))
-    return table(("module", "outputs", "points", "worst measure at most", "of"), lines)
+        lines.append(f"| {module} | {len(judged)} | {points} | {worst_of} | {of} |")
+    return "\n".join(lines)
 
 
 def _exceptions() -> str:
@@ -139,9 +139,6 @@ def _exceptions() -> str:
     return "\n".join(lines) or "None."
 
 
-TABLES = {"modules": _modules, "exceptions": _exceptions}
-
-
 def page_bounds(text: str) -> dict[str, int]:
     """Return the bounds that the page states, by module."""
     lines = [line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("| ")]
@@ -149,7 +146,12 @@ def page_bounds(text: str) -> dict[str, int]:
 
 
 def main() -> None:
-    """Print every output with its measure."""
+    """Write the page, and print every output with its measure."""
+    text = PAGE.read_text()
+    for name, made in (("modules", _modules()), ("exceptions", _exceptions())):
+        pattern = rf"(<!-- {name} -->\n).*?(\n<!-- end -->)"
+        text = re.sub(pattern, lambda m, t=made: m[1] + t + m[2], text, flags=re.S)
+    PAGE.write_text(text)
     for row in (row for judged in _judged().values() for row in judged):
         j = row.judgement
         at = j.point.name if j.measure else "exact everywhere"

@@ -1,25 +1,12 @@
-"""Random machines of every class, their states in redundant coordinates, calls by name."""
+"""Random machines, their states in redundant coordinates, calls by name."""
 
 from __future__ import annotations
 
 import importlib
-import itertools
 
 import mpmath
 import numpy as np
 from forces_truth import LOADS, MOMENTS, links
-
-SIDES = ("frame", "crank", "coupler", "follower")
-# Parallelogram, rhombus, kites with a short and a long frame, and two without equal links: by all
-# of them the shortest and the longest link are as long as the other two, in doubles too.
-_CHANGE_POINTS = (
-    (4.0, 1.5, 4.0, 1.5),
-    (2.0, 2.0, 2.0, 2.0),
-    (1.0, 1.0, 3.0, 3.0),
-    (3.0, 1.0, 1.0, 3.0),
-    (4.0, 1.0, 2.0, 3.0),
-    (0.5, 2.5, 1.0, 2.0),
-)
 
 
 def emitted(name):
@@ -38,32 +25,18 @@ def call(module, function, numbers):
 def random_machine(mechanism, random):
     """Return numbers of a linkage of any class and assembly, well inside its range."""
     while True:
-        numbers = _drawn(10.0 ** random.uniform(-0.7, 0.7, 4), random)
+        lengths = 10.0 ** random.uniform(-0.7, 0.7, 4)
+        numbers = dict(zip(("frame", "crank", "coupler", "follower"), lengths, strict=True))
+        numbers |= {
+            "theta2": random.uniform(-7.0, 7.0),
+            "assembly": random.choice([-1.0, 1.0]),
+            "offset": random.uniform(-0.5, 0.5),
+            "speed": random.uniform(0.5, 20.0),
+            "acceleration": random.uniform(-200.0, 200.0),
+        }
+        numbers |= {name: random.uniform(-2.0, 2.0) for name in (*MOMENTS, *LOADS)}
         if _inside(mechanism, numbers):
-            return numbers
-
-
-def change_points(random):
-    """Return four-bar linkages that fold upon their frames, in both assemblies, well inside."""
-    found = []
-    for lengths, assembly in itertools.product(_CHANGE_POINTS, (-1.0, 1.0)):
-        while not _inside("four_bar", numbers := _drawn(lengths, random)):
-            pass
-        found.append(numbers | {"assembly": assembly})
-    return found
-
-
-def _drawn(lengths, random):
-    numbers = dict(zip(SIDES, lengths, strict=True))
-    numbers |= {
-        "theta2": random.uniform(-7.0, 7.0),
-        "assembly": random.choice([-1.0, 1.0]),
-        "offset": random.uniform(-0.5, 0.5),
-        "speed": random.uniform(0.5, 20.0),
-        "acceleration": random.uniform(-200.0, 200.0),
-    }
-    numbers |= {name: random.uniform(-2.0, 2.0) for name in (*MOMENTS, *LOADS)}
-    return {name: float(value) for name, value in numbers.items()}
+            return {name: float(value) for name, value in numbers.items()}
 
 
 def _inside(mechanism, n):

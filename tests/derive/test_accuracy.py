@@ -61,9 +61,9 @@ def test_every_output_is_within_the_measure(module, most):
     assert set(beyond) <= set(EXCEPTIONS), beyond
     worst_kept = max(j.measure for key, j in found.items() if key not in EXCEPTIONS)
     stated = page_bounds(PAGE.read_text())[module]
-    assert worst_kept <= 2 * stated, "run: python tests/write_tables.py accuracy"
+    assert worst_kept <= 2 * stated, "run tests/derive/emitted_accuracy.py"
     if most is None:
-        assert bound(worst_kept) >= stated / 2, "run: python tests/write_tables.py accuracy"
+        assert bound(worst_kept) >= stated / 2, "run tests/derive/emitted_accuracy.py"
         needed = {key for key in EXCEPTIONS if key[0] == module}
         assert needed <= set(beyond)
 

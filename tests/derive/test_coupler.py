@@ -179,12 +179,3 @@ def test_every_formulation_has_the_same_forcing():
         for array in ("f", "g"):
             for other in found[1:]:
                 close(other.array(array, THETA), found[0].array(array, THETA), 1e-13)
-
-
-def test_a_stability_only_module_holds_no_forcing():
-    lean, whole = (lowered(spec("reduced", outputs=o)) for o in (("stability",), ()))
-    assert not {row[0] for row in rows(lean)} & {"f", "g", "h", "p"}
-    names = {kernel.name for kernel in lean.kernels}
-    assert names == {"scales", "angle_functions", "acceleration_functions", "modal_matrices"}
-    assert lean.operations < 0.75 * whole.operations
-    assert [row for row in rows(whole) if row[0] in MATRICES] == list(rows(lean))

@@ -61,34 +61,6 @@ def test_a_form_with_another_derivative_is_refused(monkeypatch):
         primitive.__wrapped__(S, S, (1, 1), (B, C))  # without the cache
 
 
-@pytest.mark.parametrize("parity", [1, -1])
-def test_the_modes_solve_their_boundary_value_problem(parity):
-    shape, closing = ff.boundary_problem(parity)
-    b = next(iter(closing.free_symbols))
-    assert sp.expand(sp.diff(shape, S, 4) - b**4 * shape) == 0
-    assert sp.simplify(sp.diff(shape, S, 2).subs(S, HALF)) == 0
-    for i in (1, 2, 3, 4):
-        if truth.parity(i) == parity:
-            on_root = closing.subs(b, sp.Float(truth.root(i), 60))
-            assert abs(on_root.evalf(50)) < 1e-40
-            at = shape.subs({b: sp.Float(truth.root(i), 60), S: sp.Rational(1, 8)})
-            assert abs(at.evalf(40) - sp.Float(truth.mode(i, mpmath.mpf(0.125)), 50)) < 1e-30
-
-
-def test_unit_square_makes_the_ends_two():
-    assert ff.end_value() == 2
-    for i in (1, 2, 7):
-        assert abs(truth.integral(0, i, i, (0, 0)) - 1) < mpmath.mpf(10) ** -100
-
-
-def test_the_foreshortening_in_moments_of_the_squared_slope():
-    """By hand: -1/2 int (1/4 - s^2)/2 w and 1/2 int (1/2 - s) w."""
-    w = sp.symbols("w_0 w_1 w_2")
-    inward, retreat = ff.shortening().values()
-    assert sp.expand(inward + (w[0] / 4 - w[2]) / 4) == 0
-    assert sp.expand(retreat - (w[0] / 2 - w[1]) / 2) == 0
-
-
 def inward_numbers(count):
     """Return ``int s alpha_ij ds = -1/2 int (1/4 - s^2)/2 psi_i' psi_j' ds`` by parts."""
     found = {}

@@ -1,4 +1,4 @@
-"""Integral table against quadrature and against SymPy's own integrator."""
+"""Integrals against quadrature, Taylor polynomials against SymPy's own series."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from elastolink.derive.integrals import (
     mode_integral,
     mode_vector,
 )
+from elastolink.derive.series import taylor
 
 x = sp.Symbol("x")
 a, b, L = sp.symbols("a b L", positive=True)
@@ -117,3 +118,32 @@ def test_a_frequency_that_may_vanish_is_an_error():
         mode_integral(wave * sp.sin(2 * n * sp.pi * x), x, m, n)
     # with explicit numbers the same integrals exist
     assert definite(wave.subs(m, 2) * sp.sin(2 * sp.pi * x), x) == sp.Rational(1, 2)
+
+
+# ---------------------------------------------------------------- series
+
+p = sp.Symbol("p", positive=True)
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        1 - sp.cos(p) * sp.cosh(p),
+        (p**2 * sp.sin(2 * p) + 3) * sp.exp(-p),
+        sp.cos(p / 3) ** 2 * sp.Symbol("a"),
+    ],
+)
+def test_taylor_against_sympy(expression):
+    found = taylor(expression, p, 4)
+    order = sp.degree(found.remainder, p)
+    series = sp.series(expression, p, 0, order + 1).removeO()
+    assert sp.expand(found.value + found.remainder - series) == 0
+
+
+@pytest.mark.parametrize(
+    ("expression", "words"),
+    [(1 / p, "no power and no exponential"), (1 + p**2, "no 3 non-zero terms")],
+)
+def test_what_has_no_such_series_is_refused(expression, words):
+    with pytest.raises(ValueError, match=words):
+        taylor(expression, p, 2)

@@ -175,6 +175,22 @@ def test_equations_and_the_quadratic_lagrangian_give_the_same_arrays():
         assert (matrix - one[name]).applyfunc(sp.expand) == sp.zeros(*matrix.shape), name
 
 
+def test_drag_of_what_stands_still_goes_to_c_and_d_in_turning_axes():
+    spin = turn.diff(t)
+    moved = x.diff(t) - spin * y, y.diff(t) + spin * x
+    energy, forces = m / 2 * (moved[0] ** 2 + moved[1] ** 2), {x: -c * moved[0], y: -c * moved[1]}
+    from_equations = linear_periodic(
+        equations(energy, forces=forces), CRANK, followers={turn: theta}
+    )
+    plain = {turn.diff(t): td}
+    from_energy = quadratic_form(
+        energy.subs(plain), (x, y), CRANK, t, forces={k: v.subs(plain) for k, v in forces.items()}
+    )
+    for system in (from_equations, from_energy):
+        assert system.matrix("C") == c * sp.eye(2)
+        assert system.matrix("D") == c * sp.Matrix([[0, -1], [1, 0]])
+
+
 def test_constrained_equations_are_no_linear_system():
     found = euler_lagrange(Lagrangian((x, y), t, m * x.diff(t) ** 2 / 2, (x - y,)))
     with pytest.raises(NotRepresentable, match="constrained"):

@@ -81,6 +81,7 @@ def beam_with_everything() -> ActionDensity:
         ),
         essential=(Essential(0, y, 0), Essential(0, y, 1)),
         supports=(Support(l3 / 2, y, R),),
+        dissipation=c / 3 * y.diff(t) ** 2 + k / 7 * y.diff(x, 2, t) ** 2,
     )
 
 

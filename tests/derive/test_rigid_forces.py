@@ -1,8 +1,7 @@
-"""Forces of rigid linkages: four derivations of the same numbers, and what each costs."""
+"""Forces of rigid linkages: derivations of the same numbers, and what each of them refuses."""
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -22,10 +21,8 @@ from elastolink.derive.rigid.newton_euler import (
 from elastolink.derive.rigid.planar import ETA, XI, MassMoments, Pin
 from elastolink.derive.spec import ModelSpec
 from force_machines import (
-    SIDES,
     call,
     cartesian,
-    change_points,
     eliminate,
     emitted,
     random_machine,
@@ -33,82 +30,31 @@ from force_machines import (
 )
 from forces_truth import LOADS, MECHANISMS, forces, loads
 
-STRAIGHT = ModelSpec("four_bar", "forces", drop=("across",))
 FULL = ModelSpec("four_bar", "forces")
 
 
-# ---------------------------------------------------------------- four ways to the same numbers
+# ---------------------------------------------------------------- three ways to the same numbers
 
 
-def _classes(machines):
-    """Return Barker's classes of four-bar linkages, each with its assembly.
-
-    By Grashof's sum and the shortest link, or the longest of a triple-rocker; None for the sum of
-    a change point.
-    """
-    found = set()
-    for n in machines:
-        by_length = sorted(SIDES, key=n.get)
-        shortest, second, third, longest = (n[name] for name in by_length)
-        excess = second + third - shortest - longest
-        named = by_length[0] if excess > 0 else by_length[3]
-        found.add(((excess > 0, named) if excess else None, n["assembly"]))
-    return found
-
-
-def _exact(reference, numbers):
-    with mpmath.workdps(30):
-        return {
-            k: float(v)
-            for k, v in reference({name: mpmath.mpf(v) for name, v in numbers.items()}).items()
-        }
-
-
+@pytest.mark.parametrize("loaded", [False, True], ids=["moving", "loads alone"])
 @pytest.mark.parametrize("mechanism", MECHANISMS)
-def test_four_derivations_agree(mechanism):
-    """Emitted closed forms, free bodies in many digits, multipliers, virtual power and momenta."""
-    random = np.random.default_rng(7)
-    machines = [random_machine(mechanism, random) for _ in range(60)]
-    if mechanism == "four_bar":
-        every = itertools.product(itertools.product((True, False), SIDES), (-1.0, 1.0))
-        assert _classes(machines) == set(every)
-        machines += (folding := change_points(random))
-        assert _classes(folding) == {(None, -1.0), (None, 1.0)}
-    module, redundant = emitted(f"{mechanism}_forces"), emitted(f"{mechanism}_multibody")
-    for numbers in machines:
-        closed = call(module, "forces", numbers)
-        size = max(abs(value) for value in closed.values())
-        exact = _exact(forces(mechanism), numbers)
-        for function in ("pin_forces", "driving_torque", "shaking_force", "shaking_moment"):
-            for name, value in call(module, function, numbers).items():
-                assert abs(value - closed[name]) < 1e-12 * size
-        unloaded = {**numbers, **dict.fromkeys(LOADS, 0.0), **state_of(mechanism, numbers)}
-        unloaded |= {"drive_d1": numbers["speed"], "drive_d2": numbers["acceleration"]}
-        multipliers = cartesian(mechanism, eliminate(redundant, unloaded)[1], numbers)
-        for name, value in closed.items():
-            assert abs(value - exact[name]) < 1e-12 * size, name
-            if name in multipliers:
-                assert abs(value - multipliers[name]) < 1e-12 * size, name
-        assert len(multipliers) == 9 if mechanism == "four_bar" else 10
-
-
-@pytest.mark.parametrize("mechanism", MECHANISMS)
-def test_loads_alone_and_their_multipliers(mechanism):
-    random = np.random.default_rng(8)
-    module, redundant = emitted(f"{mechanism}_forces"), emitted(f"{mechanism}_multibody")
+def test_multipliers_and_free_bodies_agree(mechanism, loaded):
+    """The emitted closed forms have the digits of the free bodies: ``emitted_accuracy``."""
+    random = np.random.default_rng(8 if loaded else 7)
+    reference = (loads if loaded else forces)(mechanism)
+    redundant = emitted(f"{mechanism}_multibody")
     for _ in range(30):
         numbers = random_machine(mechanism, random)
-        closed = call(module, "load_forces", numbers)
-        size = max(abs(value) for value in closed.values())
-        exact = _exact(loads(mechanism), numbers)
-        # At rest only the loads act, whatever the masses are.
-        still = {**numbers, "speed": 0.0, "mass2": 1.0, "mass3": 1.0, "mass4": 1.0}
-        still |= {f"inertia{n}": 9.0 for n in (2, 3, 4)}
-        still |= state_of(mechanism, still)
-        multipliers = cartesian(mechanism, eliminate(redundant, still)[1], numbers)
-        for name, value in closed.items():
-            assert abs(value - exact[name]) < 1e-12 * size, name
-            assert abs(value - multipliers.get(name, value)) < 1e-12 * size, name
+        numbers |= {"speed": 0.0, "acceleration": 0.0} if loaded else dict.fromkeys(LOADS, 0.0)
+        with mpmath.workdps(30):
+            exact = reference({name: mpmath.mpf(value) for name, value in numbers.items()})
+        size = max(abs(float(value)) for value in exact.values())
+        drive = {"drive_d1": numbers["speed"], "drive_d2": numbers["acceleration"]}
+        state = numbers | drive | state_of(mechanism, numbers)
+        multipliers = cartesian(mechanism, eliminate(redundant, state)[1], numbers)
+        assert len(multipliers) == (9 if mechanism == "four_bar" else 10)
+        for name, value in multipliers.items():
+            assert abs(value - float(exact[name])) < 1e-12 * size, name
 
 
 @pytest.mark.parametrize("mechanism", MECHANISMS)
@@ -195,7 +141,7 @@ def test_four_numbers_describe_no_other_integral():
 
 
 def test_an_indeterminate_linkage_is_refused():
-    linkage = four_bar_forces.linkage(STRAIGHT)
+    linkage = four_bar_forces.linkage(FULL)
     zero = (sp.S.Zero, sp.S.Zero)
     doubled = replace(linkage, joints=(*linkage.joints, Pin(1, 3, zero, zero)))
     with pytest.raises(ValueError, match="not determined by statics"):

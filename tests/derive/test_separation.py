@@ -111,28 +111,6 @@ def test_any_sum_of_products_is_reproduced(terms):
         np.testing.assert_allclose(found.array(name, THETA), expected, rtol=1e-13, atol=1e-13)
 
 
-def test_terms_share_what_they_can():
-    """One function of angle serves every parameter; one matrix serves both of its signs."""
-    pattern = sp.Matrix([[1, 2], [2, 0]])
-    arrays = {
-        "M": sp.ImmutableDenseMatrix(sp.eye(2)),
-        "B": sp.ImmutableDenseMatrix(pattern * (mass + stiff) * sp.cos(theta)),
-        "Kg": sp.ImmutableDenseMatrix(-pattern * stiff * turned),
-    }
-    module = lowered(arrays)
-    assert [(r.array, r.scale, r.angle, r.modal) for r in rows_of(module)] == [
-        ("M", None, None, "modal_1"),
-        ("B", "mass", "angle_theta", "modal_2"),
-        ("B", "stiff", "angle_theta", "modal_2"),
-        ("Kg", "stiff", "angle_turned", "modal_2"),
-    ]
-    names = {k.name: [r.name for r in k.results] for k in module.kernels}
-    assert names == {
-        "scales": ["mass", "stiff"],
-        "angle_functions": ["angle_theta", "angle_turned"],
-    }
-
-
 @pytest.mark.parametrize("number", [-1, 3, -sp.Rational(2, 3)])
 def test_a_constant_term_stays_constant_whatever_its_number(number):
     explicit = {

@@ -12,7 +12,6 @@ import pytest
 from elastolink.derive.manifest import manifest_text
 from elastolink.derive.spec import (
     MANIFEST,
-    Choices,
     Entry,
     ModelSpec,
     cache_folder,
@@ -60,25 +59,6 @@ def test_every_field_counts_in_key_and_name(field):
     changed = BASE.with_(**{field: value[0] if field in {"mechanism", "formulation"} else value})
     assert changed.key() != BASE.key()
     assert changed.name() != BASE.name()
-
-
-@pytest.mark.parametrize(
-    ("part", "found", "expected"),
-    [
-        ({"flexible": ("crank",)}, "['crank']", "some of ['coupler']"),
-        ({"flexible": ()}, "none", "some of ['coupler']"),
-        ({"drop": ("spin", "x")}, "['x']", "some of ['spin']"),
-        ({"balanced": ("coupler",)}, "['coupler']", "none"),
-    ],
-)
-def test_choices_name_what_is_wrong(part, found, expected):
-    choices = Choices(flexible=("coupler",), drop=("spin",))
-    assert choices.unknown(BASE) is None
-    choices.refuse_unknown(BASE)
-    wrong = BASE.with_(**part)
-    assert choices.unknown(wrong) == (next(iter(part)), found, expected)
-    with pytest.raises(ValueError, match=r"found .*; expected"):
-        choices.refuse_unknown(wrong)
 
 
 def entry(name):

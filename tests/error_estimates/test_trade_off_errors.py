@@ -9,10 +9,9 @@ from __future__ import annotations
 
 from itertools import combinations
 
-import balancing_truth
 import numpy as np
 import pytest
-from balancing_machines import random_machine
+from balancing_machines import nine_equations, random_machine
 from elastolink.runtime.rigid import Bounds, trade_off
 from honesty import over_scenes
 
@@ -24,11 +23,7 @@ POINTS = 5  # of each curve: 210 estimates in all
 
 def seen_from_crank(machine, theta, speed, acceleration):
     """Return both forces as complex numbers in the axes of the crank, over their peaks."""
-    linkage = machine.linkage
-    bodies = (machine.mass(link) for link in linkage.links)
-    masses = [(own.mass, own.along, own.across, own.inertia) for own in bodies]
-    lengths = tuple(linkage.lengths.values())
-    found = balancing_truth.forces(lengths, masses, theta, speed, acceleration, linkage.branch)
+    found = nine_equations(machine, theta, speed, acceleration)
     turned = []
     for name in ("shaking_force", "f12"):
         force = found[name].astype(np.longdouble)

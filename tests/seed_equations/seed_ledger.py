@@ -399,7 +399,6 @@ class Part:
     document: str
     chapter: str
     labels: tuple[str, ...]
-    scan: dict[str, str]
 
 
 def entries() -> tuple[Entry, ...]:
@@ -433,7 +432,6 @@ def inventory() -> tuple[Part, ...]:
             row["document"],
             row["chapter"],
             (*_numbers(row.get("numbered", ())), *row.get("unnumbered", ())),
-            row.get("scan", {}),
         )
         for row in table["part"]
     )

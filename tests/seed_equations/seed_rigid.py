@@ -79,43 +79,53 @@ def cross(arm, vector):
     return np.imag(np.conj(arm) * vector)
 
 
-def forces(lengths, links, speed=1.0, assembly="open", unsteady=0.0, count=512):
-    """Solve the nine equations of the three links at every sample of one turn.
+def joint_forces(joints, bodies):
+    """Return F12, F23, F34, F41 as complex numbers, and the driving torque, at every sample.
 
-    The unknowns are the components of F12, F23, F34, F41 and the driving torque.  The rates of
-    the angular momentum about A and of the kinetic energy stand beside them, unused.
+    From the nine equations of the three links, moments about the centres of mass.  ``joints`` are
+    the places of A to D; a body is its mass, its inertia about its centre, the centre's place and
+    acceleration and the angular acceleration.
     """
-    l1, l2, _, l4 = lengths
-    m = motion(lengths, assembly, count, unsteady)
-    places = centres(lengths, links, m)
-    pivot = np.zeros(count)
-    crank_pin = l2 * np.exp(1j * m.theta2)
-    follower_pin = l1 + l4 * np.exp(1j * m.theta4)
-    joints = (pivot, crank_pin, follower_pin, l1 + pivot)
-    spins = ((m.omega2, m.alpha2), (m.omega3, m.alpha3), (m.omega4, m.alpha4))
+    count = joints[1].size
     matrix, right = np.zeros((count, 9, 9)), np.zeros((count, 9))
-    momentum, energy = np.zeros(count), np.zeros(count)
-    for i, (link, place, spin) in enumerate(zip(links, places, spins, strict=True)):
-        velocity = spectral_derivative(place) * speed
-        acceleration = spectral_derivative(place, 2) * speed**2
+    for i, (mass, inertia, place, acceleration, spin) in enumerate(bodies):
         for sign, joint in ((1.0, i), (-1.0, i + 1)):
             arm = joints[joint] - place
             matrix[:, 3 * i, 2 * joint] = sign
             matrix[:, 3 * i + 1, 2 * joint + 1] = sign
             matrix[:, 3 * i + 2, 2 * joint] = -sign * arm.imag
             matrix[:, 3 * i + 2, 2 * joint + 1] = sign * arm.real
-        inertia = link.inertia_about_centre
-        right[:, 3 * i] = link.mass * acceleration.real
-        right[:, 3 * i + 1] = link.mass * acceleration.imag
-        right[:, 3 * i + 2] = inertia * spin[1] * speed**2
-        momentum += link.mass * cross(place, velocity) + inertia * spin[0] * speed
-        energy += link.mass * abs(velocity) ** 2 / 2 + inertia * (spin[0] * speed) ** 2 / 2
+        right[:, 3 * i] = mass * acceleration.real
+        right[:, 3 * i + 1] = mass * acceleration.imag
+        right[:, 3 * i + 2] = inertia * spin
     matrix[:, 2, 8] = 1.0
     solution = np.linalg.solve(matrix, right[..., None])[..., 0]
-    pins = [solution[:, 2 * i] + 1j * solution[:, 2 * i + 1] for i in range(4)]
+    return [*(solution[:, 2 * i] + 1j * solution[:, 2 * i + 1] for i in range(4)), solution[:, 8]]
+
+
+def forces(lengths, links, speed=1.0, assembly="open", unsteady=0.0, count=512):
+    """Return the forces of the links at every sample of one turn.
+
+    The rates of the angular momentum about A and of the kinetic energy stand beside them, unused.
+    """
+    l1, l2, _, l4 = lengths
+    m = motion(lengths, assembly, count, unsteady)
+    places = centres(lengths, links, m)
+    joints = (0.0, l2 * np.exp(1j * m.theta2), l1 + l4 * np.exp(1j * m.theta4), l1)
+    momentum, energy, bodies = np.zeros(count), np.zeros(count), []
+    for number, (link, place) in enumerate(zip(links, places, strict=True), 2):
+        rate = getattr(m, f"omega{number}") * speed
+        spin = getattr(m, f"alpha{number}") * speed**2
+        velocity = spectral_derivative(place) * speed
+        acceleration = spectral_derivative(place, 2) * speed**2
+        inertia = link.inertia_about_centre
+        bodies.append((link.mass, inertia, place, acceleration, spin))
+        momentum += link.mass * cross(place, velocity) + inertia * rate
+        energy += link.mass * abs(velocity) ** 2 / 2 + inertia * rate**2 / 2
+    *pins, torque = joint_forces(joints, bodies)
     return Forces(
         *pins,
-        torque=solution[:, 8],
+        torque=torque,
         shaking_force=pins[3] - pins[0],
         momentum_rate=spectral_derivative(momentum) * speed,
         energy_rate=spectral_derivative(energy) * speed,

@@ -11,6 +11,8 @@ from math import isqrt
 import elastolink as el
 import numpy as np
 import pytest
+from boundary_cases import LINKAGES, REGIONS, SHARES, curve, doubles, function, slow
+from boundary_truth import MP
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import boundary_series
@@ -201,6 +203,7 @@ MISUSE = {
     "order as a truth": (lambda: boundary_latex(True), "order"),
     "region": (lambda: boundary_latex(1, -1), "region"),
     "half region": (lambda: boundary_latex(1, 0.5), "region"),
+    "closed": (lambda: boundary_series(PeriodicFunction([0, 1], [0, 0]), 1, 4, 2.0), "damping"),
 }
 
 
@@ -268,3 +271,19 @@ def test_the_run_time_series(name):
     ours = 4 * (found.upper if side > 0 else found.lower)
     eps = np.finfo(float).eps
     np.testing.assert_allclose(ours, exact, rtol=4 * eps, atol=4 * eps * abs(exact).max() ** 2)
+
+
+@pytest.mark.parametrize("name", ["mixed", "odd", *slow((k,) for k in ("even", "sine", *LINKAGES))])
+def test_the_coefficients_are_within_their_errors(name):
+    """alpha_1 ... alpha_8 of both ends with and without damping, to 90 digits."""
+    for n, share in itertools.product((0, *REGIONS), SHARES.values()):
+        if share and (n == 0 or not any(function(name).harmonic(n))):
+            continue
+        problem = curve((function(name),), n, share, highest=8)
+        found = boundary_series(doubles(function(name)), n, 8, float(problem.drag[0]))
+        assert found.passed
+        ends = zip((-1, 1), (found.lower, found.upper), found.error, strict=True)
+        for side, ours, error in ends:
+            exact = problem.coefficients(side)
+            gap = np.array([float(abs(MP.mpf(x) - y)) for x, y in zip(ours, exact, strict=True)])
+            assert np.all(gap <= error)

@@ -1,9 +1,10 @@
 """Counterweights: the classic cases, the optimum with its proved bound, the trade-off."""
 
-import balancing_truth as truth
 import numpy as np
 import pytest
 from balancing_machines import (
+    INCH,
+    POUND,
     nine_equations,
     random_machine,
     sampled_peaks,
@@ -27,9 +28,9 @@ from elastolink.runtime.rigid.optimum import Cones, PeakProblem, hull_minimum, l
 from elastolink.runtime.rigid.peaks import TERMS
 
 SPEED = 10.0
-OFFSET = 6.0 * truth.INCH
+OFFSET = 6.0 * INCH
 # The heaviest counterweight of Fig. 20 at 6 in.: 2.25 lbf on the crank of case (c).
-HEAVIEST = 2.25 * truth.POUND
+HEAVIEST = 2.25 * POUND
 FIGURE_20 = Bounds(mass=HEAVIEST, offset=OFFSET)
 TWO, THREE = ("crank", "follower"), ("crank", "coupler", "follower")
 TURN = np.linspace(0.0, 2.0 * np.pi, 7201)
@@ -86,7 +87,7 @@ def test_counterweights_of_the_cases_of_figure_20():
     }
     for case, weights in wanted.items():
         found = case_counterweights(smith(), case, OFFSET)
-        masses = {link: item.mass / truth.POUND for link, item in found.items()}
+        masses = {link: item.mass / POUND for link, item in found.items()}
         assert masses == pytest.approx(weights)
         assert all(item.along == pytest.approx(-OFFSET) for item in found.values())
 

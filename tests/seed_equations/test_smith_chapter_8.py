@@ -18,6 +18,7 @@ from seed_waves import (
     function,
     harmonics,
     hill_region,
+    parts,
     resonance,
     rows,
     second_order,
@@ -344,14 +345,70 @@ def substituted(entry):
 ONE, TWO = TWO_FUNCTIONS
 THREE = ((*eps, delta), ("f1_bar", "f2_bar", "wave"))
 TURN = slice(0, 128)  # of the grid over two turns
+
+
+RIGHT = r",\; \alpha_{%s} = %s"
+FOUND = {
+    "8.30": RIGHT % (200, r"w_{11} \mp \Re(W_{11}e^{i\psi_n})"),
+    "8.31": RIGHT % ("020", r"w_{22} \mp \Re(W_{22}e^{i\psi_n})"),
+    "8.32": RIGHT % ("002", r"-\tfrac{1}{8n^2}"),
+    "8.33": RIGHT % (110, r"2w_{12} \mp 2\Re(W_{12}e^{i\psi_n})"),
+    "8.34": RIGHT % (101, r"\pm\tfrac{1}{4n^2}(a_{2n}\cos2\psi_n + b_{2n}\sin2\psi_n)"),
+    "8.35": RIGHT % ("011", r"\pm\tfrac{1}{4n^2}(c_{2n}\cos2\psi_n + d_{2n}\sin2\psi_n)"),
+}
 KEYS = {
     "8.23": (0, 0, 0), "8.24": (1, 0, 0), "8.25": (0, 1, 0), "8.26": (0, 0, 1), "8.30": (2, 0, 0),
     "8.31": (0, 2, 0), "8.32": (0, 0, 2), "8.33": (1, 1, 0), "8.34": (1, 0, 1), "8.35": (0, 1, 1),
 }  # fmt: skip
 
 
+def shown(label):
+    """Return the derived equation of one order in LaTeX, and what it gives."""
+    return lambda: f"{sp.latex(rows(*THREE)[0][KEYS[label]])} = 0{FOUND.get(label, '')}"
+
+
 for label, key in KEYS.items():
-    row(label, check=is_row(*THREE, key), derived=lambda k=key: [rows(*THREE)[0][k]])
+    row(label, check=is_row(*THREE, key), derived=shown(label))
+
+
+@pytest.mark.parametrize("psi", [0.3, 1.9, 4.0])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_second_order_coefficients_of_the_modified_method(psi, sign):
+    """What (8.30)-(8.35) give, n = 2: projections on y_000 and across it, on the grid."""
+    order, half = 2, THETA - psi / 2
+    y000, across = (np.sin(half), np.cos(half)) if sign > 0 else (np.cos(half), -np.sin(half))
+
+    def projected(right):
+        c, s = parts(right, order)
+        pair = [(parts(y, order)[0] * c + parts(y, order)[1] * s) for y in (y000, across)]
+        return np.array(pair)
+
+    bars = [function(*({**p, 2: 0.0} for p in pair)) for pair in TWO_FUNCTIONS]
+    wave = np.cos(order * THETA - psi)
+    first = {k: -TWO_FUNCTIONS[k][0][0] for k in (0, 1)} | {2: sign / 2}
+    functions = [*bars, wave]
+    y = [solved(-(first[k] + functions[k]) * y000, order) for k in range(3)]
+
+    def condition(j, k):
+        """Return what alpha has to be, and what is left over; the constants of y are zero."""
+        right = -(first[j] + functions[j]) * y[k]
+        return projected(right if j == k else right - (first[k] + functions[k]) * y[j])
+
+    for (j, k), times in {(0, 0): 1, (1, 1): 1, (0, 1): 2}.items():
+        w, W = couplings(order, j, k)
+        turned = W * np.exp(1j * psi)
+        alpha, excess = condition(j, k)
+        assert alpha == pytest.approx(times * (w - sign * turned.real), abs=1e-12)
+        assert abs(excess) == pytest.approx(times * abs(turned.imag), abs=1e-12)
+        # No constant of y_100, y_010 changes them: what it multiplies has no resonant part.
+        assert np.abs(projected((first[j] + functions[j]) * across)).max() < 1e-12
+    assert condition(2, 2) == pytest.approx([-1 / 32, 0.0], abs=1e-12)
+    for j in (0, 1):
+        a, b = TWO_FUNCTIONS[j]
+        expected = sign / 16 * (a[4] * np.cos(2 * psi) + b[4] * np.sin(2 * psi))
+        assert condition(j, 2)[0] == pytest.approx(expected, abs=1e-12)
+        # The constant of y_100 meets the second condition: it stands there with a factor.
+        assert abs(projected((first[2] + wave) * across)[1]) > 0.5
 
 
 def turned(sign=1):

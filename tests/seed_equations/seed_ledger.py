@@ -399,6 +399,7 @@ class Part:
     document: str
     chapter: str
     labels: tuple[str, ...]
+    scan: dict[str, str]
 
 
 def entries() -> tuple[Entry, ...]:
@@ -432,6 +433,7 @@ def inventory() -> tuple[Part, ...]:
             row["document"],
             row["chapter"],
             (*_numbers(row.get("numbered", ())), *row.get("unnumbered", ())),
+            row.get("scan", {}),
         )
         for row in table["part"]
     )

@@ -31,6 +31,8 @@ def test_inventory_lists_every_number():
         for prefix, last in chapters.items():
             assert {(document, f"{prefix}{i}") for i in range(1, last + 1)} <= set(LABELS)
     assert len(LABELS) == len(set(LABELS))
+    for part in inventory():
+        assert set(part.scan) <= set(part.labels)
 
 
 def test_every_label_has_one_row_and_every_row_a_label():

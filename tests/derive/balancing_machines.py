@@ -1,4 +1,4 @@
-"""Machines that the balancing tests share: Smith's of Figs. 12-16 and random ones."""
+"""Machines that the rigid tests share: Smith's of Figs. 12-16, one of each linkage, random ones."""
 
 from __future__ import annotations
 
@@ -16,6 +16,15 @@ def smith():
     links = FourBar.links
     masses = {name: MassDistribution(*bar) for name, bar in zip(links, bars, strict=True)}
     return Machine(FourBar(*lengths), masses)
+
+
+def crooked_bodies(linkage):
+    """Return a body for each link of any linkage, its centre beside the link."""
+    bodies = ((0.4, 0.03, 0.01, 0.002), (0.7, 0.15, -0.04, 0.006), (0.6, 0.1, 0.02, 0.004))
+    return {
+        link: MassDistribution.about_centre(*body)
+        for link, body in zip(linkage.links, bodies, strict=True)
+    }
 
 
 def random_machine(rng):

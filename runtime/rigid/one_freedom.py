@@ -27,18 +27,6 @@ class OneFreedom:
 
     J and J'/2 are what the emitted driving torque becomes at crank acceleration 1 and speed 0, and
     at speed 1 and acceleration 0: it is linear in acceleration and square of the speed.
-
-    Parameters
-    ----------
-    machine : Machine
-        The machine.
-    flywheel : float
-        Inertia [kg m^2] added to the crank.
-
-    Raises
-    ------
-    BadInput
-        If the inertia is negative or not finite.
     """
 
     def __init__(self, machine: Machine, flywheel: float = 0.0) -> None:

@@ -16,7 +16,7 @@ from ..core.errors import BadInput, Problem, bad
 from ..core.inputs import is_finite
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .four_bar import FourBar
-from .joint_play import Placed, Play, Route, route_of
+from .joint_play import CrankPosition, Play, Route, route_of
 from .linkage import EPS, Array, finite_array
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
@@ -234,8 +234,8 @@ def clearance_range(
     (0.0503, 0.0503)
     """
     task = Task.of(linkage, clearances, theta, joint, link)
-    placed, play = task.play()
-    errors = DeferredGroup(partial(_errors, task, placed, play))
+    position, play = task.play()
+    errors = DeferredGroup(partial(_errors, task, position, play))
     nominal, below, above, small = (
         task.in_units(part) for part in (play.nominal, play.below, play.above, play.small)
     )
@@ -262,7 +262,7 @@ def clearance_range(
         method="differences of half-angles, from those of their squared sines",
         error=errors.later("error"),
         error_norm=f"below, above and width [{unit}], absolute, entrywise",
-        checks=DeferredChecks(partial(_checks, task, placed, play)),
+        checks=DeferredChecks(partial(_checks, task, position, play)),
         provenance=provenance({**linkage.provenance, **given}),
     )
 
@@ -313,16 +313,16 @@ class Task:
         """Return places in the linkage's unit: those of a slider are lengths."""
         return np.asarray(np.ldexp(value, self.exponent if self.link == "slider" else 0))
 
-    def play(self) -> tuple[Placed, Play]:
+    def play(self) -> tuple[CrankPosition, Play]:
         """Return the play at the crank angles, or raise BadInput where the linkage cannot be."""
-        placed = self.route.placed(self.theta)
-        play = self.route.at(placed, self.radius, self.guide)
-        reached = play.margin >= -placed.margin_error
+        position = self.route.position(self.theta)
+        play = self.route.at(position, self.radius, self.guide)
+        reached = play.margin >= -position.margin_error
         if isinstance(self.linkage, FourBar):
             # With the crank's pin on the follower's pivot, every follower angle is the nominal one.
-            reached &= placed.variable > placed.margin_error
+            reached &= position.variable > position.margin_error
         self.linkage.require(reached, self.theta)
-        return placed, play
+        return position, play
 
 
 def _angles(linkage: FourBar | SliderCrank | QuickReturn, theta: ArrayLike | None) -> Array:
@@ -386,18 +386,18 @@ def _extremes(task: Task) -> tuple[WidthExtreme, WidthExtreme]:
     return least, greatest
 
 
-def _errors(task: Task, placed: Placed, play: Play) -> dict[str, Array]:
+def _errors(task: Task, position: CrankPosition, play: Play) -> dict[str, Array]:
     """Return the errors of the result in its units."""
-    error, nominal_error = task.route.errors(placed, task.radius, task.guide, play)
+    error, nominal_error = task.route.errors(position, task.radius, task.guide, play)
     return {"error": task.in_units(2.0 * error), "nominal_error": task.in_units(nominal_error)}
 
 
-def _checks(task: Task, placed: Placed, play: Play) -> dict[str, Check]:
+def _checks(task: Task, position: CrankPosition, play: Play) -> dict[str, Check]:
     """Close the loop at both ends, and take a small part of the clearances."""
-    error = np.add(*task.route.errors(placed, task.radius, task.guide, play))
+    error = np.add(*task.route.errors(position, task.radius, task.guide, play))
     return {
         "loop closure at both ends over its round-off": Check(_gap(task, play, error), 1.0),
-        "small clearances against the first order": Check(_first_order(task, placed, play), 1.0),
+        "small clearances against the first order": Check(_first_order(task, position, play), 1.0),
     }
 
 
@@ -442,7 +442,7 @@ def _nearest(one: Any, other: Any) -> Array:
     return np.asarray(np.minimum(np.abs(one), np.abs(other)))
 
 
-def _first_order(task: Task, placed: Placed, play: Play) -> float:
+def _first_order(task: Task, position: CrankPosition, play: Play) -> float:
     """Return how far small clearances leave the first order, over what the next order may do.
 
     The series in the radius of play converges up to the first fold; its next term but one is of
@@ -453,7 +453,7 @@ def _first_order(task: Task, placed: Placed, play: Play) -> float:
         return 0.0
     margin = np.maximum(play.margin, 0.0)
     part = _SMALL_PLAY * margin / whole
-    given = placed, task.radius * part, task.guide * part
+    given = position, task.radius * part, task.guide * part
     small = task.route.at(*given)
     error, _ = task.route.errors(*given, small)
     apart = np.abs(small.below + small.above - small.small)
@@ -462,5 +462,5 @@ def _first_order(task: Task, placed: Placed, play: Play) -> float:
         # Across the guide the first order vanishes where the coupler lies along it.
         leg = np.sqrt(task.linkage.unit_lengths["coupler"] * np.maximum(margin, EPS))
         allowed = allowed + 2.0 * (task.guide * part) ** 2 / leg
-    clear = play.margin > 1e6 * placed.margin_error
+    clear = play.margin > 1e6 * position.margin_error
     return float(np.max(apart[clear] / allowed[clear], initial=0.0))

@@ -45,12 +45,12 @@ class Play:
 
 
 @dataclass(frozen=True)
-class Placed:
-    """Where play is taken: its variable, and the place that it is measured from."""
+class CrankPosition:
+    """Where the crank is, for the output: with the errors that its round-off makes."""
 
-    variable: Array
-    error: Array | float  # of the variable
-    start: Array
+    variable: Array  # what the play depends on: diagonal, gap or slide
+    error: Array | float
+    start: Array  # place from which that of the output is counted [rad or length]
     start_error: Array | float
     margin_error: Array
 
@@ -64,29 +64,29 @@ class Route:
     """One output of one linkage."""
 
     measure: Kernel
-    placed: Callable[[Array], Placed]  # at crank angles
+    position: Callable[[Array], CrankPosition]  # at crank angles
     turn: float  # +1 where the output falls as the place of ``measure`` rises, else -1
     interval: tuple[float, float]  # ends of the variable
     # values of the variable where the play may be extreme: (radius, guide)
     candidates: Callable[[float, float], tuple[float, ...]]
     crank: Callable[[float], float]  # crank angle of a value of the variable
 
-    def at(self, placed: Placed, radius: ArrayLike, guide: ArrayLike) -> Play:
-        """Return the play of the output where it is placed."""
-        play = self.measure(placed.variable, radius, guide)
+    def at(self, position: CrankPosition, radius: ArrayLike, guide: ArrayLike) -> Play:
+        """Return the play of the output at positions of the crank."""
+        play = self.measure(position.variable, radius, guide)
         below, above = play.below, play.above
         if self.turn > 0.0:
             below, above = above, below
-        nominal = placed.start - self.turn * play.nominal
+        nominal = position.start - self.turn * play.nominal
         return replace(play, nominal=nominal, below=below, above=above)
 
     def errors(
-        self, placed: Placed, radius: ArrayLike, guide: ArrayLike, play: Play
+        self, position: CrankPosition, radius: ArrayLike, guide: ArrayLike, play: Play
     ) -> tuple[Array, Array]:
         """Return the errors of below and above, the worse, and of the nominal place."""
         ends = [
-            self.at(replace(placed, variable=placed.variable + shift), radius, guide)
-            for shift in (-placed.error, placed.error)
+            self.at(replace(position, variable=position.variable + shift), radius, guide)
+            for shift in (-position.error, position.error)
         ]
         below, above, nominal = (
             np.maximum(*(np.abs(getattr(end, name) - getattr(play, name)) for end in ends))
@@ -94,7 +94,7 @@ class Route:
         )
         # Beside the variable's, the round-off of the last few operations.
         error = np.maximum(below + 8.0 * EPS * play.below, above + 8.0 * EPS * play.above)
-        return error, nominal + placed.start_error + 4.0 * EPS * np.abs(play.nominal)
+        return error, nominal + position.start_error + 4.0 * EPS * np.abs(play.nominal)
 
 
 def route_of(linkage: FourBar | SliderCrank | QuickReturn, link: str) -> Route:
@@ -175,7 +175,7 @@ def _four_bar(linkage: FourBar, link: str) -> Route:
         side, other, turn = other, side, -branch
     short, long = abs(frame - crank), frame + crank
 
-    def placed(theta: Array) -> Placed:
+    def position(theta: Array) -> CrankPosition:
         half, gap = np.sin(theta / 2.0), frame - crank
         diagonal = np.sqrt(gap**2 + 4.0 * frame * crank * half**2)
         # Direction of B from D, continuous in the crank angle as in FourBar.motion.
@@ -189,7 +189,7 @@ def _four_bar(linkage: FourBar, link: str) -> Route:
         start = toward - branch * np.pi if link == "coupler" else toward
         unsure = diagonal + other + side + min(frame, crank) * (2.0 + np.abs(theta)) / 4.0
         error = EPS * (3.0 + np.abs(toward))
-        return Placed(diagonal, 4.0 * EPS * diagonal, start, error, 4.0 * EPS * unsure)
+        return CrankPosition(diagonal, 4.0 * EPS * diagonal, start, error, 4.0 * EPS * unsure)
 
     def candidates(radius: float, guide: float) -> tuple[float, ...]:
         longer, shorter = other + radius, other - radius
@@ -204,7 +204,7 @@ def _four_bar(linkage: FourBar, link: str) -> Route:
 
     ends = (max(short, abs(side - other)), min(long, side + other))
     triangle = partial(_triangle, side=side, other=other)
-    return Route(triangle, placed, turn, ends, candidates, crank_at)
+    return Route(triangle, position, turn, ends, candidates, crank_at)
 
 
 def _triangle(
@@ -239,7 +239,7 @@ def _slider_crank(linkage: SliderCrank, link: str) -> Route:
     crank, coupler, offset = linkage.unit_lengths.values()
     along = link == "slider"
 
-    def placed(theta: Array) -> Placed:
+    def position(theta: Array) -> CrankPosition:
         gap = offset - crank * np.sin(theta)
         sum_error = EPS * (abs(offset) + 2.0 * crank)
         margin_error = EPS * (coupler + np.abs(gap) + crank * np.abs(theta)) + 2.0 * sum_error
@@ -247,8 +247,8 @@ def _slider_crank(linkage: SliderCrank, link: str) -> Route:
         error = sum_error + 2.0 * EPS * (coupler + np.abs(gap))
         if along:
             start = crank * np.cos(theta)
-            return Placed(gap, error, start, 2.0 * EPS * np.abs(start), margin_error)
-        return Placed(gap, error, np.full_like(gap, np.pi / 2.0), EPS * np.pi, margin_error)
+            return CrankPosition(gap, error, start, 2.0 * EPS * np.abs(start), margin_error)
+        return CrankPosition(gap, error, np.full_like(gap, np.pi / 2.0), EPS * np.pi, margin_error)
 
     def candidates(radius: float, guide: float) -> tuple[float, ...]:
         edge = coupler - radius - guide
@@ -260,7 +260,7 @@ def _slider_crank(linkage: SliderCrank, link: str) -> Route:
     turn = -linkage.branch if along else linkage.branch
     ends = max(offset - crank, -coupler), min(offset + crank, coupler)
     across = partial(_across_slider if along else _across_coupler, coupler=coupler)
-    return Route(across, placed, turn, ends, candidates, crank_at)
+    return Route(across, position, turn, ends, candidates, crank_at)
 
 
 def _across_slider(gap: ArrayLike, radius: ArrayLike, guide: ArrayLike, *, coupler: float) -> Play:
@@ -308,10 +308,12 @@ def _quick_return(linkage: QuickReturn) -> Route:
     frame, crank, rod = linkage.unit_lengths.values()
     short, long = abs(frame - crank), frame + crank
 
-    def placed(theta: Array) -> Placed:
+    def position(theta: Array) -> CrankPosition:
         motion = linkage.motion(theta)
         slide = np.sqrt((frame - crank) ** 2 + 4.0 * frame * crank * np.cos(theta / 2.0) ** 2)
-        return Placed(slide, 5.0 * EPS * slide, motion.theta4, motion.error, 4.0 * EPS * slide)
+        return CrankPosition(
+            slide, 5.0 * EPS * slide, motion.theta4, motion.error, 4.0 * EPS * slide
+        )
 
     def candidates(radius: float, guide: float) -> tuple[float, ...]:
         return (radius + guide,)
@@ -320,7 +322,7 @@ def _quick_return(linkage: QuickReturn) -> Route:
         sine2 = (long - slide) * (long + slide)
         return _angle_of(sine2, (slide - short) * (slide + short))
 
-    return Route(_beside, placed, 1.0, (short, min(long, rod)), candidates, crank_at)
+    return Route(_beside, position, 1.0, (short, min(long, rod)), candidates, crank_at)
 
 
 def _beside(slide: ArrayLike, radius: ArrayLike, guide: ArrayLike) -> Play:

@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 # The force in the crank pin, the driving torque and the moment on the frame, equally weighted.
 DEFAULT_WEIGHTS: Mapping[str, float] = {"f23": 1.0, "torque": 1.0, "shaking_moment": 1.0}
 
-_ROUND_OFF = 2e-14
-_OPTIMAL = 1e-5
+# Least error of relative peaks, a hundred roundings; gap or KKT residual that counts as optimal.
+_ROUND_OFF, _OPTIMAL = 2e-14, 1e-5
 # At the ends of a trade-off one peak is the least possible; so much more is allowed, in units of
 # the unbalanced one, in order to choose between counterweights that are equal in it.
 _ALLOWANCE = 1e-6

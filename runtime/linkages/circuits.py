@@ -118,14 +118,9 @@ class Circuit:
 
     Lengths are scaled by a power of two (``scale``), so that their squares are safe.
 
-    Parameters
-    ----------
-    linkage : FourBar, SliderCrank or QuickReturn
-        The linkage.
-    number : int
-        0 or 1.  Where the crank turns fully: 0 the linkage's own assembly, 1 the other one.  Where
-        the crank swings in two separate ranges: 0 the upper one (psi from 0 to pi), 1 the lower
-        one.  Where it swings in one range there is one circuit, through both assemblies.
+    Its number is 0 or 1.  Where the crank turns fully: 0 the linkage's assembly, 1 the other one.
+    Where the crank swings in two separate ranges: 0 the upper one (psi from 0 to pi), 1 the lower
+    one.  Where it swings in one range there is one circuit, through both assemblies.
     """
 
     linkage: Linkage

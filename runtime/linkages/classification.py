@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from numbers import Real
 from typing import TYPE_CHECKING, Any, Literal, overload
@@ -407,18 +407,12 @@ def _four_bar(linkage: FourBar, driven: Input, tolerance: Fraction) -> Classific
     seen = signs if driven == "crank" else signs[::-1]
     order = LINKS if driven == "crank" else (LINKS[0], *LINKS[:0:-1])
     row = CLASSES[number_of_signs(seen) - 1]
+    if row.symbol == "CP2X":
+        row = replace(row, also="parallelogram linkage" if signs[1] else "kite linkage")
     return Classification(
         **lengths,
         input=driven,
-        number=row.number,
-        class_number=row.class_number,
-        category=row.category,
-        name=row.name,
-        symbol=row.symbol,
-        also=("parallelogram linkage" if signs[1] else "kite linkage")
-        if row.symbol == "CP2X"
-        else row.also,
-        characteristic=row.characteristic,
+        **vars(row),
         turns={link: pairs["frame", link] for link in LINKS[1:]},
         relative_turns={"-".join(pair): turns for pair, turns in sorted(pairs.items())},
         inversions=dict(zip(order, _inversions(seen), strict=True)),

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import BadInput, Problem, bad
 from ..core.inputs import is_finite
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
-from . import joint_play
 from .four_bar import FourBar
-from .joint_play import Play, Route
+from .joint_play import CrankPosition, Play, Route, route_of
 from .linkage import EPS, Array, finite_array
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
@@ -32,6 +32,8 @@ _OUTPUTS: Mapping[type, tuple[str, ...]] = {
 }
 # The joint that slides, and does not turn: its clearance is across its guide.
 _SLIDING: Mapping[type, str] = {SliderCrank: "41", QuickReturn: "34"}
+# Fields that are computed when they are first looked at.
+_LATER = {name: DeferredField() for name in ("error", "nominal_error")}
 # Of the play at which the linkage folds: the terms beyond the first order are of its square.
 _SMALL_PLAY = 1e-4
 
@@ -60,7 +62,7 @@ class ClearanceRange(Result):
     Arrays have the shape of the crank angles; places are angles [rad], or for a slider lengths in
     the unit of the linkage's.  ``error`` is that of ``below``, ``above`` and ``width``, which
     stay accurate to their own size however small the clearance; ``nominal``, and with it ``lower``
-    and ``upper``, carry ``nominal_error`` as well.
+    and ``upper``, carry ``nominal_error`` as well; both are computed when they are first read.
 
     Attributes
     ----------
@@ -106,7 +108,8 @@ class ClearanceRange(Result):
     small: Array
     folds: NDArray[np.bool_]
     free: NDArray[np.bool_]
-    nominal_error: Array
+    error: Any = _LATER["error"]
+    nominal_error: Any = _LATER["nominal_error"]
     greatest: WidthExtreme
     least: WidthExtreme
 
@@ -231,13 +234,11 @@ def clearance_range(
     (0.0503, 0.0503)
     """
     task = Task.of(linkage, clearances, theta, joint, link)
-    play = task.play()
-    exponent = task.exponent if task.link == "slider" else 0
-
-    def place(value: Array) -> Array:
-        return np.asarray(np.ldexp(value, exponent))
-
-    nominal, below, above = (place(part) for part in (play.nominal, play.below, play.above))
+    position, play = task.play()
+    errors = DeferredGroup(partial(_errors, task, position, play))
+    nominal, below, above, small = (
+        task.in_units(part) for part in (play.nominal, play.below, play.above, play.small)
+    )
     least, greatest = _extremes(task)
     given = {f"clearances.{name}": repr(c) for name, c in task.clearances.items()}
     unit = "m" if task.link == "slider" else "rad"
@@ -252,16 +253,16 @@ def clearance_range(
         below=below,
         above=above,
         width=below + above,
-        small=place(play.small),
+        small=small,
         folds=play.folds,
         free=play.free,
-        nominal_error=place(play.nominal_error),
+        nominal_error=errors.later("nominal_error"),
         greatest=greatest,
         least=least,
         method="differences of half-angles, from those of their squared sines",
-        error=place(2.0 * play.error),
+        error=errors.later("error"),
         error_norm=f"below, above and width [{unit}], absolute, entrywise",
-        checks=DeferredChecks(partial(_checks, task, play)),
+        checks=DeferredChecks(partial(_checks, task, position, play)),
         provenance=provenance({**linkage.provenance, **given}),
     )
 
@@ -306,27 +307,22 @@ class Task:
     @property
     def route(self) -> Route:
         """The way to the play of this output."""
-        linkage, sizes = self.linkage, self.linkage.unit_lengths
-        if isinstance(linkage, FourBar):
-            return joint_play.four_bar(sizes, linkage.branch, self.link)
-        if isinstance(linkage, SliderCrank):
-            return joint_play.slider_crank(sizes, linkage.branch, self.link)
+        return route_of(self.linkage, self.link)
 
-        def nominal(theta: ArrayLike) -> tuple[Array, Array]:
-            motion = linkage.motion(theta)
-            return motion.theta4, motion.error
+    def in_units(self, value: Array | float) -> Array:
+        """Return places in the linkage's unit: those of a slider are lengths."""
+        return np.asarray(np.ldexp(value, self.exponent if self.link == "slider" else 0))
 
-        return joint_play.quick_return(sizes, nominal)
-
-    def play(self) -> Play:
+    def play(self) -> tuple[CrankPosition, Play]:
         """Return the play at the crank angles, or raise BadInput where the linkage cannot be."""
-        play = self.route.at(self.theta, self.radius, self.guide)
-        reached = play.margin >= -play.blur
+        position = self.route.position(self.theta)
+        play = self.route.at(position, self.radius, self.guide)
+        reached = play.margin >= -position.margin_error
         if isinstance(self.linkage, FourBar):
             # With the crank's pin on the follower's pivot, every follower angle is the nominal one.
-            reached &= play.place > play.blur
+            reached &= position.variable > position.margin_error
         self.linkage.require(reached, self.theta)
-        return play
+        return position, play
 
 
 def _angles(linkage: FourBar | SliderCrank | QuickReturn, theta: ArrayLike | None) -> Array:
@@ -383,29 +379,34 @@ def _extremes(task: Task) -> tuple[WidthExtreme, WidthExtreme]:
     inside = np.unique([place for place in places if low <= place <= high])
     play = route.measure(inside, task.radius, task.guide)
     width = play.below + play.above
-    ends = []
-    for i in (int(np.argmin(width)), int(np.argmax(width))):
-        size = float(width[i])
-        if task.link == "slider":
-            size = math.ldexp(size, task.exponent)
-        ends.append(WidthExtreme(route.crank(float(inside[i])), size))
-    return ends[0], ends[1]
+    least, greatest = (
+        WidthExtreme(route.crank(float(inside[i])), float(task.in_units(width[i])))
+        for i in (int(np.argmin(width)), int(np.argmax(width)))
+    )
+    return least, greatest
 
 
-def _checks(task: Task, play: Play) -> dict[str, Check]:
+def _errors(task: Task, position: CrankPosition, play: Play) -> dict[str, Array]:
+    """Return the errors of the result in its units."""
+    error, nominal_error = task.route.errors(position, task.radius, task.guide, play)
+    return {"error": task.in_units(2.0 * error), "nominal_error": task.in_units(nominal_error)}
+
+
+def _checks(task: Task, position: CrankPosition, play: Play) -> dict[str, Check]:
     """Close the loop at both ends, and take a small part of the clearances."""
+    error = np.add(*task.route.errors(position, task.radius, task.guide, play))
     return {
-        "loop closure at both ends over its round-off": Check(_gap(task, play), 1.0),
-        "small clearances against the first order": Check(_first_order(task), 1.0),
+        "loop closure at both ends over its round-off": Check(_gap(task, play, error), 1.0),
+        "small clearances against the first order": Check(_first_order(task, position, play), 1.0),
     }
 
 
-def _gap(task: Task, play: Play) -> float:
+def _gap(task: Task, play: Play, error: Array) -> float:
     """Return how far the loop with all clearance taken up stays open, over its round-off."""
     sizes = task.linkage.unit_lengths
     longest = max(abs(size) for size in sizes.values())
     limit = 64.0 * EPS * longest * np.maximum(np.abs(task.theta), 1.0)
-    blur = limit + longest * (play.error + play.nominal_error)
+    blur = limit + longest * error
     pin = sizes["crank"] * np.exp(1j * task.theta)
     worst = 0.0
     for end in (play.nominal - play.below, play.nominal + play.above):
@@ -441,7 +442,7 @@ def _nearest(one: Any, other: Any) -> Array:
     return np.asarray(np.minimum(np.abs(one), np.abs(other)))
 
 
-def _first_order(task: Task) -> float:
+def _first_order(task: Task, position: CrankPosition, play: Play) -> float:
     """Return how far small clearances leave the first order, over what the next order may do.
 
     The series in the radius of play converges up to the first fold; its next term but one is of
@@ -450,16 +451,16 @@ def _first_order(task: Task) -> float:
     whole = task.radius + task.guide
     if whole == 0.0 or task.theta.size == 0:
         return 0.0
-    route = task.route
-    full = route.at(task.theta, task.radius, task.guide)
-    margin = np.maximum(full.margin, 0.0)
+    margin = np.maximum(play.margin, 0.0)
     part = _SMALL_PLAY * margin / whole
-    small = route.at(task.theta, task.radius * part, task.guide * part)
+    given = position, task.radius * part, task.guide * part
+    small = task.route.at(*given)
+    error, _ = task.route.errors(*given, small)
     apart = np.abs(small.below + small.above - small.small)
-    allowed = 8.0 * _SMALL_PLAY**2 * small.small + 4.0 * small.error
+    allowed = 8.0 * _SMALL_PLAY**2 * small.small + 4.0 * error
     if task.link == "slider":
         # Across the guide the first order vanishes where the coupler lies along it.
         leg = np.sqrt(task.linkage.unit_lengths["coupler"] * np.maximum(margin, EPS))
         allowed = allowed + 2.0 * (task.guide * part) ** 2 / leg
-    clear = full.margin > 1e6 * full.blur
+    clear = play.margin > 1e6 * position.margin_error
     return float(np.max(apart[clear] / allowed[clear], initial=0.0))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 import numpy as np
@@ -151,40 +151,16 @@ def harmonics(source: Source, *, order: int = 8, accuracy: float = 1e-12) -> Har
     if not (isinstance(accuracy, (int, float)) and 0.0 < accuracy < 1.0):
         raise bad("accuracy", repr(accuracy), "a number between 0 and 1", "try 1e-12")
     periodic, secular, gap = _without_growth(f, name)
-    sums = _doubled(periodic, name, int(order), accuracy)
-    scale = max(sums.largest, 5e-324)
-    return Harmonics(
-        name=name,
-        a=sums.series.a,
-        b=sums.series.b,
-        secular=secular,
-        largest=sums.largest,
-        remainder=sums.remainder,
-        evaluations=sums.evaluations + 2,
-        method="FFT",
-        error=sums.error + gap,
-        error_norm="largest error of a coefficient, absolute",
-        checks={
-            "change on doubling over the largest value": Check(sums.change / scale, accuracy),
-        },
-        provenance=provenance(known),
+    result = _doubled(periodic, name, int(order), accuracy)
+    evaluations = result.evaluations + 2
+    error = result.error + gap
+    return replace(
+        result, secular=secular, evaluations=evaluations, error=error, provenance=provenance(known)
     )
 
 
-@dataclass(frozen=True)
-class _Sums:
-    """What the doubling met: series, last change of a coefficient, errors, and what it cost."""
-
-    series: PeriodicFunction
-    change: float
-    error: float
-    largest: float
-    remainder: float
-    evaluations: int
-
-
-def _doubled(f: Callable[[Array], Array], name: str, order: int, accuracy: float) -> _Sums:
-    """Double the angles until the coefficients stay."""
+def _doubled(f: Callable[[Array], Array], name: str, order: int, accuracy: float) -> Harmonics:
+    """Return the harmonics of a periodic function, its angles doubled until they stay."""
     count = max(64, 4 * 2 ** int(np.ceil(np.log2(order + 1))))
     probes = np.asarray(TURN * ((_GOLDEN * np.arange(1, _PROBES + 1)) % 1.0), dtype=np.float64)
     at_probes = values_at(f, probes, name)
@@ -222,8 +198,21 @@ def _doubled(f: Callable[[Array], Array], name: str, order: int, accuracy: float
     if constant:
         # A pulse between two samples, of this height or of 1: 2/turn times its area.
         error += 2.0 * max(largest, 1.0) / count
-    remainder = max(2.0 * rest, min(dropped, 4.0 * rest)) + error
-    return _Sums(_series(low), max(changes[-2:]), error, largest, remainder, evaluations)
+    series = _series(low)
+    change = max(changes[-2:]) / max(largest, 5e-324)
+    return Harmonics(
+        name=name,
+        a=series.a,
+        b=series.b,
+        secular=0.0,
+        largest=largest,
+        remainder=max(2.0 * rest, min(dropped, 4.0 * rest)) + error,
+        evaluations=evaluations,
+        method="FFT",
+        error=error,
+        error_norm="largest error of a coefficient, absolute",
+        checks={"change on doubling over the largest value": Check(change, accuracy)},
+    )
 
 
 def _series(coefficients: np.ndarray[Any, Any]) -> PeriodicFunction:

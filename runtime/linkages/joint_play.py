@@ -3,21 +3,26 @@
 With the crank's direction given, every pin adds to the loop a vector up to half its diametral
 clearance long, in any direction.  Such vectors add up to a disc, so that the play of the loop is
 one radius, whichever pins it comes from.  Lengths are below 1 here.
+
+The play depends on one variable of the crank angle: the diagonal BD, the gap from B to the guide,
+or the slide DB.  Its error is how far the round-off of that variable moves it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .four_bar import FourBar
 from .linkage import EPS, Array
+from .quick_return import QuickReturn
+from .slider_crank import SliderCrank
 
 Flags = NDArray[np.bool_]
-Sizes = Mapping[str, float]
 
 _TINY = float(np.finfo(float).tiny)
 
@@ -35,15 +40,22 @@ class Play:
     # ways
     folds: Flags
     free: Flags
-    # error, nominal_error: of ``below`` and ``above`` (the worse), and of ``nominal``
-    error: Array
-    nominal_error: Array
     # radius of the play at which the linkage first folds; negative where it cannot close
     margin: Array
-    blur: Array  # round-off of ``margin``
-    place: Array  # the variable that the play depends on: diagonal, gap or slide
 
 
+@dataclass(frozen=True)
+class CrankPosition:
+    """Where the crank is, for the output: with the errors that its round-off makes."""
+
+    variable: Array  # what the play depends on: diagonal, gap or slide
+    error: Array | float
+    start: Array  # place from which that of the output is counted [rad or length]
+    start_error: Array | float
+    margin_error: Array
+
+
+# Play at values of the variable: (variable, radius, guide).
 Kernel = Callable[[ArrayLike, ArrayLike, ArrayLike], Play]
 
 
@@ -51,31 +63,63 @@ Kernel = Callable[[ArrayLike, ArrayLike, ArrayLike], Play]
 class Route:
     """One output of one linkage."""
 
-    at: Kernel  # play at crank angles: (theta, radius, guide)
-    measure: Kernel  # play at values of the one variable that it depends on, its direction left out
-    interval: tuple[float, float]  # ends of that variable
+    measure: Kernel
+    position: Callable[[Array], CrankPosition]  # at crank angles
+    turn: float  # +1 where the output falls as the place of ``measure`` rises, else -1
+    interval: tuple[float, float]  # ends of the variable
     # values of the variable where the play may be extreme: (radius, guide)
     candidates: Callable[[float, float], tuple[float, ...]]
     crank: Callable[[float], float]  # crank angle of a value of the variable
 
+    def at(self, position: CrankPosition, radius: ArrayLike, guide: ArrayLike) -> Play:
+        """Return the play of the output at positions of the crank."""
+        play = self.measure(position.variable, radius, guide)
+        below, above = play.below, play.above
+        if self.turn > 0.0:
+            below, above = above, below
+        nominal = position.start - self.turn * play.nominal
+        return replace(play, nominal=nominal, below=below, above=above)
+
+    def errors(
+        self, position: CrankPosition, radius: ArrayLike, guide: ArrayLike, play: Play
+    ) -> tuple[Array, Array]:
+        """Return the errors of below and above, the worse, and of the nominal place."""
+        ends = [
+            self.at(replace(position, variable=position.variable + shift), radius, guide)
+            for shift in (-position.error, position.error)
+        ]
+        below, above, nominal = (
+            np.maximum(*(np.abs(getattr(end, name) - getattr(play, name)) for end in ends))
+            for name in ("below", "above", "nominal")
+        )
+        # Beside the variable's, the round-off of the last few operations.
+        error = np.maximum(below + 8.0 * EPS * play.below, above + 8.0 * EPS * play.above)
+        return error, nominal + position.start_error + 4.0 * EPS * np.abs(play.nominal)
+
+
+def route_of(linkage: FourBar | SliderCrank | QuickReturn, link: str) -> Route:
+    """Return the way to the play of an output."""
+    if isinstance(linkage, FourBar):
+        return _four_bar(linkage, link)
+    if isinstance(linkage, SliderCrank):
+        return _slider_crank(linkage, link)
+    return _quick_return(linkage)
+
 
 @dataclass(frozen=True)
 class _Half:
-    """Sine and cosine of half an angle with their errors, and where it is at its end, 0 or pi."""
+    """Sine and cosine of half an angle, and where it is at its end, 0 or pi."""
 
     sine: Array
     cosine: Array
-    sine_error: Array
-    cosine_error: Array
     least: Flags
     greatest: Flags
 
     @classmethod
-    def of(cls, sine2: Array, cosine2: Array, error: tuple[Array, Array]) -> _Half:
-        """Return it from its squares and their absolute errors, each cut to 0 and 1."""
+    def of(cls, sine2: Array, cosine2: Array) -> _Half:
+        """Return it from its squares, each cut to 0 and 1."""
         sine, cosine = (np.sqrt(np.clip(part, 0.0, 1.0)) for part in (sine2, cosine2))
-        sine_error, cosine_error = _root_error(sine, error[0]), _root_error(cosine, error[1])
-        return cls(sine, cosine, sine_error, cosine_error, sine2 <= 0.0, cosine2 <= 0.0)
+        return cls(sine, cosine, sine2 <= 0.0, cosine2 <= 0.0)
 
     def angle(self) -> Array:
         return np.asarray(2.0 * np.arctan2(self.sine, self.cosine))
@@ -84,91 +128,68 @@ class _Half:
         """Return pi less the angle."""
         return np.asarray(2.0 * np.arctan2(self.cosine, self.sine))
 
-    def error(self) -> Array:
-        """Return the error of the angle, or of pi less the angle, before their own rounding."""
-        return np.asarray(2.0 * (self.cosine * self.sine_error + self.sine * self.cosine_error))
+
+def _over(part: Array, whole: Array) -> Array:
+    """Return a quotient, zero where there is nothing to divide by."""
+    return np.asarray(np.divide(part, whole, out=np.zeros(np.shape(whole)), where=whole > 0.0))
 
 
-def _root_error(root: Array, blur: Array) -> Array:
-    """Return the error of a root whose square is uncertain by ``blur``.
-
-    |sqrt(x + e) - sqrt(x)| is less than e/sqrt(x), and than sqrt(e).
-    """
-    steep = np.maximum(np.maximum(root, np.sqrt(blur)), _TINY)
-    return np.asarray(blur / steep + EPS * root)
-
-
-def _over(part: Array, whole: Array, otherwise: float = 0.0) -> Array:
-    """Return a quotient, something else where there is nothing to divide by."""
-    held = np.full(np.shape(whole), otherwise)
-    return np.asarray(np.divide(part, whole, out=held, where=whole > 0.0))
-
-
-def _apart(low: _Half, high: _Half, rise: Array) -> tuple[Array, Array]:
-    """Return the difference of two angles and its error; ``rise`` is that of sin^2 of the halves.
+def _apart(low: _Half, high: _Half, rise: Array) -> Array:
+    """Return the difference of two angles; ``rise`` is that of sin^2 of the halves.
 
     sin^2 x - sin^2 y = sin(x - y) sin(x + y): small differences keep all their digits.
     """
     total = high.sine * low.cosine + high.cosine * low.sine
     cosine = high.cosine * low.cosine + high.sine * low.sine
-    angle = 2.0 * np.arctan2(_over(rise, total), cosine)
-    blur = high.sine * low.cosine_error + low.cosine * high.sine_error
-    blur = blur + high.cosine * low.sine_error + low.sine * high.cosine_error
-    relative = np.minimum(_over(blur, total, 1.0), 1.0)
-    return angle, np.asarray(angle * (relative + 6.0 * EPS))
+    return np.asarray(2.0 * np.arctan2(_over(rise, total), cosine))
 
 
-def _turned(
-    least: _Half, nominal: _Half, greatest: _Half, rises: tuple[Array, Array]
-) -> tuple[tuple[Array, Array], tuple[Array, Array], Flags, Flags]:
-    """Return how far an angle may fall and rise, with errors, and whether it folds or turns.
+def _of_angles(
+    halves: tuple[_Half, _Half, _Half], rises: tuple[Array, Array], small: Array, margin: Array
+) -> Play:
+    """Return the play of an angle from its least, nominal and greatest half.
 
     An angle that reaches 0 goes on to minus the greatest one, one that reaches pi to 2 pi less the
     least one.
     """
-    fall, fall_error = _apart(least, nominal, rises[0])
-    rise, rise_error = _apart(nominal, greatest, rises[1])
+    least, nominal, greatest = halves
     inner, outer = least.least, greatest.greatest
     through = nominal.angle() + greatest.angle()
     around = nominal.rest() + least.rest()
-    still = nominal.error()
-    fall_error = np.where(inner, still + greatest.error() + 3 * EPS * through, fall_error)
-    rise_error = np.where(outer, still + least.error() + 3 * EPS * around, rise_error)
-    fall, rise = np.where(inner, through, fall), np.where(outer, around, rise)
+    fall = np.where(inner, through, _apart(least, nominal, rises[0]))
+    rise = np.where(outer, around, _apart(nominal, greatest, rises[1]))
     free = inner & outer
     fall, rise = (np.where(free, np.pi, part) for part in (fall, rise))
-    fall_error, rise_error = (np.where(free, EPS * np.pi, e) for e in (fall_error, rise_error))
-    return (fall, fall_error), (rise, rise_error), inner | outer, free
+    return Play(nominal.angle(), fall, rise, small, inner | outer, free, margin)
 
 
-def four_bar(sizes: Sizes, branch: float, link: str) -> Route:
+def _together(*values: ArrayLike) -> tuple[Array, ...]:
+    return np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in values))
+
+
+def _four_bar(linkage: FourBar, link: str) -> Route:
     """Return the play of follower or coupler: an angle in the triangle BCD (Smith 3.1, 3.2)."""
-    frame, crank = sizes["frame"], sizes["crank"]
-    side, other = sizes["follower"], sizes["coupler"]
+    frame, crank, other, side = linkage.unit_lengths.values()
+    branch, turn = linkage.branch, linkage.branch
     if link == "coupler":
-        side, other = other, side
+        side, other, turn = other, side, -branch
     short, long = abs(frame - crank), frame + crank
-    triangle = partial(_triangle, side=side, other=other)
 
-    def at(theta: ArrayLike, radius: ArrayLike, guide: ArrayLike) -> Play:
-        angle = np.asarray(theta, dtype=float)
-        half, gap = np.sin(angle / 2.0), frame - crank
+    def position(theta: Array) -> CrankPosition:
+        half, gap = np.sin(theta / 2.0), frame - crank
         diagonal = np.sqrt(gap**2 + 4.0 * frame * crank * half**2)
         # Direction of B from D, continuous in the crank angle as in FourBar.motion.
         if crank > frame:
-            y, x = frame * np.sin(angle), -gap + 2.0 * frame * half**2
-            toward = angle + np.arctan2(y, x)
+            y, x = frame * np.sin(theta), -gap + 2.0 * frame * half**2
+            toward = theta + np.arctan2(y, x)
         else:
-            y, x = crank * np.sin(angle), gap + 2.0 * crank * half**2
+            y, x = crank * np.sin(theta), gap + 2.0 * crank * half**2
             toward = branch * np.pi - np.arctan2(y, x)
-        play = triangle(diagonal, radius, guide)
-        turn = -branch if link == "coupler" else branch
-        nominal = toward - turn * play.nominal
-        if link == "coupler":
-            # Seen from B, and between -pi and pi at the crank angle 0.
-            nominal = nominal - branch * np.pi
-        error = play.nominal_error + EPS * (3.0 + np.abs(toward) + np.abs(nominal))
-        return _placed(play, nominal, error, turn, min(frame, crank) * (2.0 + np.abs(angle)))
+        # The coupler is seen from B, and between -pi and pi at the crank angle 0.
+        start = toward - branch * np.pi if link == "coupler" else toward
+        unsure = diagonal + other + side + min(frame, crank) * (2.0 + np.abs(theta)) / 4.0
+        error = EPS * (3.0 + np.abs(toward))
+        return CrankPosition(diagonal, 4.0 * EPS * diagonal, start, error, 4.0 * EPS * unsure)
 
     def candidates(radius: float, guide: float) -> tuple[float, ...]:
         longer, shorter = other + radius, other - radius
@@ -182,11 +203,8 @@ def four_bar(sizes: Sizes, branch: float, link: str) -> Route:
         return _angle_of(sine2, (long - diagonal) * (long + diagonal))
 
     ends = (max(short, abs(side - other)), min(long, side + other))
-    return Route(at, triangle, ends, candidates, crank_at)
-
-
-def _together(*values: ArrayLike) -> tuple[Array, ...]:
-    return np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in values))
+    triangle = partial(_triangle, side=side, other=other)
+    return Route(triangle, position, turn, ends, candidates, crank_at)
 
 
 def _triangle(
@@ -201,68 +219,36 @@ def _triangle(
     rises = r * (2.0 * other - r) / scale, r * (2.0 * other + r) / scale
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         small = (r / d) * (other / side) / (nominal.sine * nominal.cosine)
-    return _of_angles(
-        (least, nominal, greatest),
-        rises,
-        small=np.where(r == 0.0, 0.0, small),
-        margin=np.minimum((other + side) - d, d - abs(other - side)),
-        blur=4.0 * EPS * (d + other + side),
-        place=d,
-    )
-
-
-def _of_angles(
-    halves: tuple[_Half, _Half, _Half], rises: tuple[Array, Array], **others: Array
-) -> Play:
-    """Return the play of an angle from its least, nominal and greatest half."""
-    nominal = halves[1]
-    (fall, fall_error), (rise, rise_error), folds, free = _turned(*halves, rises)
-    return Play(
-        nominal=nominal.angle(),
-        below=fall,
-        above=rise,
-        folds=folds,
-        free=free,
-        error=np.maximum(fall_error, rise_error),
-        nominal_error=nominal.error() + 2 * EPS * nominal.angle(),
-        **others,
-    )
+    small = np.where(r == 0.0, 0.0, small)
+    margin = np.minimum((other + side) - d, d - abs(other - side))
+    return _of_angles((least, nominal, greatest), rises, small, margin)
 
 
 def _opened(d: Array, side: float, other: float, change: Array, scale: Array) -> _Half:
-    """Return the angle between sides d and ``own`` opposite to a side ``other + change``."""
+    """Return the angle between two sides, ``d`` and ``side``, opposite to ``other + change``."""
     excess, around = (other - side) + change, (other + side) + change
-    near = EPS * (2.5 * d + 1.5 * np.abs(excess))
-    far = EPS * (2.5 * d + 1.5 * np.abs(around))
-    error = (
-        (far * np.abs(d + excess) + near * np.abs(around - d)) / scale,
-        (near * np.abs(around + d) + far * np.abs(d - excess)) / scale,
-    )
     sine2 = (around - d) * (d + excess) / scale
     cosine2 = (d - excess) * (around + d) / scale
     # A side below zero sets no limit, whatever the signs of the factors.
     none = other + change <= 0.0
-    return _Half.of(np.where(none, -1.0, sine2), np.where(none, 1.0, cosine2), error)
+    return _Half.of(np.where(none, -1.0, sine2), np.where(none, 1.0, cosine2))
 
 
-def slider_crank(sizes: Sizes, branch: float, link: str) -> Route:
+def _slider_crank(linkage: SliderCrank, link: str) -> Route:
     """Return the play of the slider along the guide, or of the coupler's angle."""
-    crank, coupler, offset = sizes["crank"], sizes["coupler"], sizes["offset"]
-    gap_blur = EPS * (abs(offset) + 2.0 * crank)
-    measure = _across_slider if link == "slider" else _across_coupler
-    across = partial(measure, coupler=coupler, gap_blur=gap_blur)
+    crank, coupler, offset = linkage.unit_lengths.values()
+    along = link == "slider"
 
-    def at(theta: ArrayLike, radius: ArrayLike, guide: ArrayLike) -> Play:
-        angle = np.asarray(theta, dtype=float)
-        play = across(offset - crank * np.sin(angle), radius, guide)
-        moved = crank * np.abs(angle)
-        if link == "slider":
-            start = crank * np.cos(angle)
-            nominal = start + branch * play.nominal
-            error = play.nominal_error + 2 * EPS * (np.abs(start) + np.abs(nominal))
-            return _placed(play, nominal, error, -branch, moved)
-        nominal = np.pi / 2.0 - branch * play.nominal
-        return _placed(play, nominal, play.nominal_error + 4.0 * EPS * np.pi, branch, moved)
+    def position(theta: Array) -> CrankPosition:
+        gap = offset - crank * np.sin(theta)
+        sum_error = EPS * (abs(offset) + 2.0 * crank)
+        margin_error = EPS * (coupler + np.abs(gap) + crank * np.abs(theta)) + 2.0 * sum_error
+        # Of the gap, and of the lengths that it is compared with.
+        error = sum_error + 2.0 * EPS * (coupler + np.abs(gap))
+        if along:
+            start = crank * np.cos(theta)
+            return CrankPosition(gap, error, start, 2.0 * EPS * np.abs(start), margin_error)
+        return CrankPosition(gap, error, np.full_like(gap, np.pi / 2.0), EPS * np.pi, margin_error)
 
     def candidates(radius: float, guide: float) -> tuple[float, ...]:
         edge = coupler - radius - guide
@@ -271,64 +257,35 @@ def slider_crank(sizes: Sizes, branch: float, link: str) -> Route:
     def crank_at(gap: float) -> float:
         return np.pi / 2.0 - _angle_of(crank - offset + gap, crank + offset - gap)
 
+    turn = -linkage.branch if along else linkage.branch
     ends = max(offset - crank, -coupler), min(offset + crank, coupler)
-    return Route(at, across, ends, candidates, crank_at)
+    across = partial(_across_slider if along else _across_coupler, coupler=coupler)
+    return Route(across, position, turn, ends, candidates, crank_at)
 
 
-def _across_slider(
-    gap: ArrayLike, radius: ArrayLike, guide: ArrayLike, *, coupler: float, gap_blur: float
-) -> Play:
+def _across_slider(gap: ArrayLike, radius: ArrayLike, guide: ArrayLike, *, coupler: float) -> Play:
     """Return the play of the slider's distance from B along the guide, B a gap beside it."""
     g, r, w = _together(gap, radius, guide)
     g = np.abs(g)
     shed = np.minimum(w, g)
     near, far = g - shed, g + w
-    roots, blurs = [], []
-    for length, side in ((coupler - r, far), (coupler + 0.0 * r, g), (coupler + r, near)):
-        square = np.where(length > 0.0, (length - side) * (length + side), 0.0)
-        root = np.sqrt(np.maximum(square, 0.0))
-        blur = (EPS * (np.abs(length) + side) + 2.0 * gap_blur) * (np.abs(length) + side)
-        roots.append(root)
-        blurs.append(_root_error(root, blur))
-    least, nominal, greatest = roots
+    least, nominal, greatest = (
+        np.sqrt(np.maximum(np.where(length > 0.0, (length - side) * (length + side), 0.0), 0.0))
+        for length, side in ((coupler - r, far), (coupler + 0.0 * r, g), (coupler + r, near))
+    )
     folds = (coupler - r) <= far
-    fall, fall_error = _legs_apart(
-        r * (2.0 * coupler - r) + w * (2.0 * g + w), least + nominal, blurs[0] + blurs[1]
-    )
-    rise, rise_error = _legs_apart(
-        r * (2.0 * coupler + r) + shed * (2.0 * g - shed), nominal + greatest, blurs[1] + blurs[2]
-    )
-    through = nominal + greatest
-    swayed = 2.0 * w * gap_blur
-    fall_error = fall_error + _over(swayed, least + nominal)
-    rise_error = rise_error + _over(swayed, through)
-    fall_error = np.where(folds, blurs[1] + blurs[2] + 2 * EPS * through, fall_error)
+    # The differences of the legs from those of their squares: small ones keep their digits.
+    fall = _over(r * (2.0 * coupler - r) + w * (2.0 * g + w), least + nominal)
+    rise = _over(r * (2.0 * coupler + r) + shed * (2.0 * g - shed), nominal + greatest)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         small = 2.0 * (r * coupler + w * g) / nominal
-    return Play(
-        nominal=nominal,
-        below=np.where(folds, through, fall),
-        above=rise,
-        small=np.where((r == 0.0) & (w * g == 0.0), 0.0, small),
-        folds=folds,
-        free=np.zeros(g.shape, dtype=bool),
-        error=np.maximum(fall_error, rise_error),
-        nominal_error=blurs[1],
-        margin=coupler - g,
-        blur=EPS * (coupler + g) + 2.0 * gap_blur,
-        place=g,
-    )
-
-
-def _legs_apart(change: Array, total: Array, blur: Array) -> tuple[Array, Array]:
-    """Return the difference of two legs from that of their squares and their sum."""
-    moved = _over(change, total)
-    relative = np.minimum(_over(blur, total, 1.0), 1.0)
-    return moved, np.asarray(moved * (relative + 6.0 * EPS))
+    small = np.where((r == 0.0) & (w * g == 0.0), 0.0, small)
+    through, free = nominal + greatest, np.zeros(g.shape, dtype=bool)
+    return Play(nominal, np.where(folds, through, fall), rise, small, folds, free, coupler - g)
 
 
 def _across_coupler(
-    gap: ArrayLike, radius: ArrayLike, guide: ArrayLike, *, coupler: float | Array, gap_blur: float
+    gap: ArrayLike, radius: ArrayLike, guide: ArrayLike, *, coupler: float | Array
 ) -> Play:
     """Return the play of the angle between the normal of the guide and the coupler.
 
@@ -336,34 +293,27 @@ def _across_coupler(
     """
     g, r, w = _together(gap, radius, guide)
     play, scale = r + w, 2.0 * coupler
-    error = ((2.0 * EPS * (coupler + np.abs(g) + play) + gap_blur) / scale,) * 2
     least, nominal, greatest = (
-        _Half.of((coupler - g - change) / scale, (coupler + g + change) / scale, error)
+        _Half.of((coupler - g - change) / scale, (coupler + g + change) / scale)
         for change in (play, 0.0 * play, -play)
     )
-    rises = play / scale, play / scale
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         small = play / (coupler * nominal.sine * nominal.cosine)
-    return _of_angles(
-        (least, nominal, greatest),
-        rises,
-        small=np.where(play == 0.0, 0.0, small),
-        margin=coupler - np.abs(g),
-        blur=EPS * (coupler + np.abs(g)) + 2.0 * gap_blur,
-        place=g,
-    )
+    small, margin = np.where(play == 0.0, 0.0, small), coupler - np.abs(g)
+    return _of_angles((least, nominal, greatest), (play / scale, play / scale), small, margin)
 
 
-def quick_return(sizes: Sizes, nominal: Callable[[ArrayLike], tuple[Array, Array]]) -> Route:
+def _quick_return(linkage: QuickReturn) -> Route:
     """Return the play of the rod's angle."""
-    frame, crank, rod = sizes["frame"], sizes["crank"], sizes["rod"]
+    frame, crank, rod = linkage.unit_lengths.values()
     short, long = abs(frame - crank), frame + crank
 
-    def at(theta: ArrayLike, radius: ArrayLike, guide: ArrayLike) -> Play:
-        angle = np.asarray(theta, dtype=float)
-        place, error = nominal(angle)
-        slide = np.sqrt((frame - crank) ** 2 + 4.0 * frame * crank * np.cos(angle / 2.0) ** 2)
-        return _placed(_beside(slide, radius, guide), place, error, 1.0, np.zeros_like(slide))
+    def position(theta: Array) -> CrankPosition:
+        motion = linkage.motion(theta)
+        slide = np.sqrt((frame - crank) ** 2 + 4.0 * frame * crank * np.cos(theta / 2.0) ** 2)
+        return CrankPosition(
+            slide, 5.0 * EPS * slide, motion.theta4, motion.error, 4.0 * EPS * slide
+        )
 
     def candidates(radius: float, guide: float) -> tuple[float, ...]:
         return (radius + guide,)
@@ -372,7 +322,7 @@ def quick_return(sizes: Sizes, nominal: Callable[[ArrayLike], tuple[Array, Array
         sine2 = (long - slide) * (long + slide)
         return _angle_of(sine2, (slide - short) * (slide + short))
 
-    return Route(at, _beside, (short, min(long, rod)), candidates, crank_at)
+    return Route(_beside, position, 1.0, (short, min(long, rod)), candidates, crank_at)
 
 
 def _beside(slide: ArrayLike, radius: ArrayLike, guide: ArrayLike) -> Play:
@@ -381,29 +331,8 @@ def _beside(slide: ArrayLike, radius: ArrayLike, guide: ArrayLike) -> Play:
     As of a coupler as long as the slide, whose end is free as far across a guide through D.
     """
     x, r, w = _together(slide, radius, guide)
-    play = _across_coupler(np.zeros_like(x), r, w, coupler=np.maximum(x, _TINY), gap_blur=0.0)
-    # The slide is uncertain by 5 round-offs of itself; the sine of the angle is play over slide.
-    unsure = 5.0 * EPS
-    slope = np.minimum(np.tan(np.minimum(play.above, np.pi / 2.0)), unsure**-0.5)
-    error = np.where(play.free, EPS * np.pi, play.error + unsure * slope)
     none = np.zeros_like(x)
-    return replace(play, nominal=none, nominal_error=none, error=error, blur=4.0 * EPS * x, place=x)
-
-
-def _placed(play: Play, nominal: Array, error: Array, turn: float, moved: Array) -> Play:
-    """Return the play about a place; with ``turn`` positive, a greater angle lowers the output.
-
-    ``moved`` is how far a change of the crank angle by one round-off changes the margin, over it.
-    """
-    below, above = (play.above, play.below) if turn > 0.0 else (play.below, play.above)
-    return replace(
-        play,
-        nominal=np.asarray(nominal),
-        below=below,
-        above=above,
-        nominal_error=np.asarray(error),
-        blur=play.blur + EPS * moved,
-    )
+    return replace(_across_coupler(none, r, w, coupler=np.maximum(x, _TINY)), nominal=none)
 
 
 def _angle_of(sine2: float, cosine2: float) -> float:

@@ -25,16 +25,7 @@ from .counterweights import (
 )
 from .inputs import finite_number, require_link
 from .machine import Machine, require_machine
-from .optimum import (
-    PER_LINK,
-    Candidate,
-    Design,
-    ForceBasis,
-    Measure,
-    Search,
-    best_counterweights,
-    sizes_of,
-)
+from .optimum import Candidate, Design, ForceBasis, Measure, Search, best_counterweights
 from .peaks import TERMS
 
 if TYPE_CHECKING:
@@ -43,8 +34,8 @@ if TYPE_CHECKING:
 # The force in the crank pin, the driving torque and the moment on the frame, equally weighted.
 DEFAULT_WEIGHTS: Mapping[str, float] = {"f23": 1.0, "torque": 1.0, "shaking_moment": 1.0}
 
-_ROUND_OFF = 2e-14
-_OPTIMAL = 1e-5
+# Least error of relative peaks, a hundred roundings; gap or KKT residual that counts as optimal.
+_ROUND_OFF, _OPTIMAL = 2e-14, 1e-5
 # At the ends of a trade-off one peak is the least possible; so much more is allowed, in units of
 # the unbalanced one, in order to choose between counterweights that are equal in it.
 _ALLOWANCE = 1e-6
@@ -175,10 +166,10 @@ def balance(
         there is no such case for the linkage, or a choice of the optimum stands beside a case.
     """
     if case is None:
-        search, everything = _searched(
+        search = _searched(
             machine, speed, acceleration, weights, links, bounds, limits, angles, measure
         )
-        return _described(machine, search, everything, best_counterweights(search))
+        return _described(search, best_counterweights(search))
     beside = {"weights": weights, "links": links, "bounds": bounds, "limits": limits}
     for name, value in beside.items():
         if value is not None:
@@ -229,8 +220,8 @@ def _searched(
     limits: Mapping[str, float] | None,
     angles: ArrayLike | None,
     measure: Measure = "peak",
-) -> tuple[Search, ForceBasis]:
-    """Return the search that :func:`balance` makes, and the basis of every force."""
+) -> Search:
+    """Return the search that :func:`balance` makes."""
     require_machine(machine)
     speed, acceleration = finite_number(speed, "speed"), finite_number(acceleration, "acceleration")
     if measure not in ("peak", "rms"):
@@ -242,34 +233,31 @@ def _searched(
         raise bad("weights", "no weight above zero", "at least one", "give --weights torque=1")
     chosen = _links(machine, links)
     masses, lengths, stiffness = _units(machine, chosen, bounds)
-    terms = tuple(term for term in TERMS if term in wanted or term in tops)
-    everything = ForceBasis(machine, chosen, speed, acceleration, TERMS, masses, lengths)
-    theta, between = _angles(machine, everything, angles)
-    peaks, _ = _sizes(everything, theta, np.zeros(PER_LINK * len(chosen)), between, measure)
+    basis = ForceBasis(machine, chosen, speed, acceleration, masses, lengths)
+    design = Design(stiffness)
+    theta, between = _angles(basis, angles)
+    # A mean over the samples has no peaks between them.
+    between = between and measure == "peak"
+    peaks, _ = _sizes(basis, theta, np.zeros(design.count), between, measure)
+    search = Search(basis, theta, between, peaks, design, wanted, tops, measure)
     zero = _zero_forces(peaks)
-    for term in terms:
+    for term in search.terms:
         if term in zero:
             fix = "leave it out: it has no peak to compare with"
             raise bad(f"weights.{term}", "no such force without counterweights", "a force", fix)
-    # A mean over the samples has no peaks between them.
-    between = between and measure == "peak"
-    basis = replace(everything, terms=terms)
-    return Search(basis, theta, between, peaks, stiffness, wanted, tops, measure), everything
+    return search
 
 
-def _described(
-    machine: Machine, search: Search, everything: ForceBasis, best: Candidate
-) -> Balancing:
+def _described(search: Search, best: Candidate) -> Balancing:
     """Return the result for the counterweights of a search."""
-    added = _counterweights(search, best.x)
-    p = Design(search.stiffness).parameters(best.x)
-    balanced, where = _sizes(everything, search.theta, p, search.between, search.measure)
+    added, p = _counterweights(search, best.x), search.design.parameters(best.x)
+    balanced, where = _sizes(search.basis, search.theta, p, search.between, search.measure)
     relative = _relative(balanced, search.unbalanced)
     gap = (best.value - best.bound) / search.unit
     over = max((relative[term] / top - 1.0 for term, top in search.limits.items()), default=0.0)
     return Balancing(
         counterweights=added,
-        machine=with_counterweights(machine, added.values()),
+        machine=with_counterweights(search.basis.machine, added.values()),
         weights=dict(search.weights),
         limits=dict(search.limits),
         value=best.value,
@@ -286,7 +274,7 @@ def _described(
             "gap or KKT residual": Check(min(gap, best.residual), _OPTIMAL),
             "limits passed, relative": Check(max(over, 0.0), 1e-7),
         },
-        provenance=provenance({"speed": repr(everything.speed)}),
+        provenance=provenance({"speed": repr(search.basis.speed)}),
     )
 
 
@@ -294,7 +282,7 @@ def _sizes(
     basis: ForceBasis, theta: Array, p: Array, between: bool, measure: Measure
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Return the peak or root mean square of each force, and the angle of the peak."""
-    sizes = sizes_of(basis, theta, p, between, measure)
+    sizes = basis.sizes(theta, p, between, measure)
     where = {term: float(at[int(np.argmax(size))]) for term, (at, size) in sizes.items()}
     return {term: float(size.max()) for term, (_, size) in sizes.items()}, where
 
@@ -304,8 +292,8 @@ def _turn_peaks(
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Return peak and its angle for every force of a machine as it is."""
     speed, acceleration = finite_number(speed, "speed"), finite_number(acceleration, "acceleration")
-    basis = ForceBasis(machine, (), speed, acceleration, TERMS, np.zeros(0), np.zeros(0))
-    theta, between = _angles(machine, basis, angles)
+    basis = ForceBasis(machine, (), speed, acceleration, np.zeros(0), np.zeros(0))
+    theta, between = _angles(basis, angles)
     return _sizes(basis, theta, np.zeros(0), between, "peak")
 
 
@@ -327,7 +315,7 @@ def _zero_forces(peaks: Mapping[str, float]) -> set[str]:
 def _counterweights(search: Search, x: Array) -> dict[str, Counterweight]:
     """Return the counterweights of design variables; none where the mass is zero."""
     basis, added = search.basis, {}
-    units = zip(basis.links, basis.masses, basis.lengths, search.stiffness, strict=True)
+    units = zip(basis.links, basis.masses, basis.lengths, search.design.stiffness, strict=True)
     for (link, mass, length, stiffness), (m, u, v) in zip(units, x.reshape(-1, 3), strict=True):
         # Inertia about the centre over mass is half the square of the radius.
         radius = length * np.sqrt(2.0 * stiffness * m)
@@ -377,7 +365,7 @@ def _units(
     return masses, offsets, stiffness
 
 
-def _angles(machine: Machine, basis: ForceBasis, angles: ArrayLike | None) -> tuple[Array, bool]:
+def _angles(basis: ForceBasis, angles: ArrayLike | None) -> tuple[Array, bool]:
     """Return the angles that count, and whether the peaks between them count too."""
     if angles is not None:
         try:
@@ -387,7 +375,7 @@ def _angles(machine: Machine, basis: ForceBasis, angles: ArrayLike | None) -> tu
         if theta.size == 0 or not np.all(np.isfinite(theta)):
             raise bad("angles", "nothing or not finite", "finite angles [rad]", "correct it")
         return theta, False
-    if not machine.linkage.crank_turns:
+    if not basis.machine.linkage.crank_turns:
         fix = "give angles that the crank can reach"
         raise bad("angles", "a crank that cannot turn fully", "angles [rad]", fix)
     return basis.grid(), True
@@ -497,16 +485,16 @@ def trade_off(
         raise bad("second", repr(second), "another force than the first", "choose another")
     require_whole("points", points, 2, 1000)
     both = {first: 1.0, second: 1.0}
-    search, everything = _searched(machine, speed, acceleration, both, links, bounds, None, angles)
+    search = _searched(machine, speed, acceleration, both, links, bounds, None, angles)
     (low, least), (high, _) = _end(search, first, second), _end(search, second, first)
-    ends = [_described(machine, search, everything, end).relative[first] for end in (low, high)]
+    ends = [_described(search, end).relative[first] for end in (low, high)]
     bests = [low]
     for limit in np.linspace(ends[0], ends[1], points)[1:-1]:
         top = max(float(limit), least + _ALLOWANCE)
         limited = replace(search, weights={second: 1.0}, limits={first: top})
         bests.append(best_counterweights(limited))
     bests.append(high)
-    results = tuple(_described(machine, search, everything, one) for one in bests)
+    results = tuple(_described(search, one) for one in bests)
     values = [np.array([one.relative[term] for one in results]) for term in (first, second)]
     # The second peak has the weight 1, and is relative already.
     gaps = np.array([max(one.value - one.bound, 1e-13) for one in bests])
@@ -517,13 +505,13 @@ def trade_off(
         first_values=values[0],
         second_values=values[1],
         points=results,
-        cases=_cases(machine, everything.speed, acceleration, offsets, angles, (first, second)),
+        cases=_cases(machine, search.basis.speed, acceleration, offsets, angles, (first, second)),
         method="limits to the first peak; second-order cone programmes, SLSQP within",
         error=gaps,
         error_norm="second peak above the least possible one, absolute, entrywise",
         error_kind="bound",
         checks={"gap or KKT residual": Check(worst, _OPTIMAL)},
-        provenance=provenance({"speed": repr(everything.speed)}),
+        provenance=provenance({"speed": repr(search.basis.speed)}),
     )
 
 

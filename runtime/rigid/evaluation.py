@@ -62,17 +62,7 @@ def pushes(
 
 
 class Evaluation:
-    """The emitted functions at given angles, speeds and accelerations.
-
-    Parameters
-    ----------
-    machine : Machine
-        The machine.
-    theta, speed, acceleration : ndarray
-        Crank angle [rad], speed [rad/s], acceleration [rad/s^2].
-    batch : tuple of int
-        Their common shape.
-    """
+    """The emitted functions at angles, speeds and accelerations whose common shape is ``batch``."""
 
     def __init__(
         self, machine: Machine, theta: Array, speed: Array, acceleration: Array, batch: Any

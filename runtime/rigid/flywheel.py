@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _FEWEST, _MOST = 1024, 2**15
-_ITERATIONS = 60
 # The speeds have settled where they move by no more, relative; the check allows for jitter.
 _SETTLED, _UNSETTLED = 16.0 * EPS, 1e-12
 # Turns between which a torque must repeat, and angles that no regular pattern meets twice.
@@ -268,7 +267,7 @@ def _motion(machine: Machine, steady: TorqueFluctuation, fluctuation: float) -> 
     reduced = system.coefficients(theta)[0]
     high, low = (speed * (1.0 + part * fluctuation / 2.0) for part in (1.0, -1.0))
     speeds: Array = np.full(theta.shape, speed)
-    for _ in range(_ITERATIONS):
+    for _ in range(60):
         load = system.load(theta, sign * speeds)
         stored = -_integral(load)
         top = _extreme(2.0 * stored - reduced * high**2)[0]

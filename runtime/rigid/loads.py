@@ -117,15 +117,7 @@ class Load:
         return (self.link,)
 
     def wrenches(self, motion: Any, crank_speed: Array) -> dict[str, Wrench]:
-        """Return the wrench on the link.
-
-        Parameters
-        ----------
-        motion : Motion
-            Of the linkage, at the crank speed.
-        crank_speed : ndarray
-            Crank speed [rad/s].
-        """
+        """Return the wrench on the link, given the motion at the crank speed [rad/s]."""
         force, couple = frozen(self, motion, crank_speed)
         return {self.link: at_first_joint(self, motion, force, couple)}
 
@@ -212,7 +204,7 @@ class Spring:
         return replace(self, stiffness=0.0, preload=0.0) if self.damping else None
 
     def wrenches(self, motion: Any, crank_speed: Array) -> dict[str, Wrench]:
-        """Return the wrench on each of the links; parameters as :meth:`Load.wrenches`."""
+        """Return the wrench on each of the links; see :meth:`Load.wrenches`."""
         a, b, span, length = self._span(motion)
         constant = self.preload - self.stiffness * self.free_length
         if constant == 0.0 and self.damping == 0.0:
@@ -305,7 +297,7 @@ class TorsionSpring:
         return replace(self, stiffness=0.0, preload=0.0) if self.damping else None
 
     def wrenches(self, motion: Any, crank_speed: Array) -> dict[str, Wrench]:
-        """Return the wrench on each of the links; parameters as :meth:`Load.wrenches`."""
+        """Return the wrench on each of the links; see :meth:`Load.wrenches`."""
         twist, rate = (
             np.asarray(_turning(motion, self.second)[i] - _turning(motion, self.first)[i])
             for i in (0, 1)

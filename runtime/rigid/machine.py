@@ -211,17 +211,8 @@ def wrenches(
 ) -> dict[str, Wrench]:
     """Return what acts on each loaded link, as force and couple at its first joint.
 
-    Parameters
-    ----------
-    machine : Machine
-        Its masses and gravity, loads and springs.
-    motion : Motion
-        Of the linkage, at the crank speed.
-    speed : array_like
-        Crank speed [rad/s].
-    part : {"all", "outside", "springs", "nonconservative"}
-        Everything; loads and weights; springs and dampers; or what no potential energy accounts
-        for: loads and dampers.
+    The motion is that at the crank speed.  The parts are everything; from outside, loads and
+    weights; springs and dampers; or what no potential energy accounts for, loads and dampers.
     """
     crank_speed = np.asarray(speed, dtype=float)
     sources: list[dict[str, Wrench]] = []

@@ -18,7 +18,8 @@ from .machine import Machine, Part, power_of, wrenches
 
 _FIRST = np.array([0.0, 1.0])
 _SECOND = np.array([1.0, 0.0])
-_SCANNED, _ZOOM, _DIP_SHARE = 720, 14, 0.05
+# Angles of a scan: every half degree of a turn.
+_SCANNED = 720
 _PROBES = (0.37, 1.91, 4.05, 5.83, 7.77)
 
 
@@ -27,18 +28,6 @@ class OneFreedom:
 
     J and J'/2 are what the emitted driving torque becomes at crank acceleration 1 and speed 0, and
     at speed 1 and acceleration 0: it is linear in acceleration and square of the speed.
-
-    Parameters
-    ----------
-    machine : Machine
-        The machine.
-    flywheel : float
-        Inertia [kg m^2] added to the crank.
-
-    Raises
-    ------
-    BadInput
-        If the inertia is negative or not finite.
     """
 
     def __init__(self, machine: Machine, flywheel: float = 0.0) -> None:
@@ -152,7 +141,7 @@ class OneFreedom:
         middle = float(np.median(inertia))
         dips = (inertia <= np.roll(inertia, 1)) & (inertia <= np.roll(inertia, -1))
         # Within half a degree of a zero nearly nothing is left.
-        dips &= inertia + self.flywheel <= _DIP_SHARE * middle
+        dips &= inertia + self.flywheel <= 0.05 * middle
         for dip in angles[dips]:
             ends = max(dip - spacing, low), min(dip + spacing, high)
             least, at = self._least_inertia(*ends)
@@ -170,7 +159,8 @@ class OneFreedom:
 
     def _least_inertia(self, low: float, high: float) -> tuple[float, float]:
         """Return the least inertia with the flywheel [kg m^2] in an interval, and its angle."""
-        for _ in range(_ZOOM):
+        # Each time to a sixth of the width, in the end to 1e-11 of it.
+        for _ in range(14):
             angles = np.linspace(low, high, 13)[1:-1]
             inertia = self.coefficients(angles)[0]
             best = int(np.argmin(inertia))

@@ -26,7 +26,7 @@ from ..core.errors import BadInput, bad
 from ..linkages.linkage import Array
 from .machine import Machine
 from .masses import MassDistribution
-from .peaks import forces_of, highest
+from .peaks import TERMS, forces_of, highest
 
 Measure: TypeAlias = Literal["peak", "rms"]
 Peaks: TypeAlias = Mapping[str, tuple[Array, Array]]  # angles (k,) and sizes (k,) of each force
@@ -81,135 +81,15 @@ class Cones:
 
 
 @dataclass(frozen=True)
-class PeakProblem:
-    """Minimise ``cost . t`` over the counterweights of all links, t the bounds of the peaks."""
-
-    stiffness: Array  # of each link's counterweight, see :func:`least`
-    cones: Sequence[Cones]  # the forces
-    # cost, ceilings: weight of each bound t, and its greatest value, ``inf`` where free
-    cost: Array
-    ceilings: Array
-
-    def bounds(self, p: Array) -> Array:
-        """Return the least t with the parameters p."""
-        t = np.zeros(len(self.cost))
-        for cone in self.cones:
-            peak = float(np.max(np.linalg.norm(cone.values(p), axis=1)))
-            t[cone.bound] = max(t[cone.bound], peak)
-        return t
-
-    def lower_bound(self, pulls: Sequence[Array], ceiling_prices: Array) -> float:
-        """Return what no counterweight can undercut, whatever the multipliers are.
-
-        Parameters
-        ----------
-        pulls : sequence of ndarray (n, d)
-            Multipliers of the forces of each of the cones; scaled down where they exceed
-            what cost and ceiling prices allow.
-        ceiling_prices : ndarray
-            Multipliers of the ceilings, zero or more.
-        """
-        capped = np.isfinite(self.ceilings)
-        prices = np.where(capped, np.maximum(ceiling_prices, 0.0), 0.0)
-        spent = np.zeros(len(self.cost))
-        for cone, pull in zip(self.cones, pulls, strict=True):
-            spent[cone.bound] += float(np.sum(np.linalg.norm(pull, axis=1)))
-        tiny = np.finfo(float).tiny
-        scale = np.minimum(1.0, (self.cost + prices) / np.maximum(spent, tiny))
-        constant = -float(prices[capped] @ self.ceilings[capped])
-        gradient = np.zeros(PER_LINK * len(self.stiffness))
-        for cone, pull in zip(self.cones, pulls, strict=True):
-            fair = scale[cone.bound] * pull
-            constant += float(np.sum(fair * cone.fixed))
-            gradient += np.einsum("nd,ndp->p", fair, cone.basis)
-        return constant + sum(map(least, gradient.reshape(-1, PER_LINK), self.stiffness))
-
-
-def hull_minimum(problem: PeakProblem) -> tuple[Array, float] | None:
-    """Return the parameters that are best in the convex hull, and a lower bound.
-
-    None where no parameters meet the ceilings.
-    """
-    import clarabel
-
-    count, bounds = PER_LINK * len(problem.stiffness), len(problem.cost)
-    # Variables: p, t, and the square of its mass for each link where that counts.
-    stiff = np.flatnonzero(problem.stiffness).tolist()
-    size = count + bounds + len(stiff)
-    rows: list[Array] = []
-    right: list[Array] = []
-    cones: list[Any] = []
-
-    def add(kind: Any, matrix: Array, constant: Array) -> None:
-        """Ask for ``constant + matrix z`` in a cone."""
-        rows.append(-matrix)
-        right.append(constant)
-        cones.append(kind)
-
-    for cone in problem.cones:
-        n, d = cone.fixed.shape
-        matrix, constant = np.zeros((n, d + 1, size)), np.zeros((n, d + 1))
-        matrix[:, 0, count + cone.bound] = 1.0
-        matrix[:, 1:, :count] = cone.basis
-        constant[:, 1:] = cone.fixed
-        rows.append(-matrix.reshape(-1, size))
-        right.append(constant.ravel())
-        cones += [clarabel.SecondOrderConeT(d + 1)] * n
-    unit = np.eye(size)
-    capped = np.flatnonzero(np.isfinite(problem.ceilings))
-    if len(capped):
-        cone = clarabel.NonnegativeConeT(len(capped))
-        add(cone, -unit[count + capped], problem.ceilings[capped])
-    for i, stiffness in enumerate(problem.stiffness):
-        m, a, b, j = unit[PER_LINK * i : PER_LINK * (i + 1)]
-        square = unit[count + bounds + stiff.index(i)] if stiffness else np.zeros(size)
-        reach = j - stiffness * square
-        placed = np.array([m + reach, m - reach, 2 * a, 2 * b])
-        add(clarabel.SecondOrderConeT(4), placed, np.zeros(4))
-        add(clarabel.SecondOrderConeT(3), np.array([m, a, b]), np.zeros(3))
-        sides = np.array([-m, (1.0 + stiffness) * m - j, reach])
-        add(clarabel.NonnegativeConeT(3), sides, np.eye(3)[0])
-        if stiffness:
-            one = np.array([1.0, -1.0, 0.0])
-            add(clarabel.SecondOrderConeT(3), np.array([square, square, 2 * m]), one)
-    settings = clarabel.DefaultSettings()
-    settings.verbose = False
-    # Clarabel's tolerances: beyond 1e-10 round-off leads it astray, and the gap no longer shrinks.
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-10
-    cost = np.concatenate([np.zeros(count), problem.cost, np.zeros(len(stiff))])
-    matrix = sparse.csc_matrix(np.concatenate(rows))
-    empty = sparse.csc_matrix((size, size))
-    solver = clarabel.DefaultSolver(empty, cost, matrix, np.concatenate(right), cones, settings)
-    solved = solver.solve()
-    if "Infeasible" in str(solved.status):
-        return None
-    prices, place, pulls = np.array(solved.z), 0, []
-    for cone in problem.cones:
-        n, d = cone.fixed.shape
-        pulls.append(-prices[place : place + n * (d + 1)].reshape(n, d + 1)[:, 1:])
-        place += n * (d + 1)
-    ceiling_prices = np.zeros(bounds)
-    ceiling_prices[capped] = prices[place : place + len(capped)]
-    p = np.array(solved.x[:count])
-    return _within(problem.stiffness, p), problem.lower_bound(pulls, ceiling_prices)
-
-
-def _within(stiffness: Array, p: Array) -> Array:
-    """Return parameters that bodies can have: the solver leaves its cones by round-off."""
-    m, a, b, j = p.reshape(-1, PER_LINK).T
-    moment = np.hypot(a, b)
-    short = np.minimum(1.0, 1.0 / np.maximum(moment, 1.0))
-    m = np.clip(np.maximum(m, moment), 0.0, 1.0)
-    least = (moment * short) ** 2 / np.where(m > 0.0, m, 1.0)
-    j = np.maximum(j, least + stiffness * m * m)
-    return np.stack([m, a * short, b * short, j], axis=1).ravel()
-
-
-@dataclass(frozen=True)
 class Design:
     """One counterweight on each link: variables x of mass, place along and across."""
 
-    stiffness: Array
+    stiffness: Array  # of each link's counterweight, see :func:`least`
+
+    @property
+    def count(self) -> int:
+        """Number of parameters p."""
+        return PER_LINK * len(self.stiffness)
 
     def parameters(self, x: Array) -> Array:
         """Return p: mass, first moments, inertia of each link's counterweight."""
@@ -252,18 +132,134 @@ class Design:
     def realised(self, p: Array, unfelt: Sequence[bool]) -> Array:
         """Return counterweights with the mass and first moments p, and the inertia if they can.
 
-        Parameters
-        ----------
-        p : ndarray
-            In the convex hull.
-        unfelt : sequence of bool
-            Links of which only the first moments matter: these get the least mass.
+        Links that are ``unfelt``, of which only the first moments matter, get the least mass.
         """
         m, a, b, _ = p.reshape(-1, PER_LINK).T
         moment = np.hypot(a, b)
         mass = np.clip(np.where(unfelt, moment, np.maximum(m, moment)), 0.0, 1.0)
         place = np.stack([a, b], axis=1) / np.where(mass > 0.0, mass, 1.0)[:, np.newaxis]
         return self.within(np.column_stack([mass, place]).ravel())
+
+
+@dataclass(frozen=True)
+class PeakProblem:
+    """Minimise ``cost . t`` over the counterweights of all links, t the bounds of the peaks."""
+
+    design: Design
+    cones: Sequence[Cones]  # the forces
+    # cost, ceilings: weight of each bound t, and its greatest value, ``inf`` where free
+    cost: Array
+    ceilings: Array
+
+    def bounds(self, p: Array) -> Array:
+        """Return the least t with the parameters p."""
+        t = np.zeros(len(self.cost))
+        for cone in self.cones:
+            peak = float(np.max(np.linalg.norm(cone.values(p), axis=1)))
+            t[cone.bound] = max(t[cone.bound], peak)
+        return t
+
+    def lower_bound(self, pulls: Sequence[Array], ceiling_prices: Array) -> float:
+        """Return what no counterweight can undercut, whatever the multipliers are.
+
+        ``pulls``, (n, d) each, are those of the forces of each of the cones, scaled down where they
+        exceed what cost and ceiling prices allow; ``ceiling_prices`` those of the ceilings.
+        """
+        capped = np.isfinite(self.ceilings)
+        prices = np.where(capped, np.maximum(ceiling_prices, 0.0), 0.0)
+        spent = np.zeros(len(self.cost))
+        for cone, pull in zip(self.cones, pulls, strict=True):
+            spent[cone.bound] += float(np.sum(np.linalg.norm(pull, axis=1)))
+        tiny = np.finfo(float).tiny
+        scale = np.minimum(1.0, (self.cost + prices) / np.maximum(spent, tiny))
+        constant = -float(prices[capped] @ self.ceilings[capped])
+        gradient = np.zeros(self.design.count)
+        for cone, pull in zip(self.cones, pulls, strict=True):
+            fair = scale[cone.bound] * pull
+            constant += float(np.sum(fair * cone.fixed))
+            gradient += np.einsum("nd,ndp->p", fair, cone.basis)
+        return constant + sum(map(least, gradient.reshape(-1, PER_LINK), self.design.stiffness))
+
+
+def hull_minimum(problem: PeakProblem) -> tuple[Array, float] | None:
+    """Return the parameters that are best in the convex hull, and a lower bound.
+
+    None where no parameters meet the ceilings.
+    """
+    import clarabel
+
+    design = problem.design
+    count, bounds = design.count, len(problem.cost)
+    # Variables: p, t, and the square of its mass for each link where that counts.
+    stiff = np.flatnonzero(design.stiffness).tolist()
+    size = count + bounds + len(stiff)
+    rows: list[Array] = []
+    right: list[Array] = []
+    cones: list[Any] = []
+
+    def add(kind: Any, matrix: Array, constant: Array) -> None:
+        """Ask for ``constant + matrix z`` in a cone."""
+        rows.append(-matrix)
+        right.append(constant)
+        cones.append(kind)
+
+    for cone in problem.cones:
+        n, d = cone.fixed.shape
+        matrix, constant = np.zeros((n, d + 1, size)), np.zeros((n, d + 1))
+        matrix[:, 0, count + cone.bound] = 1.0
+        matrix[:, 1:, :count] = cone.basis
+        constant[:, 1:] = cone.fixed
+        rows.append(-matrix.reshape(-1, size))
+        right.append(constant.ravel())
+        cones += [clarabel.SecondOrderConeT(d + 1)] * n
+    unit = np.eye(size)
+    capped = np.flatnonzero(np.isfinite(problem.ceilings))
+    if len(capped):
+        cone = clarabel.NonnegativeConeT(len(capped))
+        add(cone, -unit[count + capped], problem.ceilings[capped])
+    for i, stiffness in enumerate(design.stiffness):
+        m, a, b, j = unit[PER_LINK * i : PER_LINK * (i + 1)]
+        square = unit[count + bounds + stiff.index(i)] if stiffness else np.zeros(size)
+        reach = j - stiffness * square
+        placed = np.array([m + reach, m - reach, 2 * a, 2 * b])
+        add(clarabel.SecondOrderConeT(4), placed, np.zeros(4))
+        add(clarabel.SecondOrderConeT(3), np.array([m, a, b]), np.zeros(3))
+        sides = np.array([-m, (1.0 + stiffness) * m - j, reach])
+        add(clarabel.NonnegativeConeT(3), sides, np.eye(3)[0])
+        if stiffness:
+            one = np.array([1.0, -1.0, 0.0])
+            add(clarabel.SecondOrderConeT(3), np.array([square, square, 2 * m]), one)
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    # Clarabel's tolerances: beyond 1e-10 round-off leads it astray, and the gap no longer shrinks.
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-10
+    cost = np.concatenate([np.zeros(count), problem.cost, np.zeros(len(stiff))])
+    matrix = sparse.csc_matrix(np.concatenate(rows))
+    empty = sparse.csc_matrix((size, size))
+    solver = clarabel.DefaultSolver(empty, cost, matrix, np.concatenate(right), cones, settings)
+    solved = solver.solve()
+    if "Infeasible" in str(solved.status):
+        return None
+    prices, place, pulls = np.array(solved.z), 0, []
+    for cone in problem.cones:
+        n, d = cone.fixed.shape
+        pulls.append(-prices[place : place + n * (d + 1)].reshape(n, d + 1)[:, 1:])
+        place += n * (d + 1)
+    ceiling_prices = np.zeros(bounds)
+    ceiling_prices[capped] = prices[place : place + len(capped)]
+    p = np.array(solved.x[:count])
+    return _within(design.stiffness, p), problem.lower_bound(pulls, ceiling_prices)
+
+
+def _within(stiffness: Array, p: Array) -> Array:
+    """Return parameters that bodies can have: the solver leaves its cones by round-off."""
+    m, a, b, j = p.reshape(-1, PER_LINK).T
+    moment = np.hypot(a, b)
+    short = np.minimum(1.0, 1.0 / np.maximum(moment, 1.0))
+    m = np.clip(np.maximum(m, moment), 0.0, 1.0)
+    least = (moment * short) ** 2 / np.where(m > 0.0, m, 1.0)
+    j = np.maximum(j, least + stiffness * m * m)
+    return np.stack([m, a * short, b * short, j], axis=1).ravel()
 
 
 @dataclass(frozen=True)
@@ -279,9 +275,9 @@ class Candidate:
 class _Epigraph:
     """The descent in ``z = (x, t)``: minimise ``cost . t`` with ``|F|^2 <= t^2`` at every angle."""
 
-    def __init__(self, problem: PeakProblem, design: Design) -> None:
-        self.problem, self.design = problem, design
-        links = len(design.stiffness)
+    def __init__(self, problem: PeakProblem) -> None:
+        self.problem, self.design = problem, problem.design
+        links = len(self.design.stiffness)
         low, high = np.tile([0.0, -1.0, -1.0], links), np.ones(_PLACES * links)
         self.n = len(low)
         self.cost = np.concatenate([np.zeros(self.n), problem.cost])
@@ -395,12 +391,13 @@ class ForceBasis:
     # speed, acceleration: of the crank [rad/s, rad/s^2]
     speed: float
     acceleration: float
-    terms: Sequence[str]  # which forces
     # masses, lengths: units of mass [kg] and length [m] of each link's parameters
     masses: Array
     lengths: Array
 
-    def forces(self, theta: Array, p: Array | None = None) -> dict[str, Array]:
+    def forces(
+        self, theta: Array, p: Array | None = None, terms: Sequence[str] = TERMS
+    ) -> dict[str, Array]:
         """Return each term (n, d) at n angles, with the parameters p of the counterweights."""
         machine = self.machine
         if p is not None:
@@ -409,17 +406,17 @@ class ForceBasis:
                 added = self._distribution(i, p[PER_LINK * i : PER_LINK * (i + 1)])
                 masses[link] = masses.get(link, MassDistribution()) + added
             machine = replace(machine, masses=masses)
-        return forces_of(machine, theta, self.speed, self.acceleration, self.terms)
+        return forces_of(machine, theta, self.speed, self.acceleration, terms)
 
-    def unit_forces(self, theta: Array) -> dict[str, Array]:
+    def unit_forces(self, theta: Array, terms: Sequence[str]) -> dict[str, Array]:
         """Return what each scaled parameter adds: (n, d, 4 links) for each term.
 
         The unit vectors are differences of bodies that exist: a point at the first joint, a ring
         about it, and points beside it.
         """
         bodies = ((1, 0, 0, 0), (1, 1, 0, 1), (1, 0, 1, 1), (1, 0, 0, 1))
-        columns: dict[str, list[Array]] = {term: [] for term in self.terms}
-        drive = (self.speed, self.acceleration, self.terms)
+        columns: dict[str, list[Array]] = {term: [] for term in terms}
+        drive = (self.speed, self.acceleration, terms)
         for i, link in enumerate(self.links):
             alone = [
                 replace(
@@ -435,6 +432,29 @@ class ForceBasis:
                 parts += [mass[term], along[term] - ring[term], across[term] - ring[term]]
                 parts += [ring[term] - mass[term]]
         return {term: np.stack(parts, axis=-1) for term, parts in columns.items()}
+
+    def sizes(
+        self,
+        theta: Array,
+        p: Array,
+        between: bool,
+        measure: Measure,
+        terms: Sequence[str] = TERMS,
+    ) -> dict[str, tuple[Array, Array]]:
+        """Return angles and sizes of the highest peaks of each term with parameters p [N; N m].
+
+        The root mean square counts as one peak, at the first of the angles.
+        """
+        if between:
+            peaks = highest(lambda at: self.forces(at, p, terms), theta, around=True)
+            return {term: (at, np.linalg.norm(each, axis=1)) for term, (at, each) in peaks.items()}
+        sizes = {}
+        for term, force in self.forces(theta, p, terms).items():
+            size = np.linalg.norm(force, axis=1)
+            top = int(np.argmax(size))
+            whole = size[top] if measure == "peak" else np.sqrt(np.mean(size**2))
+            sizes[term] = (theta[top : top + 1], np.array([whole]))
+        return sizes
 
     def _distribution(self, i: int, p: Array) -> MassDistribution:
         m, a, b, j = (float(x) for x in p)
@@ -459,11 +479,11 @@ class ForceBasis:
 class Search:
     """Everything about one search that stays as it is."""
 
-    basis: ForceBasis  # the forces that count
+    basis: ForceBasis
     theta: Array  # sampled angles
     between: bool  # True where peaks between the samples count
     unbalanced: Mapping[str, float]  # peaks of every force without counterweights [N; N m]
-    stiffness: Array  # of the counterweight of each link of the basis, see :func:`least`
+    design: Design
     # weights, limits: of the relative peaks
     weights: Mapping[str, float]
     limits: Mapping[str, float]
@@ -472,9 +492,8 @@ class Search:
 
     @property
     def terms(self) -> tuple[str, ...]:
-        """Forces with a weight or a limit, in the order of the basis."""
-        used = {*self.weights, *self.limits}
-        return tuple(term for term in self.basis.terms if term in used)
+        """Forces with a weight or a limit."""
+        return tuple(term for term in TERMS if term in {*self.weights, *self.limits})
 
     @property
     def unit(self) -> float:
@@ -492,7 +511,7 @@ class Search:
         cost = units * [self.weights.get(term, 0.0) for term in terms]
         tops = np.array([self.limits.get(term, np.inf) for term in terms]) / units
         joined = np.concatenate([theta[term] for term in terms])
-        fixed, basis = self.basis.forces(joined), self.basis.unit_forces(joined)
+        fixed, basis = self.basis.forces(joined, None, terms), self.basis.unit_forces(joined, terms)
         cones, first = [], 0
         for k, term in enumerate(terms):
             rows = slice(first, first + len(theta[term]))
@@ -500,7 +519,7 @@ class Search:
             cone = Cones(k, fixed[term][rows] / size, basis[term][rows] / size)
             cones.append(cone if self.measure == "peak" else _mean_square(cone))
             first += len(theta[term])
-        return PeakProblem(self.stiffness, cones, cost, tops)
+        return PeakProblem(self.design, cones, cost, tops)
 
     def start(self) -> PeakProblem:
         """Return the problem with some of the samples, or all that count."""
@@ -510,7 +529,7 @@ class Search:
 
     def peaks(self, p: Array) -> dict[str, tuple[Array, Array]]:
         """Return angles and relative sizes of the highest peaks with parameters p."""
-        sizes = sizes_of(self.basis, self.theta, p, self.between, self.measure)
+        sizes = self.basis.sizes(self.theta, p, self.between, self.measure, self.terms)
         return {term: (at, size / self.unbalanced[term]) for term, (at, size) in sizes.items()}
 
     def value(self, peaks: Peaks) -> float:
@@ -546,25 +565,6 @@ class Search:
         return replace(problem, cones=cones), excess
 
 
-def sizes_of(
-    basis: ForceBasis, theta: Array, p: Array, between: bool, measure: Measure
-) -> dict[str, tuple[Array, Array]]:
-    """Return angles and sizes of the highest peaks of each force with parameters p [N; N m].
-
-    The root mean square counts as one peak, at the first of the angles.
-    """
-    if between and measure == "peak":
-        peaks = highest(lambda at: basis.forces(at, p), theta, around=True)
-        return {term: (at, np.linalg.norm(force, axis=1)) for term, (at, force) in peaks.items()}
-    sizes = {}
-    for term, force in basis.forces(theta, p).items():
-        size = np.linalg.norm(force, axis=1)
-        top = int(np.argmax(size))
-        whole = size[top] if measure == "peak" else np.sqrt(np.mean(size**2))
-        sizes[term] = (theta[top : top + 1], np.array([whole]))
-    return sizes
-
-
 def _mean_square(cone: Cones) -> Cones:
     """Return one force of a few components whose magnitude is the root mean square of many."""
     count = cone.basis.shape[-1]
@@ -576,8 +576,7 @@ def _mean_square(cone: Cones) -> Cones:
 def best_counterweights(search: Search) -> Candidate:
     """Return the best counterweights that are known, and the proof of how good they are."""
     problem, p, bound = _hull(search)
-    design = Design(search.stiffness)
-    unfelt = _unfelt(problem)
+    design, unfelt = search.design, _unfelt(problem)
     candidates = [_descended(search, problem, bound, design.realised(p, unfelt))]
     if candidates[0].value - candidates[0].bound > _GAP * search.unit:
         candidates += [_descended(search, problem, bound, x) for x in _starts(design)]
@@ -609,8 +608,8 @@ def _out_of_reach(search: Search, problem: PeakProblem) -> BadInput:
         capped = [cone for cone in problem.cones if np.isfinite(problem.ceilings[cone.bound])]
         tops = problem.ceilings[[cone.bound for cone in capped]]
         shared = [Cones(0, c.fixed / t, c.basis / t) for c, t in zip(capped, tops, strict=True)]
-        solved = hull_minimum(PeakProblem(problem.stiffness, shared, np.ones(1), free))
-        p = np.zeros(PER_LINK * len(search.stiffness)) if solved is None else solved[0]
+        solved = hull_minimum(PeakProblem(search.design, shared, np.ones(1), free))
+        p = np.zeros(search.design.count) if solved is None else solved[0]
         problem, excess = search.exchanged(problem, p)
         if excess < _HULL_EXCESS:
             break
@@ -632,7 +631,7 @@ def _rounded_up(value: float) -> str:
 def _starts(design: Design) -> list[Array]:
     """Return further starts, the same ones each time: nothing, and four directions."""
     links = len(design.stiffness)
-    starts = [design.realised(np.zeros(PER_LINK * links), [False] * links)]
+    starts = [design.realised(np.zeros(design.count), [False] * links)]
     for u, v in ((-0.7, 0.0), (0.7, 0.0), (0.0, 0.7), (0.0, -0.7)):
         p = np.tile([0.5, 0.5 * u, 0.5 * v, 0.25], links)
         starts.append(design.realised(p, [False] * links))
@@ -641,16 +640,16 @@ def _starts(design: Design) -> list[Array]:
 
 def _descended(search: Search, problem: PeakProblem, bound: float, start: Array) -> Candidate:
     """Return the local optimum near a start, true peaks included, or that where it is no worse."""
-    design = Design(search.stiffness)
+    design = search.design
     problem, _ = search.exchanged(problem, design.parameters(start))
     x = start
     for _ in range(_ROUNDS):
-        x = _Epigraph(problem, design).minimum(x)
+        x = _Epigraph(problem).minimum(x)
         problem, excess = search.exchanged(problem, design.parameters(x))
         if excess < _EXCESS:
             break
     # The last peaks alone: of several angles beside one peak the multipliers would be a mixture.
-    epigraph = _Epigraph(search.exchanged(search.start(), design.parameters(x))[0], design)
+    epigraph = _Epigraph(search.exchanged(search.start(), design.parameters(x))[0])
     best = design.within(epigraph.polished(x))
     value = search.penalised(design.parameters(best))
     if not value - bound <= _GAP * search.unit:
@@ -672,7 +671,7 @@ def _lightened(
     search: Search, problem: PeakProblem, candidate: Candidate, unfelt: Sequence[bool]
 ) -> Array:
     """Return the design with the least mass that serves as well."""
-    design, x = Design(search.stiffness), candidate.x
+    design, x = search.design, candidate.x
     allowed = candidate.value + 1e-12 * search.unit
     lighter = design.realised(design.parameters(x), unfelt)
     for place in range(0, len(x), _PLACES):

@@ -123,14 +123,8 @@ def forces_of(
 def highest(forces: Forces, theta: Array, *, around: bool) -> dict[str, tuple[Array, Array]]:
     """Return angles (k,) and values (k, d) of the highest local peaks of each force, by angle.
 
-    Parameters
-    ----------
-    forces : callable
-        Angles to forces by name, each of shape (n, d).
-    theta : ndarray
-        Evenly spaced samples.
-    around : bool
-        Whether they make a whole turn, the end not repeated; else the ends count.
+    The samples ``theta`` are evenly spaced, and with ``around`` make a whole turn, the end not
+    repeated; else the ends count.
     """
     sampled = forces(theta)
     width = float(theta[1] - theta[0])

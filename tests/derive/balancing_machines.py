@@ -1,4 +1,4 @@
-"""Machines that the balancing tests share, and their forces from the equations of free bodies."""
+"""Machines that the rigid tests share, and their forces from the equations of free bodies."""
 
 from __future__ import annotations
 
@@ -21,6 +21,15 @@ def smith():
     weights = zip(linkage.links, (0.5 * POUND, POUND, POUND), strict=True)
     bars = {k: MassDistribution.uniform_bar(m, linkage.lengths[k]) for k, m in weights}
     return Machine(linkage, bars)
+
+
+def crooked_bodies(linkage):
+    """Return a body for each link of any linkage, its centre beside the link."""
+    bodies = ((0.4, 0.03, 0.01, 0.002), (0.7, 0.15, -0.04, 0.006), (0.6, 0.1, 0.02, 0.004))
+    return {
+        link: MassDistribution.about_centre(*body)
+        for link, body in zip(linkage.links, bodies, strict=True)
+    }
 
 
 def random_machine(rng):

@@ -81,20 +81,6 @@ def test_first_order_is_that_of_the_transmission_angle():
         assert least.width == pytest.approx(least.small, rel=1e-14)
 
 
-def test_double_rocker_near_its_dead_position_by_trial():
-    linkage = FourBar(10.0, 8.0, 4.0, 10.0)
-    (low, high), *_ = linkage.crank_ranges()
-    for theta in (low + 1e-3, low + 1e-2, high - 1e-3, high - 1e-9):
-        exact = clearance_range(linkage, 0.3, theta)
-        assert exact.folds
-        # Every follower angle whose pin is within the reach of the coupler.
-        pin = 8.0 * np.exp(1j * theta)
-        turn = np.linspace(-np.pi, np.pi, 500_001)
-        tip = 10.0 + 10.0 * np.exp(1j * (turn + exact.nominal))
-        inside = turn[np.abs(np.abs(tip - pin) - 4.0) <= 0.15]
-        assert [-inside.min(), inside.max()] == pytest.approx(sides(exact), abs=TURN / 2.5e5)
-
-
 def test_a_follower_without_any_limit():
     found = clearance_range(FourBar(2.0, 1.0, 1.2, 0.3), 1.0, [0.473])
     assert found.free.all() and found.width == pytest.approx(TURN)

@@ -24,7 +24,7 @@ from elastolink.runtime.rigid import (
     trade_off,
     with_counterweights,
 )
-from elastolink.runtime.rigid.optimum import Cones, PeakProblem, hull_minimum, least
+from elastolink.runtime.rigid.optimum import Cones, Design, PeakProblem, hull_minimum, least
 from elastolink.runtime.rigid.peaks import TERMS
 
 SPEED = 10.0
@@ -211,7 +211,7 @@ def test_lower_bounds_of_a_link_against_all_its_counterweights(stiffness):
         assert reached - 0.03 < lowest <= reached + 1e-12
     for _ in range(2):
         cone = Cones(0, rng.normal(size=(9, 2)), rng.normal(size=(9, 2, 4)))
-        problem = PeakProblem(np.array([stiffness]), [cone], np.ones(1), np.full(1, np.inf))
+        problem = PeakProblem(Design(np.array([stiffness])), [cone], np.ones(1), np.full(1, np.inf))
         best, bound = hull_minimum(problem)
         forces = cone.fixed[:, None] + np.einsum("ndp,kp->nkd", cone.basis, p)
         lowest = float(np.min(np.max(np.linalg.norm(forces, axis=-1), axis=0)))

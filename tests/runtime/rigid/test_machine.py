@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.trigonometric import differentiated
 from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
 from elastolink.runtime.rigid import Load, Machine, MassDistribution, Spring, TorsionSpring
 
@@ -18,12 +19,6 @@ LINKAGES = [
     SliderCrank(0.1, 0.35, 0.04),
     QuickReturn(0.3, 0.1, 0.6),
 ]
-
-
-def derivative(values: np.ndarray) -> np.ndarray:
-    """Return the derivative of samples over a turn, exact for a band-limited function."""
-    harmonics = np.fft.rfft(values)
-    return np.fft.irfft(1j * np.arange(harmonics.size) * harmonics, n=values.size)
 
 
 def test_kinetic_energy_of_points_is_theirs() -> None:
@@ -57,7 +52,7 @@ def test_weights_and_springs_pull_down_their_potential(linkage) -> None:
     for source in sources:
         machine = Machine(linkage, **source)
         power = machine.power(THETA, 2.0, "all")
-        slope = derivative(machine.potential_energy(THETA))
+        slope = differentiated(machine.potential_energy(THETA), 2.0 * np.pi)
         # Spectral differentiation of 256 samples: round-off times the highest harmonic.
         np.testing.assert_allclose(power, -2.0 * slope, atol=1e-11 * np.max(np.abs(slope)))
     # Relative angles grow over a turn: a finite difference there.

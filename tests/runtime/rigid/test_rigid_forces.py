@@ -7,8 +7,9 @@ import pickle
 
 import numpy as np
 import pytest
-from balancing_machines import nine_equations, smith
+from balancing_machines import crooked_bodies, nine_equations, smith
 from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.trigonometric import differentiated
 from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
 from elastolink.runtime.rigid import (
     Load,
@@ -38,19 +39,11 @@ LINKAGES = {
 EVERY = pytest.mark.parametrize("linkage", LINKAGES.values(), ids=LINKAGES)
 
 
-def masses_of(linkage, straight=False):
-    bodies = ((0.4, 0.03, 0.01, 0.002), (0.7, 0.15, -0.04, 0.006), (0.6, 0.1, 0.02, 0.004))
-    return {
-        link: MassDistribution.about_centre(mass, along, 0.0 if straight else across, inertia)
-        for link, (mass, along, across, inertia) in zip(linkage.links, bodies, strict=True)
-    }
-
-
 def loaded(linkage):
     _, second, third = linkage.links
     return Machine(
         linkage,
-        masses_of(linkage),
+        crooked_bodies(linkage),
         gravity=(0.5, -9.81),
         loads=(
             Load(third, (30.0, -20.0), 1.5, 0.1, 0.03, axes="link"),
@@ -63,13 +56,6 @@ def loaded(linkage):
             TorsionSpring("frame", third, damping=0.2, preload=0.4),
         ),
     )
-
-
-def derivative(values):
-    """Return the derivative of samples over a turn, exact for a band-limited function."""
-    harmonics = np.fft.rfft(values, axis=0)
-    order = np.arange(harmonics.shape[0]).reshape(-1, *[1] * (values.ndim - 1))
-    return np.fft.irfft(1j * order * harmonics, n=len(values), axis=0)
 
 
 @pytest.mark.parametrize("acceleration", [0.0, 40.0])
@@ -89,14 +75,14 @@ def test_power_balance_with_everything(linkage) -> None:
     found = driving_torque(machine, THETA, speed, acceleration)
     kinetic = machine.kinetic_energy(THETA, 1.0)
     # d(J omega^2 / 2)/dt with J = 2 T(omega = 1)
-    gained = derivative(kinetic) * speed**3 + 2.0 * kinetic * speed * acceleration
+    gained = differentiated(kinetic, TURN) * speed**3 + 2.0 * kinetic * speed * acceleration
     balance = found.torque * speed + machine.power(THETA, speed, "all") - gained
     assert np.max(np.abs(balance)) < 1e-10 * np.max(np.abs(found.torque * speed))
 
 
 @EVERY
 def test_springs_do_not_shake_the_frame(linkage) -> None:
-    plain = Machine(linkage, masses_of(linkage))
+    plain = Machine(linkage, crooked_bodies(linkage))
     sprung = Machine(linkage, plain.masses, springs=loaded(linkage).springs)
     for function in (shaking_force, shaking_moment):
         one, other = function(plain, THETA, 9.0), function(sprung, THETA, 9.0)
@@ -140,9 +126,9 @@ def test_unit_systems(linkage, length, mass) -> None:
             own.across * mass * length,
             own.inertia * mass * length**2,
         )
-        for link, own in masses_of(linkage).items()
+        for link, own in crooked_bodies(linkage).items()
     }
-    one = rigid_forces(Machine(linkage, masses_of(linkage)), THETA, 4.0, 3.0)
+    one = rigid_forces(Machine(linkage, crooked_bodies(linkage)), THETA, 4.0, 3.0)
     two = rigid_forces(Machine(other, scaled), THETA, 4.0, 3.0)
     for name, values in one.values.items():
         moment = name in ("torque", "shaking_moment") or name.startswith("couple")
@@ -170,7 +156,7 @@ def test_broadcasting_of_speeds_and_accelerations() -> None:
 
 
 def test_long_arrays_are_those_of_their_parts() -> None:
-    machine = Machine(LINKAGES["crank rocker"], masses_of(LINKAGES["crank rocker"]))
+    machine = Machine(LINKAGES["crank rocker"], crooked_bodies(LINKAGES["crank rocker"]))
     theta = np.linspace(0.0, 50.0, 10_001)
     whole = rigid_forces(machine, theta, 3.0)
     part = rigid_forces(machine, theta[8000:], 3.0)
@@ -197,7 +183,7 @@ def test_long_arrays_are_those_of_their_parts() -> None:
 def test_refusals_name_what_is_wrong(given, named) -> None:
     # (3, 2.5, 1, 3) reaches crank angles of 0.72 to 1.62 rad either way.
     linkage = FourBar(0.3, 0.25, 0.1, 0.3)
-    machine = Machine(linkage, masses_of(linkage))
+    machine = Machine(linkage, crooked_bodies(linkage))
     with pytest.raises(BadInput, match=named):
         rigid_forces(machine, **{"theta": 1.0, "speed": 1.0, **given})
     with pytest.raises(BadInput, match="machine"):
@@ -271,7 +257,7 @@ def test_a_peak_between_the_places_is_looked_at() -> None:
 
 def test_a_force_along_one_axis_is_drawn_over_the_turn() -> None:
     linkage = LINKAGES["slider-crank"]
-    found = rigid_forces(Machine(linkage, masses_of(linkage)), np.linspace(0.0, 6.0, 61), 5.0)
+    found = rigid_forces(Machine(linkage, crooked_bodies(linkage)), np.linspace(0.0, 6.0, 61), 5.0)
     axes = found.plot(joint="41")
     np.testing.assert_array_equal(axes.lines[0].get_ydata(), found["y41"])
     assert axes.get_ylabel() == "pin force 41, Y [N]"

@@ -109,11 +109,6 @@ class Modal:
     values: Array  # mu, ascending, (n,)
     vectors: Array  # x, of unit generalised mass, (size, n)
 
-    @property
-    def negative(self) -> int:
-        """How many of the values are negative."""
-        return int(np.sum(self.values < 0.0))
-
 
 def modal(assembly: Assembly, omega: float) -> Modal:
     """Solve ``D x = mu M x`` at a frequency [rad/s] away from the poles."""
@@ -187,8 +182,13 @@ def certain_count(problem: DynamicStiffness, omega: float) -> tuple[float, int]:
         if certain:
             return omega, round(float(problem.poles(omega))) + negative
         omega *= 1.0 + 1e-7
-    finer = divided_for(problem, omega)
-    return omega, round(float(finer.poles(omega))) + modal(finer.assembly, omega).negative
+    return omega, _count(divided_for(problem, omega), omega)
+
+
+def _count(finer: DynamicStiffness, omega: float) -> int:
+    """Return how many frequencies lie below one that is no pole of the pieces."""
+    negative = np.sum(modal(finer.assembly, omega).values < 0.0)
+    return round(float(finer.poles(omega))) + int(negative)
 
 
 def isolate(problem: DynamicStiffness, whole: Interval) -> list[Interval]:
@@ -275,11 +275,8 @@ def _confirmed(
     """Return the smallest distance on either side of frequencies that counts confirm."""
     width = max(4.0 * UNIT * places[-1], least / 8.0)
     for _ in range(12):
-        low, high = places[0] - width, places[-1] + width
-        below, above = (
-            round(float(finer.poles(place))) + modal(finer.assembly, float(place)).negative
-            for place in (low, high)
-        )
+        below = _count(finer, float(places[0] - width))
+        above = _count(finer, float(places[-1] + width))
         if below == before and above == before + len(places):
             return float(width), True
         width *= 4.0
@@ -582,15 +579,8 @@ def wittrick_williams(
 
 def rigid_motions(problem: DynamicStiffness) -> list[Mode]:
     """Return the motions that meet no stiffness, as modes of frequency 0."""
-    from scipy.linalg import eigh
-
-    still = 0.0
-    stiffness, mass = problem.assembly.stiffness(still), problem.mass(still)
-    scale = 1.0 / np.sqrt(np.diagonal(mass))
-    both = np.outer(scale, scale)
-    _, turned = eigh(stiffness * both, mass * both)
-    vectors = scale[:, None] * turned
-    forms, _, sizes = quadratic_forms(problem.assembly, still, vectors)
+    vectors = modal(problem.assembly, 0.0).vectors
+    forms, _, sizes = quadratic_forms(problem.assembly, 0.0, vectors)
     # Motions whose strain energy is below this, over the sizes of its terms, meet no stiffness.
     soft = np.abs(np.diagonal(forms)) <= 1e-11 * sizes
     return [Mode(0.0, 0.0, problem, vector, True) for vector in vectors.T[soft]]

@@ -63,11 +63,6 @@ def multiplier_maxima(
     modes stand apart from the rest the speeds are swept on those alone; what that costs at the
     highest speed is in the error.  A maximum between two samples, of which the highest mode turns
     by 0.35 rad at most, may be missed.
-
-    Raises
-    ------
-    BadInput
-        If the range needs more than 4000 samples.
     """
     low, high = speed_range
     wanted = min(system.size, _USUAL)
@@ -87,11 +82,11 @@ def multiplier_maxima(
         )
     speed = 1.0 / np.linspace(1 / high, 1 / low, number)
     few = few_modes(system, frozen, (low, high), wanted)
-    values = few.multipliers(speed, wanted)
+    values = _multipliers(few, speed, wanted)
     real = _larger(values)
 
     def value(at: Array, mode: Whole) -> Array:
-        return np.asarray(_larger(few.multipliers(at, wanted))[np.arange(len(at)), mode])
+        return np.asarray(_larger(_multipliers(few, at, wanted))[np.arange(len(at)), mode])
 
     row, mode = _peaks(real)
     brackets = speed[row - 1], speed[row], speed[row + 1]
@@ -106,10 +101,10 @@ def multiplier_maxima(
     turn = np.repeat(np.mean(frozen[:, :wanted], axis=0), 2) * system.period / high
     slip = float(np.max(np.min(distance, axis=0) / np.abs(values[0]) / turn))
     span = np.abs(brackets[2] - brackets[0])
-    blur = _blur(around, span, np.max(noise[nearest]) + few.ready.error)
+    blur = _blur(around, span, np.max(noise[nearest]) + few.error)
     method = "local maxima of the real parts of the multipliers"
-    if few.ready.system.size < system.size:
-        method += f", on {few.ready.system.size} natural modes"
+    if few.system.size < system.size:
+        method += f", on {few.system.size} natural modes"
     checks = {
         "decoupled": Check(whole.residual, _RTOL),
         "converged": Check(whole.integration, max(_RTOL, 100 * whole.rounding)),
@@ -148,24 +143,10 @@ def refined_maxima(
     steps: int = 12,
     rtol: float = 1e-7,
 ) -> tuple[Array, Array, Array]:
-    """Refine maxima of many functions by parabolas, all at once.
+    """Refine maxima of many functions by parabolas; return places, values and errors ``(k,)``.
 
-    Parameters
-    ----------
-    call : callable
-        From places and numbers of functions to values.
-    which : ndarray of int
-        Number of each maximum's function, ``(k,)``.
-    brackets, values : tuple of ndarray
-        Places and values before, at and after each maximum, ``(k,)`` each.
-    steps : int
-        Most steps.
-    rtol : float
-        Relative step from which a maximum has settled: beyond, the values say no more.
-
-    Returns
-    -------
-    places, values, errors : ndarray, shape (k,)
+    ``call`` takes places and ``which`` functions; ``brackets`` and ``values`` stand before, at and
+    after each maximum.  One has settled where a step is below ``rtol``: the values say no more.
     """
     x, f = np.stack(brackets), np.stack(values)
     moved = np.max(np.abs(x - x[1]), axis=0)
@@ -244,47 +225,42 @@ def _meissner_maxima(
     return refined_maxima(half_trace, mode.astype(np.int64), brackets, around)
 
 
-class FewModes(NamedTuple):
-    """The lowest natural modes of a stiff system, prepared for a range of speeds."""
+def _multipliers(few: Prepared, speed: Array, count: int) -> ComplexArray:
+    """Return the multipliers of the lowest modes ``(ns, 2 count)``, two to a mode."""
+    half = few.system.size
+    found = few.monodromy(speed)
+    values, vectors = np.linalg.eig(found.scaled)
+    # In velocities of time, not of angle, a state is the same at all speeds.
+    size = np.concatenate([found.scale[:, :half], found.scale[:, half:] * speed[:, None]], 1)
+    level = _level(few, vectors * size[:, :, None])
+    order = np.argsort(level, axis=-1, kind="stable")[:, : 2 * count]
+    return np.take_along_axis(values.astype(complex), order, axis=-1)
 
-    ready: Prepared
 
-    def multipliers(self, speed: Array, count: int) -> ComplexArray:
-        """Return the multipliers of the lowest modes ``(ns, 2 count)``, two to a mode."""
-        half = self.ready.system.size
-        found = self.ready.monodromy(speed)
-        values, vectors = np.linalg.eig(found.scaled)
-        # In velocities of time, not of angle, a state is the same at all speeds.
-        size = np.concatenate([found.scale[:, :half], found.scale[:, half:] * speed[:, None]], 1)
-        level = self._level(vectors * size[:, :, None])
-        order = np.argsort(level, axis=-1, kind="stable")[:, : 2 * count]
-        return np.take_along_axis(values.astype(complex), order, axis=-1)
-
-    def _level(self, states: ComplexArray) -> Array:
-        """Return energy over action of states (q, M qd) in columns, by the modes held at 0."""
-        held = self.ready.system.without("B", *DAMPING)
-        equation = equation_of(held, np.array([self.ready.span[1]]))
-        squares, modes = (found[0, 0] for found in equation.frozen_modes(np.zeros(1)))
-        shapes = equation.scale[0][:, None] * modes
-        half = len(shapes)
-        rest = np.abs(np.linalg.solve(shapes, states[:, :half])) ** 2
-        moved = np.abs(shapes.T @ states[:, half:]) ** 2
-        rate = np.maximum(np.sqrt(np.maximum(squares, 0.0)) * equation.speed[0], 1.0)[:, None]
-        energy = rate**2 * rest + moved
-        return np.asarray(np.sum(energy, axis=1) / np.sum(energy / rate, axis=1))
+def _level(few: Prepared, states: ComplexArray) -> Array:
+    """Return energy over action of states (q, M qd) in columns, by the modes held at 0."""
+    equation = equation_of(few.system.without("B", *DAMPING), np.array([few.span[1]]))
+    squares, modes = (found[0, 0] for found in equation.frozen_modes(np.zeros(1)))
+    shapes = equation.scale[0][:, None] * modes
+    half = len(shapes)
+    rest = np.abs(np.linalg.solve(shapes, states[:, :half])) ** 2
+    moved = np.abs(shapes.T @ states[:, half:]) ** 2
+    rate = np.maximum(np.sqrt(np.maximum(squares, 0.0)) * equation.speed[0], 1.0)[:, None]
+    energy = rate**2 * rest + moved
+    return np.asarray(np.sum(energy, axis=1) / np.sum(energy / rate, axis=1))
 
 
 def few_modes(
     system: LinearPeriodic, frequency: Array, span: tuple[float, float], count: int
-) -> FewModes:
-    """Return the lowest modes over speeds; all where no few modes stand apart from the rest.
+) -> Prepared:
+    """Return the lowest modes, prepared for a range of speeds; all where no few stand apart.
 
     The frequencies with the crank held at angles ``(nt, n)`` [rad/s] tell which do.
     """
     top, low = np.max(frequency, axis=0), np.min(frequency, axis=0)
 
-    def ready(few: LinearPeriodic) -> FewModes:
-        return FewModes(prepare(few, span, samples=1, forcing=False, rtol=0.1 * _RTOL))
+    def ready(few: LinearPeriodic) -> Prepared:
+        return prepare(few, span, samples=1, forcing=False, rtol=0.1 * _RTOL)
 
     for kept in range(count, system.size):
         apart = low[kept] >= _GAP * top[kept - 1] and low[kept] >= _BEYOND * top[count - 1]

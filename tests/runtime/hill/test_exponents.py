@@ -24,10 +24,11 @@ def bands_of(f, mu, nu, bands=(0, 1, 2), k=0.0):
 @pytest.mark.parametrize("name", FUNCTIONS)
 @pytest.mark.parametrize("k", [0.0, 0.05])
 def test_the_half_trace_is_the_cosine_of_the_phase(name, k):
-    """The result's own check, at 24 points, within errors that are small."""
+    """At 24 points, within the errors themselves, which are small."""
     mu, nu = np.linspace(-1.5, 1.5, 7)[:, None], np.linspace(-0.9, 1.3, 11)
     found = bands_of(FUNCTIONS[name], mu, nu, (0, 1, 2, 5), k)
-    assert found.passed and list(found.checks)
+    (check,) = found.checks.values()
+    assert check.value <= 1.0
     assert found.error.max() < 3e-12
 
 

@@ -43,16 +43,6 @@ def test_first_order_is_the_printed_condition():
         np.testing.assert_array_equal(first.closed[0], [[False, False], [True, True]])
 
 
-@pytest.mark.parametrize("f", [COSINE, GENERAL], ids=["cosine", "general"])
-def test_one_is_the_inverse_of_the_other(f):
-    k = np.array([1e-5, 1e-3, 2e-2])
-    least = least_parameter(f, k, REGIONS)
-    assert least.passed and np.isfinite(least.mu).all()
-    for i, n in enumerate(REGIONS):
-        back = critical_damping(f, least.mu[i], (n,))
-        assert np.all(np.abs(back.damping[0] - k) <= 4 * back.error[0] + 1e-12 * k)
-
-
 def test_no_tongue():
     """f constant, and a region that nothing couples."""
     flat = PeriodicFunction([3.0])

@@ -35,7 +35,6 @@ from .equations import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Watch = Callable[[Array, Array], ArrayLike]
 
 _MOST_SAMPLES = 2_000_000
 
@@ -126,7 +125,6 @@ def constrained_motion(
     rtol: float = 1e-9,
     samples: int | ArrayLike = 200,
     guards: Sequence[Guard] | None = None,
-    watch: Watch | None = None,
     bound: float = 1e9,
     progress: bool = False,
 ) -> ConstrainedMotion:
@@ -152,10 +150,6 @@ def constrained_motion(
     guards : sequence of Guard, optional
         Pairs ``(margin, reason)``, conditions that stop the motion (status 1), with their reason
         as message; by default the system's own.
-    watch : callable, optional
-        ``watch(q, t)`` gives the largest deflection over the length of the link, from
-        ``(nt, n)`` and ``(nt,)`` to ``(nt,)``: the check ``linear range``; by default the
-        system's own.
     bound : float
         Size of a coordinate, over its size at the start, at which the motion counts as diverged.
     progress : bool
@@ -186,10 +180,9 @@ def constrained_motion(
     start = _start(system, q, qd, first)
     kept = tuple(system.guards if guards is None else guards)
     found = march(system, *start, times, rtol, kept, bound, progress)
-    watch = system.watch if watch is None else watch
-    if watch is None:
+    if system.watch is None:
         return found
-    reached = linear_range(watch, found.q, found.time)
+    reached = linear_range(system.watch, found.q, found.time)
     if not reached.passed:
         warnings.warn(
             f"deflection reaches {reached.value:.3g} of the link's length; small deflections "
@@ -357,7 +350,7 @@ def _crossing(equations: Equations, step: Step, guard: Guard, before: State, aft
     return after
 
 
-def linear_range(watch: Watch, q: Array, t: Array) -> Check:
+def linear_range(watch: Callable[[Array, Array], ArrayLike], q: Array, t: Array) -> Check:
     """Compare the largest deflection over the link's length with 5 %."""
     deflection = float(np.max(np.abs(np.asarray(watch(q, t), dtype=float))))
     return Check(deflection, LINEAR_RANGE)

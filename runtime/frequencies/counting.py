@@ -473,9 +473,7 @@ class FrameFrequencies(Result):
         return axes
 
 
-def bisected(
-    problem: Transcendental, upto: float | None, count: int | None, rtol: float
-) -> FrameFrequencies:
+def bisected(problem: Transcendental, upto: float | None, count: int | None) -> FrameFrequencies:
     """Return the frequencies of a problem by bisection on their number."""
     high = upto if upto is not None else _bracketed(problem, count or 1)
     total = int(problem.count(high))
@@ -486,7 +484,7 @@ def bisected(
         if first == last:
             continue
         middle = (low + high) / 2.0
-        if high - low <= rtol * high or not low < middle < high:
+        if high - low <= 1e-12 * high or not low < middle < high:
             found += [(middle, (high - low) / 2.0)] * (last - first)
             continue
         between = min(max(int(problem.count(middle)), first), last)
@@ -524,7 +522,6 @@ def wittrick_williams(
     *,
     upto: float | None = None,
     count: int | None = None,
-    rtol: float = 1e-12,
 ) -> FrameFrequencies:
     """Return the natural frequencies of a transcendental eigenproblem, all of them.
 
@@ -538,13 +535,11 @@ def wittrick_williams(
     ----------
     problem : Transcendental
         From :func:`dynamic_stiffness`; of another one, an emitted one say, frequencies are found
-        by bisection alone and there are no shapes.
+        by bisection alone, to 1e-12, and there are no shapes.
     upto : float, optional
         All frequencies below this one [rad/s].
     count : int, optional
         That many frequencies, the lowest ones; give one of the two.
-    rtol : float
-        Relative width where there is bisection alone.
 
     Returns
     -------
@@ -557,12 +552,12 @@ def wittrick_williams(
     BadInput
         If not exactly one of ``upto`` and ``count`` is given, or one is not usable.
     """
-    _check(upto, count, rtol)
+    _check(upto, count)
     if not isinstance(problem, Transcendental):
         found = type(problem).__name__
         raise bad("problem", found, "a Transcendental", "make one with dynamic_stiffness")
     if not isinstance(problem, DynamicStiffness):
-        return bisected(problem, upto, count, rtol)
+        return bisected(problem, upto, count)
     rigid = rigid_motions(problem)
     low = _below_all(problem, len(rigid))
     high = upto if upto is not None else _above(problem, low, count or 1)
@@ -648,7 +643,7 @@ def multiplicities(omega: Array, error: Array) -> NDArray[np.int64]:
     return found
 
 
-def _check(upto: float | None, count: int | None, rtol: float) -> None:
+def _check(upto: float | None, count: int | None) -> None:
     problems = []
     if (upto is None) == (count is None):
         found = "neither" if upto is None else "both"
@@ -657,7 +652,5 @@ def _check(upto: float | None, count: int | None, rtol: float) -> None:
         problems.append(Problem("upto", repr(upto), "a positive frequency [rad/s]", "correct it"))
     if count is not None and not is_whole(count, 1):
         problems.append(Problem("count", repr(count), "a whole number from 1", "correct it"))
-    if not (is_finite(rtol) and 1e-15 <= rtol < 1.0):
-        problems.append(Problem("rtol", repr(rtol), "between 1e-15 and 1", "choose 1e-12"))
     if problems:
         raise BadInput(*problems)

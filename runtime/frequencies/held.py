@@ -148,7 +148,6 @@ def cycle_mean(
     period: float,
     breaks: Sequence[float] = (),
     *,
-    most: int = _MOST,
     enough: float = _ENOUGH,
 ) -> tuple[Array, Array]:
     """Return means over the period and their errors, ``(k,)`` each, to a relative ``enough``.
@@ -167,7 +166,7 @@ def cycle_mean(
         if np.all(change <= enough * np.abs(found) + rounding):
             return found, change + rounding
         slow = count >= 256 and len(breaks) > 0
-        if slow or 2 * count > most:
+        if slow or 2 * count > _MOST:
             return _by_panels(values, period, breaks, enough)
 
 

@@ -16,7 +16,6 @@ from ..beams.structure import Structure
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers, require_kind, require_positive, require_whole
-from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
 from .held import held_frequencies, mean_frequencies
@@ -158,7 +157,6 @@ def link_frequencies(
     value: ArrayLike,
     *,
     count: int = 1,
-    progress: bool = False,
 ) -> LinkFrequencies:
     """Return the mean natural frequencies against the length or section of a link.
 
@@ -178,8 +176,6 @@ def link_frequencies(
         Its values, ``(nv,)``.
     count : int
         Number of modes.
-    progress : bool
-        Whether to show a progress bar (extra ``progress``).
 
     Returns
     -------
@@ -205,14 +201,11 @@ def link_frequencies(
     given = system.parameters
     factor = np.sqrt(given.get("elasticity", 1.0) / given.get("distributed_mass", 1.0))
     rows, pinned = [], []
-    with bar(progress, len(values)) as tick:
-        for k, number in enumerate(values):
-            changed = _changed(system, link, quantity, float(number))
-            beams = required_structure(changed).beams
-            pinned.append([pinned_frequency(beam.section, beam.length) for beam in beams])
-            rows.append(_means(changed, count))
-            if tick is not None:
-                tick(k + 1)
+    for number in values:
+        changed = _changed(system, link, quantity, float(number))
+        beams = required_structure(changed).beams
+        pinned.append([pinned_frequency(beam.section, beam.length) for beam in beams])
+        rows.append(_means(changed, count))
     mean, error, least, largest = (np.stack([row[i] for row in rows]) for i in range(4))
     return LinkFrequencies(
         method="means over the period of the frequencies with the crank held",

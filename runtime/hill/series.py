@@ -111,21 +111,15 @@ class BoundarySeries(Result):
         )
         return lower, upper
 
-    def latex(self, any_region: bool = False) -> str:
+    def latex(self) -> str:
         """Return both boundaries as a formula, to the order; see :func:`boundary_latex`.
-
-        Parameters
-        ----------
-        any_region : bool
-            True to have the letter n, for any region from 1, in place of the number.
 
         Raises
         ------
         BadInput
             If the order is above 6.
         """
-        region = None if any_region else self.region
-        return boundary_latex(self.order, region, self.damping_ratio > 0.0)
+        return boundary_latex(self.order, self.region, self.damping_ratio > 0.0)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw partial sums of every order and the exact boundaries, mu upwards."""

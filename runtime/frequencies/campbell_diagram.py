@@ -32,7 +32,7 @@ Array = NDArray[np.float64]
 
 def running_frequencies(
     system: LinearPeriodic, speeds: Array, held: Array, rest: Array
-) -> tuple[dict[str, Array], float]:
+) -> tuple[dict[str, Any], float]:
     """Return running frequencies, growth and shares ``(ns, modes)``, as :class:`Campbell` has them.
 
     The multiples of the speed are chosen by the ``held`` frequencies [rad/s], ``(ns, modes)``;

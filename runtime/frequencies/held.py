@@ -135,11 +135,8 @@ def assurance(first: Array, second: Array, mass: Array, *, squared: bool = True)
 # Crank angles to values and their round-off, both (nt, k).
 Values = Callable[[Array], tuple[Array, Array]]
 
-_ENOUGH = 1e-12
-_FEWEST, _MOST = 64, 1024
-# Nodes of a panel, and panels a period, to begin with.
+# Nodes of a panel by both rules, and how often one is halved.
 _NODES = (10, 16)
-_PANELS = 12
 _HALVINGS = 24
 
 
@@ -148,7 +145,7 @@ def cycle_mean(
     period: float,
     breaks: Sequence[float] = (),
     *,
-    enough: float = _ENOUGH,
+    enough: float = 1e-12,
 ) -> tuple[Array, Array]:
     """Return means over the period and their errors, ``(k,)`` each, to a relative ``enough``.
 
@@ -157,7 +154,7 @@ def cycle_mean(
     their error is: near a veering the values are analytic in a narrow strip, at a crossing their
     order changes.
     """
-    count = _FEWEST
+    count = 64
     found, rounding = _even(values, period, count)
     while True:
         before, count = found, 2 * count
@@ -166,7 +163,7 @@ def cycle_mean(
         if np.all(change <= enough * np.abs(found) + rounding):
             return found, change + rounding
         slow = count >= 256 and len(breaks) > 0
-        if slow or 2 * count > _MOST:
+        if slow or count >= 1024:
             return _by_panels(values, period, breaks, enough)
 
 
@@ -195,7 +192,7 @@ def _by_panels(
     """Return means by panels, each halved until two rules agree."""
     inner = np.unique(np.asarray(breaks, dtype=float) % period)
     start = float(inner[0]) if len(inner) else 0.0
-    ends = np.concatenate([inner, start + period * np.arange(_PANELS + 1) / _PANELS])
+    ends = np.concatenate([inner, start + period * np.arange(13) / 12])
     ends = np.unique(np.clip(ends, start, start + period))
     panels = np.stack([ends[:-1], ends[1:]], axis=1)
     total: Array | float = 0.0

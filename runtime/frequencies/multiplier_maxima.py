@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from ..core.errors import BadInput, bad
 from ..core.families import DAMPING, LinearPeriodic
-from ..core.inputs import require_whole
 from ..core.results import Check
 from ..hill import Meissner, discriminant
 from ..periodic import Prepared, prepare, reduced_system
@@ -27,13 +26,9 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
 
-# Turn of the highest mode between two samples [rad].
-_TURN = 0.35
 _MOST_SAMPLES = 4000
 # Lowest frequency left out, over the highest wanted and over the highest kept.
 _BEYOND, _GAP = 4.0, 1.3
-# Modes followed where nobody says how many.
-_USUAL = 4
 # Error of the transition matrices: the place of a maximum is open by the root of it.
 _RTOL = 1e-9
 
@@ -53,7 +48,7 @@ class Maxima(NamedTuple):
 
 
 def multiplier_maxima(
-    system: LinearPeriodic, speed_range: tuple[float, float], count: int | None = None
+    system: LinearPeriodic, speed_range: tuple[float, float], wanted: int
 ) -> Maxima:
     """Return the local maxima over the speed [rad/s] of the real parts of the multipliers.
 
@@ -65,14 +60,12 @@ def multiplier_maxima(
     by 0.35 rad at most, may be missed.
     """
     low, high = speed_range
-    wanted = min(system.size, _USUAL)
-    if count is not None:
-        wanted = require_whole("count", count, 1, system.size)
     # With the crank held there is neither damping nor centrifugal stiffness.
     held = sampled(system.without("B", *DAMPING))
     frozen = frozen_frequencies(plain_equation(held, high))
     top = float(np.max(frozen[:, wanted - 1]))
-    number = int(np.ceil(top * system.period * (1 / low - 1 / high) / _TURN)) + 8
+    # The highest mode turns by 0.35 rad between two samples.
+    number = int(np.ceil(top * system.period * (1 / low - 1 / high) / 0.35)) + 8
     if number > _MOST_SAMPLES:
         raise bad(
             "speed_range",

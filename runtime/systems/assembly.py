@@ -18,7 +18,6 @@ from ..core.families.emitted import check_module, dropped_names
 Array = NDArray[np.float64]
 
 _Row: TypeAlias = tuple[str, int, str | None, str | None, str]
-_ROUND = 8.0 * float(np.finfo(float).eps)
 
 
 class BasisArrays(Protocol):
@@ -229,7 +228,8 @@ def _at_place(
     """Return the support's place at each angle, where its integrals are to be kept beside it."""
     place = np.asarray(function(theta, **geometry))
     # A support at the very end, beyond it by rounding.
-    return {"place": np.where(place <= 1.0 + _ROUND, np.minimum(place, 1.0), place)}
+    round_off = 8.0 * float(np.finfo(float).eps)
+    return {"place": np.where(place <= 1.0 + round_off, np.minimum(place, 1.0), place)}
 
 
 def _by_name(names: tuple[str, ...], values: Any) -> dict[str, Array]:

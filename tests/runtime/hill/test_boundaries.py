@@ -13,13 +13,11 @@ from elastolink.runtime.hill import (
     hill_boundaries,
 )
 from elastolink.runtime.hill.boundaries import half_trace_check
-from hill_functions import functions
+from hill_functions import COSINE, functions
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 FUNCTIONS = functions()
-
-COSINE = PeriodicFunction([0.0, 1.0])
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)

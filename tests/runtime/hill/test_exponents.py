@@ -7,13 +7,9 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import characteristic_exponents, hill_boundaries
-from hill_functions import functions
+from hill_functions import COSINE, GENERAL, functions
 
 FUNCTIONS = functions()
-
-COSINE = PeriodicFunction([0.0, 1.0])
-
-GENERAL = PeriodicFunction([0.3, 1.0, -0.4, 0.2], [0.0, 0.5, 0.7, -0.1])
 
 
 def bands_of(f, mu, nu, bands=(0, 1, 2), k=0.0):

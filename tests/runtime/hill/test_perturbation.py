@@ -15,7 +15,8 @@ from elastolink.runtime.hill import (
     hill_boundaries,
     perturbation_boundaries,
 )
-from hill_functions import functions, general
+from hill_functions import ANOTHER as GENERAL
+from hill_functions import COSINE, functions, general
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -60,10 +61,6 @@ def test_parameters_that_cancel_at_one_point():
         assert not abs(found.lower[0] - exact.lower[0]) > told
         assert not abs(found.upper[0] - exact.upper[0]) > told
 
-
-COSINE = PeriodicFunction([0.0, 1.0])
-
-GENERAL = PeriodicFunction([0.3, 1.0, -0.4, 0.25], [0.0, -0.5, 0.3, 0.1])
 
 SECOND = PeriodicFunction([-0.1, 0.2, 0.5], [0.0, 0.7, -0.2])
 

@@ -5,9 +5,9 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import boundary_solution, hill_boundaries
+from hill_functions import ANOTHER as GENERAL
+from hill_functions import COSINE
 
-COSINE = PeriodicFunction([0.0, 1.0])
-GENERAL = PeriodicFunction([0.3, 1.0, -0.4, 0.25], [0.0, -0.5, 0.3, 0.1])
 THETA = np.linspace(0.0, 4 * np.pi, 97)
 
 

@@ -9,9 +9,9 @@ from elastolink.runtime.hill import (
     discriminant,
     perturbation_boundaries,
 )
+from hill_functions import ANOTHER as GENERAL
+from hill_functions import COSINE
 
-COSINE = PeriodicFunction([0.0, 1.0])
-GENERAL = PeriodicFunction([0.3, 1.0, -0.4, 0.25], [0.0, -0.5, 0.3, 0.1])
 REGIONS = (1, 2, 3)
 
 

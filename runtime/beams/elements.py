@@ -11,14 +11,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from types import MappingProxyType, ModuleType
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families.emitted import array_function
-from ..core.inputs import is_finite, numbers_in_a_row
+from ..core.inputs import is_finite, numbers_in_a_row, require_positive
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -123,16 +123,19 @@ def element_arrays(
     Aannaque (4.11)-(4.24), (4.38), (4.39), (A.3), (A.4), (A.7), (A.8), the slips mended.
     """
     _check_kind(kind)
-    numbers = {
-        "length": _positive("length", length),
-        "mass_per_length": _not_negative("mass_per_length", mass_per_length),
-        "axial_stiffness": _positive("axial_stiffness", axial_stiffness),
-        "bending_stiffness": _positive("bending_stiffness", bending_stiffness),
+    sizes: dict[str, Any] = {
+        "length": length,
+        "axial_stiffness": axial_stiffness,
+        "bending_stiffness": bending_stiffness,
     }
+    inertias = {"mass_per_length": mass_per_length}
     if kind == "timoshenko":
-        numbers["shear_stiffness"] = _positive("shear_stiffness", shear_stiffness)
-        numbers["rotary_inertia"] = _not_negative("rotary_inertia", rotary_inertia)
-    found = _in_range(_element(kind), **numbers)
+        sizes["shear_stiffness"], inertias["rotary_inertia"] = shear_stiffness, rotary_inertia
+    _require_sizes(sizes)
+    for name, value in inertias.items():
+        if not (is_finite(value) and value >= 0.0):
+            raise bad(name, repr(value), "a finite number, not negative", "give one")
+    found = _in_range(array_function(_emitted("element", kind), "element"), **sizes, **inertias)
     arrays = {name: value for name, value in found.items() if not name.startswith("geometric")}
     geometric = np.stack([found[f"geometric_{k}"] for k in range(3)])
     return ElementArrays(
@@ -230,10 +233,6 @@ def _emitted(what: str, kind: str) -> ModuleType:
     return import_module(f"...generated.beam_{what}_{kind}", __package__)
 
 
-def _element(kind: str) -> Callable[..., dict[str, Array]]:
-    return array_function(_emitted("element", kind), "element")
-
-
 def _shape_rows(
     kind: str,
     xi: ArrayLike,
@@ -245,12 +244,18 @@ def _shape_rows(
     place = numbers_in_a_row("xi", xi)
     if not np.all((place >= 0.0) & (place <= 1.0)):
         raise bad("xi", xi, "places from 0 to 1", "divide by the element's length")
-    numbers = {"length": _positive("length", length)}
+    numbers: dict[str, Any] = {"length": length}
     if kind == "timoshenko":
-        numbers["bending_stiffness"] = _positive("bending_stiffness", bending_stiffness)
-        numbers["shear_stiffness"] = _positive("shear_stiffness", shear_stiffness)
+        numbers |= {"bending_stiffness": bending_stiffness, "shear_stiffness": shear_stiffness}
+    _require_sizes(numbers)
     found = _in_range(array_function(_emitted("shapes", kind), "shapes"), place, **numbers)
     return {name: value[..., 0, :] for name, value in found.items()}
+
+
+def _require_sizes(sizes: Mapping[str, Any]) -> None:
+    """Refuse the first length or stiffness that is not positive."""
+    for name, value in sizes.items():
+        require_positive("element", **{name: value})
 
 
 def _in_range(
@@ -272,18 +277,6 @@ def _in_range(
 def _check_kind(kind: str) -> None:
     if not isinstance(kind, str) or kind not in KINDS:
         raise bad("kind", repr(kind), f"one of {KINDS}", "correct it")
-
-
-def _positive(name: str, value: float | None) -> float:
-    if value is None or not (is_finite(value) and value > 0.0):
-        raise bad(name, repr(value), "a positive finite number", "give one")
-    return float(value)
-
-
-def _not_negative(name: str, value: float) -> float:
-    if not (is_finite(value) and value >= 0.0):
-        raise bad(name, repr(value), "a finite number, not negative", "give one")
-    return float(value)
 
 
 def _fixed(array: Array) -> Array:

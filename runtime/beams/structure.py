@@ -408,18 +408,7 @@ class Structure:
         return _named("node", self.nodes, name)
 
     def require_pinned(self, what: str) -> None:
-        """Refuse a node that slides.
-
-        Parameters
-        ----------
-        what : str
-            What cannot be done with it.
-
-        Raises
-        ------
-        BadInput
-            If a node slides along a beam.
-        """
+        """Refuse a node that slides along a beam, with which ``what`` cannot be done."""
         for name in self.sliding:
             found = f"node {name}, which slides along beam {self.node(name).slides_on}"
             raise bad(what, found, "nodes that are pinned or joined", "use linear_system instead")

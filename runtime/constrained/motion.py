@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from numbers import Real
 from typing import TYPE_CHECKING, ClassVar
@@ -35,8 +35,6 @@ from .equations import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Watch = Callable[[Array, Array], ArrayLike]
-Energy = Callable[[Array, Array, Array], ArrayLike]
 
 _MOST_SAMPLES = 2_000_000
 
@@ -127,8 +125,6 @@ def constrained_motion(
     rtol: float = 1e-9,
     samples: int | ArrayLike = 200,
     guards: Sequence[Guard] | None = None,
-    watch: Watch | None = None,
-    energy: Energy | None = None,
     bound: float = 1e9,
     progress: bool = False,
 ) -> ConstrainedMotion:
@@ -154,12 +150,6 @@ def constrained_motion(
     guards : sequence of Guard, optional
         Pairs ``(margin, reason)``, conditions that stop the motion (status 1), with their reason
         as message; by default the system's own.
-    watch : callable, optional
-        ``watch(q, t)`` gives the largest deflection over the length of the link, from
-        ``(nt, n)`` and ``(nt,)`` to ``(nt,)``: the check ``linear range``; by default the
-        system's own.
-    energy : callable, optional
-        ``energy(q, qd, t)``, constant over the motion, ``(nt,)`` [J]: the check ``energy``.
     bound : float
         Size of a coordinate, over its size at the start, at which the motion counts as diverged.
     progress : bool
@@ -189,24 +179,18 @@ def constrained_motion(
     _check_numbers(rtol, bound)
     start = _start(system, q, qd, first)
     kept = tuple(system.guards if guards is None else guards)
-    path = march(system, *start, times, rtol, kept, bound, progress)
-    return _result(system, path, system.watch if watch is None else watch, energy)
-
-
-@dataclass(frozen=True)
-class Path:
-    """The states that were reached, and how: fields of :class:`ConstrainedMotion`."""
-
-    time: Array
-    q: Array
-    qd: Array
-    qdd: Array
-    multipliers: Array
-    error: Array
-    steps: int
-    evaluations: int
-    status: int
-    message: str
+    found = march(system, *start, times, rtol, kept, bound, progress)
+    if system.watch is None:
+        return found
+    reached = linear_range(system.watch, found.q, found.time)
+    if not reached.passed:
+        warnings.warn(
+            f"deflection reaches {reached.value:.3g} of the link's length; small deflections "
+            f"were assumed, to about {LINEAR_RANGE}: lower the load or the speed",
+            LinearRangeWarning,
+            stacklevel=2,
+        )
+    return replace(found, checks={**found.checks, "linear range": reached})
 
 
 def march(
@@ -218,7 +202,7 @@ def march(
     guards: Sequence[Guard] = (),
     bound: float = 1e6,
     progress: bool = False,
-) -> Path:
+) -> ConstrainedMotion:
     """Follow a motion from a state on the constraints as far as it goes."""
     from ..core.progress import bar
 
@@ -266,14 +250,27 @@ def march(
     way = np.max(np.abs(x), axis=0) + np.max(np.abs(v), axis=0) * (t[-1] - t[0])
     # Roundings of a long window, which may all lie on one side.
     rounding = EPS * (8.0 + 20.0 * steps) * way
+    states = x * columns, v * columns, a * columns
+    norms = constraint_norms(system, t, *states)
+    # Constraints count as kept where their scaled defect is below this.
+    checks = {
+        f"{level} constraints": Check(float(np.max(norms[f"{level}_norm"])), 1e-12)
+        for level in LEVELS
+    }
     # Estimates are enlarged: from 5 on they cover 99 of 100 pendulums, rods and forces that jump.
-    return Path(
-        time=t,
-        q=x * columns,
-        qd=v * columns,
-        qdd=a * columns,
-        multipliers=multipliers * equations.rows,
+    return ConstrainedMotion(
+        method="collocation",
         error=columns * (5.0 * error + rounding),
+        error_norm="largest error of a coordinate over the given times, in its own unit",
+        checks=checks | {"end reached": Check(float(status), 0.0)},
+        provenance=provenance(system.provenance),
+        labels=system.labels,
+        time=t,
+        q=states[0],
+        qd=states[1],
+        qdd=states[2],
+        multipliers=multipliers * equations.rows,
+        **norms,
         steps=steps,
         evaluations=equations.evaluations,
         status=status,
@@ -353,41 +350,7 @@ def _crossing(equations: Equations, step: Step, guard: Guard, before: State, aft
     return after
 
 
-def _result(
-    system: Constrained, path: Path, watch: Watch | None, energy: Energy | None
-) -> ConstrainedMotion:
-    norms = constraint_norms(system, path.time, path.q, path.qd, path.qdd)
-    # Constraints count as kept where their scaled defect is below this.
-    checks = {
-        f"{level} constraints": Check(float(np.max(norms[f"{level}_norm"])), 1e-12)
-        for level in LEVELS
-    }
-    checks["end reached"] = Check(float(path.status), 0.0)
-    if energy is not None:
-        held = np.asarray(energy(path.q, path.qd, path.time), dtype=float)
-        size = float(np.max(np.abs(held))) or 1.0
-        checks["energy"] = Check(float(np.max(np.abs(held - held[0]))) / size, 1e-6)
-    if watch is not None:
-        checks["linear range"] = reached = linear_range(watch, path.q, path.time)
-        if not reached.passed:
-            warnings.warn(
-                f"deflection reaches {reached.value:.3g} of the link's length; small deflections "
-                f"were assumed, to about {LINEAR_RANGE}: lower the load or the speed",
-                LinearRangeWarning,
-                stacklevel=3,
-            )
-    return ConstrainedMotion(
-        method="collocation",
-        error_norm="largest error of a coordinate over the given times, in its own unit",
-        checks=checks,
-        provenance=provenance(system.provenance),
-        labels=system.labels,
-        **norms,
-        **vars(path),
-    )
-
-
-def linear_range(watch: Watch, q: Array, t: Array) -> Check:
+def linear_range(watch: Callable[[Array, Array], ArrayLike], q: Array, t: Array) -> Check:
     """Compare the largest deflection over the link's length with 5 %."""
     deflection = float(np.max(np.abs(np.asarray(watch(q, t), dtype=float))))
     return Check(deflection, LINEAR_RANGE)

@@ -25,7 +25,7 @@ from .equations import (
     require_variations,
     solved,
 )
-from .motion import Watch, linear_range, march
+from .motion import linear_range, march
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -368,7 +368,7 @@ class PeriodicOrbit(Result):
         Largest violation of a constraint within the steps, at the three levels, scaled as
         :func:`.equations.constraint_norms` says.
     deflection : float
-        Largest value of ``watch``; NaN where there is none.
+        Largest value of the system's ``watch``; NaN where there is none.
     moved : float
         Largest distance of the motion from the guess, at the times of the guess, in the units of
         ``error`` and over the larger of the two: near 1 it is another motion than the one meant.
@@ -446,7 +446,6 @@ def periodic_orbit(
     *,
     advance: ArrayLike | None = None,
     rtol: float = 1e-10,
-    watch: Watch | None = None,
 ) -> PeriodicOrbit:
     """Find a periodic motion from a guess, near it where the guess is good: see ``moved``.
 
@@ -469,9 +468,6 @@ def periodic_orbit(
         default the system's.
     rtol : float
         Wanted error of the motion relative to its size.
-    watch : callable, optional
-        ``(q, t)`` of shapes ``(m, n)``, ``(m,)`` to deflections over a reference length, shape
-        ``(m,)``; beyond 5 % the check ``linear range`` fails; by default the system's.
 
     Returns
     -------
@@ -503,8 +499,7 @@ def periodic_orbit(
             break
         coarse, before = fine, error
     source = OrbitSource(shooting, fine, coarse)
-    watch = system.watch if watch is None else watch
-    return _result(source, guess, error, iterations, Check(error, rtol), watch)
+    return _result(source, guess, error, iterations, Check(error, rtol))
 
 
 def _result(
@@ -513,7 +508,6 @@ def _result(
     error: float,
     iterations: int,
     accuracy: Check,
-    watch: Watch | None,
 ) -> PeriodicOrbit:
     shot, equations = source.fine, source.shooting.equations
     ring, system, columns = shot.ring, equations.system, equations.columns
@@ -530,8 +524,8 @@ def _result(
         "accuracy": accuracy,
     }
     deflection = float("nan")
-    if watch is not None:
-        checks["linear range"] = linear_range(watch, inside[0], times)
+    if system.watch is not None:
+        checks["linear range"] = linear_range(system.watch, inside[0], times)
         deflection = checks["linear range"].value
     q, qd = ring.x * columns, ring.v * columns
     pick = slice(None, None, max(len(q) // _SAMPLES, 1))

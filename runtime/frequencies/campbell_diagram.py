@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -23,14 +22,7 @@ from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
 from ..periodic.decoupled.slow_modes import SlowModes, SlowMonodromy
-from .held import (
-    HeldModes,
-    buckling_speed,
-    cycle_mean,
-    held_frequencies,
-    held_modes,
-    require_system,
-)
+from .held import HeldModes, buckling_speed, held_modes, mean_frequencies, require_system
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,21 +30,14 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Running:
-    """Frequencies of the running mechanism at several speeds, by mode: ``(ns, modes)``."""
-
-    frequency: Array  # [rad/s]
-    growth: Array  # real parts of the exponents [1/s]
-    share: Array  # of each motion that is its mode's
-    away: float  # largest distance from the expected frequency, over half the speed
-
-
-def running_frequencies(system: LinearPeriodic, speeds: Array, held: Array, rest: Array) -> Running:
-    """Return the frequencies of the running mechanism, named by the shapes of its motions.
+def running_frequencies(
+    system: LinearPeriodic, speeds: Array, held: Array, rest: Array
+) -> tuple[dict[str, Any], float]:
+    """Return running frequencies, growth and shares ``(ns, modes)``, as :class:`Campbell` has them.
 
     The multiples of the speed are chosen by the ``held`` frequencies [rad/s], ``(ns, modes)``;
-    where they are NaN by those of the speed before, before the first by ``rest``.
+    where they are NaN by those of the speed before, before the first by ``rest``.  Last, the
+    largest distance from what was expected, over half the speed.
     """
     slow, turn = SlowModes(system), 2.0 * np.pi / system.period
     frequency, growth, share = np.empty((3, *held.shape))
@@ -70,7 +55,7 @@ def running_frequencies(system: LinearPeriodic, speeds: Array, held: Array, rest
         frequency[row], growth[row] = expected + away, rate * speed / system.period
         farthest = max(farthest, float(np.max(np.abs(away))) / (0.5 * spacing))
         before = frequency[row]
-    return Running(frequency, growth, share, farthest)
+    return {"running": frequency, "growth": growth, "share": share}, farthest
 
 
 def _named(
@@ -252,22 +237,20 @@ def campbell(
     count = require_whole("modes", wanted, 1, system.size)
     limit = buckling_speed(system).speed
     held, error = _held(system, speeds, count, limit, progress)
-    rest = cycle_mean(partial(_lowest, system, 0.0, count), system.period, enough=_ENOUGH)[0]
-    found = running_frequencies(system, speeds, held, rest)
-    curves = found.frequency.T
-    crossing = [row for k, curve in enumerate(curves, 1) for row in _crossings(speeds, curve, k)]
-    crossing.sort()
+    rest = mean_frequencies(system, count, _ENOUGH)[0]
+    found, away = running_frequencies(system, speeds, held, rest)
+    crossing = sorted(
+        row for k, curve in enumerate(found["running"].T, 1) for row in _crossings(speeds, curve, k)
+    )
     return Campbell(
         method="means of held frequencies; characteristic exponents",
         error=error,
         error_norm="absolute, of each held mean [rad/s]",
-        checks={"near": Check(found.away, 0.8)},
+        checks={"near": Check(away, 0.8)},
         provenance=provenance(system.provenance),
         speed=speeds,
         held=held,
-        running=found.frequency,
-        growth=found.growth,
-        share=found.share,
+        **found,
         buckling=limit,
         crossing_speed=np.array([row[0] for row in crossing]),
         crossing_mode=np.array([row[1] for row in crossing], dtype=np.int64),
@@ -285,16 +268,10 @@ def _held(
         for k, speed in enumerate(speeds):
             if speed >= 0.999 * limit:  # next to buckling the means are no longer smooth
                 break
-            values = partial(_lowest, system, float(speed), count)
-            out[k], error[k] = cycle_mean(values, system.period, enough=_ENOUGH)
+            out[k], error[k] = mean_frequencies(system, count, _ENOUGH, float(speed))
             if tick is not None:
                 tick(k + 1)
     return out, error
-
-
-def _lowest(system: LinearPeriodic, speed: float, count: int, theta: Array) -> tuple[Array, Array]:
-    frequency, error = held_frequencies(system, theta, {}, speed)
-    return frequency[:, :count], error[:, :count]
 
 
 def _crossings(speeds: Array, values: Array, mode: int) -> list[tuple[float, int, int, float]]:

@@ -109,11 +109,6 @@ class Modal:
     values: Array  # mu, ascending, (n,)
     vectors: Array  # x, of unit generalised mass, (size, n)
 
-    @property
-    def negative(self) -> int:
-        """How many of the values are negative."""
-        return int(np.sum(self.values < 0.0))
-
 
 def modal(assembly: Assembly, omega: float) -> Modal:
     """Solve ``D x = mu M x`` at a frequency [rad/s] away from the poles."""
@@ -187,8 +182,13 @@ def certain_count(problem: DynamicStiffness, omega: float) -> tuple[float, int]:
         if certain:
             return omega, round(float(problem.poles(omega))) + negative
         omega *= 1.0 + 1e-7
-    finer = divided_for(problem, omega)
-    return omega, round(float(finer.poles(omega))) + modal(finer.assembly, omega).negative
+    return omega, _count(divided_for(problem, omega), omega)
+
+
+def _count(finer: DynamicStiffness, omega: float) -> int:
+    """Return how many frequencies lie below one that is no pole of the pieces."""
+    negative = np.sum(modal(finer.assembly, omega).values < 0.0)
+    return round(float(finer.poles(omega))) + int(negative)
 
 
 def isolate(problem: DynamicStiffness, whole: Interval) -> list[Interval]:
@@ -275,11 +275,8 @@ def _confirmed(
     """Return the smallest distance on either side of frequencies that counts confirm."""
     width = max(4.0 * UNIT * places[-1], least / 8.0)
     for _ in range(12):
-        low, high = places[0] - width, places[-1] + width
-        below, above = (
-            round(float(finer.poles(place))) + modal(finer.assembly, float(place)).negative
-            for place in (low, high)
-        )
+        below = _count(finer, float(places[0] - width))
+        above = _count(finer, float(places[-1] + width))
         if below == before and above == before + len(places):
             return float(width), True
         width *= 4.0
@@ -476,9 +473,7 @@ class FrameFrequencies(Result):
         return axes
 
 
-def bisected(
-    problem: Transcendental, upto: float | None, count: int | None, rtol: float
-) -> FrameFrequencies:
+def bisected(problem: Transcendental, upto: float | None, count: int | None) -> FrameFrequencies:
     """Return the frequencies of a problem by bisection on their number."""
     high = upto if upto is not None else _bracketed(problem, count or 1)
     total = int(problem.count(high))
@@ -489,7 +484,7 @@ def bisected(
         if first == last:
             continue
         middle = (low + high) / 2.0
-        if high - low <= rtol * high or not low < middle < high:
+        if high - low <= 1e-12 * high or not low < middle < high:
             found += [(middle, (high - low) / 2.0)] * (last - first)
             continue
         between = min(max(int(problem.count(middle)), first), last)
@@ -527,7 +522,6 @@ def wittrick_williams(
     *,
     upto: float | None = None,
     count: int | None = None,
-    rtol: float = 1e-12,
 ) -> FrameFrequencies:
     """Return the natural frequencies of a transcendental eigenproblem, all of them.
 
@@ -541,13 +535,11 @@ def wittrick_williams(
     ----------
     problem : Transcendental
         From :func:`dynamic_stiffness`; of another one, an emitted one say, frequencies are found
-        by bisection alone and there are no shapes.
+        by bisection alone, to 1e-12, and there are no shapes.
     upto : float, optional
         All frequencies below this one [rad/s].
     count : int, optional
         That many frequencies, the lowest ones; give one of the two.
-    rtol : float
-        Relative width where there is bisection alone.
 
     Returns
     -------
@@ -560,12 +552,12 @@ def wittrick_williams(
     BadInput
         If not exactly one of ``upto`` and ``count`` is given, or one is not usable.
     """
-    _check(upto, count, rtol)
+    _check(upto, count)
     if not isinstance(problem, Transcendental):
         found = type(problem).__name__
         raise bad("problem", found, "a Transcendental", "make one with dynamic_stiffness")
     if not isinstance(problem, DynamicStiffness):
-        return bisected(problem, upto, count, rtol)
+        return bisected(problem, upto, count)
     rigid = rigid_motions(problem)
     low = _below_all(problem, len(rigid))
     high = upto if upto is not None else _above(problem, low, count or 1)
@@ -582,15 +574,8 @@ def wittrick_williams(
 
 def rigid_motions(problem: DynamicStiffness) -> list[Mode]:
     """Return the motions that meet no stiffness, as modes of frequency 0."""
-    from scipy.linalg import eigh
-
-    still = 0.0
-    stiffness, mass = problem.assembly.stiffness(still), problem.mass(still)
-    scale = 1.0 / np.sqrt(np.diagonal(mass))
-    both = np.outer(scale, scale)
-    _, turned = eigh(stiffness * both, mass * both)
-    vectors = scale[:, None] * turned
-    forms, _, sizes = quadratic_forms(problem.assembly, still, vectors)
+    vectors = modal(problem.assembly, 0.0).vectors
+    forms, _, sizes = quadratic_forms(problem.assembly, 0.0, vectors)
     # Motions whose strain energy is below this, over the sizes of its terms, meet no stiffness.
     soft = np.abs(np.diagonal(forms)) <= 1e-11 * sizes
     return [Mode(0.0, 0.0, problem, vector, True) for vector in vectors.T[soft]]
@@ -658,7 +643,7 @@ def multiplicities(omega: Array, error: Array) -> NDArray[np.int64]:
     return found
 
 
-def _check(upto: float | None, count: int | None, rtol: float) -> None:
+def _check(upto: float | None, count: int | None) -> None:
     problems = []
     if (upto is None) == (count is None):
         found = "neither" if upto is None else "both"
@@ -667,7 +652,5 @@ def _check(upto: float | None, count: int | None, rtol: float) -> None:
         problems.append(Problem("upto", repr(upto), "a positive frequency [rad/s]", "correct it"))
     if count is not None and not is_whole(count, 1):
         problems.append(Problem("count", repr(count), "a whole number from 1", "correct it"))
-    if not (is_finite(rtol) and 1e-15 <= rtol < 1.0):
-        problems.append(Problem("rtol", repr(rtol), "between 1e-15 and 1", "choose 1e-12"))
     if problems:
         raise BadInput(*problems)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..core.errors import BadInput, LinearRangeWarning, bad
 from ..core.families import DAMPING, LinearPeriodic
-from ..core.inputs import numbers, require_whole
+from ..core.inputs import require_whole, speed_span
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
@@ -501,7 +501,7 @@ def critical_speeds(
     """
     require_system(system)
     _require_moving(system)
-    low, high = _range(speed_range)
+    low, high = speed_span(speed_range)
     if not isinstance(method, str) or method not in METHODS:
         raise bad("method", repr(method), f"one of {tuple(METHODS)}", "choose one")
     wanted = min(4, system.size) if modes is None else modes
@@ -517,10 +517,3 @@ def _require_moving(system: LinearPeriodic) -> None:
     if all(term.constant for term in system.terms):
         found, fix = "a frame: no crank moves it", "take natural_frequencies of it"
         raise bad("system", found, "a system that depends on a crank angle", fix)
-
-
-def _range(speed_range: Sequence[float]) -> tuple[float, float]:
-    ends = numbers("speed_range", speed_range)
-    if ends.shape != (2,) or not np.all(np.isfinite(ends)) or not 0 < ends[0] < ends[1]:
-        raise bad("speed_range", speed_range, "two rising positive speeds [rad/s]", "correct it")
-    return float(ends[0]), float(ends[1])

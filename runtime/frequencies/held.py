@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
-from ..core.inputs import numbers
+from ..core.inputs import numbers_in_a_row, require_kind
+from ..core.maxima import narrowed
 from ..core.trigonometric import even_angles
 
 Array = NDArray[np.float64]
@@ -109,19 +110,14 @@ def _inverse_factor(mass: Array, stiffness: Array, theta: Array) -> Array:
 
 def require_system(system: object) -> None:
     """Refuse what is no linear periodic system."""
-    if not isinstance(system, LinearPeriodic):
-        found, fix = type(system).__name__, "take one from linkage_system or a scene"
-        raise bad("system", found, "a LinearPeriodic", fix)
+    require_kind("system", system, LinearPeriodic, "take one from linkage_system or a scene")
 
 
 def crank_angles(system: LinearPeriodic, theta: ArrayLike | None) -> Array:
     """Return checked crank angles; 361 over a period by default."""
     if theta is None:
         return np.linspace(0.0, system.period, 361)
-    angles = np.atleast_1d(numbers("theta", theta))
-    if angles.ndim != 1 or not angles.size or not np.all(np.isfinite(angles)):
-        raise bad("theta", theta, "finite crank angles [rad], one row", "correct them")
-    return angles
+    return numbers_in_a_row("theta", theta, " [rad]")
 
 
 def assurance(first: Array, second: Array, mass: Array, *, squared: bool = True) -> Array:
@@ -139,11 +135,8 @@ def assurance(first: Array, second: Array, mass: Array, *, squared: bool = True)
 # Crank angles to values and their round-off, both (nt, k).
 Values = Callable[[Array], tuple[Array, Array]]
 
-_ENOUGH = 1e-12
-_FEWEST, _MOST = 64, 1024
-# Nodes of a panel, and panels a period, to begin with.
+# Nodes of a panel by both rules, and how often one is halved.
 _NODES = (10, 16)
-_PANELS = 12
 _HALVINGS = 24
 
 
@@ -152,8 +145,7 @@ def cycle_mean(
     period: float,
     breaks: Sequence[float] = (),
     *,
-    most: int = _MOST,
-    enough: float = _ENOUGH,
+    enough: float = 1e-12,
 ) -> tuple[Array, Array]:
     """Return means over the period and their errors, ``(k,)`` each, to a relative ``enough``.
 
@@ -162,7 +154,7 @@ def cycle_mean(
     their error is: near a veering the values are analytic in a narrow strip, at a crossing their
     order changes.
     """
-    count = _FEWEST
+    count = 64
     found, rounding = _even(values, period, count)
     while True:
         before, count = found, 2 * count
@@ -171,8 +163,20 @@ def cycle_mean(
         if np.all(change <= enough * np.abs(found) + rounding):
             return found, change + rounding
         slow = count >= 256 and len(breaks) > 0
-        if slow or 2 * count > most:
+        if slow or count >= 1024:
             return _by_panels(values, period, breaks, enough)
+
+
+def mean_frequencies(
+    system: LinearPeriodic, count: int, enough: float, speed: float = 0.0
+) -> tuple[Array, Array]:
+    """Return the means of the lowest frequencies over the period and their errors [rad/s]."""
+
+    def lowest(theta: Array) -> tuple[Array, Array]:
+        frequency, error = held_frequencies(system, theta, {}, speed)
+        return frequency[:, :count], error[:, :count]
+
+    return cycle_mean(lowest, system.period, enough=enough)
 
 
 def _even(values: Values, period: float, count: int) -> tuple[Array, Array]:
@@ -188,7 +192,7 @@ def _by_panels(
     """Return means by panels, each halved until two rules agree."""
     inner = np.unique(np.asarray(breaks, dtype=float) % period)
     start = float(inner[0]) if len(inner) else 0.0
-    ends = np.concatenate([inner, start + period * np.arange(_PANELS + 1) / _PANELS])
+    ends = np.concatenate([inner, start + period * np.arange(13) / 12])
     ends = np.unique(np.clip(ends, start, start + period))
     panels = np.stack([ends[:-1], ends[1:]], axis=1)
     total: Array | float = 0.0
@@ -225,10 +229,6 @@ def _panel_integrals(values: Values, panels: Array, nodes: int) -> tuple[Array, 
     found = np.einsum("pn,pnk->pk", scaled, value.reshape(shape))
     rounding = np.einsum("pn,pnk->pk", scaled, error.reshape(shape))
     return found, rounding + 4 * _EPS * np.abs(found)
-
-
-# Places within a bracket per pass: each pass keeps a quarter of it.
-_WITHIN = 9
 
 
 @dataclass(frozen=True)
@@ -274,14 +274,16 @@ def buckling_speed(system: LinearPeriodic, **parameters: float) -> Buckling:
     if not system.has("Kg"):
         return Buckling(np.inf, 0.0)
     theta = even_angles(system.period, 256)
-    for _ in range(16):
-        softening = _softening(system, theta, parameters)
-        best = int(np.argmax(softening))
-        step = float(theta[1] - theta[0])
-        theta = theta[best] + step * np.linspace(-1.0, 1.0, _WITHIN)
-    worst = float(softening[best])
-    found = float(theta[_WITHIN // 2]) % system.period
-    return Buckling(1.0 / np.sqrt(worst) if worst > 0.0 else np.inf, found)
+    best = theta[[int(np.argmax(_softening(system, theta, parameters)))]]
+
+    def softening(places: Array) -> Array:
+        return _softening(system, places[0], parameters)[None]
+
+    low, high = narrowed(softening, best - theta[1], best + theta[1], 15)
+    angle = 0.5 * (low + high)
+    worst = float(_softening(system, angle, parameters)[0])
+    speed = 1.0 / np.sqrt(worst) if worst > 0.0 else np.inf
+    return Buckling(speed, float(angle[0]) % system.period)
 
 
 def _softening(system: LinearPeriodic, theta: Array, parameters: dict[str, float]) -> Array:

@@ -16,9 +16,9 @@ from ..beams.structure import Structure
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers, require_kind, require_positive, require_whole
-from ..core.progress import bar
 from ..core.results import Check, Result, provenance
-from .held import cycle_mean, held_frequencies
+from ..core.trigonometric import even_angles
+from .held import held_frequencies, mean_frequencies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -157,7 +157,6 @@ def link_frequencies(
     value: ArrayLike,
     *,
     count: int = 1,
-    progress: bool = False,
 ) -> LinkFrequencies:
     """Return the mean natural frequencies against the length or section of a link.
 
@@ -177,8 +176,6 @@ def link_frequencies(
         Its values, ``(nv,)``.
     count : int
         Number of modes.
-    progress : bool
-        Whether to show a progress bar (extra ``progress``).
 
     Returns
     -------
@@ -191,21 +188,24 @@ def link_frequencies(
         with it.
     """
     names = tuple(beam.name for beam in required_structure(system).beams)
-    _check(system, names, link, quantity)
+    if not isinstance(quantity, str) or quantity not in QUANTITIES:
+        raise bad("quantity", repr(quantity), f"one of {QUANTITIES}", "choose one")
+    known = tuple(system.geometry) if quantity == "length" else names
+    if not isinstance(link, str) or link not in known:
+        raise bad("link", repr(link), f"one of {known}", "correct the name")
     values = np.atleast_1d(numbers("value", value))
     if values.ndim != 1 or not len(values) or not np.all(np.isfinite(values) & (values > 0)):
         raise bad("value", value, "positive numbers, one row", "correct them")
     require_whole("count", count, 1, system.size)
+    # What the factors of moduli and densities make of a beam's own frequency.
+    given = system.parameters
+    factor = np.sqrt(given.get("elasticity", 1.0) / given.get("distributed_mass", 1.0))
     rows, pinned = [], []
-    with bar(progress, len(values)) as tick:
-        for k, number in enumerate(values):
-            changed = _changed(system, link, quantity, float(number))
-            beams = required_structure(changed).beams
-            alone = [pinned_frequency(beam.section, beam.length) for beam in beams]
-            pinned.append([_factor(changed) * frequency for frequency in alone])
-            rows.append(_means(changed, count))
-            if tick is not None:
-                tick(k + 1)
+    for number in values:
+        changed = _changed(system, link, quantity, float(number))
+        beams = required_structure(changed).beams
+        pinned.append([pinned_frequency(beam.section, beam.length) for beam in beams])
+        rows.append(_means(changed, count))
     mean, error, least, largest = (np.stack([row[i] for row in rows]) for i in range(4))
     return LinkFrequencies(
         method="means over the period of the frequencies with the crank held",
@@ -219,7 +219,7 @@ def link_frequencies(
         mean=mean,
         least=least,
         largest=largest,
-        pinned=np.array(pinned),
+        pinned=factor * np.array(pinned),
         links=names,
     )
 
@@ -286,24 +286,10 @@ def frequency_exponents(system: LinearPeriodic, *, count: int = 4) -> FrequencyE
     )
 
 
-def _check(system: LinearPeriodic, names: tuple[str, ...], link: str, quantity: str) -> None:
-    if not isinstance(quantity, str) or quantity not in QUANTITIES:
-        raise bad("quantity", repr(quantity), f"one of {QUANTITIES}", "choose one")
-    known = tuple(system.geometry) if quantity == "length" else names
-    if not isinstance(link, str) or link not in known:
-        raise bad("link", repr(link), f"one of {known}", "correct the name")
-
-
 def _means(system: LinearPeriodic, count: int) -> tuple[Array, Array, Array, Array]:
     """Return means, their errors, and least and largest values over the period."""
-
-    def values(theta: Array) -> tuple[Array, Array]:
-        frequency, error = held_frequencies(system, theta, {})
-        return frequency[:, :count], error[:, :count]
-
-    # Relative error of a mean.
-    mean, error = cycle_mean(values, system.period, enough=1e-8)
-    seen = values(system.period * np.arange(64) / 64)[0]
+    mean, error = mean_frequencies(system, count, 1e-8)
+    seen = held_frequencies(system, even_angles(system.period, 64), {})[0][:, :count]
     return mean, error, seen.min(axis=0), seen.max(axis=0)
 
 
@@ -347,9 +333,3 @@ def _remade(system: LinearPeriodic, change: Callable[[Structure], Structure]) ->
     if system.remesh is None:
         raise bad("system", "one made for its own beams alone", "a linkage", "use linkage_system")
     return replace(system.remesh(change), parameters=dict(system.parameters))
-
-
-def _factor(system: LinearPeriodic) -> float:
-    """Return what the factors of moduli and densities make of a beam's own frequency."""
-    values = system.parameters
-    return float(np.sqrt(values.get("elasticity", 1.0) / values.get("distributed_mass", 1.0)))

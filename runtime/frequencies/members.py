@@ -14,8 +14,6 @@ Array: TypeAlias = NDArray[Any]
 
 functions: Any = beam_dynamic_stiffness
 
-# Phases are kept above these; the functions are at their static values long before.
-_SMALLEST_Z, _SMALLEST_B = 1e-30, 1e-100
 # Places in the local matrix (row, column, sign, number of the function, power of the length);
 # coordinates u1, v1, r1, u2, v2, r2.
 _BENDING = (
@@ -46,11 +44,8 @@ def phases(
     mass, span = np.asarray(mass_per_length), np.asarray(length)
     z = np.sqrt(rate) * (span * np.sqrt(np.sqrt(mass / np.asarray(bending_stiffness))))
     b = rate * (span * np.sqrt(mass / np.asarray(axial_stiffness)))
-    return _above(z, _SMALLEST_Z), _above(b, _SMALLEST_B)
-
-
-def _above(values: Array, least: float) -> Array:
-    return np.where(np.abs(values) < least, least, values)
+    # Phases are kept above these; the functions are at their static values long before.
+    return np.where(np.abs(z) < 1e-30, 1e-30, z), np.where(np.abs(b) < 1e-100, 1e-100, b)
 
 
 def member_matrices(

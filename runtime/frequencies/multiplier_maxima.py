@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from ..core.errors import BadInput, bad
 from ..core.families import DAMPING, LinearPeriodic
-from ..core.inputs import require_whole
 from ..core.results import Check
 from ..hill import Meissner, discriminant
 from ..periodic import Prepared, prepare, reduced_system
@@ -27,13 +26,9 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
 
-# Turn of the highest mode between two samples [rad].
-_TURN = 0.35
 _MOST_SAMPLES = 4000
 # Lowest frequency left out, over the highest wanted and over the highest kept.
 _BEYOND, _GAP = 4.0, 1.3
-# Modes followed where nobody says how many.
-_USUAL = 4
 # Error of the transition matrices: the place of a maximum is open by the root of it.
 _RTOL = 1e-9
 
@@ -53,7 +48,7 @@ class Maxima(NamedTuple):
 
 
 def multiplier_maxima(
-    system: LinearPeriodic, speed_range: tuple[float, float], count: int | None = None
+    system: LinearPeriodic, speed_range: tuple[float, float], wanted: int
 ) -> Maxima:
     """Return the local maxima over the speed [rad/s] of the real parts of the multipliers.
 
@@ -63,21 +58,14 @@ def multiplier_maxima(
     modes stand apart from the rest the speeds are swept on those alone; what that costs at the
     highest speed is in the error.  A maximum between two samples, of which the highest mode turns
     by 0.35 rad at most, may be missed.
-
-    Raises
-    ------
-    BadInput
-        If the range needs more than 4000 samples.
     """
     low, high = speed_range
-    wanted = min(system.size, _USUAL)
-    if count is not None:
-        wanted = require_whole("count", count, 1, system.size)
     # With the crank held there is neither damping nor centrifugal stiffness.
     held = sampled(system.without("B", *DAMPING))
     frozen = frozen_frequencies(plain_equation(held, high))
     top = float(np.max(frozen[:, wanted - 1]))
-    number = int(np.ceil(top * system.period * (1 / low - 1 / high) / _TURN)) + 8
+    # The highest mode turns by 0.35 rad between two samples.
+    number = int(np.ceil(top * system.period * (1 / low - 1 / high) / 0.35)) + 8
     if number > _MOST_SAMPLES:
         raise bad(
             "speed_range",
@@ -88,11 +76,11 @@ def multiplier_maxima(
     # The reciprocal of a reciprocal may lie beyond an end by rounding.
     speed = np.clip(1.0 / np.linspace(1 / high, 1 / low, number), low, high)
     few = few_modes(system, frozen, (low, high), wanted)
-    values = few.multipliers(speed, wanted)
+    values = _multipliers(few, speed, wanted)
     real = _larger(values)
 
     def value(at: Array, mode: Whole) -> Array:
-        return np.asarray(_larger(few.multipliers(at, wanted))[np.arange(len(at)), mode])
+        return np.asarray(_larger(_multipliers(few, at, wanted))[np.arange(len(at)), mode])
 
     row, mode = _peaks(real)
     brackets = speed[row - 1], speed[row], speed[row + 1]
@@ -107,10 +95,10 @@ def multiplier_maxima(
     turn = np.repeat(np.mean(frozen[:, :wanted], axis=0), 2) * system.period / high
     slip = float(np.max(np.min(distance, axis=0) / np.abs(values[0]) / turn))
     span = np.abs(brackets[2] - brackets[0])
-    blur = _blur(around, span, np.max(noise[nearest]) + few.ready.error)
+    blur = _blur(around, span, np.max(noise[nearest]) + few.error)
     method = "local maxima of the real parts of the multipliers"
-    if few.ready.system.size < system.size:
-        method += f", on {few.ready.system.size} natural modes"
+    if few.system.size < system.size:
+        method += f", on {few.system.size} natural modes"
     checks = {
         "decoupled": Check(whole.residual, _RTOL),
         "converged": Check(whole.integration, max(_RTOL, 100 * whole.rounding)),
@@ -149,24 +137,10 @@ def refined_maxima(
     steps: int = 12,
     rtol: float = 1e-7,
 ) -> tuple[Array, Array, Array]:
-    """Refine maxima of many functions by parabolas, all at once.
+    """Refine maxima of many functions by parabolas; return places, values and errors ``(k,)``.
 
-    Parameters
-    ----------
-    call : callable
-        From places and numbers of functions to values.
-    which : ndarray of int
-        Number of each maximum's function, ``(k,)``.
-    brackets, values : tuple of ndarray
-        Places and values before, at and after each maximum, ``(k,)`` each.
-    steps : int
-        Most steps.
-    rtol : float
-        Relative step from which a maximum has settled: beyond, the values say no more.
-
-    Returns
-    -------
-    places, values, errors : ndarray, shape (k,)
+    ``call`` takes places and ``which`` functions; ``brackets`` and ``values`` stand before, at and
+    after each maximum.  One has settled where a step is below ``rtol``: the values say no more.
     """
     x, f = np.stack(brackets), np.stack(values)
     moved = np.max(np.abs(x - x[1]), axis=0)
@@ -245,47 +219,42 @@ def _meissner_maxima(
     return refined_maxima(half_trace, mode.astype(np.int64), brackets, around)
 
 
-class FewModes(NamedTuple):
-    """The lowest natural modes of a stiff system, prepared for a range of speeds."""
+def _multipliers(few: Prepared, speed: Array, count: int) -> ComplexArray:
+    """Return the multipliers of the lowest modes ``(ns, 2 count)``, two to a mode."""
+    half = few.system.size
+    found = few.monodromy(speed)
+    values, vectors = np.linalg.eig(found.scaled)
+    # In velocities of time, not of angle, a state is the same at all speeds.
+    size = np.concatenate([found.scale[:, :half], found.scale[:, half:] * speed[:, None]], 1)
+    level = _level(few, vectors * size[:, :, None])
+    order = np.argsort(level, axis=-1, kind="stable")[:, : 2 * count]
+    return np.take_along_axis(values.astype(complex), order, axis=-1)
 
-    ready: Prepared
 
-    def multipliers(self, speed: Array, count: int) -> ComplexArray:
-        """Return the multipliers of the lowest modes ``(ns, 2 count)``, two to a mode."""
-        half = self.ready.system.size
-        found = self.ready.monodromy(speed)
-        values, vectors = np.linalg.eig(found.scaled)
-        # In velocities of time, not of angle, a state is the same at all speeds.
-        size = np.concatenate([found.scale[:, :half], found.scale[:, half:] * speed[:, None]], 1)
-        level = self._level(vectors * size[:, :, None])
-        order = np.argsort(level, axis=-1, kind="stable")[:, : 2 * count]
-        return np.take_along_axis(values.astype(complex), order, axis=-1)
-
-    def _level(self, states: ComplexArray) -> Array:
-        """Return energy over action of states (q, M qd) in columns, by the modes held at 0."""
-        held = self.ready.system.without("B", *DAMPING)
-        equation = equation_of(held, np.array([self.ready.span[1]]))
-        squares, modes = (found[0, 0] for found in equation.frozen_modes(np.zeros(1)))
-        shapes = equation.scale[0][:, None] * modes
-        half = len(shapes)
-        rest = np.abs(np.linalg.solve(shapes, states[:, :half])) ** 2
-        moved = np.abs(shapes.T @ states[:, half:]) ** 2
-        rate = np.maximum(np.sqrt(np.maximum(squares, 0.0)) * equation.speed[0], 1.0)[:, None]
-        energy = rate**2 * rest + moved
-        return np.asarray(np.sum(energy, axis=1) / np.sum(energy / rate, axis=1))
+def _level(few: Prepared, states: ComplexArray) -> Array:
+    """Return energy over action of states (q, M qd) in columns, by the modes held at 0."""
+    equation = equation_of(few.system.without("B", *DAMPING), np.array([few.span[1]]))
+    squares, modes = (found[0, 0] for found in equation.frozen_modes(np.zeros(1)))
+    shapes = equation.scale[0][:, None] * modes
+    half = len(shapes)
+    rest = np.abs(np.linalg.solve(shapes, states[:, :half])) ** 2
+    moved = np.abs(shapes.T @ states[:, half:]) ** 2
+    rate = np.maximum(np.sqrt(np.maximum(squares, 0.0)) * equation.speed[0], 1.0)[:, None]
+    energy = rate**2 * rest + moved
+    return np.asarray(np.sum(energy, axis=1) / np.sum(energy / rate, axis=1))
 
 
 def few_modes(
     system: LinearPeriodic, frequency: Array, span: tuple[float, float], count: int
-) -> FewModes:
-    """Return the lowest modes over speeds; all where no few modes stand apart from the rest.
+) -> Prepared:
+    """Return the lowest modes, prepared for a range of speeds; all where no few stand apart.
 
     The frequencies with the crank held at angles ``(nt, n)`` [rad/s] tell which do.
     """
     top, low = np.max(frequency, axis=0), np.min(frequency, axis=0)
 
-    def ready(few: LinearPeriodic) -> FewModes:
-        return FewModes(prepare(few, span, samples=1, forcing=False, rtol=0.1 * _RTOL))
+    def ready(few: LinearPeriodic) -> Prepared:
+        return prepare(few, span, samples=1, forcing=False, rtol=0.1 * _RTOL)
 
     for kept in range(count, system.size):
         apart = low[kept] >= _GAP * top[kept - 1] and low[kept] >= _BEYOND * top[count - 1]

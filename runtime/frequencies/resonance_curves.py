@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
+from ..core.maxima import narrowed
 from ..core.results import Result, provenance
 from ..periodic.peaks import peak_error, quiet_state, require_shapes
 from .critical import label_speeds
@@ -22,9 +23,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
-
-# Each of four passes puts so many speeds into the gap about a maximum, and keeps a quarter of it.
-_WITHIN = 9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -166,16 +164,13 @@ def resonance_curve(
     state = quiet_state(system, speeds, rtol, parameters)
     peak = state.peak(x)
     tops = _tops(peak)
-    low, high = speeds[tops - 1], speeds[tops + 1]
-    for _ in range(4 if len(low) else 0):
-        inside = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, _WITHIN)
-        tried = quiet_state(system, inside, rtol, parameters).peak(x)
-        best = np.argmax(np.nan_to_num(tried), axis=1)
-        rows = np.arange(len(low))
-        low = inside[rows, np.maximum(best - 1, 0)]
-        high = inside[rows, np.minimum(best + 1, _WITHIN - 1)]
+
+    def peaks(at: Array) -> Array:
+        return quiet_state(system, at, rtol, parameters).peak(x)
+
+    low, high = narrowed(peaks, speeds[tops - 1], speeds[tops + 1], 4)
     maxima = 0.5 * (low + high)
-    heights = quiet_state(system, maxima, rtol, parameters).peak(x) if len(maxima) else maxima
+    heights = peaks(maxima) if len(maxima) else maxima
     # Modes that a maximum may be labelled by: of a high one any speed is near some fraction.
     mode, order = label_speeds(mean[:3], maxima)
     return ResonanceCurve(

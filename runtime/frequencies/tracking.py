@@ -16,14 +16,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.maxima import narrowed
 from .held import HeldModes, assurance
 
 Array = NDArray[np.float64]
 Modes = Callable[[Array], HeldModes]
 Arrays = Callable[[Array], tuple[Array, Array]]
-
-# Places within a bracket per pass: each pass keeps a quarter of it.
-_WITHIN = 9
 
 
 @dataclass(frozen=True)
@@ -76,16 +74,14 @@ class Encounter:
 
 def least_gap(modes: Modes, low: float, high: float, rank: int) -> tuple[float, float]:
     """Return the angle of the least gap above a rank (from 0) within a bracket, and its doubt."""
-    for _ in range(26):
-        theta = np.linspace(low, high, _WITHIN)
-        frequency = modes(theta).frequency
-        gap = frequency[:, rank + 1] - frequency[:, rank]
-        best = int(np.argmin(gap))
-        low, high = theta[max(best - 1, 0)], theta[min(best + 1, _WITHIN - 1)]
-        # About a veering the gap is flat; down to a crossing it falls to nothing.
-        if np.ptp(gap) <= 1e-9 * gap[best] or high - low <= 1e-14 * max(1.0, abs(low)):
-            break
-    return float(0.5 * (low + high)), float(high - low)
+
+    def closeness(theta: Array) -> Array:
+        frequency = modes(theta[0]).frequency
+        return (frequency[:, rank] - frequency[:, rank + 1])[None]
+
+    # About a veering the gap is flat; down to a crossing it falls to nothing.
+    (left,), (right,) = narrowed(closeness, np.array([low]), np.array([high]), 26, flat=1e-9)
+    return float(0.5 * (left + right)), float(right - left)
 
 
 def describe(

@@ -155,16 +155,13 @@ class EffectiveOperator:
         Highest total degree.
     damped : bool
         True where the last parameter is K.
-    exponents : tuple of ndarray, shape (M_k, p)
-        For the degrees k = 1 ... order: the exponents of the monomials, read-only.
     diagonal, coupling : tuple of ndarray, shape (M_k,), complex
-        Coefficients of A and of B, likewise.
+        Coefficients of A and of B for the degrees k = 1 ... order, by monomial, read-only.
     """
 
     n: int
     order: int
     damped: bool
-    exponents: tuple[Index, ...]
     diagonal: tuple[Complex, ...]
     coupling: tuple[Complex, ...]
 
@@ -217,10 +214,7 @@ def _operator(key: _Key, n: int, order: int, damped: bool) -> EffectiveOperator:
             "functions of moderate size",
             "move a common factor into the parameter",
         )
-    exponents = tuple(monomials(len(key) + damped, k) for k in range(1, order + 1))
-    return EffectiveOperator(
-        n, order, damped, exponents, tuple(map(_frozen, diagonal)), tuple(coupling)
-    )
+    return EffectiveOperator(n, order, damped, tuple(map(_frozen, diagonal)), tuple(coupling))
 
 
 def wave_columns(f: PeriodicFunction, n: int, order: int, damping: float) -> Complex:

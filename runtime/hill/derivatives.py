@@ -21,8 +21,6 @@ from .transfer import EPS
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-# Cosine between two solutions from which on they count as coming together.
-_ALIKE = 0.95
 _COEFFICIENT = re.compile(r"([ab])([0-9]+)")
 
 
@@ -283,7 +281,8 @@ class _Slice:
         apart[i] = np.inf
         other = int(apart.argmin())
         right, left = self.rights[:, other], self.lefts[:, other]
-        if other == i or abs(float(right @ self.rights[:, i])) < _ALIKE:
+        # From this cosine on two solutions count as coming together.
+        if other == i or abs(float(right @ self.rights[:, i])) < 0.95:
             return 0.0
         felt = float((np.abs(left) + np.abs(right)) @ self.residual[:, i])
         return felt / max(float(apart[other]) * abs(float(left @ right)), 5e-324)

@@ -38,9 +38,6 @@ _DIRECT_GRID, _DIRECT_POINTS = 2048, 8192
 # A box is split where the solutions' growth varies more than this over it, or where it would need
 # more nodes in one direction.
 _GROWTH, _MOST_NODES = 1e2, 768
-# Wide boxes cost digits: the terms of the polynomials grow with the distance from its middle.
-_WIDEST = 200.0
-_DETERMINANT_LIMIT = 1e-10
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -172,7 +169,7 @@ def discriminant(
         error=error,
         error_norm="absolute, entrywise",
         checks={
-            "determinant": Check(work.defect, _DETERMINANT_LIMIT),
+            "determinant": Check(work.defect, 1e-10),
             "entries beyond the range of doubles": Check(beyond, 0.0),
         },
         provenance=provenance(),
@@ -229,7 +226,8 @@ class _Work:
             return self._direct(self.f, x, y, scale)
         limits = float(x.min()), float(x.max()), float(y.min()), float(y.max())
         direct = transfer(self.f, limits[:2], limits[2:])
-        if sum(direct.spread) > _WIDEST:
+        # Wide boxes cost digits: terms of the polynomials grow with the distance from the middle.
+        if sum(direct.spread) > 200.0:
             return int(direct.spread[1] > direct.spread[0])
         few = _DIRECT_GRID if self.grid else _DIRECT_POINTS
         if count <= few or direct.floor < -1e3:

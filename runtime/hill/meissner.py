@@ -20,14 +20,12 @@ from numpy.typing import ArrayLike, NDArray
 from ...generated import hill_meissner
 from ..core.errors import bad
 from .checks import finite
-from .transfer import EPS, Exponents, normalised, product
+from .transfer import EPS, Exponents, HalfTraces, in_parts, normalised, product
 
 Array = NDArray[np.float64]
 
 _interval: Callable[..., tuple[Array, Array]] = hill_meissner.interval
 
-# Entries of all matrices of a chunk of points, so that they stay in the cache.
-_CHUNK = 2**19
 # cosh of more leaves the range of doubles; longer intervals are cut.
 _STEEPEST = 300.0
 _MOST_INTERVALS = 2**16
@@ -97,22 +95,12 @@ class Meissner:
             raise bad("Meissner", f"{len(self.levels)} levels", "two", fix)
         return np.array(self.levels), np.array(self.lengths)
 
-    def half_trace_with_error(
-        self, lam2: Array, mu: Array
-    ) -> tuple[Array, Array, Exponents, Array]:
+    def half_trace_with_error(self, lam2: Array, mu: Array) -> HalfTraces:
         """Return half traces and errors at points ``(n,)``; see :class:`.transfer.Transfer`."""
-        n = lam2.size
-        value, error, defect = np.empty(n), np.empty(n), np.empty(n)
-        exponent: Exponents = np.zeros(n, dtype=np.int64)
-        step = max(1, _CHUNK // (8 * len(self.levels)))
-        for start in range(0, n, step):
-            part = slice(start, start + step)
-            value[part], error[part], exponent[part], defect[part] = self._product(
-                lam2[part], mu[part]
-            )
-        return value, error, exponent, defect
+        # Entries of all matrices of a part, so that they stay in the cache.
+        return in_parts(self._product, lam2, mu, max(1, 2**16 // len(self.levels)))
 
-    def _product(self, lam2: Array, mu: Array) -> tuple[Array, Array, Exponents, Array]:
+    def _product(self, lam2: Array, mu: Array) -> HalfTraces:
         q, t, noise = self._cut(lam2, mu)
         m, error = _matrices(q, t[:, None], noise)
         # Once for the product of matrices, of two terms each.

@@ -32,8 +32,6 @@ Mask = NDArray[np.bool_]
 # The series is taken to converge while its components fall at least so fast from one to the next,
 # and while what is left out stays below this share of the distance to the next level.
 CONTRACTION, _SHARE = 0.9, 0.5
-# The observed ratio is that of few orders: the ratio of those to come may be larger.
-_CAUTION = 1.25
 # Factor on the two orders beyond: their sum is the larger part of what is left out.
 _DOUBT = 2.0
 # Points at a time, so that the components stay in the cache.
@@ -348,7 +346,8 @@ class Sums(NamedTuple):
         distance, sizes = level_distance(n), np.abs(a) + np.abs(b)
         # The real part of the first one is the shift by the mean, which is exact.
         sizes[0] = np.abs(a[0].imag) + np.abs(b[0])
-        ratio = _CAUTION * contraction(sizes, distance)
+        # The observed ratio is that of few orders: the ratio of those to come may be larger.
+        ratio = 1.25 * contraction(sizes, distance)
         # Orders of one parity say nothing of the other: a step of V and R at its largest does.
         step = np.minimum(2.0 * strength / distance, 0.2)
         rest = _geometric(sizes, np.maximum(ratio, step)) + noise

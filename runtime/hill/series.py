@@ -38,9 +38,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_CAUTION = 8.0
-# Roundings of the leading component of the root, which all others hang on.
-_LEADING = 4.0 * EPS
 # A leading coefficient of the root is taken for zero where it is within the round-off of the terms
 # that make it, so many units of their size; above this share of its majorant it cannot be.
 _ROUNDED, _CLEAR = 64.0, 1e-6
@@ -111,21 +108,15 @@ class BoundarySeries(Result):
         )
         return lower, upper
 
-    def latex(self, any_region: bool = False) -> str:
+    def latex(self) -> str:
         """Return both boundaries as a formula, to the order; see :func:`boundary_latex`.
-
-        Parameters
-        ----------
-        any_region : bool
-            True to have the letter n, for any region from 1, in place of the number.
 
         Raises
         ------
         BadInput
             If the order is above 6.
         """
-        region = None if any_region else self.region
-        return boundary_latex(self.order, region, self.damping_ratio > 0.0)
+        return boundary_latex(self.order, self.region, self.damping_ratio > 0.0)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw partial sums of every order and the exact boundaries, mu upwards."""
@@ -195,7 +186,7 @@ def boundary_series(
     runs = [_alphas(_turned(f, float(k)), n, order, damping_ratio) for k in range(5)]
     (middle, half), splitting, doubt = runs[0]
     spread = np.max([np.abs(other - runs[0][0]) for other, *_ in runs[1:]], axis=0).sum(axis=0)
-    error = _CAUTION * spread + 2.0 * EPS * (np.abs(middle) + np.abs(half)) + doubt
+    error = 8.0 * spread + 2.0 * EPS * (np.abs(middle) + np.abs(half)) + doubt
     disagreeing = float(sum(other != splitting for _, other, _ in runs))
     return BoundarySeries(
         method=f"Bloch's recursion, order {order}",
@@ -265,7 +256,8 @@ def _alphas(f: PeriodicFunction, n: int, order: int, ratio: float) -> tuple[Arra
         raise bad("damping_ratio", f"{ratio:g}", expected, "take less damping")
     root = _root(drag, coupling)
     half[s - 1 :] = root
-    nudged = _root(drag, np.concatenate([coupling[:1] * (1.0 + _LEADING), coupling[1:]]))
+    # Roundings of the leading component of the root, which all others hang on.
+    nudged = _root(drag, np.concatenate([coupling[:1] * (1.0 + 4.0 * EPS), coupling[1:]]))
     doubt[s - 1 :] += np.abs(nudged - root)
     return np.stack([middle, half]), s, doubt
 

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import BadInput, bad
+from ..core.maxima import narrowed
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
@@ -34,8 +35,6 @@ Mask = NDArray[np.bool_]
 # Values of mu per decade in the search for the first crossing, and how far it goes: to mu f of so
 # many times the square of the region's number.  Where it begins without damping any width will do.
 _PER_DECADE, _FARTHEST, _SMALLEST = 24, 16.0, 1e-3
-# How often a maximum between those values is looked at more closely, and by how much.
-_ZOOM = 8
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -355,14 +354,13 @@ def _peaks(closing: Solver, grid: Array, value: Array) -> tuple[Array, Array]:
     inner = np.flatnonzero((value[1:-1] > value[:-2]) & (value[1:-1] >= value[2:])) + 1
     if not inner.size:
         return np.zeros(0), np.zeros(0)
-    low, high = np.log(grid[inner - 1]), np.log(grid[inner + 1])
-    each = np.arange(inner.size)
-    for _ in range(3):
-        x = np.linspace(low, high, _ZOOM + 1)
-        tops = _sure(closing, np.exp(x.ravel())).reshape(x.shape)
-        best, step = tops.argmax(axis=0), (high - low) / _ZOOM
-        low, high = x[best, each] - step, x[best, each] + step
-    return np.exp(x[best, each]), tops[best, each]
+
+    def tops(x: Array) -> Array:
+        return _sure(closing, np.exp(x.ravel())).reshape(x.shape)
+
+    low, high = narrowed(tops, np.log(grid[inner - 1]), np.log(grid[inner + 1]), 3)
+    place = 0.5 * (low + high)
+    return np.exp(place), tops(place)
 
 
 def _refined(closing: Solver, wanted: Array, low: Array, high: Array) -> Array:

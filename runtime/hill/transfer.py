@@ -10,6 +10,7 @@ circle a few passes of element-wise arithmetic, over all points at once.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from math import ceil, lgamma, log, log2, pi, sqrt
@@ -25,6 +26,7 @@ from ..core.periodic_function import PeriodicFunction, segment_values
 Array = NDArray[np.float64]
 Exponents = NDArray[np.int64]
 Range = tuple[float, float]
+HalfTraces = tuple[Array, Array, Exponents, Array]
 
 EPS = float(np.finfo(float).eps)
 _MOST_SEGMENTS = 2**16
@@ -140,25 +142,15 @@ class Transfer:
             out[part] = 0.5 * np.einsum("ijn,jin->n", b, a)
         return out
 
-    def half_trace_with_error(
-        self, lam2: Array, mu: Array
-    ) -> tuple[Array, Array, Exponents, Array]:
+    def half_trace_with_error(self, lam2: Array, mu: Array) -> HalfTraces:
         """Return half trace and error at points ``(n,)``, scaled against overflow.
 
         Value and error are to be multiplied by ``2**exponent``, 1 unless solutions grow beyond
         1e100.  Last, how far the product of the segments' determinants is from 1 (Liouville).
         """
-        n = lam2.size
-        value, error, defect = np.empty(n), np.empty(n), np.empty(n)
-        exponent: Exponents = np.zeros(n, dtype=np.int64)
-        for begin in range(0, n, self.chunk):
-            part = slice(begin, begin + self.chunk)
-            value[part], error[part], exponent[part], defect[part] = self._checked(
-                lam2[part], mu[part]
-            )
-        return value, error, exponent, defect
+        return in_parts(self._checked, lam2, mu, self.chunk)
 
-    def _checked(self, lam2: Array, mu: Array) -> tuple[Array, Array, Exponents, Array]:
+    def _checked(self, lam2: Array, mu: Array) -> HalfTraces:
         m = self.matrices(lam2, mu)
         det = m[0, 0] * m[1, 1]
         det -= m[0, 1] * m[1, 0]
@@ -183,6 +175,16 @@ class Transfer:
         error = amplification * local + reply * (self.f_error * np.abs(mu))
         value = 0.5 * (turns[0, 0, 0] + turns[1, 1, 0])
         return value, error, exponent, defect
+
+
+def in_parts(
+    evaluate: Callable[[Array, Array], HalfTraces], lam2: Array, mu: Array, most: int
+) -> HalfTraces:
+    """Evaluate points ``(n,)`` by so many at a time."""
+    starts = range(0, lam2.size, most)
+    parts = [evaluate(lam2[k : k + most], mu[k : k + most]) for k in starts]
+    value, error, exponent, defect = (np.concatenate(item) for item in zip(*parts, strict=True))
+    return value, error, exponent, defect
 
 
 def product(b: Array, a: Array) -> Array:

@@ -290,7 +290,7 @@ def recover(
     system : LinearPeriodic
         Of a structure of beams.
     motion : SteadyState, Trajectory, BeamMotion, float or None
-        As :func:`beam_motion` takes it.
+        A computed motion; a crank speed [rad/s], for the steady state there; None for a frame.
     stations : int or mapping of str to array_like, optional
         Places on each beam: how many, or by beam the places x/length; by default 25.
     method : str

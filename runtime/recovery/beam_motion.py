@@ -93,20 +93,10 @@ class BeamMotion:
 
 
 def beam_motion(system: LinearPeriodic, motion: Motion | float | None) -> BeamMotion:
-    """Return the motion of a structure of beams in one form.
+    """Return a motion of a structure of beams in one form.
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a structure of beams.
-    motion : SteadyState, Trajectory, BeamMotion, float or None
-        A computed motion at one speed; a crank speed [rad/s], for the steady state there; or
-        None, for the equilibrium of a structure that stands still.
-
-    Raises
-    ------
-    BadInput
-        If it is none of these, has another number of coordinates, holds many speeds, or has NaN.
+    It may be computed, at one speed; a crank speed [rad/s], for the steady state there; or None,
+    for the equilibrium of a structure that stands still.
     """
     # Loaded here: the response knows frequencies, and these know beams.
     from ..periodic import SteadyState, Trajectory

@@ -22,8 +22,6 @@ from .beam_motion import BeamMotion, standing
 CAUTION = 3.0
 # Round-off of stiff structures, over the largest value.
 ROUNDING = 1e-10
-# Angles at which a system made anew is compared with the one given, over the period.
-_PROBES = np.array([0.1, 0.45, 0.8])
 _KEPT = "steady state on a finer mesh"
 
 
@@ -60,7 +58,7 @@ def _is_remade(system: LinearPeriodic) -> bool:
     """Return whether the system made anew on its own mesh is the one that is given."""
     if system.remesh is None:
         return False
-    theta = system.period * _PROBES
+    theta = system.period * np.array([0.1, 0.45, 0.8])
     made = system.remesh(_as_it_is)
     return len(made.terms) == len(system.terms) and all(
         (new.array, new.scale, new.power) == (own.array, own.scale, own.power)

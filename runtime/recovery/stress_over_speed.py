@@ -14,7 +14,7 @@ from ..beams.element_forms import required_structure
 from ..beams.recovery_forms import RIGID, LinearForm
 from ..core.errors import LINEAR_RANGE, bad
 from ..core.families import DAMPING, LinearPeriodic
-from ..core.inputs import numbers, require_whole
+from ..core.inputs import numbers
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import differentiated, even_angles, resampled
 from ..periodic.equation import equation_of
@@ -177,7 +177,6 @@ def stress_curve(
     *,
     stations: int | Mapping[str, ArrayLike] | None = None,
     rtol: float = 1e-4,
-    modes: int | None = None,
     method: str = "equilibrium",
     stability: bool = True,
     whole: bool = True,
@@ -199,8 +198,6 @@ def stress_curve(
         Places on each beam: how many, or by beam the places x/length; by default 7.
     rtol : float
         Wanted relative error of each maximum, 1e-6 to 1e-2.
-    modes : int, optional
-        Modes kept; by default as few as each range of speeds needs.
     method : str
         ``"equilibrium"`` or ``"shape"``, as :func:`elastolink.stress` takes it.
     stability : bool
@@ -222,12 +219,12 @@ def stress_curve(
         If an argument is unusable, the system is not one of beams, nothing acts on it, or no
         subspace of modes is smooth.
     """
-    given = _checked(system, speeds, rtol, modes, method)
+    given = _checked(system, speeds, rtol, method)
     _require_damped(system)
     rising, back = np.unique(given, return_inverse=True)
     # Stations per link by default: with three elements their ends and middles.
     places = 7 if stations is None else stations
-    work = _Work(system, Fibres(system, places, method), rtol, modes)
+    work = _Work(system, Fibres(system, places, method), rtol)
     parts = [work.range_of(rising[part]) for part in speed_ranges(rising)]
     peaks = Peaks.joined(part.peaks for part in parts)
     size, error = peaks.size, peaks.error
@@ -350,11 +347,9 @@ class _Work:
     modes that the next range begins with.
     """
 
-    def __init__(
-        self, system: LinearPeriodic, fibres: Fibres, rtol: float, modes: int | None
-    ) -> None:
-        self.system, self.fibres, self.rtol, self.wanted = system, fibres, rtol, modes
-        self.truncations = Truncations(system, modes)
+    def __init__(self, system: LinearPeriodic, fibres: Fibres, rtol: float) -> None:
+        self.system, self.fibres, self.rtol = system, fibres, rtol
+        self.truncations = Truncations(system)
         # Error of the transition matrices over the wanted error of the stress.
         self.flow = max(1e-11, 1e-4 * rtol)
         self.angles, self.least = _ANGLES, self.truncations.numbers[0]
@@ -366,8 +361,7 @@ class _Work:
         change = np.max(np.abs(few.size / many.size - 1.0), axis=1)
         shift = np.abs(few.growth.modulus - many.growth.modulus)
         defect = float(np.max(shift / many.growth.condition))
-        chosen = many.modes if self.wanted is None else self.wanted
-        moving = self.truncations.motions(chosen, self.angles, (low, high), self.flow)
+        moving = self.truncations.motions(many.modes, self.angles, (low, high), self.flow)
         theta = moving.truncated.theta
         peaks, errors, norms, deflection = [], [], [], []
         for part, q, error in moving.blocks(speeds):
@@ -383,7 +377,7 @@ class _Work:
         error = 3.0 * weight * np.concatenate(errors) + found.error + ELSEWHERE * change[:, None]
         return _Range(
             peaks=replace(found, error=error),
-            modes=chosen,
+            modes=many.modes,
             growth=moving.growth(speeds),
             defect=defect,
             deflection=np.concatenate(deflection),
@@ -404,17 +398,14 @@ class _Work:
             if not numbers_:
                 found = f"no smooth and periodic subspace of {self.least} modes or more"
                 expected = "modes whose frequencies keep their distance over the revolution"
-                raise bad("system", found, expected, "choose another number of modes")
+                raise bad("system", found, expected, "take stress() speed by speed")
             trials = [self._trial(number, speeds) for number in numbers_]
             if self.angles < _MOST_ANGLES and trials[-1].tail > _TAIL * self.rtol:
                 self.angles *= 2
                 continue
             change = float(np.max(np.abs(trials[0].size / trials[-1].size - 1.0)))
-            if (
-                self.wanted is not None
-                or ELSEWHERE * change <= 0.5 * self.rtol
-                or trials[-1].modes == self.truncations.numbers[-1]
-            ):
+            last = trials[-1].modes == self.truncations.numbers[-1]
+            if last or ELSEWHERE * change <= 0.5 * self.rtol:
                 return trials[0], trials[-1]
             self.least = trials[-1].modes
 
@@ -497,9 +488,7 @@ def _require_damped(system: LinearPeriodic) -> None:
         raise bad("system", found, "damping, which bounds the resonances", fix)
 
 
-def _checked(
-    system: LinearPeriodic, speeds: ArrayLike, rtol: float, modes: int | None, method: str
-) -> Array:
+def _checked(system: LinearPeriodic, speeds: ArrayLike, rtol: float, method: str) -> Array:
     """Return the speeds; refuse arguments that are unusable."""
     required_structure(system)
     given = np.atleast_1d(numbers("speeds", speeds))
@@ -507,8 +496,6 @@ def _checked(
         raise bad("speeds", speeds, "positive finite speeds [rad/s], one row", "correct them")
     if not (isinstance(rtol, Real) and 1e-6 <= rtol <= 1e-2):
         raise bad("rtol", repr(rtol), "a number from 1e-6 to 1e-2", "choose 1e-4")
-    if modes is not None:
-        require_whole("modes", modes, 1, system.size)
     if method not in METHODS:
         raise bad("method", repr(method), f"one of {METHODS}", "choose 'equilibrium'")
     return given

@@ -16,7 +16,7 @@ from ..beams.recovery_forms import LinearForm, stacked
 from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic
-from ..core.inputs import is_finite, numbers
+from ..core.inputs import is_finite, numbers_in_a_row
 from ..core.trigonometric import even_angles, resampled
 from .beam_forces import (
     METHODS,
@@ -494,9 +494,7 @@ def stress_operator(
         If an argument is unusable.
     """
     require_method(method)
-    angles = np.atleast_1d(numbers("theta", theta))
-    if angles.ndim != 1 or not angles.size or not np.all(np.isfinite(angles)):
-        raise bad("theta", f"shape {angles.shape}", "finite angles, shape (nt,)", "flatten them")
+    angles = numbers_in_a_row("theta", theta, " [rad]")
     chosen = stations_of(required_structure(system), stations)
     areas, levers = fibre_factors(system, chosen)
     forms = checked_forms(system, angles)

@@ -12,13 +12,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..core.families import MATRICES, LinearPeriodic, Term
+from ..core.families import LinearPeriodic, Term
 from ..core.families.emitted import check_module, dropped_names
 
 Array = NDArray[np.float64]
 
 _Row: TypeAlias = tuple[str, int, str | None, str | None, str]
-_ROUND = 8.0 * float(np.finfo(float).eps)
 
 
 class BasisArrays(Protocol):
@@ -40,7 +39,6 @@ def assemble(
     modes: int | None = None,
     external: Mapping[str, Callable[[Array], Array]] | None = None,
     basis: BasisArrays | None = None,
-    forcing: bool = True,
     drop: Collection[str] = (),
     **attributes: Any,
 ) -> LinearPeriodic:
@@ -61,8 +59,6 @@ def assemble(
     basis : object, optional
         Shapes of a module whose arrays consist of integrals over them: its ``size`` is their
         number, its ``array(name, place)`` gives the integrals that the module's ``BASIS`` defines.
-    forcing : bool
-        Whether the forcing terms are taken along.
     drop : collection of str
         Terms of the energies to leave out (of the module's ``DROPS``).
     **attributes
@@ -84,9 +80,8 @@ def assemble(
     shared = _angle_kernels(module, geometry, external or {})
     terms = []
     for array, power, scale, angle, mode in rows:
-        if array in MATRICES or forcing:
-            function = _function(angle, modal[mode], shared, external or {})
-            terms.append(Term(array, scale, function, power))
+        function = _function(angle, modal[mode], shared, external or {})
+        terms.append(Term(array, scale, function, power))
     size = (
         next(v.shape[0] for v in modal.values() if not callable(v)) if basis is None else basis.size
     )
@@ -96,7 +91,7 @@ def assemble(
     if "scales" in module.RETURNS:
         used = inspect.signature(module.scales).parameters
         fixed = {name: geometry[name] for name in used if name in geometry}
-        # Parameters that no term uses (pruned, or forcing left out) stay known to the user.
+        # Parameters that no term uses, pruned ones, stay known to the user.
         names = tuple(name for name in used if name not in fixed)
         scales = partial(_scales, module.scales, module.RETURNS["scales"], names, fixed)
     return LinearPeriodic(
@@ -233,7 +228,8 @@ def _at_place(
     """Return the support's place at each angle, where its integrals are to be kept beside it."""
     place = np.asarray(function(theta, **geometry))
     # A support at the very end, beyond it by rounding.
-    return {"place": np.where(place <= 1.0 + _ROUND, np.minimum(place, 1.0), place)}
+    round_off = 8.0 * float(np.finfo(float).eps)
+    return {"place": np.where(place <= 1.0 + round_off, np.minimum(place, 1.0), place)}
 
 
 def _by_name(names: tuple[str, ...], values: Any) -> dict[str, Array]:

@@ -20,23 +20,7 @@ if TYPE_CHECKING:
 
 
 def beams_of_scene(scene: Scene) -> LinearPeriodic:
-    """Return the vibration of a scene's linkage or frame of beams.
-
-    Parameters
-    ----------
-    scene : Scene
-        With a formulation of beams, such as ``cubic_beams``.
-
-    Returns
-    -------
-    LinearPeriodic
-        With the scene's modal damping; ``.structure`` holds the beams.
-
-    Raises
-    ------
-    BadInput
-        If the crank cannot turn fully, or the numbers do not fit together.
-    """
+    """Return the vibration of a scene's linkage or frame of beams, with its modal damping."""
     drop = scene.model["drop"]
     options: dict[str, Any] = {
         "form": "instantaneous" if "turning" in drop else "full",

@@ -22,16 +22,6 @@ def coupler_system(scene: Scene) -> LinearPeriodic:
     """Return the transverse vibration of the coupler (Smith 6.6, corrected; 6.17; 6.18).
 
     The coordinates are ``Y_m / l3``; the parameters are those of the emitted module.
-
-    Parameters
-    ----------
-    scene : Scene
-        With mechanism ``four_bar`` and flexible ``coupler``.
-
-    Raises
-    ------
-    BadInput
-        If the crank cannot turn fully, or no module was emitted for the scene's model.
     """
     linkage = scene.mechanism()
     linkage.require_full_turn()
@@ -77,13 +67,7 @@ class PinnedModes:
 
 
 def hill_system(scene: Scene) -> LinearPeriodic:
-    """Return ``y'' + 2 K y' + (lam2 + mu f) y = 0`` (Smith 7.38); the speed that suits it is 1.
-
-    Raises
-    ------
-    BadInput
-        If no module was emitted for the scene's model.
-    """
+    """Return ``y'' + 2 K y' + (lam2 + mu f) y = 0`` (Smith 7.38); the speed that suits it is 1."""
     table, emitted = scene["function"], find_module(scene.model_spec())
     return assemble(
         emitted.module,
@@ -98,18 +82,8 @@ def hill_system(scene: Scene) -> LinearPeriodic:
 def rod_of_scene(scene: Scene) -> LinearPeriodic | Constrained:
     """Return the rod of a scene in the formulation that it names.
 
-    Parameters
-    ----------
-    scene : Scene
-        With mechanism ``quick_return`` and flexible ``rod``.  ``model.formulation`` is
-        ``overhang``, ``polynomial``, ``two_segment`` or ``free_free_linear``, linear on a moving
-        basis, or ``free_free``, nonlinear with constraints.
-
-    Raises
-    ------
-    BadInput
-        If the crank cannot turn fully, a module was not emitted, or ``free_free`` is asked for
-        with damping or without a speed.
+    Linear on a moving basis, or nonlinear with constraints (``free_free``), which has no damping
+    and wants a speed.
     """
     scene.mechanism().require_full_turn()
     links, rod = scene["links"], scene["rod"]

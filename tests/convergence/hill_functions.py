@@ -5,6 +5,11 @@ from __future__ import annotations
 import elastolink as el
 import numpy as np
 
+COSINE = el.PeriodicFunction([0.0, 1.0])
+# Three harmonics with sines and a mean.
+GENERAL = el.PeriodicFunction([0.3, 1.0, -0.4, 0.2], [0.0, 0.5, 0.7, -0.1])
+ANOTHER = el.PeriodicFunction([0.3, 1.0, -0.4, 0.25], [0.0, -0.5, 0.3, 0.1])
+
 
 def functions():
     """A general function of 24 harmonics, and f3 = -alpha4/sin(theta3 - theta4), Smith (6.16)."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from elastolink.derive.spec import ModelSpec
@@ -158,7 +160,8 @@ def test_an_orbit_that_is_not_isolated_does_not_pass(emit):
 
 def test_results_can_be_drawn_and_saved(pendulum, tmp_path):
     start = [0.0, 0.0, -ROD], [STROKE * DRIVE, STROKE * DRIVE, 0.0]
-    orbit = periodic_orbit(pendulum, PERIOD, *start, watch=lambda q, t: q[:, 0] / ROD)
+    watched = replace(pendulum, watch=lambda q, t: q[:, 0] / ROD)
+    orbit = periodic_orbit(watched, PERIOD, *start)
     assert orbit.deflection == pytest.approx(STROKE / ROD, rel=1e-3)
     assert not orbit.checks["linear range"].passed
     assert len(orbit.plot().lines) == 3

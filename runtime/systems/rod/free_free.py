@@ -33,7 +33,6 @@ _slope_products: _Function = emitted.slope_products
 _slope_squares: _Function = emitted.slope_squares
 # pi to twice the digits of a double: the multiples that roots start from are rounded once.
 _PI = Fraction(pi) + Fraction(1.2246467991473532e-16)
-_NEWTON = 8
 
 
 @lru_cache(maxsize=32)
@@ -47,7 +46,7 @@ def _solved(count: int) -> tuple[Array, Array]:
     rest = np.array([float(value - Fraction(float(value))) for value in exact])
     parity = np.where(np.arange(1, count + 1) % 2 == 1, 1.0, -1.0)
     offset = np.zeros(count)
-    for _ in range(_NEWTON):
+    for _ in range(8):  # Newton's steps
         defect, slope = _root_defect(offset, start, parity)
         offset = offset - defect / slope
     roots = start + (offset + rest)

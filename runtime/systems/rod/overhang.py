@@ -43,10 +43,6 @@ _MOST = 1000
 _WHY = "the beam has long ceased to be slender for such modes"
 _ROUND = float(np.finfo(float).eps)
 _TINY = float(np.finfo(float).tiny)
-_NEWTON_STEPS = 80  # halving alone needs fewer than that
-_LAST_STEP = 1e-10  # the next of Newton's corrections is its square, times a factor
-# Errors of a frequency, in roundings: twice that of the root, one, and three of the factors.
-_FREQUENCY_ERROR = 5.0
 _KEPT = 8  # arrays of places whose modes and integrals are remembered
 # Over two modes: name, and the sign that an exchange of the modes brings.
 _PAIRS = {
@@ -126,7 +122,7 @@ def overhang_roots(place: ArrayLike, modes: int) -> Array:
     roots = (lower + upper) / 2
     active = np.arange(roots.size)
     beta = roots.copy()
-    for _ in range(_NEWTON_STEPS):
+    for _ in range(80):  # halving alone needs fewer
         residual, slope = _characteristic(beta, where[active])
         above = residual * sign[active] > 0
         low = np.where(above, beta, lower[active])
@@ -135,8 +131,8 @@ def overhang_roots(place: ArrayLike, modes: int) -> Array:
             correction = residual / slope
         step = beta - correction
         step = np.where((step >= low) & (step <= high), step, (low + high) / 2)
-        # The last correction is quadratically small before the next one, but for round-off.
-        done = (np.abs(correction) <= _LAST_STEP * beta) | (high - low <= 4 * _ROUND * beta)
+        # The next of Newton's corrections is the square of this, times a factor.
+        done = (np.abs(correction) <= 1e-10 * beta) | (high - low <= 4 * _ROUND * beta)
         roots[active] = np.where(done, np.clip(beta - correction, low, high), step)
         going = ~done
         if not np.any(going):
@@ -345,7 +341,8 @@ class OverhangBasis:
             raise bad("length", repr(length), expected, "its frequencies are beyond a double")
         return OverhangFrequencies(
             method="Newton's method in brackets of the bays held at the block",
-            error=_FREQUENCY_ERROR * _ROUND * frequencies,
+            # Roundings: twice that of the root, one, and three of the factors.
+            error=5.0 * _ROUND * frequencies,
             error_norm="each natural frequency, absolute [rad/s]",
             checks=DeferredChecks(partial(_counted, xi, roots)),
             provenance=provenance({"module": "quick_return_overhang_modes"}),

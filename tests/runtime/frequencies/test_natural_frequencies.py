@@ -146,7 +146,7 @@ def test_modes_are_drawn(linkage):
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"theta": [np.nan]}, "finite crank angles"),
+        ({"theta": [np.nan]}, "theta: found"),
         ({"count": 0}, "from 1 to 9"),
         ({"count": 10}, "from 1 to 9"),
         ({"speed": -1.0}, "0 or more"),

@@ -13,13 +13,11 @@ from elastolink.runtime.hill import (
     hill_boundaries,
 )
 from elastolink.runtime.hill.boundaries import half_trace_check
-from hill_functions import functions
+from hill_functions import COSINE, functions
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 FUNCTIONS = functions()
-
-COSINE = PeriodicFunction([0.0, 1.0])
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
@@ -255,20 +253,6 @@ def test_region_zero_under_huge_damping(k):
     assert np.isnan(found.upper[1])
     gap = abs(found.upper[0] + 0.01 / (8.0 * k * k))
     assert gap <= found.error[0] + 1e-3 * 0.01 / (8.0 * k * k)
-
-
-@pytest.mark.parametrize("mu", [100.0, -1e4])
-def test_deep_wells_have_the_levels_of_the_oscillator(mu):
-    """Levels r of a deep cosine well, Abramowitz & Stegun 20.2.30 with q = 2 mu, a = 4 lam2."""
-    found = hill_boundaries(COSINE, mu, (1, 2, 3))
-    expected = []
-    for n in (1, 2, 3):
-        for level in (n - 1, n):
-            shift = (2 * level**2 + 2 * level + 1) / 16
-            expected.append(-abs(mu) + (level + 0.5) * np.sqrt(2 * abs(mu)) - shift)
-    ours = np.stack([found.lower, found.upper], axis=1).ravel()
-    np.testing.assert_allclose(ours, expected, rtol=0, atol=2.0 / np.sqrt(abs(mu)))
-    assert found.error.max() < 1e-11 * abs(mu)
 
 
 def test_sparse_harmonics():

@@ -16,11 +16,7 @@ from elastolink.runtime.hill import (
     hill_boundaries,
 )
 from elastolink.runtime.hill.fourier_matrix import stacked, truncation
-from hill_functions import general
-
-COSINE = PeriodicFunction([0.0, 1.0])
-
-GENERAL = PeriodicFunction([0.3, 1.0, -0.4, 0.2], [0.0, 0.5, 0.7, -0.1])
+from hill_functions import COSINE, GENERAL, general
 
 
 def number(x):

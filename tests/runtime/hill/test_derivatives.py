@@ -5,9 +5,8 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import boundary_derivatives, critical_damping, hill_boundaries
+from hill_functions import COSINE, GENERAL
 
-COSINE = PeriodicFunction([0.0, 1.0])
-GENERAL = PeriodicFunction([0.3, 1.0, -0.4, 0.2], [0.0, 0.5, 0.7, -0.1])
 G = PeriodicFunction([0.2, 0.5, -0.3], [0.0, 0.1, 0.7])
 REGIONS = (1, 2, 3)
 # A power of two, so that mu +- STEP and the coefficients +- STEP are exact or nearly so.

@@ -7,13 +7,9 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import characteristic_exponents, hill_boundaries
-from hill_functions import functions
+from hill_functions import COSINE, GENERAL, functions
 
 FUNCTIONS = functions()
-
-COSINE = PeriodicFunction([0.0, 1.0])
-
-GENERAL = PeriodicFunction([0.3, 1.0, -0.4, 0.2], [0.0, 0.5, 0.7, -0.1])
 
 
 def bands_of(f, mu, nu, bands=(0, 1, 2), k=0.0):
@@ -24,10 +20,11 @@ def bands_of(f, mu, nu, bands=(0, 1, 2), k=0.0):
 @pytest.mark.parametrize("name", FUNCTIONS)
 @pytest.mark.parametrize("k", [0.0, 0.05])
 def test_the_half_trace_is_the_cosine_of_the_phase(name, k):
-    """The result's own check, at 24 points, within errors that are small."""
+    """At 24 points, within the errors themselves, which are small."""
     mu, nu = np.linspace(-1.5, 1.5, 7)[:, None], np.linspace(-0.9, 1.3, 11)
     found = bands_of(FUNCTIONS[name], mu, nu, (0, 1, 2, 5), k)
-    assert found.passed and list(found.checks)
+    (check,) = found.checks.values()
+    assert check.value <= 1.0
     assert found.error.max() < 3e-12
 
 

@@ -9,7 +9,7 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import discriminant, hill_boundaries
 from half_trace_truth import half_traces
-from hill_functions import functions, general
+from hill_functions import COSINE, functions, general
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -143,9 +143,6 @@ def test_an_overflow_fails_a_check():
     assert np.isinf(found.value[0]) and not found.passed
     assert found.checks["entries beyond the range of doubles"].value == 1
     assert discriminant(PeriodicFunction([0.0, 1.0]), [-1e3, 1.0], 1.0).passed
-
-
-COSINE = PeriodicFunction([0.0, 1.0])
 
 
 @extended

@@ -23,23 +23,6 @@ from omitted_orders import Curve
 
 MIXED = el.PeriodicFunction(a=[0.1, 1.0, 0.4, 0.15], b=[0.0, 0.3, -0.2, 0.1])
 
-MATHIEU = el.PeriodicFunction(a=[0.0, 1.0])
-
-
-@pytest.mark.parametrize("n", [0, 1, 2, 3, 5])
-@pytest.mark.parametrize(("order", "ratio"), [(2, 0.0), (3, 0.0), (3, 0.005)])
-def test_remainder_falls_with_the_next_power(n, order, ratio):
-    if n == 5 and ratio:
-        return
-    found = boundary_series(MIXED, n, order, ratio)
-    gaps = []
-    for mu in (0.02, 0.01):
-        exact = el.hill_boundaries(MIXED, mu, (n,), damping=ratio * mu)
-        ends = np.array(found(mu))
-        true = (exact.lower[0], exact.upper[0])
-        gaps.append(abs(ends[1] - true[1]) if n == 0 else np.abs(ends - true).max())
-    assert np.log2(gaps[0] / gaps[1]) == pytest.approx(order + 1, abs=0.25)
-
 
 def test_no_width_to_first_order():
     gapless = el.PeriodicFunction(a=[0.0, 1.0, 0.0, 0.3], b=[0.0, 0.2, 0.0, 0.0])

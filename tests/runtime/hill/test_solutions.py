@@ -5,10 +5,9 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import boundary_solution, hill_boundaries
-from scipy.integrate import solve_ivp
+from hill_functions import ANOTHER as GENERAL
+from hill_functions import COSINE
 
-COSINE = PeriodicFunction([0.0, 1.0])
-GENERAL = PeriodicFunction([0.3, 1.0, -0.4, 0.25], [0.0, -0.5, 0.3, 0.1])
 THETA = np.linspace(0.0, 4 * np.pi, 97)
 
 
@@ -31,33 +30,6 @@ def test_it_solves_the_equation(n, damping, order):
     # The largest value over theta of what is small in the root mean square.
     assert np.abs(residual).max() <= 10 * found.residual + 1e-12
     assert found.residual < {None: 1e-12, 2: 1e-2, 6: 1e-5}[order]
-
-
-@pytest.mark.parametrize("n", [1, 2])
-def test_the_motion_from_its_start_is_periodic(n):
-    """An integrator that knows nothing of Fourier series follows it for a period."""
-    mu, damping = 0.3, 0.01
-    found = boundary_solution(GENERAL, mu, n, "lower", None, damping)
-    h = 1e-5
-    start = [float(found(0.0)), float(found(h) - found(-h)) / (2 * h)]
-
-    def rates(theta, state):
-        force = (found.lam2 + mu * GENERAL(theta)) * state[0] + 2 * damping * state[1]
-        return [state[1], -float(force)]
-
-    grid = np.linspace(0.0, found.period, 40)
-    run = solve_ivp(rates, (0.0, found.period), start, t_eval=grid, rtol=1e-10, atol=1e-12)
-    np.testing.assert_allclose(run.y[0], found(grid), atol=1e-7)
-    np.testing.assert_allclose(run.y[0][-1], start[0], atol=1e-7)
-
-
-def test_the_error_falls_with_the_order():
-    exact = boundary_solution(GENERAL, 0.05, 1)
-    gaps = [
-        np.abs(boundary_solution(GENERAL, 0.05, 1, order=order)(THETA) - exact(THETA)).max()
-        for order in (1, 2, 3, 4, 5)
-    ]
-    assert np.all(np.diff(np.log10(gaps)) < -0.7)
 
 
 def test_normalisation_and_sign():

@@ -9,9 +9,9 @@ from elastolink.runtime.hill import (
     discriminant,
     perturbation_boundaries,
 )
+from hill_functions import ANOTHER as GENERAL
+from hill_functions import COSINE
 
-COSINE = PeriodicFunction([0.0, 1.0])
-GENERAL = PeriodicFunction([0.3, 1.0, -0.4, 0.25], [0.0, -0.5, 0.3, 0.1])
 REGIONS = (1, 2, 3)
 
 
@@ -41,16 +41,6 @@ def test_first_order_is_the_printed_condition():
         assert np.all(np.abs(found.damping[0] / closing - 1.0) < 5 * mu)
         first = perturbation_boundaries(GENERAL, mu, (n,), 1, closing * [[1 - 1e-9], [1 + 1e-9]])
         np.testing.assert_array_equal(first.closed[0], [[False, False], [True, True]])
-
-
-@pytest.mark.parametrize("f", [COSINE, GENERAL], ids=["cosine", "general"])
-def test_one_is_the_inverse_of_the_other(f):
-    k = np.array([1e-5, 1e-3, 2e-2])
-    least = least_parameter(f, k, REGIONS)
-    assert least.passed and np.isfinite(least.mu).all()
-    for i, n in enumerate(REGIONS):
-        back = critical_damping(f, least.mu[i], (n,))
-        assert np.all(np.abs(back.damping[0] - k) <= 4 * back.error[0] + 1e-12 * k)
 
 
 def test_no_tongue():

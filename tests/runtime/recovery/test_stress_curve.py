@@ -69,8 +69,6 @@ def test_stability_is_that_of_the_multipliers(system):
         ({"speeds": ["fast"]}, "speeds"),
         ({"rtol": 0.5}, "rtol"),
         ({"method": "guess"}, "method"),
-        ({"modes": 12}, "modes"),
-        ({"modes": 0}, "modes"),
         ({"stations": {"crank": [2.0]}}, "crank"),
     ],
 )

@@ -79,7 +79,7 @@ def test_two_percent_of_damping_close_every_band():
 @pytest.mark.slow
 def test_maxima_swept_on_few_modes_are_those_of_the_whole_linkage():
     system = four_bar(0.02)
-    found = multiplier_maxima(system, (66.0, 68.0))
+    found = multiplier_maxima(system, (66.0, 68.0), 4)
     assert "natural modes" in found.method
     mode = int(np.argmax(found.value))
     centre, width = found.speed[mode], 0.05

@@ -43,13 +43,6 @@ def test_every_row_of_the_table_becomes_a_term():
     assert [t.constant for t in system().terms] == constant
 
 
-def test_forcing_can_be_left_out():
-    lean = system(forcing=False)
-    assert {t.array for t in lean.terms} == {"M", "B", "S", "C", "K"}
-    np.testing.assert_array_equal(lean.array("B", THETA), system().array("B", THETA))
-    assert not lean.array("f", THETA).any()
-
-
 def test_functions_of_angle_are_evaluated_once_for_all_terms(monkeypatch):
     """All terms of B ask at one array of angles: one call; equal angles again: none."""
     calls = []

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from elastolink.runtime.core.families import Constrained
-from elastolink.runtime.systems.rod import FreeFreeBasis, free_free_rod, rod_system
+from elastolink.runtime.systems.rod import FreeFreeBasis, free_free_rod
 
 ROD = {
     "crank_ratio": 0.3,
@@ -226,74 +226,6 @@ def test_the_tension_is_the_pull_of_the_turning_rod():
     # u = L f psi, so that int N u' v' dx = L int N f psi' psi' d eta
     exact = length * (weights / 2 * pull * (slope @ q[3:])) @ slope
     np.testing.assert_allclose(found[3:], exact, rtol=1e-9)
-
-
-# ---------------------------------------------------------------- the linear formulation
-
-
-def derivative(values):
-    """Return the derivative by angle of samples over a revolution, by Fourier's series."""
-    count = len(values)
-    waves = np.fft.fftfreq(count, 1.0 / count)
-    waves[count // 2] = 0.0
-    spectrum = np.fft.fft(values, axis=0) * (1j * waves[:, None, None])
-    return np.fft.ifft(spectrum, axis=0).real
-
-
-def reduced(rod, theta):
-    """Return mass, damping, stiffness and force of the amplitudes about the undeformed rod."""
-    q, qd = rod.undeformed(theta / rod.speed)
-    motion = rod.linkage.motion(theta, SPEED)
-    sin, cos, half = np.sin(motion.theta4), np.cos(motion.theta4), rod.linkage.rod / 2
-    qdd = np.zeros_like(q)
-    qdd[:, 0] = -half * (cos * motion.omega4**2 + sin * motion.alpha4)
-    qdd[:, 1] = half * (cos * motion.alpha4 - sin * motion.omega4**2)
-    qdd[:, 2] = motion.alpha4
-    at = rod.dynamics(q, qd, theta / SPEED)
-    jacobian, mass = at["jacobian"], at["mass"]
-    held, free = jacobian[:, :, :3], jacobian[:, :, 3:]
-    left = (mass @ qdd[..., None] + at["rest"])[..., 0]
-    lam = np.linalg.solve(np.swapaxes(held, 1, 2), left[:, :3, None])[..., 0]
-    vary = rod.variations(q, qd, qdd, lam, theta / SPEED)
-    once, twice = vary["jacobian_rate"], vary["jacobian_acceleration"]
-    # dq = Z df keeps the constraints at every time: J Z = 0 and its two derivatives.
-    unit = np.broadcast_to(np.eye(free.shape[-1]), (len(theta), free.shape[-1], free.shape[-1]))
-    z = np.concatenate([-np.linalg.solve(held, free), unit], axis=1)
-    zd = np.concatenate([-np.linalg.solve(held, once @ z), 0 * unit], axis=1)
-    zdd = np.concatenate([-np.linalg.solve(held, twice @ z + 2 * once @ zd), 0 * unit], axis=1)
-    back = np.swapaxes(z, 1, 2)
-    damping = back @ (2 * mass @ zd + vary["damping"] @ z)
-    stiffness = back @ (mass @ zdd + vary["damping"] @ zd + vary["stiffness"] @ z)
-    return back @ mass @ z, damping, stiffness, -(back @ left[..., None])[..., 0]
-
-
-@pytest.mark.parametrize("stiff", [True, False], ids=["as it is", "hardly stiff"])
-@pytest.mark.parametrize("drop", DROPS)
-@pytest.mark.parametrize("modes", [1, 2, 3, 5])
-def test_linearised_it_is_the_linear_formulation(modes, drop, stiff):
-    """Equal physics, term by term, tension kept or not; the same small-angle basis.
-
-    The rod that is hardly stiff shows the inertia terms beside the elastic ones.
-    """
-    rod_of = {**ROD, "bending_stiffness": ROD["bending_stiffness"] * (1.0 if stiff else 1e-6)}
-    rod = free_free_rod(modes, **rod_of, speed=SPEED, drop=drop)
-    theta = 2 * np.pi * np.arange(256) / 256
-    found = reduced(rod, theta)
-    linear = rod_system(FreeFreeBasis(modes), **rod_of, drop=drop)
-    scale = ROD["mass_per_length"] * ROD["length"] ** 3
-
-    def array(name):
-        return linear.array(name, theta, SPEED)
-
-    m, a, b, k, f = (array(name) for name in ("M", "A", "B", "K", "f"))
-    wanted = (
-        scale * m,
-        scale * SPEED * (derivative(m) + a - np.swapaxes(a, 1, 2)),
-        scale * (k + SPEED**2 * (derivative(a) - b)),
-        scale * SPEED**2 * f,
-    )
-    for ours, exact in zip(found, wanted, strict=True):
-        assert np.max(np.abs(ours - exact)) < 1e-11 * np.max(np.abs(exact))
 
 
 # ---------------------------------------------------------------- deflections and refusals

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from elastolink.generated import hill_recursion
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import (
@@ -15,6 +16,8 @@ from elastolink.runtime.hill import (
     hill_boundaries,
     perturbation_boundaries,
 )
+from elastolink.runtime.hill.bloch import effective_operator
+from exact_hill import ExactHarmonics, exact_operator
 from hill_functions import ANOTHER as GENERAL
 from hill_functions import COSINE, functions, general
 from hypothesis import given, settings
@@ -166,6 +169,72 @@ def agrees(f, mu, regions, order, damping=0.0):
         gap = np.abs(ours[there] - theirs[there])
         assert np.all(gap <= (found.error + exact.error)[there])
     return found
+
+
+UNIT = 2.0**-53
+
+# Number of parts, damping, order.
+KINDS = [(1, False, 8), (1, True, 8), (2, False, 6), (2, True, 5), (3, False, 5), (3, True, 4)]
+
+
+def random_parts(seed, count):
+    """Return coefficients of the parts: a mean, cosines, sines (none in some)."""
+    rng = np.random.default_rng(seed)
+    harmonics = int(rng.integers(1, 8))
+    decay = rng.uniform(0.2, 1.2) ** np.arange(harmonics)
+    sines = 1.0 * (rng.random(count) < 0.7)
+    return [
+        (rng.normal(), decay * rng.normal(size=harmonics), s * decay * rng.normal(size=harmonics))
+        for s in sines
+    ]
+
+
+def periodic(parts):
+    return [PeriodicFunction([mean, *a], [0.0, *b]) for mean, a, b in parts]
+
+
+class Upwards(np.ndarray):
+    """Differences become sums: the recursion then adds up the sizes of all of its terms."""
+
+    def __sub__(self, other):
+        return self + other
+
+
+def majorants(parts, n, order, damped):
+    """Return for each order the sum of the sizes of all terms, every parameter being 1."""
+    half = sum(0.5 * np.hypot(a, b) for _, a, b in parts)
+    reach = (order // 2) * len(half)
+    m = np.arange(-reach, n + reach + 1)
+    v = sum(x * (np.eye(m.size, k=k) + np.eye(m.size, k=-k)) for k, x in enumerate(half, 1))
+    v = v + damped * np.diag(np.abs(2.0 * m - n))
+    levels = np.abs(m * (m - n)).astype(float)
+    r = 1.0 / np.where(levels == 0.0, np.inf, levels)
+    rows = np.flatnonzero(levels == 0.0)
+    effective, _ = getattr(hill_recursion, f"order_{order}")(
+        np.eye(m.size)[:, rows].view(Upwards),
+        lambda x: (v @ x).view(Upwards),
+        lambda x: (r[:, None] * x).view(Upwards),
+        lambda x: x[rows],
+        lambda x, h: (x @ h).view(Upwards),
+    )
+    return [float(np.max(h)) for h in effective]
+
+
+@pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2, 3))])
+@pytest.mark.parametrize("count, damped, order", KINDS)
+def test_coefficients_are_the_exact_ones_to_a_few_roundings(count, damped, order, seed):
+    """Measured over 4000 operators: at most 3.8 roundings of the sum of the sizes of the terms."""
+    parts = random_parts(100 * count + seed, count)
+    exact_parts = [ExactHarmonics.of(mean, a.tolist(), b.tolist()) for mean, a, b in parts]
+    for n in range(7):
+        exact = exact_operator(exact_parts, n, order, damped)
+        found = effective_operator(periodic(parts), n, order, damped)
+        allowed = majorants(parts, n, order, damped)
+        allowed[0] = max(allowed[0], *(abs(mean) for mean, _, _ in parts))
+        for k in range(order):
+            for one, other in ((found.diagonal, exact.diagonal), (found.coupling, exact.coupling)):
+                wanted = np.array([complex(float(x), float(y)) for x, y in other[k]])
+                assert np.max(np.abs(one[k] - wanted)) <= 8 * UNIT * allowed[k]
 
 
 @pytest.mark.parametrize("order", [1, 4, 8])

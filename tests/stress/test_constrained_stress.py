@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import free_free_loads
 import mpmath
 import numpy as np
 import pytest
-from constrained_truth import Circle, by_explicit_steps
+from constrained_truth import Circle, by_explicit_steps, unconstrained
 from elastolink.runtime.constrained import (
     consistent_state,
     constrained_motion,
@@ -16,21 +17,11 @@ from elastolink.runtime.constrained import (
 )
 from elastolink.runtime.constrained.equations import constraint_norms
 from elastolink.runtime.core.errors import BadInput, RedundantConstraints
-from elastolink.runtime.core.families import Constrained
-from elastolink.runtime.systems import free_free_rod
 
 
 def rod(modes: int = 1, crank_ratio: float = 0.01, speed: float = 2000.0):
     """The very flexible rod; on one mode fast enough for a smooth revolution."""
-    return free_free_rod(
-        modes,
-        crank_ratio=crank_ratio,
-        frame=0.59997,
-        length=1.0,
-        bending_stiffness=36456.0,
-        mass_per_length=7.15,
-        speed=speed,
-    )
+    return free_free_loads.rod(modes, crank_ratio, speed)
 
 
 def norms(found):
@@ -87,24 +78,7 @@ def test_windows_of_collocation_over_hundreds_of_turns(rtol, start):
 
 def test_a_stiff_relaxation_takes_few_windows():
     """Van der Pol's oscillator: explicit steps are bound to its fast decay, windows are not."""
-
-    def dynamics(q, qd, t):
-        batch = np.shape(q)[:-1]
-        push = 50.0 * (1.0 - np.asarray(q) ** 2) * qd - q
-        return {
-            "mass": np.ones((*batch, 1, 1)),
-            "rest": np.zeros((*batch, 1, 1)),
-            "forces": push[..., None],
-            "jacobian": np.zeros((*batch, 0, 1)),
-            "velocity_rhs": np.zeros((*batch, 0, 1)),
-            "gamma": np.zeros((*batch, 0, 1)),
-        }
-
-    def violation(q, t):
-        batch = np.shape(q)[:-1]
-        return {"constraints": np.zeros((*batch, 0, 1)), "jacobian": np.zeros((*batch, 0, 1))}
-
-    system = Constrained(1, 0, dynamics, violation)
+    system = unconstrained(lambda q, qd: 50.0 * (1.0 - q**2) * qd - q)
     found = constrained_motion(system, [2.0], [0.0], 30.0, rtol=1e-8, samples=20)
     other, steps = by_explicit_steps(system, [2.0], [0.0], found.time, 1e-9)
     found.require()

@@ -13,7 +13,6 @@ from elastolink.runtime.frequencies import dynamic_stiffness, wittrick_williams
 from elastolink.runtime.periodic import floquet_multipliers, steady_state
 from periodic_systems import system_of, wave
 
-pytestmark = pytest.mark.filterwarnings("error")
 CLAMPED = ("x", "y", "rotation")
 BAR = Section(area=1e-4, second_moment=1e-9, modulus=1e9, density=1e4)
 

@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 from elastolink.runtime.periodic import floquet_multipliers, monodromy, simulate
 from elastolink.runtime.stability.boundary_speeds import speed_boundaries
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from periodic_systems import mathieu, system_of, wave
 
 
@@ -149,35 +147,3 @@ def test_other_periods(turns):
     other = monodromy(mathieu(mu=0.0), 1.0, lam2=2.0 * turns**2, mu=0.5 * turns**2)
     units = np.array([[1.0, turns], [1 / turns, 1.0]])
     np.testing.assert_allclose(found.matrix, other.matrix * units, atol=1e-12)
-
-
-matrices = st.lists(st.floats(-1.0, 1.0), min_size=24, max_size=24)
-
-
-@settings(max_examples=15, deadline=None, derandomize=True)
-@given(numbers=matrices, speed=st.floats(0.3, 20.0), damping=st.floats(0.0, 0.5))
-def test_random_systems_pass_their_own_checks(numbers, speed, damping):
-    mass, gyro, spring, pull, other, skew = np.array(numbers).reshape(6, 2, 2)
-
-    def symmetric(matrix):
-        return matrix + matrix.T
-
-    system = system_of(
-        {"C": damping},
-        M=[3 * np.eye(2) + 0.4 * symmetric(mass), wave(0.2 * symmetric(other), 2)],
-        A=[skew, wave(gyro, 1, -np.pi / 2)],
-        B=wave(symmetric(pull)),
-        K=9 * np.eye(2) + 2 * symmetric(spring),
-        C=("C", np.eye(2)),
-    )
-    found = floquet_multipliers(system, speed)
-    assert found.passed, found.checks
-    assert np.all(np.isfinite(found.error))
-    matrix = monodromy(system, speed)
-    coarse = monodromy(system, speed, rtol=1e-6)
-    top = np.max(np.abs(matrix.scaled))
-    assert np.max(np.abs(coarse.scaled - matrix.scaled)) / top <= coarse.error + matrix.error
-    run = simulate(system, speed, 1.0, initial=([0.1, -0.2], 0.0), samples=60)
-    assert run.passed, run.checks
-    state = matrix.matrix @ np.concatenate([run.q[0], system.array("A", [0.0])[0] @ run.q[0]])
-    np.testing.assert_allclose(run.q[-1], state[:2], atol=1e-10 * np.max(np.abs(run.q)))

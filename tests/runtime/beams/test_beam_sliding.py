@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
-
 import numpy as np
 import pytest
 from beam_energies import slope
@@ -12,7 +10,6 @@ from elastolink.runtime.beams import (
     beam_linkage,
     frame,
     linear_system,
-    linkage_system,
 )
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import QuickReturn
@@ -75,16 +72,6 @@ def test_the_instantaneous_form_has_no_rates_of_the_mass():
         rest = system.array("C", theta, speed=30.0)[0] + 30.0 * changing
         rest -= full.array("C", theta)[0]
         assert np.max(np.abs(rest)) < 1e-9 * 30.0 * np.max(np.abs(changing))
-
-
-def test_the_system_travels_and_takes_other_lengths():
-    sections = {"crank": section(0.02, 0.01), "rod": section(0.015, 0.012)}
-    system = linkage_system(LINKAGE, sections, elements=1)
-    copy = pickle.loads(pickle.dumps(system)).with_geometry(crank=0.2)
-    other = QuickReturn(frame=0.6, crank=0.2, rod=1.0)
-    expected = linkage_system(other, sections, elements=1)
-    for name in ("M", "A", "K", "Kg", "f"):
-        assert np.array_equal(copy.array(name, 0.7), expected.array(name, 0.7))
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.periodic.equation import equation_of
-from elastolink.runtime.periodic.tables import flows_at, table_of
+from elastolink.runtime.periodic.tables import table_of
 from elastolink.runtime.periodic.transition import method, product, segments_of
 from periodic_systems import system_of, wave
 
@@ -51,17 +51,6 @@ def test_products_are_the_monodromy_matrices(forced):
     assert np.max(np.abs(found - wanted)) < 1e-11 * np.max(np.abs(wanted))
     assert table.tail < 1e-11
     assert table.weights(values).shape == (20, len(table.groups))
-
-
-def test_flows_are_those_of_the_segments_at_every_given_angle():
-    at = equations(forced=True)
-    table = table_of(at, INVERSE, 40, WAY, 1e-13, samples=10)
-    values = np.array([INVERSE[0], 0.41, INVERSE[1]])
-    flows, whole = table.flows(values)
-    exact, closed = flows_at(at(values), 40, WAY, 10)
-    np.testing.assert_allclose(flows, exact, atol=1e-11 * np.max(np.abs(exact)))
-    np.testing.assert_allclose(whole, closed, atol=1e-11 * np.max(np.abs(closed)))
-    np.testing.assert_allclose(flows[:, 0], np.broadcast_to(np.eye(5), (3, 5, 5)), atol=1e-14)
 
 
 def test_half_of_the_period_and_a_single_value():

@@ -196,11 +196,6 @@ def test_the_mechanism_has_the_lengths_of_the_scene():
         load_scene("mathieu").mechanism()
 
 
-def test_a_scene_without_anything_flexible_has_no_system():
-    with pytest.raises(BadInput, match="nothing vibrates"):
-        load_scene("smith_1972_2122").system()
-
-
 def test_series_of_unequal_length_are_filled_with_zeros():
     scene = load_scene("mathieu", {"function.b": [0.0, 0.0, 0.5]})
     assert scene.get("function.a") == (0.0, 1.0, 0.0)

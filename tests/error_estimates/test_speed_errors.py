@@ -33,7 +33,7 @@ def to_a_digit(error, actual, size):
     return error, np.maximum(np.abs(actual), 1e-16 * np.abs(size))
 
 
-@over_scenes(71, few=5, many=50)
+@over_scenes(71, few=5)
 def test_held_frequencies_and_campbell(rng):
     scene = Turned(rng, wavy=False)
     angles = rng.uniform(0.0, 6.0, 3)

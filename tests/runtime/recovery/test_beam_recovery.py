@@ -159,15 +159,6 @@ def test_accelerations_from_the_series_and_from_the_equation_agree():
         )
 
 
-def test_the_two_ways_differ_by_their_error():
-    system = four_bar(2)
-    motion = periodic_motion(system, 15.0)
-    first, second = (recover(system, motion, method=m) for m in ("equilibrium", "shape"))
-    for k, name in enumerate(("axial", "shear", "moment")):
-        gap = np.max(np.abs(getattr(first, name) - getattr(second, name)))
-        assert gap <= first.error[k] * (1 + 1e-12)
-
-
 def test_stations_keep_their_order_and_picture_has_the_links():
     system = turning_bar(rocking, elements=3)
     motion = periodic_motion(system, 5.0, 16)

@@ -151,52 +151,38 @@ def rigid_machine(name, structure, gravity=(0.0, 0.0)):
     return machine, bars
 
 
-@pytest.mark.parametrize(("name", "kind"), CASES)
-def test_axial_forces_are_those_of_rigid_links(name, kind):
-    structure = replace(made(name, kind, seed=3), nodes=unloaded(made(name, kind, seed=3)))
-    machine, bars = rigid_machine(name, structure)
-    system = linear_system(structure)
-    energies = Energies(structure, partial(places_of, LINKAGES[name]))
+def axial_forces_are_those_of_rigid_links(name, structure, speed, gravity=(0.0, 0.0)):
+    """Compare the geometric stiffness with what rigid links carry, and return the system."""
+    machine, bars = rigid_machine(name, structure, gravity)
+    system, energies = linear_system(structure, gravity=gravity), energies_of(name, structure)
     for theta in (0.5, 3.3, 5.7):
-        forces, motion = rigid_forces(machine, theta, 1.0), LINKAGES[name].motion(theta)
+        forces = rigid_forces(machine, theta, speed)
+        motion = LINKAGES[name].motion(theta, speed)
         first = {"crank": forces.f12, "coupler": forces.f23, "follower": -forces.f41}
 
         def tension(beam, along, first=first, motion=motion):
             link = motion.link(beam.name)
             axis = np.array([np.cos(link.angle), np.sin(link.angle)])
-            start = link.point(0.0).acceleration @ axis
+            start = (link.point(0.0).acceleration - np.array(gravity)) @ axis
             resisted = start * along - link.speed**2 * along**2 / 2.0
             return -first[beam.name] @ axis + bars[beam.name] * resisted
 
-        known = energies.geometric(theta, tension)
-        mass = system.array("M", theta)[0]
-        assert scaled(system.array("Kg", theta)[0], known, mass) < 1e-9
-        twice = system.array("Kg", theta, speed=2.0)[0]
-        assert scaled(twice, 4.0 * known, mass) < 1e-9
+        known, mass = energies.geometric(theta, tension), system.array("M", theta)[0]
+        assert scaled(system.array("Kg", theta, speed=speed)[0], known, mass) < 1e-9
+    return system
 
 
-def unloaded(structure):
-    """Return the nodes without constant loads."""
-    return tuple(replace(node, force=(0.0, 0.0)) for node in structure.nodes)
+@pytest.mark.parametrize(("name", "kind"), CASES)
+def test_axial_forces_are_those_of_rigid_links(name, kind):
+    structure = made(name, kind, seed=3)
+    bare = tuple(replace(node, force=(0.0, 0.0)) for node in structure.nodes)
+    system = axial_forces_are_those_of_rigid_links(name, replace(structure, nodes=bare), 1.0)
+    once, twice = (system.array("Kg", 3.3, speed=speed)[0] for speed in (1.0, 2.0))
+    assert scaled(twice, 4.0 * once, system.array("M", 3.3)[0]) < 1e-9
 
 
 @pytest.mark.parametrize("name", list(LINKAGES))
 def test_constant_loads_and_weight_stiffen_as_rigid_links_carry_them(name):
-    gravity = (2.0, -9.81)
+    """At rest only weights and loads are left."""
     structure = made(name, "cubic", seed=4)
-    machine, bars = rigid_machine(name, structure, gravity)
-    system = linear_system(structure, gravity=gravity)
-    energies = Energies(structure, partial(places_of, LINKAGES[name]))
-    for theta in (0.5, 3.3, 5.7):
-        # At rest only weights and loads are left.
-        forces, motion = rigid_forces(machine, theta, 0.0), LINKAGES[name].motion(theta)
-        first = {"crank": forces.f12, "coupler": forces.f23, "follower": -forces.f41}
-
-        def tension(beam, along, first=first, motion=motion):
-            angle = motion.link(beam.name).angle
-            axis = np.array([np.cos(angle), np.sin(angle)])
-            return -first[beam.name] @ axis - bars[beam.name] * along * (np.array(gravity) @ axis)
-
-        known = energies.geometric(theta, tension)
-        mass = system.array("M", theta)[0]
-        assert scaled(system.array("Kg", theta, speed=0.0)[0], known, mass) < 1e-9
+    axial_forces_are_those_of_rigid_links(name, structure, 0.0, (2.0, -9.81))

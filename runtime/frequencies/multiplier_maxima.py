@@ -85,7 +85,8 @@ def multiplier_maxima(
             f"at most {_MOST_SAMPLES}",
             "raise the lowest speed or ask for fewer modes",
         )
-    speed = 1.0 / np.linspace(1 / high, 1 / low, number)
+    # The reciprocal of a reciprocal may lie an ulp outside of the range.
+    speed = np.clip(1.0 / np.linspace(1 / high, 1 / low, number), low, high)
     few = few_modes(system, frozen, (low, high), wanted)
     values = few.multipliers(speed, wanted)
     real = _larger(values)

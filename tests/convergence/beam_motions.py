@@ -8,6 +8,7 @@ from elastolink.runtime.beams import (
     Node,
     Section,
     Structure,
+    frame,
     linear_system,
     linkage_system,
 )
@@ -15,10 +16,12 @@ from elastolink.runtime.core.trigonometric import even_angles, interpolated
 from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.linkages.linkage import LinkMotion
 from elastolink.runtime.recovery import BeamMotion
+from elastolink.runtime.recovery.stresses import StressResult
 from elastolink.runtime.systems import with_modal_damping
 
 STEEL = {"modulus": 210e9, "density": 7850.0}
 FOUR_BAR = FourBar(crank=0.170, coupler=0.328, follower=0.525, frame=0.547)
+BAR = Section.rectangle(0.02, 0.01, poisson=0.3, **STEEL)
 # Aannaque's Table 4.1.
 SECTIONS = {
     name: Section(area=area, second_moment=inertia, thickness=thickness, **STEEL)
@@ -91,6 +94,22 @@ def turning_bar(angle, *, pinned=False, modulus=210e9, thickness=0.01, drag=0.0,
     )
 
 
+def cantilever(
+    kind="cubic", elements=1, length=1.0, angle=0.0, force=(0.0, 0.0), gravity=(0.0, 0.0)
+):
+    """Return a bar clamped at O with a force at its end, without stiffness from axial forces."""
+    structure = frame(
+        {"O": (0.0, 0.0), "P": (length * np.cos(angle), length * np.sin(angle))},
+        {"bar": ("O", "P")},
+        BAR,
+        supports={"O": ("x", "y", "rotation")},
+        elements=elements,
+        kind=kind,
+        nodes={"P": {"force": force}},
+    )
+    return linear_system(structure, gravity=gravity, geometric_stiffness=False)
+
+
 def steadily(theta):
     """Return an angle that grows with the crank angle, and its derivatives."""
     return theta, np.ones_like(theta), np.zeros_like(theta)
@@ -121,9 +140,36 @@ def rocking_bar(rng, elements):
     return system, rng.uniform(0.03, 0.6) * first
 
 
+def four_bar(elements=1, sections=SECTIONS, **options):
+    """Return the elastic four-bar without modal damping."""
+    return linkage_system(
+        FOUR_BAR, sections, joint_masses=JOINT_MASSES, elements=elements, **options
+    )
+
+
 def damped_four_bar(elements=1, **options):
     """Return the elastic four-bar with 2 % of modal damping."""
-    made = linkage_system(
-        FOUR_BAR, SECTIONS, joint_masses=JOINT_MASSES, elements=elements, **options
+    return with_modal_damping(four_bar(elements, **options), 0.02)
+
+
+def of_history(history, error=0.0):
+    """Return the stress of a bar, all of it axial, ``(nt,)`` or ``(nt, places)``."""
+    values = np.reshape(history, (len(history), -1))
+    count, places = values.shape
+    none = np.zeros_like(values)
+    return StressResult(
+        method="hand",
+        error=error,
+        error_norm="none",
+        speed=10.0,
+        theta=2 * np.pi * np.arange(count) / count,
+        links=("bar",) * places,
+        places=np.linspace(0.1, 0.9, places),
+        axial=values,
+        bending=none,
+        static_axial=none,
+        static_bending=none,
+        motion_error=0.0,
+        mesh_error=0.0,
+        period=2 * np.pi,
     )
-    return with_modal_damping(made, 0.02)

@@ -135,6 +135,27 @@ def by_explicit_steps(system: Constrained, q, qd, times, rtol=1e-11):
     return run.y[:n].T, run.nfev // 12
 
 
+def unconstrained(push) -> Constrained:
+    """Return one free coordinate, x'' = push(x, x')."""
+
+    def dynamics(q, qd, t):
+        batch = np.shape(q)[:-1]
+        return {
+            "mass": np.ones((*batch, 1, 1)),
+            "rest": np.zeros((*batch, 1, 1)),
+            "forces": push(np.asarray(q), np.asarray(qd))[..., None],
+            "jacobian": np.zeros((*batch, 0, 1)),
+            "velocity_rhs": np.zeros((*batch, 0, 1)),
+            "gamma": np.zeros((*batch, 0, 1)),
+        }
+
+    def violation(q, t):
+        batch = np.shape(q)[:-1]
+        return {"constraints": np.zeros((*batch, 0, 1)), "jacobian": np.zeros((*batch, 0, 1))}
+
+    return Constrained(1, 0, dynamics, violation)
+
+
 LENGTHS = {"frame": 1.0, "crank": 0.3, "coupler": 0.9, "follower": 0.8}
 
 

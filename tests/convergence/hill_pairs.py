@@ -9,9 +9,9 @@ of the two equations, from Taylor series in extended precision, know nothing of 
 from __future__ import annotations
 
 import numpy as np
-from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from half_trace_truth import half_traces
+from periodic_systems import system_of
 from wavy_springs import WavyCoordinates
 
 
@@ -36,22 +36,18 @@ class HillPair:
 
     def _system(self, coordinates):
         arrays = coordinates.arrays(self.natural**2, 1.0)
-        scaled = {"C": "drag", "D": "drag"}
-        terms = [Term(name, scaled.get(name), function) for name, function in arrays.items()]
 
         def wave(theta):
             turned = coordinates.turn(theta)
             weight = np.multiply.outer(self.f(theta), self.pull)[:, None, :]
             return (np.swapaxes(turned, -1, -2) * weight) @ turned
 
-        terms.append(Term("K", "pull", wave))
-        values = {"pull": 1.0, "drag": 2.0 * self.drag}
-
-        def scales(given):
-            return {name: np.asarray(given[name], dtype=float) for name in values}
-
-        kept = [term for term in terms if self.drag or term.array not in scaled]
-        return LinearPeriodic(len(self.natural), tuple(kept), values, scales)
+        arrays["K"] = [arrays["K"], ("pull", wave)]
+        for name in ("C", "D"):
+            damping = arrays.pop(name)
+            if self.drag:
+                arrays[name] = ("drag", damping)
+        return system_of({"pull": 1.0, "drag": 2.0 * self.drag}, **arrays)
 
     def ends(self, mode, sign, speeds, factor=1.0):
         """Return the ends of regions next to given speeds, and how steep the half traces are.

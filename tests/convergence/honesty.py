@@ -8,22 +8,17 @@ import inspect
 import numpy as np
 import pytest
 
-# How many random scenes: a few in the first stage of the tests, many in the second.
-SCENES = pytest.mark.parametrize("scenes", [20, pytest.param(200, marks=pytest.mark.slow)])
 
+def covers(estimates, actual, least=1, floor=1e-300, median=1e3):
+    """Estimate over actual error: at least 1 in 99 %, median no larger than 1000.
 
-def verdict(ratios, least=1, median=1e3):
-    """Estimate over actual error: at least 1 in 99 %, median no larger than 1000."""
-    ratios = np.hstack(ratios).astype(float)
+    Below ``floor`` the reference is not known.
+    """
+    actual = np.maximum(np.abs(np.hstack(actual).astype(float)), floor)
+    ratios = np.hstack(estimates).astype(float) / actual
     assert ratios.size >= least
     assert np.mean(ratios >= 1.0) >= 0.99
     assert np.median(ratios) <= median
-
-
-def covers(estimates, actual, least=1, floor=1e-300, median=1e3):
-    """The same of estimates and actual errors; below ``floor`` the reference is not known."""
-    actual = np.maximum(np.abs(np.hstack(actual).astype(float)), floor)
-    verdict(np.hstack(estimates) / actual, least, median)
 
 
 def over_scenes(seed, few=20, many=200, *, floor=1e-300, median=1e3):

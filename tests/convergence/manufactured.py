@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from elastolink.runtime.core.families import LinearPeriodic, Term
+from periodic_systems import system_of
 
 
 class Series:
@@ -59,13 +59,5 @@ def manufactured(seed):
         total += times(spring, q, theta) / speed**2
         return total + (times(drag, slope, theta) + times(carried, q, theta)) / speed
 
-    terms = (
-        Term("M", None, mass),
-        Term("A", None, gyro),
-        Term("B", None, inertia),
-        Term("K", None, spring),
-        Term("C", None, drag),
-        Term("D", None, carried),
-        Term("f", None, forcing),
-    )
-    return LinearPeriodic(n, terms, {}, lambda values: {}), speed, motion
+    arrays = {"M": mass, "A": gyro, "B": inertia, "K": spring, "C": drag, "D": carried}
+    return system_of(**arrays, f=forcing), speed, motion

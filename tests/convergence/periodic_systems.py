@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.core.trigonometric import resampled
@@ -20,16 +22,57 @@ def wave(matrix, harmonic=1, phase=0.0):
     return lambda theta: np.cos(harmonic * theta + phase).reshape(-1, *flat) * np.array(matrix)
 
 
+def system_of(numbers=None, /, period=2 * np.pi, **arrays) -> LinearPeriodic:
+    """Return the system of arrays by name: matrices, or functions of the crank angle.
+
+    ``("k", array)`` is scaled by the parameter k of ``numbers``, ``("k", array, 1)`` by a power of
+    the speed too; a list is a sum.
+    """
+    numbers = dict(numbers or {})
+    sums = {name: parts if isinstance(parts, list) else [parts] for name, parts in arrays.items()}
+    terms = [
+        Term(name, *(part if isinstance(part, tuple) else (None, part)))
+        for name, parts in sums.items()
+        for part in parts
+    ]
+    size = next(term(np.zeros(1)).shape[-1] for term in terms if term.array == "M")
+    return LinearPeriodic(size, tuple(terms), numbers, named(numbers), period=period)
+
+
 def mathieu(period=2 * np.pi, **values) -> LinearPeriodic:
     """y'' + 2 K y' + (lam2 + mu cos(2 pi theta / period)) y = 0 at every speed."""
-    numbers = {"lam2": 1.3, "mu": 0.4, "K2": 0.0, **values}
-    terms = (
-        Term("M", None, np.eye(1)),
-        Term("K", "lam2", np.eye(1), power=2),
-        Term("Kg", "mu", wave(np.eye(1), 2 * np.pi / period), power=2),
-        Term("C", "K2", np.eye(1), power=1),
+    return system_of(
+        {"lam2": 1.3, "mu": 0.4, "K2": 0.0, **values},
+        period,
+        M=np.eye(1),
+        K=("lam2", np.eye(1), 2),
+        Kg=("mu", wave(np.eye(1), 2 * np.pi / period), 2),
+        C=("K2", np.eye(1), 1),
     )
-    return LinearPeriodic(1, terms, numbers, named(numbers), period=period)
+
+
+def forced_mathieu(**changes) -> LinearPeriodic:
+    """q'' + c q' + (k + mu cos theta) q = 1/(1.5 - cos theta), theta = speed t."""
+    made = system_of(
+        {"k": 9.3, "mu": 1.4, "c": 0.2, **changes},
+        M=np.eye(1),
+        K=("k", np.eye(1)),
+        Kg=("mu", wave(np.eye(1))),
+        C=("c", np.eye(1)),
+        p=lambda theta: (1 / (1.5 - np.cos(theta)))[:, None],
+    )
+    return replace(made, reference_length=2.0, shape=lambda x: 1e-4 * x[:, None])
+
+
+def coupled_pair(coupling, sign=1.0, damping=0.0) -> LinearPeriodic:
+    """1 and 2.3 rad/s, coupled by cos theta; ``sign`` is the Hamiltonian sign of the second."""
+    return system_of(
+        {"c": damping},
+        M=np.eye(2),
+        K=np.diag([1.0, 2.3**2]),
+        Kg=wave(coupling * np.array([[0.0, 1.0], [sign, 0.0]])),
+        C=("c", np.eye(2)),
+    )
 
 
 def is_growing(system, speed, limit, **parameters):

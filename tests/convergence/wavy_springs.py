@@ -7,7 +7,7 @@ centrifugal and stiffness terms, and multipliers and boundaries that are known.
 from __future__ import annotations
 
 import numpy as np
-from elastolink.runtime.core.families import LinearPeriodic, Term
+from periodic_systems import system_of
 
 
 class WavyCoordinates:
@@ -51,12 +51,6 @@ class WavyCoordinates:
         return found
 
 
-def without_parameters(arrays):
-    """Return the system of arrays by name."""
-    terms = tuple(Term(name, None, function) for name, function in arrays.items())
-    return LinearPeriodic(arrays["M"](np.zeros(1)).shape[-1], terms, {}, lambda values: {})
-
-
 class Wavy:
     """Springs of given squared frequencies, negative ones repelling, in wavy coordinates."""
 
@@ -66,7 +60,7 @@ class Wavy:
         fixed = np.eye(n) + 0.2 * rng.standard_normal((n, n))
         waves = 0.12 * rng.standard_normal((2, 2, n, n))
         coordinates = WavyCoordinates(fixed, np.swapaxes(waves, 0, 1))
-        self.turn, self.system = coordinates.turn, without_parameters(coordinates.arrays(squares))
+        self.turn, self.system = coordinates.turn, system_of(**coordinates.arrays(squares))
 
     def exact(self, speed):
         """Return the monodromy matrix in extended precision until the last product."""

@@ -9,9 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from constrained_truth import random_circle
+from constrained_truth import random_circle, unconstrained
 from elastolink.runtime.constrained import consistent_state, constrained_motion
-from elastolink.runtime.core.families import Constrained
 from elastolink.runtime.systems import free_free_rod
 from honesty import over_scenes
 
@@ -66,7 +65,8 @@ def test_forces_that_jump(rng):
     """A mass on a spring with a force of constant size towards the middle: arcs of cosines."""
     force, span = rng.uniform(0.1, 2.0), rng.uniform(2.0, 12.0)
     rtol = 10.0 ** rng.uniform(-10, -4)
-    motion = constrained_motion(towards_the_middle(force), [1.0], [0.0], span, samples=5, rtol=rtol)
+    pulled = unconstrained(lambda q, qd: -q - force * np.sign(q))
+    motion = constrained_motion(pulled, [1.0], [0.0], span, samples=5, rtol=rtol)
     # To the middle x + force = (1 + force) cos t; from there on mirrored.
     quarter = np.arccos(force / (1.0 + force))
     phase = np.mod(motion.time, 4 * quarter)
@@ -75,28 +75,6 @@ def test_forces_that_jump(rng):
     part = np.minimum(half, 2 * quarter - half)
     exact = side * ((1.0 + force) * np.cos(part) - force)
     return motion.error[0], np.max(np.abs(motion.q[:, 0] - exact))
-
-
-def towards_the_middle(force):
-    """One free coordinate, x'' = -x - force sign(x)."""
-
-    def dynamics(q, qd, t):
-        q = np.asarray(q)
-        batch = q.shape[:-1]
-        return {
-            "mass": np.ones((*batch, 1, 1)),
-            "rest": np.zeros((*batch, 1, 1)),
-            "forces": (-q - force * np.sign(q))[..., None],
-            "jacobian": np.zeros((*batch, 0, 1)),
-            "velocity_rhs": np.zeros((*batch, 0, 1)),
-            "gamma": np.zeros((*batch, 0, 1)),
-        }
-
-    def violation(q, t):
-        batch = np.shape(q)[:-1]
-        return {"constraints": np.zeros((*batch, 0, 1)), "jacobian": np.zeros((*batch, 0, 1))}
-
-    return Constrained(1, 0, dynamics, violation)
 
 
 @pytest.mark.parametrize("scenes", [10, pytest.param(100, marks=pytest.mark.slow)])

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from beam_motions import periodic_motion, swinging, turning_bar
+from beam_motions import of_history, periodic_motion, swinging, turning_bar
 from elastolink.runtime.design import (
     Material,
     damping_effect,
@@ -23,7 +23,6 @@ from elastolink.runtime.design import (
 )
 from elastolink.runtime.recovery import stress
 from elastolink.runtime.recovery.beam_motion import quiet_steady_state
-from elastolink.runtime.recovery.stresses import StressResult
 from elastolink.runtime.systems import with_modal_damping
 from honesty import over_scenes
 
@@ -206,23 +205,7 @@ def test_safeties_of_histories(rng):
     fine = 2 * np.pi * np.arange(FINE) / FINE
     push = doubt / np.max(np.abs(off(fine)))
     theta = 2 * np.pi * np.arange(64) / 64
-    values, none = size * (exact(theta) + push * off(theta)), np.zeros((64, places))
-    given = StressResult(
-        method="hand",
-        error=size * doubt,
-        error_norm="largest",
-        speed=10.0,
-        theta=theta,
-        links=("bar",) * places,
-        places=np.linspace(0.1, 0.9, places),
-        axial=values,
-        bending=none,
-        static_axial=none,
-        static_bending=none,
-        motion_error=0.0,
-        mesh_error=0.0,
-        period=2 * np.pi,
-    )
+    given = of_history(size * (exact(theta) + push * off(theta)), size * doubt)
     material = Material(tensile_strength=6e8, endurance_limit=2e8)
     found = fatigue(given, material)
     truth = least_safety(size * exact(fine), material)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import mpmath
 import numpy as np
-from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.frequencies import natural_frequencies
 from elastolink.runtime.frequencies.held import cycle_mean, held_frequencies
 from honesty import over_scenes
+from periodic_systems import system_of
 
 
 def _exact(mass, stiffness):
@@ -28,9 +28,7 @@ def test_errors_of_held_frequencies(rng):
     base = rng.normal(size=(n, n))
     mass = base @ base.T + 0.3 * np.eye(n)
     mass = (mass + mass.T) / 2
-    terms = (Term("M", None, mass), Term("K", None, stiffness))
-    system = LinearPeriodic(n, terms, {}, lambda values: {})
-    frequency, error = held_frequencies(system, np.zeros(1), {})
+    frequency, error = held_frequencies(system_of(M=mass, K=stiffness), np.zeros(1), {})
     gaps = [float(abs(a - b)) for a, b in zip(frequency[0], _exact(mass, stiffness), strict=True)]
     return error[0], np.maximum(gaps, frequency[0] * 2.0**-60)
 
@@ -69,8 +67,7 @@ def test_errors_of_least_gaps(rng):
         d = np.sin(theta - at)[:, None, None]
         return np.array([[16.0, coupling], [coupling, 16.0]]) + d * np.diag([1.0, -1.0])
 
-    terms = (Term("M", None, np.eye(2)), Term("K", None, stiffness))
-    found = natural_frequencies(LinearPeriodic(2, terms, {}, lambda values: {}), 0.0).encounters
+    found = natural_frequencies(system_of(M=np.eye(2), K=stiffness), 0.0).encounters
     assert [one.kind for one in found] == ["veering", "veering"]
     # sqrt(16 + c) - sqrt(16 - c), free of cancellation.
     exact = 2 * coupling / (np.sqrt(16 + coupling) + np.sqrt(16 - coupling))

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import numpy as np
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic import reduced_system
 from honesty import over_scenes
-from wavy_springs import WavyCoordinates, without_parameters
+from periodic_systems import system_of, wave
+from wavy_springs import WavyCoordinates
 
 ANGLES = 40
+MASS = np.array([[2.0, 0.3], [0.3, 1.0]])
 
 
 class Coordinates:
@@ -38,7 +39,7 @@ class Coordinates:
             return (np.swapaxes(coordinates.turn(theta), 1, 2) @ pushed[..., None])[..., 0]
 
         self.exact = coordinates.arrays(self.natural**2, self.drag) | {"f": force}
-        self.system = without_parameters(self.exact)
+        self.system = system_of(**self.exact)
 
     def condition(self):
         """Return the largest condition of K over a revolution."""
@@ -108,24 +109,11 @@ def test_the_estimate_sees_arrays_that_no_series_resolves():
 
     def mass(theta):
         sharp = 1.0 / (1.0 - 0.9998 * np.cos(theta))
-        return np.stack(
-            [
-                np.stack([2.0 + sharp, 0 * sharp + 0.3], axis=1),
-                np.array([[0.3, 1.0]]) + 0 * sharp[:, None],
-            ],
-            axis=1,
-        )
+        return MASS + sharp[:, None, None] * np.diag([1.0, 0.0])
 
-    terms = (
-        Term("M", None, np.array([[2.0, 0.3], [0.3, 1.0]])),
-        Term(
-            "K",
-            None,
-            lambda t: np.array([[4.0, 0.5], [0.5, 90.0]]) * (1.5 + np.cos(t))[:, None, None],
-        ),
-        Term("Kg", None, mass, 2),
-    )
-    small = reduced_system(LinearPeriodic(2, terms, {}, lambda values: {}), 1)
+    springs = np.array([[4.0, 0.5], [0.5, 90.0]])
+    system = system_of(M=MASS, K=[1.5 * springs, wave(springs)], Kg=(None, mass, 2))
+    small = reduced_system(system, 1)
     theta = np.random.default_rng(3).uniform(0.0, 2 * np.pi, 400)
     phi = small.basis(theta)
     exact = np.swapaxes(phi, 1, 2) @ mass(theta) @ phi

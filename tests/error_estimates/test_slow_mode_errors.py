@@ -1,10 +1,10 @@
 """Error estimates of slow multipliers and reduced systems, over 100 random stiff systems."""
 
 import numpy as np
-from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.periodic.decoupled import SlowModes, slow_system
 from honesty import over_scenes
+from periodic_systems import system_of
 
 
 def random_system(generator):
@@ -30,10 +30,8 @@ def random_system(generator):
         r = turn(theta)
         return np.swapaxes(r, -1, -2) @ (rows[:, :, None] * r)
 
-    terms = [Term("M", None, np.eye(3)), Term("K", None, stiffness)]
-    if drag:
-        terms.append(Term("C", None, lambda theta: drag * stiffness(theta)))
-    return LinearPeriodic(3, tuple(terms), {}, lambda values: {}), bool(drag)
+    damping = {"C": lambda theta: drag * stiffness(theta)} if drag else {}
+    return system_of(M=np.eye(3), K=stiffness, **damping), bool(drag)
 
 
 @over_scenes(7, few=None, many=100, floor=1e-14)

@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 
 ANY = st.floats(-320.0, 308.0).map(lambda power: 10.0**power)
 SANE = st.floats(-12.0, 12.0).map(lambda power: 10.0**power)
+SOME = settings(max_examples=30, deadline=None, derandomize=True)
 LENGTH = st.floats(-6.0, 6.0).map(lambda power: 10.0**power)
 
 
@@ -26,9 +27,8 @@ def numbers(draw, size):
     return {name: draw(size) for name in (*names, "rotary_inertia")}
 
 
-@pytest.mark.filterwarnings("error")
 @given(st.data(), st.sampled_from(KINDS))
-@settings(max_examples=30, deadline=None, derandomize=True)
+@SOME
 def test_any_positive_numbers_are_taken_or_refused(data, kind):
     given_numbers = numbers(data.draw, ANY)
     length = data.draw(ANY)
@@ -40,9 +40,8 @@ def test_any_positive_numbers_are_taken_or_refused(data, kind):
     assert all(np.all(np.isfinite(value)) for value in vars(found).values())
 
 
-@pytest.mark.filterwarnings("error")
 @given(st.data(), st.sampled_from(KINDS))
-@settings(max_examples=30, deadline=None, derandomize=True)
+@SOME
 def test_rigid_motions_and_mass_whatever_the_size(data, kind):
     """No strain in rigid motions, to the rounding of the entries that cancel; the whole mass."""
     given_numbers = numbers(data.draw, SANE)
@@ -65,9 +64,8 @@ def test_rigid_motions_and_mass_whatever_the_size(data, kind):
     assert np.all(np.diag(found.mass) > 0) and np.all(np.diag(found.stiffness) > 0)
 
 
-@pytest.mark.filterwarnings("error")
 @given(st.data(), st.sampled_from(KINDS), st.floats(0.0, 1.0), ANY)
-@settings(max_examples=30, deadline=None, derandomize=True)
+@SOME
 def test_shapes_anywhere(data, kind, place, length):
     stiff = {"bending_stiffness": data.draw(ANY), "shear_stiffness": data.draw(ANY)}
     try:
@@ -82,9 +80,8 @@ def test_shapes_anywhere(data, kind, place, length):
     assert turned.shape == (1, len(across))
 
 
-@pytest.mark.filterwarnings("error")
 @given(st.lists(ANY, min_size=12, max_size=12), st.sampled_from(["wave_number", "frequency"]))
-@settings(max_examples=30, deadline=None, derandomize=True)
+@SOME
 def test_layers_of_any_size_are_taken_or_refused(drawn, name):
     try:
         found = sandwich_section(
@@ -103,9 +100,8 @@ def test_layers_of_any_size_are_taken_or_refused(drawn, name):
         assert np.isfinite(value) and value > 0.0
 
 
-@pytest.mark.filterwarnings("error")
 @given(st.lists(SANE, min_size=12, max_size=12))
-@settings(max_examples=30, deadline=None, derandomize=True)
+@SOME
 def test_free_waves_through_layers_of_any_ordinary_size(drawn):
     found = sandwich_section(
         ElasticLayer(*drawn[:3]),

@@ -6,10 +6,10 @@ import elastolink as el
 import mpmath
 import numpy as np
 import pytest
-from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.stability.invariants import weighed_characteristic
 from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis, rod_system
-from periodic_systems import named, wave
+from free_free_loads import ROD
+from periodic_systems import system_of, wave
 
 
 def divergent(modes, first=-1.0):
@@ -19,24 +19,11 @@ def divergent(modes, first=-1.0):
     own, pair = np.zeros_like(held), np.zeros_like(held)
     own[0, 0] = first
     pair[0, 1] = pair[1, 0] = 0.2
-    terms = (
-        Term("M", None, np.eye(modes)),
-        Term("K", None, held),
-        Term("K", "k", own),
-        Term("K", None, wave(pair)),
-    )
-    return LinearPeriodic(modes, terms, {"k": 1.0}, named("k"))
+    return system_of({"k": 1.0}, M=np.eye(modes), K=[held, ("k", own), wave(pair)])
 
 
 def rod(basis):
-    return rod_system(
-        basis,
-        crank_ratio=0.1,
-        frame=0.59997,
-        length=1.0,
-        bending_stiffness=0.7e11 * 0.5208e-6,
-        mass_per_length=7.15,
-    )
+    return rod_system(basis, crank_ratio=0.1, **ROD)
 
 
 @pytest.mark.parametrize("modes", [2, pytest.param(5, marks=pytest.mark.slow)])
@@ -73,12 +60,7 @@ def test_stable_points_beside_overflow_are_found():
 def test_waves_alone_move_a_system_whose_mean_stiffness_vanishes():
     """At k = 0 the mean rate is zero, the stiffness 0.2 cos(theta) / speed^2 is not."""
     pair = np.array([[0.3, 0.2], [0.2, 0.1]])
-    terms = (
-        Term("M", None, np.eye(2)),
-        Term("K", "k", np.diag([1.0, 2.0])),
-        Term("K", None, wave(pair)),
-    )
-    system = LinearPeriodic(2, terms, {"k": 1.0}, named("k"))
+    system = system_of({"k": 1.0}, M=np.eye(2), K=[("k", np.diag([1.0, 2.0])), wave(pair)])
     speeds, stiff = np.array([0.02, 0.3, 1.0]), np.linspace(-1.0, 1.0, 3)
     chart = el.stability_chart(system, ("speed", speeds), ("k", stiff))
     direct = el.floquet_multipliers(system, speeds[1:], k=0.0)
@@ -119,13 +101,9 @@ def test_error_estimates_of_circulatory_systems_hold():
     for _ in range(3):
         turn = rng.normal(size=(4, 4))
         waves = rng.normal(size=(4, 4)) * 0.6
-        terms = (
-            Term("M", None, np.eye(4)),
-            Term("K", "k", np.diag(rng.uniform(1.0, 20.0, 4))),
-            Term("K", None, 0.7 * (turn - turn.T)),
-            Term("K", None, wave(waves + waves.T)),
-        )
-        system = LinearPeriodic(4, terms, {"k": 1.0}, named("k"))
+        springs = ("k", np.diag(rng.uniform(1.0, 20.0, 4)))
+        push = [springs, 0.7 * (turn - turn.T), wave(waves + waves.T)]
+        system = system_of({"k": 1.0}, M=np.eye(4), K=push)
         axes = ("speed", np.linspace(0.7, 3.0, 20)), ("k", np.linspace(0.5, 1.5, 5))
         chart = el.stability_chart(system, *axes)
         direct = el.floquet_multipliers(system, chart.x[None, :], k=chart.y[:, None])

@@ -5,33 +5,22 @@ from __future__ import annotations
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.stability import chart_sampling as sampling
 from elastolink.runtime.stability import verdict
-from periodic_systems import named, wave
+from periodic_systems import system_of, wave
 
 ONE, TWO = np.eye(1), np.eye(2)
 RIG = "smith_1972_5152_sixteenth_inch"
 
 
 def one(m=1.0, c=0.0, k=2.0, b=0.5):
-    terms = (
-        Term("M", "m", ONE),
-        Term("C", "c", ONE),
-        Term("K", "k", ONE),
-        Term("Kg", "b", wave(ONE)),
-    )
-    return LinearPeriodic(1, terms, {"m": m, "c": c, "k": k, "b": b}, named("mckb"))
+    numbers = {"m": m, "c": c, "k": k, "b": b}
+    return system_of(numbers, M=("m", ONE), C=("c", ONE), K=("k", ONE), Kg=("b", wave(ONE)))
 
 
 def two(c=0.0, b=0.5, damping=TWO, pull=((1.0, 0.4), (0.4, 0.7)), squares=(1.0, 3.3)):
-    terms = (
-        Term("M", None, TWO),
-        Term("K", None, np.diag(squares)),
-        Term("Kg", "b", wave(pull)),
-        Term("C", "c", damping),
-    )
-    return LinearPeriodic(2, terms, {"c": c, "b": b}, named("cb"))
+    springs = {"K": np.diag(squares), "Kg": ("b", wave(pull))}
+    return system_of({"c": c, "b": b}, M=TWO, C=("c", damping), **springs)
 
 
 def _fading(theta):

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic import floquet_multipliers, monodromy, simulate
 from elastolink.runtime.stability.boundary_speeds import speed_boundaries
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from periodic_systems import mathieu, named, wave
+from periodic_systems import mathieu, system_of, wave
 
 
 @pytest.mark.parametrize("waves", [100.25, 5000.3])
@@ -48,8 +45,7 @@ def test_growth_does_not_hide_the_quiet_modes(rate):
     # Three modes, one repelled, and a rotation of the coordinates that mixes all of them.
     basis, _ = np.linalg.qr(np.random.default_rng(5).standard_normal((3, 3)))
     springs = basis @ np.diag([-(rate**2), 0.83**2, 2.71**2]) @ basis.T
-    terms = (Term("M", None, np.eye(3)), Term("K", None, springs))
-    found = floquet_multipliers(LinearPeriodic(3, terms, {}, lambda v: {}), 1.0)
+    found = floquet_multipliers(system_of(M=np.eye(3), K=springs), 1.0)
     exact = np.exp(2j * np.pi * np.array([0.83, -0.83, 2.71, -2.71]))
     for value in exact:
         gap = np.abs(found.multipliers - value)
@@ -62,20 +58,8 @@ def test_growth_does_not_hide_the_quiet_modes(rate):
 
 def test_marginal_multipliers_stay_on_the_circle_within_their_error():
     # Through a tongue in steps of 1e-9 of its width: inside off the circle, outside on it.
-    low, high = speed_boundaries(
-        LinearPeriodic(
-            1,
-            (
-                Term("M", None, np.eye(1)),
-                Term("K", None, np.eye(1)),
-                Term("Kg", None, wave([[0.1]])),
-            ),
-            {},
-            lambda values: {},
-        ),
-        -1,
-        speed_range=(1.5, 3.0),
-    ).speed
+    tongue = system_of(M=np.eye(1), K=np.eye(1), Kg=wave([[0.1]]))
+    low, high = speed_boundaries(tongue, -1, speed_range=(1.5, 3.0)).speed
     system = mathieu(mu=0.0)
     offsets = np.concatenate([-np.logspace(-12, -2, 40), np.logspace(-12, -2, 40)])
     for edge, inward in ((low, 1.0), (high, -1.0)):
@@ -93,15 +77,11 @@ def test_marginal_multipliers_stay_on_the_circle_within_their_error():
 @pytest.mark.parametrize("jump", [np.pi, 2.0])
 def test_coefficients_with_a_jump(jump):
     """Meissner's equation: the spring switches; exact by two exponentials."""
-    terms = (
-        Term("M", None, np.eye(1)),
-        Term(
-            "K",
-            None,
-            lambda theta: np.where(np.mod(theta, 2 * np.pi) < jump, 3.0, 1.0)[:, None, None],
-        ),
-    )
-    found = monodromy(LinearPeriodic(1, terms, {}, lambda v: {}), 1.0)
+
+    def spring(theta):
+        return np.where(np.mod(theta, 2 * np.pi) < jump, 3.0, 1.0)[:, None, None]
+
+    found = monodromy(system_of(M=np.eye(1), K=spring), 1.0)
 
     def piece(square, length):
         w = np.sqrt(square)
@@ -125,13 +105,8 @@ def test_many_degrees_of_freedom():
     basis, _ = np.linalg.qr(rng.standard_normal((n, n)))
     springs = basis @ np.diag(np.arange(1, n + 1.0) ** 2) @ basis.T
     skew = rng.standard_normal((n, n))
-    terms = (
-        Term("M", None, np.eye(n)),
-        Term("A", None, 0.1 * (skew - skew.T)),
-        Term("K", None, springs),
-        Term("Kg", None, wave(basis @ np.diag(rng.uniform(-0.5, 0.5, n)) @ basis.T)),
-    )
-    system = LinearPeriodic(n, terms, {}, lambda values: {})
+    pull = wave(basis @ np.diag(rng.uniform(-0.5, 0.5, n)) @ basis.T)
+    system = system_of(M=np.eye(n), A=0.1 * (skew - skew.T), K=springs, Kg=pull)
     found = floquet_multipliers(system, np.array([1.1, 3.3]))
     assert found.multipliers.shape == (2, 2 * n)
     assert found.passed, found.checks
@@ -146,19 +121,12 @@ def test_units_do_not_matter(length, mass):
         scale = np.array([1.0, unit])
         outer = weight * scale[:, None] * scale
 
-        def term(array, matrix, wave=None):
-            matrix = outer * np.array(matrix)
-            if wave is None:
-                return Term(array, None, matrix)
-            return Term(array, None, lambda theta: np.cos(wave * theta)[:, None, None] * matrix)
-
-        terms = (
-            term("M", [[2.0, 0.3], [0.3, 1.0]]),
-            term("A", [[0.0, -0.4], [0.5, 0.0]]),
-            term("K", [[20.0, 3.0], [3.0, 9.0]]),
-            term("Kg", [[2.0, 1.0], [1.0, 3.0]], 1),
+        return system_of(
+            M=outer * [[2.0, 0.3], [0.3, 1.0]],
+            A=outer * [[0.0, -0.4], [0.5, 0.0]],
+            K=outer * [[20.0, 3.0], [3.0, 9.0]],
+            Kg=wave(outer * [[2.0, 1.0], [1.0, 3.0]]),
         )
-        return LinearPeriodic(2, terms, {}, lambda values: {})
 
     speeds = np.linspace(0.8, 6.0, 15)
     plain = floquet_multipliers(system(1.0, 1.0), speeds)
@@ -179,36 +147,3 @@ def test_other_periods(turns):
     other = monodromy(mathieu(mu=0.0), 1.0, lam2=2.0 * turns**2, mu=0.5 * turns**2)
     units = np.array([[1.0, turns], [1 / turns, 1.0]])
     np.testing.assert_allclose(found.matrix, other.matrix * units, atol=1e-12)
-
-
-matrices = st.lists(st.floats(-1.0, 1.0), min_size=24, max_size=24)
-
-
-@settings(max_examples=15, deadline=None, derandomize=True)
-@given(numbers=matrices, speed=st.floats(0.3, 20.0), damping=st.floats(0.0, 0.5))
-def test_random_systems_pass_their_own_checks(numbers, speed, damping):
-    mass, gyro, spring, wave, other, skew = np.array(numbers).reshape(6, 2, 2)
-
-    def symmetric(matrix):
-        return matrix + matrix.T
-
-    terms = (
-        Term("M", None, 3 * np.eye(2) + 0.4 * symmetric(mass)),
-        Term("M", None, lambda t: 0.2 * np.cos(2 * t)[:, None, None] * symmetric(other)),
-        Term("A", None, lambda t: np.sin(t)[:, None, None] * gyro + skew),
-        Term("B", None, lambda t: np.cos(t)[:, None, None] * symmetric(wave)),
-        Term("K", None, 9 * np.eye(2) + 2 * symmetric(spring)),
-        Term("C", "C", np.eye(2)),
-    )
-    system = LinearPeriodic(2, terms, {"C": damping}, named(("C",)))
-    found = floquet_multipliers(system, speed)
-    assert found.passed, found.checks
-    assert np.all(np.isfinite(found.error))
-    matrix = monodromy(system, speed)
-    coarse = monodromy(system, speed, rtol=1e-6)
-    top = np.max(np.abs(matrix.scaled))
-    assert np.max(np.abs(coarse.scaled - matrix.scaled)) / top <= coarse.error + matrix.error
-    run = simulate(system, speed, 1.0, initial=([0.1, -0.2], 0.0), samples=60)
-    assert run.passed, run.checks
-    state = matrix.matrix @ np.concatenate([run.q[0], system.array("A", [0.0])[0] @ run.q[0]])
-    np.testing.assert_allclose(run.q[-1], state[:2], atol=1e-10 * np.max(np.abs(run.q)))

@@ -129,24 +129,31 @@ def test_a_written_file_has_the_rights_of_any_other(tmp_path):
     assert whole.stat().st_mode == ordinary.stat().st_mode
 
 
+def working(folder, *options, **more):
+    """Return a process at work, as soon as it has finished its first module."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", CODE, *SEVERAL, "--out", str(folder), *options],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        **more,
+    )
+    assert process.stdout.readline().startswith("[1/")
+    return process
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="process groups are interrupted otherwise there")
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_an_interrupted_process_says_one_line_and_leaves_the_truth(jobs, tmp_path):
     """A full run in a group of its own, as a terminal starts it, and the group interrupted."""
-    process = subprocess.Popen(
-        [
-            *(sys.executable, "-c", CODE, *SEVERAL),
-            *("--out", str(tmp_path), "--jobs", str(jobs), "--force"),
-        ],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
+
+    def heed_interrupts():
         # A runner that ignores interrupts itself hands that on.
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
-    )
-    assert process.stdout.readline().startswith("[1/")  # the first finished module
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+    options = ("--jobs", str(jobs), "--force")
+    process = working(tmp_path, *options, start_new_session=True, preexec_fn=heed_interrupts)
     os.killpg(process.pid, signal.SIGINT)
     _, err = process.communicate(timeout=60)
     assert process.returncode == 130
@@ -159,12 +166,7 @@ def test_an_interrupted_process_says_one_line_and_leaves_the_truth(jobs, tmp_pat
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="no such signal here")
 def test_a_kill_leaves_a_truthful_manifest_and_whole_files(tmp_path):
     """Nothing can be tidied up then; a temporary file may stay, but nothing false is listed."""
-    process = subprocess.Popen(
-        [sys.executable, "-c", CODE, *SEVERAL, "--out", str(tmp_path), "--jobs", "1"],
-        stdout=subprocess.PIPE,
-        text=True,
-    )
-    assert process.stdout.readline().startswith("[1/")
+    process = working(tmp_path, "--jobs", "1")
     process.kill()
     process.communicate(timeout=60)
     for leftover in tmp_path.glob(".*"):

@@ -100,6 +100,8 @@ def test_every_problem_of_a_file_is_reported_at_once():
         ({"coupler.bending_stiffness": "171.5 lbf*in"}, "a bending stiffness"),
         ({"coupler.mass_per_length": "0.3 lbf/in"}, "a weight"),
         ({"coupler.damping": -1e-9}, "non-negative"),
+        ({"coupler.first_moment": 100.0}, "first_moment^2 / mass"),
+        ({"coupler.inertia": 1e-9}, "first_moment^2 / mass"),
         ({"coupler.damping": 0.1, "coupler.damping_ratio": 0.1}, "at most one"),
         ({"follower.inertia": None}, "add it to [follower]"),
         ({"follower.inertia": "0.0058 lbf*in**2"}, "a moment of inertia"),
@@ -112,7 +114,7 @@ def test_every_problem_of_a_file_is_reported_at_once():
         ({"measured.inertias": [0.001]}, "as many as measured.speeds"),
         ({"model.formulation": "kinematics"}, "model.flexible"),
         ({"model.flexible": ["follower"]}, "model.flexible[0]"),
-        ({"model.modes": 1.0}, "a whole number"),
+        *(({"model.modes": modes}, "a whole number") for modes in ("2", 2.0, True)),
         ({"model.modes": 10**9}, "at most 1000"),
         ({"model.outputs": ["stablity"]}, "did you mean stability?"),
         ({"model.balanced": ["frame"]}, "model.balanced[0]"),
@@ -126,6 +128,8 @@ def test_every_problem_of_a_file_is_reported_at_once():
         ({"chart.x_range": [0.0, 4.0]}, "above 0"),
         ({"chart.y_range": [-1.0, 4.0]}, "from 0 up"),
         ({"chart.x_points": 10**6}, "at most"),
+        ({"chart.x_points": 1}, "chart.x_points: found 1; expected at least 2"),
+        *(({key: 1.0}, "") for key in ("foo", "links", "", "links.", "links.crnk", "title.x")),
     ],
 )
 def test_one_wrong_value(changes, part):

@@ -14,7 +14,6 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.frequencies import natural_frequencies
 from elastolink.runtime.linkages import FourBar
 
-pytestmark = pytest.mark.filterwarnings("error")
 BAR = Section.rectangle(0.02, 0.005, modulus=2e11, density=7850.0, poisson=0.3)
 CLAMPED, PINNED = ("x", "y", "rotation"), ("x", "y")
 KINDS = ("cubic", "internal_node", "curvature", "timoshenko")

@@ -123,8 +123,3 @@ def test_bad_input_is_refused_in_one_line(arguments, named, message):
     with pytest.raises(BadInput, match=message) as refusal:
         consistent_state(Circle().system, *arguments, **named)
     assert "\n" not in str(refusal.value)
-
-
-def test_the_centre_of_the_circle_has_no_direction():
-    with pytest.raises(RedundantConstraints):
-        consistent_state(Circle().system, [0.0, 0.0], [0.0, 0.0])

@@ -8,28 +8,21 @@ from functools import cache
 import elastolink as el
 import numpy as np
 import pytest
-from constrained_truth import LENGTHS, Circle, by_explicit_steps, driven_four_bar
+from constrained_truth import LENGTHS, Circle, by_explicit_steps, driven_four_bar, unconstrained
 from elastolink.runtime.constrained import consistent_state, constrained_motion
 from elastolink.runtime.constrained.equations import Equations
 from elastolink.runtime.core.errors import BadInput, LinearRangeWarning, RedundantConstraints
 from elastolink.runtime.core.families import Constrained, Guard
 from elastolink.runtime.systems import free_free_rod
+from free_free_loads import ROD
 
 CIRCLE = Circle(oblique=np.array([[1.0, 0.3], [0.0, 0.02]]), pivot=np.array([0.4, -0.2]), row=50.0)
 TURNING = Circle(start=7.5)
 
 
 @cache
-def rod(modes: int = 2, crank_ratio: float = 0.3, speed: float = 100.0, length: float = 1.0):
-    return free_free_rod(
-        modes,
-        crank_ratio=crank_ratio,
-        frame=0.59997,
-        length=length,
-        bending_stiffness=36456.0,
-        mass_per_length=7.15,
-        speed=speed,
-    )
+def rod(modes: int = 2, ratio: float = 0.3, speed: float = 100.0, **changes):
+    return free_free_rod(modes, crank_ratio=ratio, speed=speed, **ROD | changes)
 
 
 @pytest.mark.smoke
@@ -184,7 +177,7 @@ def test_guards_broken_at_the_start_or_without_a_number_are_refused():
 def test_the_block_that_passes_the_pin_closely_ends_alike_at_every_tolerance(rtol):
     """A crank of 0.99 of the base: the rod is flung round and bent beyond use at 0.157204 s."""
     with pytest.warns(LinearRangeWarning):
-        found = constrained_motion(rod(2, crank_ratio=0.99, speed=20.0, length=1.3), rtol=rtol)
+        found = constrained_motion(rod(2, 0.99, 20.0, length=1.3), rtol=rtol)
     assert found.message == "the deflection passed 0.5 of the rod's length, at t = 0.157204"
 
 
@@ -208,34 +201,10 @@ def test_the_linear_range_is_watched():
     assert calm.passed
 
 
-def pushed(push) -> Constrained:
-    """A free coordinate x'' = push(x), beside a held one."""
-
-    def dynamics(q, qd, t):
-        batch = np.shape(q)[:-1]
-        forces = np.stack([push(np.asarray(q)[..., 0]), np.zeros(batch)], axis=-1)
-        return {
-            "mass": np.broadcast_to(np.eye(2), (*batch, 2, 2)),
-            "rest": np.zeros((*batch, 2, 1)),
-            "forces": forces[..., None],
-            "jacobian": np.broadcast_to([[0.0, 1.0]], (*batch, 1, 2)),
-            "velocity_rhs": np.zeros((*batch, 1, 1)),
-            "gamma": np.zeros((*batch, 1, 1)),
-        }
-
-    def violation(q, t):
-        return {
-            "constraints": np.asarray(q)[..., 1:, None],
-            "jacobian": np.broadcast_to([[0.0, 1.0]], (*np.shape(q)[:-1], 1, 2)),
-        }
-
-    return Constrained(2, 1, dynamics, violation)
-
-
 def test_divergence_is_named():
     """x = cosh(3 t)."""
-    start, leaving = ([1.0, 0.0], [0.0, 0.0]), pushed(lambda x: 9.0 * x)
-    found = constrained_motion(leaving, *start, 50.0, bound=1e6, samples=500)
+    leaving = unconstrained(lambda q, qd: 9.0 * q)
+    found = constrained_motion(leaving, [1.0], [0.0], 50.0, bound=1e6, samples=500)
     assert found.status == 1
     assert "diverged" in found.message
     stop = np.arccosh(1e6) / 3.0
@@ -247,8 +216,8 @@ def test_divergence_is_named():
 
 def test_an_escape_in_finite_time_ends_with_a_reason():
     """x'' = 2 x^3 leaves to infinity as 1/(1 - t)."""
-    start, leaving = ([1.0, 0.0], [1.0, 0.0]), pushed(lambda x: 2.0 * x**3)
-    found = constrained_motion(leaving, *start, 2.0, bound=1e300, samples=2000)
+    leaving = unconstrained(lambda q, qd: 2.0 * q**3)
+    found = constrained_motion(leaving, [1.0], [1.0], 2.0, bound=1e300, samples=2000)
     assert not found.success
     assert "diverge" in found.message
     assert 0.99 < found.time[-1] <= 1.001

@@ -8,14 +8,8 @@ import numpy as np
 import pytest
 from elastolink.runtime.constrained import constrained_motion, orbit_multipliers, periodic_orbit
 from elastolink.runtime.systems import free_free_rod
+from free_free_loads import ROD
 from scipy.integrate import solve_ivp
-
-ROD = {
-    "frame": 0.59997,
-    "length": 1.0,
-    "bending_stiffness": 0.7e11 * 0.5208e-6,
-    "mass_per_length": 7.15,
-}
 
 
 @pytest.fixture(scope="module")

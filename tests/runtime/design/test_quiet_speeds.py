@@ -4,6 +4,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from beam_motions import of_history
 from elastolink import BadInput, load_scene
 from elastolink.runtime.beams import Section, linkage_system
 from elastolink.runtime.design import (
@@ -18,7 +19,6 @@ from elastolink.runtime.design import (
 from elastolink.runtime.design.quiet import _bands, _maxima
 from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.recovery import stress_curve
-from elastolink.runtime.recovery.stresses import StressResult
 
 TABLE = "aannaque_1996_table_4_1"
 STEEL = Material(tensile_strength=600e6, endurance_limit=200e6, exponent=9.0, knee=1e6)
@@ -168,32 +168,11 @@ def test_a_resonance_without_damping_is_infinite_and_constant_loads_count():
         screen(made, [10.0], damping="a")
 
 
-def of_history(history, error=0.0):
-    """Return a stress result with one station, all of it axial."""
-    values = np.asarray(history)[:, None]
-    count = len(values)
-    none = np.zeros_like(values)
-    return StressResult(
-        method="hand",
-        error=error,
-        error_norm="none",
-        speed=10.0,
-        theta=2 * np.pi * np.arange(count) / count,
-        links=("bar",),
-        places=np.array([0.5]),
-        axial=values,
-        bending=none,
-        static_axial=none,
-        static_bending=none,
-        motion_error=0.0,
-        mesh_error=0.0,
-        period=2 * np.pi,
-    )
+WAVE = np.cos(2 * np.pi * np.arange(64) / 64)
 
 
 def test_one_harmonic_is_one_cycle_on_goodmans_line():
-    theta = 2 * np.pi * np.arange(64) / 64
-    found = fatigue(of_history(100e6 + 250e6 * np.cos(theta)), STEEL)
+    found = fatigue(of_history(100e6 + 250e6 * WAVE), STEEL)
     amplitude = 250e6 / (1 - 100.0 / 600.0)
     np.testing.assert_allclose(found.amplitude, amplitude, rtol=1e-12)
     np.testing.assert_allclose(found.safety, 200e6 / amplitude, rtol=1e-12)
@@ -203,10 +182,9 @@ def test_one_harmonic_is_one_cycle_on_goodmans_line():
 
 
 def test_the_error_of_the_safety_covers_that_of_amplitude_and_mean():
-    theta = 2 * np.pi * np.arange(64) / 64
     mean, size, off = 500e6, 20e6, 2e6
-    found = fatigue(of_history(mean + size * np.cos(theta), error=off), STEEL)
-    worse = fatigue(of_history(mean + off + (size + off) * np.cos(theta)), STEEL)
+    found = fatigue(of_history(mean + size * WAVE, error=off), STEEL)
+    worse = fatigue(of_history(mean + off + (size + off) * WAVE), STEEL)
     actual = np.max(worse.amplitude) / np.max(found.amplitude) - 1.0
     # With what may lie between 512 angles: (2 pi/512)^4 * 3/128 of the size, 5e-9 of the error.
     assert actual < found.error < actual * (1.0 + 1e-8)
@@ -217,15 +195,13 @@ def test_the_error_of_the_safety_covers_that_of_amplitude_and_mean():
 
 
 def test_compression_counts_as_no_mean_and_small_cycles_do_no_damage():
-    theta = 2 * np.pi * np.arange(64) / 64
-    found = fatigue(of_history(-300e6 + 150e6 * np.cos(theta)), STEEL)
+    found = fatigue(of_history(-300e6 + 150e6 * WAVE), STEEL)
     np.testing.assert_allclose(found.amplitude, 150e6, rtol=1e-12)
     assert np.all(found.damage == 0) and found.revolutions == np.inf
 
 
 def test_a_cycle_that_reaches_the_strength_is_no_life():
-    theta = 2 * np.pi * np.arange(64) / 64
-    found = fatigue(of_history(650e6 + 10e6 * np.cos(theta)), STEEL)
+    found = fatigue(of_history(650e6 + 10e6 * WAVE), STEEL)
     assert np.all(found.safety == 0) and found.revolutions == 0.0
 
 

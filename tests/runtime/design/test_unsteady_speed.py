@@ -1,16 +1,15 @@
 """Motion while the crank speed changes: profiles, and marching against an independent equation."""
 
+from functools import cache
+
 import numpy as np
 import pytest
-from elastolink import BadInput, LinearPeriodic, Term, load_scene, steady_state
+from elastolink import BadInput, load_scene, steady_state
 from elastolink.runtime.design import SpeedProfile, run_through
 from elastolink.runtime.design.changing_length import ChangingLength
 from elastolink.runtime.design.unsteady import Drive, arrays_of, generator_of, march
+from periodic_systems import system_of
 from scipy.integrate import solve_ivp
-
-
-def scales(values):
-    return {}
 
 
 def matrix(constant, cosine, sine):
@@ -37,23 +36,19 @@ IMPULSE, _ = matrix([0.3, -0.2], [0.2, 0.1], [0.0, 0.5])
 STIFFNESS = np.array([[30.0, -8.0], [-8.0, 50.0]])
 DAMPING = np.array([[0.3, 0.1], [0.1, 0.2]])
 CARRIED = np.array([[0.05, 0.0], [0.02, 0.04]])
-SYSTEM = LinearPeriodic(
-    size=2,
-    terms=(
-        Term("M", None, MASS),
-        Term("A", None, DRIFT),
-        Term("B", None, CENTRIPETAL),
-        Term("S", None, EULER),
-        Term("K", None, STIFFNESS),
-        Term("C", None, DAMPING),
-        Term("D", None, CARRIED),
-        Term("Kg", None, 0.1 * STIFFNESS, power=2),
-        Term("f", None, FORCE),
-        Term("g", None, IMPULSE),
-    ),
-    parameters={},
-    scales=scales,
+SYSTEM = system_of(
+    M=MASS,
+    A=DRIFT,
+    B=CENTRIPETAL,
+    S=EULER,
+    K=STIFFNESS,
+    C=DAMPING,
+    D=CARRIED,
+    Kg=(None, 0.1 * STIFFNESS, 2),
+    f=FORCE,
+    g=IMPULSE,
 )
+TABLE = "aannaque_1996_table_4_1"
 PROFILE = SpeedProfile(times=(0.0, 1.0, 2.5, 4.0), speeds=(0.5, 3.0, 2.0, 4.0))
 
 
@@ -128,7 +123,9 @@ def test_impossible_profiles_are_refused(values, words):
         SpeedProfile(**values)
 
 
-SCENE = {"mesh.elements": 1}
+@cache
+def system(**more):
+    return load_scene(TABLE, overrides={"mesh.elements": 1, **more}).system()
 
 
 def at_angles(steady, theta):
@@ -140,10 +137,9 @@ def at_angles(steady, theta):
 
 
 def test_at_constant_speed_the_steady_motion_stays():
-    system = load_scene("aannaque_1996_table_4_1", overrides=SCENE).system()
     profile = SpeedProfile(times=(0.0, 0.1), speeds=(20.0, 20.0))
-    found = run_through(system, profile, modes=None, rtol=1e-3)
-    steady = steady_state(system, 20.0, method="harmonic_balance")
+    found = run_through(system(), profile, modes=None, rtol=1e-3)
+    steady = steady_state(system(), 20.0, method="harmonic_balance")
     expected = at_angles(steady, found.angle)
     peak = np.max(np.abs(expected), axis=0)
     assert np.max(np.abs(found.q - expected) / peak) < 1e-3
@@ -154,20 +150,18 @@ def test_at_constant_speed_the_steady_motion_stays():
 @pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning")
 def test_fast_run_ups_stress_less_than_steady_running_at_a_critical_speed():
     # The fifth part of the first mean frequency, 36.8 rad/s, with one element per link.
-    system = load_scene("aannaque_1996_table_4_1", overrides=SCENE).system()
-    slow = run_through(system, SpeedProfile.ramp(34.0, 39.0, 2.0))
-    fast = run_through(system, SpeedProfile.ramp(34.0, 39.0, 0.4))
+    slow = run_through(system(), SpeedProfile.ramp(34.0, 39.0, 2.0))
+    fast = run_through(system(), SpeedProfile.ramp(34.0, 39.0, 0.4))
     assert slow.checks["converged"].passed and fast.checks["converged"].passed
     assert fast.largest["follower"] < slow.largest["follower"]
 
 
 def test_a_length_that_changes_needs_all_coordinates():
-    system = load_scene("aannaque_1996_table_4_1", overrides=SCENE).system()
     profile = SpeedProfile(
         times=(0.0, 0.2, 0.4), speeds=(20.0, 22.0, 22.0), geometry={"frame": (0.58, 0.58, 0.547)}
     )
     with pytest.raises(BadInput, match="None where a length changes"):
-        run_through(system, profile)
+        run_through(system(), profile)
     with pytest.raises(BadInput, match="no linkage of beams"):
         run_through(load_scene("smith_1972_5152_sixteenth_inch").system(), profile)
 
@@ -175,14 +169,12 @@ def test_a_length_that_changes_needs_all_coordinates():
 @pytest.mark.slow
 def test_the_length_at_the_end_is_the_one_that_acts():
     # After the length has come to rest the motion tends to the steady one of that length.
-    system = load_scene(
-        "aannaque_1996_table_4_1", overrides={**SCENE, "damping.ratio": 0.3}
-    ).system()
+    damped = system(**{"damping.ratio": 0.3})
     profile = SpeedProfile(
         times=(0.0, 0.3, 1.2), speeds=(20.0, 20.0, 20.0), geometry={"frame": (0.6, 0.547, 0.547)}
     )
-    found = run_through(system, profile, modes=None, rtol=0.02)
-    steady = steady_state(system, 20.0, method="harmonic_balance")
+    found = run_through(damped, profile, modes=None, rtol=0.02)
+    steady = steady_state(damped, 20.0, method="harmonic_balance")
     assert found.passed
     late = found.time > 0.9
     expected = at_angles(steady, found.angle[late])
@@ -193,12 +185,11 @@ def test_the_length_at_the_end_is_the_one_that_acts():
 
 def test_a_changing_length_is_that_of_its_time():
     # Between the levels, against the structure made there: arrays, directions and deflections.
-    system = load_scene("aannaque_1996_table_4_1", overrides=SCENE).system()
     profile = SpeedProfile(times=(0.0, 0.4), speeds=(20.0, 20.0), geometry={"frame": (0.62, 0.547)})
-    changing = ChangingLength(system, profile, "frame", 17)
+    changing = ChangingLength(system(), profile, "frame", 17)
     for when in (0.013, 0.2, 0.311):
         time = np.array([when])
-        there = system.with_geometry(frame=float(profile.lengths("frame", time)[0]))
+        there = system().with_geometry(frame=float(profile.lengths("frame", time)[0]))
         drive = Drive.of(profile, time)
         found, expected = changing.arrays(drive, time), arrays_of(there, drive)
         assert set(found) == set(expected)
@@ -217,26 +208,24 @@ def test_a_changing_length_is_that_of_its_time():
 
 @pytest.mark.slow
 def test_a_length_that_stays_gives_the_stresses_of_that_length():
-    system = load_scene("aannaque_1996_table_4_1", overrides=SCENE).system()
     times, speeds = (0.0, 0.2), (20.0, 22.0)
     held = SpeedProfile(times=times, speeds=speeds, geometry={"frame": (0.62, 0.62)})
     hardly = SpeedProfile(times=times, speeds=speeds, geometry={"frame": (0.62, 0.6201)})
     expected = run_through(
-        system.with_geometry(frame=0.62), SpeedProfile(times=times, speeds=speeds), modes=None
+        system().with_geometry(frame=0.62), SpeedProfile(times=times, speeds=speeds), modes=None
     )
     for profile, rtol in ((held, 1e-12), (hardly, 2e-3)):
-        found = run_through(system, profile, modes=None)
+        found = run_through(system(), profile, modes=None)
         np.testing.assert_allclose(
             list(found.largest.values()), list(expected.largest.values()), rtol=rtol
         )
 
 
 def test_a_length_of_a_beam_is_refused_and_so_are_other_profiles():
-    system = load_scene("aannaque_1996_table_4_1", overrides=SCENE).system()
     profile = SpeedProfile(times=(0.0, 0.1), speeds=(20.0, 20.0), geometry={"crank": (0.17, 0.16)})
     with pytest.raises(BadInput, match="the length of a beam"):
-        run_through(system, profile, modes=None)
+        run_through(system(), profile, modes=None)
     with pytest.raises(BadInput, match="a SpeedProfile"):
-        run_through(system, "fast")
+        run_through(system(), "fast")
     with pytest.raises(BadInput, match="stations"):
-        run_through(system, SpeedProfile(times=(0.0, 0.1), speeds=(1.0, 2.0)), stations=0)
+        run_through(system(), SpeedProfile(times=(0.0, 0.1), speeds=(1.0, 2.0)), stations=0)

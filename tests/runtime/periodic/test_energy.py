@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic import simulate
 from elastolink.runtime.periodic.energy import energy_balance
 from elastolink.runtime.periodic.equation import equation_of
 from manufactured import manufactured
+from periodic_systems import system_of
 
 
 def moved(seed, samples=256):
@@ -45,9 +45,7 @@ def test_energy_of_an_oscillator_by_hand():
 
     The last of the 66 angles is left out, so that 64 intervals cover a quarter of a wave.
     """
-    terms = (Term("M", None, np.eye(1)), Term("K", None, 9.0 * np.eye(1)))
-    system = LinearPeriodic(1, terms, {}, lambda values: {})
-    equation = equation_of(system, 1.0, {})
+    equation = equation_of(system_of(M=np.eye(1), K=9.0 * np.eye(1)), 1.0, {})
     theta = np.pi / 6 / 64 * np.arange(66.0)
     q, slope = np.cos(3 * theta)[:, None], -3 * np.sin(3 * theta)[:, None]
     right = energy_balance(equation, theta, q, slope, 1e-12)
@@ -60,13 +58,7 @@ def test_energy_of_an_oscillator_by_hand():
 
 def test_damping_and_load_do_work():
     """q'' + 0.2 q' + 9 q = 2: without the damping, or without the load, nothing is balanced."""
-    terms = (
-        Term("M", None, np.eye(1)),
-        Term("C", None, 0.2 * np.eye(1)),
-        Term("K", None, 9.0 * np.eye(1)),
-        Term("p", None, np.array([2.0])),
-    )
-    system = LinearPeriodic(1, terms, {}, lambda values: {})
+    system = system_of(M=np.eye(1), C=0.2 * np.eye(1), K=9.0 * np.eye(1), p=np.array([2.0]))
     run = simulate(system, 1.0, 1.0, samples=128)
     assert run.checks["energy balance"].passed
     for left_out in ("C", "p"):

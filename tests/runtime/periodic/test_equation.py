@@ -7,38 +7,27 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic.equation import equation_of, fourier_series, sampled, waves
+from periodic_systems import system_of, wave
 
 SPEED = 2.3
 PARAMETERS = {"weight": 1.4, "load": 0.7}
 
 
-def _wave(matrix, harmonic, phase):
-    matrix = np.array(matrix)
-    shape = (-1,) + (1,) * matrix.ndim
-    return lambda theta: np.cos(harmonic * theta + phase).reshape(shape) * matrix
-
-
 def _system() -> LinearPeriodic:
-    terms = (
-        Term("M", "weight", np.array([[2.0, 0.3], [0.3, 1.0]])),
-        Term("M", None, _wave([[0.5, 0.1], [0.1, 0.2]], 1, 0.3)),
-        Term("A", None, _wave([[0.2, 0.5], [-0.1, 0.3]], 2, 1.0)),
-        Term("B", None, _wave([[1.0, 0.2], [0.2, -0.5]], 1, 0.0), power=1),
-        Term("S", None, _wave([[9.0, 9.0], [9.0, 9.0]], 1, 0.0)),
-        Term("C", "weight", np.array([[0.4, 0.1], [0.1, 0.3]]), power=1),
-        Term("D", None, _wave([[0.2, 0.1], [-0.3, 0.1]], 3, 0.2)),
-        Term("K", None, np.array([[20.0, 3.0], [3.0, 9.0]])),
-        Term("Kg", "load", _wave([[2.0, 1.0], [1.0, 3.0]], 1, -0.4)),
-        Term("f", "load", _wave([1.0, -2.0], 1, 0.0)),
-        Term("h", None, _wave([0.3, 0.4], 2, 0.0)),
-        Term("g", None, _wave([9.0, 9.0], 1, 0.0)),
-        Term("p", None, np.array([0.5, 0.1])),
-    )
-    return LinearPeriodic(
-        2,
-        terms,
+    return system_of(
         PARAMETERS,
-        lambda values: {name: np.asarray(values[name], dtype=float) for name in PARAMETERS},
+        M=[("weight", np.array([[2.0, 0.3], [0.3, 1.0]])), wave([[0.5, 0.1], [0.1, 0.2]], 1, 0.3)],
+        A=wave([[0.2, 0.5], [-0.1, 0.3]], 2, 1.0),
+        B=(None, wave([[1.0, 0.2], [0.2, -0.5]]), 1),
+        S=wave([[9.0, 9.0], [9.0, 9.0]]),
+        C=("weight", np.array([[0.4, 0.1], [0.1, 0.3]]), 1),
+        D=wave([[0.2, 0.1], [-0.3, 0.1]], 3, 0.2),
+        K=np.array([[20.0, 3.0], [3.0, 9.0]]),
+        Kg=("load", wave([[2.0, 1.0], [1.0, 3.0]], 1, -0.4)),
+        f=("load", wave([1.0, -2.0])),
+        h=wave([0.3, 0.4], 2),
+        g=wave([9.0, 9.0]),
+        p=np.array([0.5, 0.1]),
     )
 
 
@@ -100,21 +89,15 @@ def test_a_sampled_system_is_not_evaluated_again():
         calls.append(len(theta))
         return np.cos(theta)[:, None, None]
 
-    terms = (Term("M", None, np.eye(1)), Term("K", None, np.eye(1)), Term("Kg", None, spring))
-    known = sampled(LinearPeriodic(1, terms, {}, lambda values: {}))
+    known = sampled(system_of(M=np.eye(1), K=np.eye(1), Kg=spring))
     calls.clear()
     equation_of(known, np.linspace(1.0, 2.0, 50)).generator(np.linspace(0.0, 1.0, 8))
     assert calls == []
 
 
 def test_absent_and_vanishing_terms_leave_no_field():
-    terms = (
-        Term("M", None, np.eye(1)),
-        Term("K", None, np.eye(1)),
-        Term("C", None, np.zeros((1, 1))),
-        Term("D", None, lambda theta: 0.0 * theta[:, None, None]),
-    )
-    equation = equation_of(LinearPeriodic(1, terms, {}, lambda values: {}), 1.0)
+    none = {"C": np.zeros((1, 1)), "D": lambda theta: 0.0 * theta[:, None, None]}
+    equation = equation_of(system_of(M=np.eye(1), K=np.eye(1), **none), 1.0)
     assert set(equation.fields) == {"mass", "stiffness"}
     assert not equation.damped
 
@@ -129,7 +112,7 @@ def test_series_have_the_harmonics_that_the_term_has(harmonics):
         turns = np.outer(theta, order)
         return (np.cos(turns) @ a + np.sin(turns) @ b)[:, None, None]
 
-    system = LinearPeriodic(1, (Term("M", None, np.eye(1)),), {}, lambda values: {})
+    system = system_of(M=np.eye(1))
     (series,), count, reach = fourier_series(system, [Term("Kg", None, function)])
     assert count == reach == harmonics
     theta = np.linspace(0.1, 9.0, 17)
@@ -138,19 +121,24 @@ def test_series_have_the_harmonics_that_the_term_has(harmonics):
 
 
 def test_a_kink_is_not_smooth_and_is_evaluated_where_it_is_wanted():
-    term = Term("Kg", None, lambda theta: np.abs(np.sin(theta))[:, None, None])
-    terms = (Term("M", None, np.eye(1)), term)
-    equation = equation_of(LinearPeriodic(1, terms, {}, lambda values: {}), 1.0)
+    kinked = system_of(M=np.eye(1), Kg=lambda theta: np.abs(np.sin(theta))[:, None, None])
+    equation = equation_of(kinked, 1.0)
     assert equation.harmonics == -1
     theta = np.array([0.3, 4.0])
     values = -np.abs(np.sin(theta)) * equation.scale[0, 0] ** 2
     np.testing.assert_allclose(equation.at("stiffness", theta)[0, :, 0, 0], values, rtol=1e-15)
 
 
-def test_a_mass_that_is_not_definite_is_named():
-    terms = (Term("M", None, lambda t: (0.5 + np.cos(t))[:, None, None] * np.eye(2)),)
-    with pytest.raises(BadInput, match="mass matrix M: found smallest eigenvalue"):
-        equation_of(LinearPeriodic(2, terms, {}, lambda values: {}), 1.0)
-    with pytest.raises(BadInput, match="mass matrix M: found asymmetry"):
-        terms = (Term("M", None, np.array([[1.0, 0.5], [0.0, 1.0]])),)
-        equation_of(LinearPeriodic(2, terms, {}, lambda values: {}), 1.0)
+@pytest.mark.parametrize(
+    ("arrays", "words"),
+    [
+        (
+            {"M": lambda t: (0.5 + np.cos(t))[:, None, None] * np.eye(2)},
+            "found smallest eigenvalue",
+        ),
+        ({"M": np.array([[1.0, 0.5], [0.0, 1.0]])}, "found asymmetry"),
+    ],
+)
+def test_a_mass_that_is_not_definite_is_named(arrays, words):
+    with pytest.raises(BadInput, match=f"mass matrix M: {words}"):
+        equation_of(system_of(**arrays), 1.0)

@@ -9,7 +9,7 @@ import elastolink as el
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.core.families import LinearPeriodic, Term
+from periodic_systems import system_of, wave
 
 pytestmark = pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning")
 
@@ -207,21 +207,15 @@ def test_bad_input_is_refused_in_one_line(call, name) -> None:
 
 def test_inertia_that_depends_on_the_speed_is_refused() -> None:
     """Rates would be those of another speed."""
-    terms = (el.Term("M", None, np.eye(1), power=1), el.Term("K", None, np.eye(1)))
     with pytest.raises(BadInput, match="power of the speed"):
-        el.prepare(el.LinearPeriodic(1, terms, {}, lambda values: {}), (1.0, 2.0))
+        el.prepare(system_of(M=(None, np.eye(1), 1), K=np.eye(1)), (1.0, 2.0))
 
 
 def test_a_start_that_shakes_a_dying_mode_is_followed_too() -> None:
     """Two oscillators by themselves; the fast one dies within a sixth of a revolution."""
     rate, drag = np.array([30.0, 3e4]), np.array([1.0, 4e3])
-    terms = (
-        Term("M", None, np.eye(2)),
-        Term("C", None, np.diag(drag)),
-        Term("K", None, np.diag(rate**2)),
-        Term("Kg", None, lambda t: 1e-9 * np.cos(t)[:, None, None] * np.eye(2)),
-    )
-    ready = el.prepare(LinearPeriodic(2, terms, {}, lambda values: {}), 60.0, samples=16)
+    springs = {"K": np.diag(rate**2), "Kg": wave(1e-9 * np.eye(2))}
+    ready = el.prepare(system_of(M=np.eye(2), C=np.diag(drag), **springs), 60.0, samples=16)
     found = ready.simulate(60.0, 2, (1.0, 0.0))
     turning = np.sqrt(rate**2 - drag**2 / 4)
     time = found.time[:, None]

@@ -8,55 +8,33 @@ import numpy as np
 import pytest
 from elastolink import resonance_curve, steady_state
 from elastolink.runtime.core.errors import BadInput, LinearRangeWarning
-from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.frequencies import natural_frequencies
 from elastolink.runtime.periodic import steady_peaks
-
-EPS = float(np.finfo(float).eps)
-METHODS = ("auto", "harmonic_balance")
-
-
-def _system(**changes) -> LinearPeriodic:
-    """q'' + c q' + (k + mu cos theta) q = 1/(1.5 - cos theta), theta = speed t."""
-    numbers = {"k": 9.3, "mu": 1.4, "c": 0.2, **changes}
-    terms = (
-        Term("M", None, np.eye(1)),
-        Term("K", "k", np.eye(1)),
-        Term("Kg", "mu", lambda theta: np.cos(theta)[:, None, None]),
-        Term("C", "c", np.eye(1)),
-        Term("p", None, lambda theta: (1 / (1.5 - np.cos(theta)))[:, None]),
-    )
-
-    def scales(values):
-        return {name: np.asarray(values[name], dtype=float) for name in numbers}
-
-    return LinearPeriodic(
-        1, terms, numbers, scales, reference_length=2.0, shape=lambda x: 1e-4 * x[:, None]
-    )
+from periodic_systems import forced_mathieu
 
 
 def test_peaks_of_many_speeds_are_those_of_the_motions():
     speeds = np.linspace(0.3, 4.0, 80)
-    peaks = steady_peaks(_system(), speeds, x=[0.5, 1.0])
+    peaks = steady_peaks(forced_mathieu(), speeds, x=[0.5, 1.0])
     assert peaks.passed and np.all(peaks.place == 1.0)
-    state = steady_state(_system(), speeds)
+    state = steady_state(forced_mathieu(), speeds)
     np.testing.assert_allclose(peaks.peak, state.peak(), rtol=1e-4)
-    finer = steady_state(_system(), speeds, samples=2**13).peak()
+    finer = steady_state(forced_mathieu(), speeds, samples=2**13).peak()
     assert np.all(np.abs(peaks.peak - finer) <= peaks.error * finer)
     np.testing.assert_allclose(peaks.distance, state.distance, rtol=1e-8)
     np.testing.assert_array_equal(peaks.stable, state.stable)
     assert peaks.plot().get_yscale() == "log"
-    assert steady_peaks(_system(), speeds[:2]).place[0] == 1.0
+    assert steady_peaks(forced_mathieu(), speeds[:2]).place[0] == 1.0
     with pytest.raises(BadInput, match="places"):
-        steady_peaks(_system(), speeds, x=1.5)
+        steady_peaks(forced_mathieu(), speeds, x=1.5)
     with pytest.raises(BadInput, match="mode shapes"):
-        steady_peaks(replace(_system(), shape=None), speeds)
+        steady_peaks(replace(forced_mathieu(), shape=None), speeds)
     with pytest.raises(BadInput, match="row of speeds"):
-        steady_peaks(_system(), [])
+        steady_peaks(forced_mathieu(), [])
 
 
 def test_strong_damping_and_a_slow_crank_cost_nothing():
-    peaks = steady_peaks(_system(mu=0.0), np.full(200, 0.01), c=1e4)
+    peaks = steady_peaks(forced_mathieu(mu=0.0), np.full(200, 0.01), c=1e4)
     # Harmonic k of the load, 2 (1.5 - r)^k / r with r = sqrt(5/4), over 9.3 + 100 i k.
     theta, root = np.linspace(0, 2 * np.pi, 4000), np.sqrt(1.25)
     q = 1 / root / 9.3 + sum(
@@ -71,26 +49,26 @@ def test_strong_damping_and_a_slow_crank_cost_nothing():
 
 def test_peaks_beyond_the_linear_range_are_told_once():
     with pytest.warns(LinearRangeWarning, match="leave out resonant speeds") as told:
-        peaks = steady_peaks(_system(), np.full(70, 3.0), mu=0.0, c=0.0, k=9.001)
+        peaks = steady_peaks(forced_mathieu(), np.full(70, 3.0), mu=0.0, c=0.0, k=9.001)
     assert not peaks.checks["linear range"].passed
     assert len(told) == 1
 
 
 def test_held_frequencies_and_their_mean():
-    found = natural_frequencies(_system(), np.array([0.0, np.pi]))
+    found = natural_frequencies(forced_mathieu(), np.array([0.0, np.pi]))
     np.testing.assert_allclose(found.frequency[:, 0], np.sqrt([10.7, 7.9]), rtol=1e-14)
     even = np.linspace(0, 2 * np.pi, 200, endpoint=False)
     np.testing.assert_allclose(found.mean, np.mean(np.sqrt(9.3 + 1.4 * np.cos(even))), rtol=1e-13)
     assert found.passed
     with pytest.raises(BadInput, match="theta"):
-        natural_frequencies(_system(), [])
+        natural_frequencies(forced_mathieu(), [])
     with pytest.raises(BadInput, match="no natural frequency"):
-        natural_frequencies(_system(k=1.0))
+        natural_frequencies(forced_mathieu(k=1.0))
 
 
 def test_resonances_are_found_and_labelled():
     # A constant spring: maxima at sqrt(9.3)/n, the damping's shift of second order.
-    curve = resonance_curve(_system(mu=0.0, c=0.02), np.linspace(0.9, 4.0, 60))
+    curve = resonance_curve(forced_mathieu(mu=0.0, c=0.02), np.linspace(0.9, 4.0, 60))
     assert list(curve.order) == [3, 2, 1] and list(curve.mode) == [1, 1, 1]
     np.testing.assert_allclose(curve.maxima, np.sqrt(9.3) / np.array([3, 2, 1]), rtol=3e-3)
     np.testing.assert_allclose(curve.ratio, 1.0, rtol=3e-3)
@@ -98,18 +76,18 @@ def test_resonances_are_found_and_labelled():
     root = np.sqrt(1.25)
     alone = 2e-4 * 2 * (1.5 - root) ** curve.order / root / (0.02 * np.sqrt(9.3))
     assert np.all(curve.maxima_peak > 0.99 * alone) and np.all(curve.maxima_peak < 1.3 * alone)
-    state = steady_state(_system(mu=0.0, c=0.02), curve.maxima)
+    state = steady_state(forced_mathieu(mu=0.0, c=0.02), curve.maxima)
     np.testing.assert_allclose(state.peak(), curve.maxima_peak, rtol=1e-6)
 
 
 def test_curves_are_drawn_and_bad_input_is_refused():
-    curve = resonance_curve(_system(), np.linspace(1.0, 4.0, 30))
+    curve = resonance_curve(forced_mathieu(), np.linspace(1.0, 4.0, 30))
     assert curve.plot().get_yscale() == "log"
     for arguments, word in (
         (("x",), "speed: found 'x'"),
         (([1.0, 0.5, 2.0],), "rising"),
     ):
         with pytest.raises(BadInput, match=word):
-            resonance_curve(_system(), *arguments)
+            resonance_curve(forced_mathieu(), *arguments)
     with pytest.raises(BadInput, match="one place"):
-        resonance_curve(_system(), [1.0, 1.5, 2.0], x=2.0)
+        resonance_curve(forced_mathieu(), [1.0, 1.5, 2.0], x=2.0)

@@ -5,30 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import scipy.linalg
-from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.periodic.signatures import signatures_of
+from periodic_systems import coupled_pair, system_of
+from scipy.integrate import solve_ivp
 
 
 def symplectic_unit(n):
     """Return J = [[0, I], [-I, 0]]."""
     return np.kron(np.array([[0.0, 1.0], [-1.0, 0.0]]), np.eye(n))
-
-
-def _scales(values):
-    return {name: np.asarray(value, dtype=float) for name, value in values.items()}
-
-
-def _pair(coupling: float, sign: float = 1.0, squares=(1.0, 2.3**2), damping=0.0) -> LinearPeriodic:
-    """Two oscillators, coupled by cos theta; ``sign`` is the Hamiltonian sign of the second."""
-    matrix = coupling * np.array([[0.0, 1.0], [sign, 0.0]])
-    terms = (
-        Term("M", None, np.eye(2)),
-        Term("K", None, np.diag(squares)),
-        Term("Kg", None, lambda theta: np.cos(theta)[:, None, None] * matrix),
-        Term("C", "c", np.eye(2)),
-    )
-    return LinearPeriodic(2, terms, {"c": damping}, _scales)
 
 
 def _rotation(angle):
@@ -63,8 +48,7 @@ def sign_of(spectrum, value):
 def test_oscillator_turns_anticlockwise_with_positive_sign():
     """q = exp(i w t), p = i w q: kappa = 2 w > 0."""
     w, speed = 1.3, 4.1
-    terms = (Term("M", None, np.eye(1)), Term("K", None, w**2 * np.eye(1)))
-    found = floquet_multipliers(LinearPeriodic(1, terms, {}, lambda v: {}), speed)
+    found = floquet_multipliers(system_of(M=np.eye(1), K=w**2 * np.eye(1)), speed)
     turn = np.exp(2j * np.pi * w / speed)
     spectrum = found.multipliers, found.signatures
     assert (sign_of(spectrum, turn), sign_of(spectrum, np.conj(turn))) == (1, -1)
@@ -104,7 +88,7 @@ def test_at_plus_and_minus_one_and_off_the_circle_there_is_none(value):
 
 def test_equal_signatures_pass_and_opposite_ones_leave():
     """Symmetric coupling: the difference w2 - w1 is harmless, the sum w1 + w2 opens a tongue."""
-    system = _pair(0.02)
+    system = coupled_pair(0.02)
     apart = np.linspace(-0.012, 0.012, 25)
     difference = floquet_multipliers(system, 1.3 + apart)
     upper = difference.multipliers.imag > 0
@@ -122,31 +106,24 @@ def test_equal_signatures_pass_and_opposite_ones_leave():
 
 
 def test_damped_and_circulatory_systems_have_no_signatures():
-    for system in (_pair(0.02, damping=0.1), _pair(0.02, sign=-1.0)):
+    for system in (coupled_pair(0.02, damping=0.1), coupled_pair(0.02, sign=-1.0)):
         assert np.all(floquet_multipliers(system, [2.0, 3.0]).signatures == 0)
 
 
 # An independent route: the motion on the circle --------------------------------------------------
 
 
-def _flow(potential, wave, push, amount, steps=400):
+def _flow(potential, wave, push, amount):
     """Return the flow of J (S0 + cos S1 + amount (2 + sin) S2) over a turn, by Runge-Kutta."""
     unit = symplectic_unit(len(potential) // 2)
 
-    def rate(theta):
+    def rate(theta, state):
         total = potential + np.cos(theta) * wave + amount * (2 + np.sin(theta)) * push
-        return unit @ total
+        return (unit @ total @ state.reshape(unit.shape)).ravel()
 
-    h = 2 * np.pi / steps
-    state = np.eye(len(potential))
-    for k in range(steps):
-        first, middle, last = (rate(h * (k + part)) for part in (0.0, 0.5, 1.0))
-        k1 = first @ state
-        k2 = middle @ (state + h / 2 * k1)
-        k3 = middle @ (state + h / 2 * k2)
-        k4 = last @ (state + h * k3)
-        state = state + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
-    return state
+    turn, start = (0.0, 2 * np.pi), np.eye(len(unit)).ravel()
+    run = solve_ivp(rate, turn, start, "DOP853", rtol=1e-12, atol=1e-13)
+    return run.y[:, -1].reshape(unit.shape)
 
 
 @pytest.mark.parametrize("n", [1, 2, 3])

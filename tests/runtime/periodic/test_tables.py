@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic.equation import equation_of
-from elastolink.runtime.periodic.tables import flows_at, table_of
+from elastolink.runtime.periodic.tables import table_of
 from elastolink.runtime.periodic.transition import method, product, segments_of
+from periodic_systems import system_of, wave
 
 WAY = method("gauss", 6)
 ENDS = (2.0, 3.0)
@@ -18,20 +18,9 @@ ENDS = (2.0, 3.0)
 
 def system(forced=False):
     """Return two freedoms with a periodic spring and a damper."""
-
-    def spring(theta):
-        wave = np.cos(theta)
-        rows = np.stack([9.0 + 2.0 * wave, wave, wave, 20.0 - wave], axis=-1)
-        return rows.reshape(-1, 2, 2)
-
-    terms = [
-        Term("M", None, np.eye(2)),
-        Term("C", None, 0.1 * np.eye(2)),
-        Term("K", None, spring),
-    ]
-    if forced:
-        terms.append(Term("p", None, lambda theta: np.stack([np.cos(theta), 1 + 0 * theta], -1)))
-    return LinearPeriodic(2, tuple(terms), {}, lambda values: {})
+    load = {"p": lambda theta: np.stack([np.cos(theta), 1 + 0 * theta], -1)} if forced else {}
+    springs = [np.diag([9.0, 20.0]), wave([[2.0, 1.0], [1.0, -1.0]])]
+    return system_of(M=np.eye(2), C=0.1 * np.eye(2), K=springs, **load)
 
 
 def equations(forced=False):
@@ -62,17 +51,6 @@ def test_products_are_the_monodromy_matrices(forced):
     assert np.max(np.abs(found - wanted)) < 1e-11 * np.max(np.abs(wanted))
     assert table.tail < 1e-11
     assert table.weights(values).shape == (20, len(table.groups))
-
-
-def test_flows_are_those_of_the_segments_at_every_given_angle():
-    at = equations(forced=True)
-    table = table_of(at, INVERSE, 40, WAY, 1e-13, samples=10)
-    values = np.array([INVERSE[0], 0.41, INVERSE[1]])
-    flows, whole = table.flows(values)
-    exact, closed = flows_at(at(values), 40, WAY, 10)
-    np.testing.assert_allclose(flows, exact, atol=1e-11 * np.max(np.abs(exact)))
-    np.testing.assert_allclose(whole, closed, atol=1e-11 * np.max(np.abs(closed)))
-    np.testing.assert_allclose(flows[:, 0], np.broadcast_to(np.eye(5), (3, 5, 5)), atol=1e-14)
 
 
 def test_half_of_the_period_and_a_single_value():

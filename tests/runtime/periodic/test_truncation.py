@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic import floquet_multipliers, steady_state
 from elastolink.runtime.periodic.truncation import modal_truncation
 from elastolink.runtime.scenes import load_scene
+from periodic_systems import system_of
 
 pytestmark = pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.LinearRangeWarning")
 FREQUENCIES = np.array([1.0, 2.3, 45.0, 160.0])
@@ -34,10 +34,8 @@ def stiff_chain(drag=0.0, swing=0.4, modulation=0.3):
         levels[:, 1] *= 1.0 + 0.5 * modulation * np.sin(theta)
         return np.swapaxes(r, -1, -2) @ (levels[:, :, None] * r)
 
-    terms = [Term("M", None, np.eye(4)), Term("K", None, stiffness)]
-    if drag:
-        terms.append(Term("C", None, lambda theta: drag * stiffness(theta)))
-    return LinearPeriodic(4, tuple(terms), {}, lambda values: {})
+    damping = {"C": lambda theta: drag * stiffness(theta)} if drag else {}
+    return system_of(M=np.eye(4), K=stiffness, **damping)
 
 
 def apart(few, whole):

@@ -6,8 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from beam_motions import FOUR_BAR, JOINT_MASSES, SECTIONS, periodic_motion, rocking, turning_bar
-from elastolink.runtime.beams import KINDS, Section, frame, linear_system, linkage_system
+from beam_motions import (
+    BAR,
+    FOUR_BAR,
+    SECTIONS,
+    cantilever,
+    four_bar,
+    periodic_motion,
+    rocking,
+    turning_bar,
+)
+from elastolink.runtime.beams import KINDS
 from elastolink.runtime.recovery.strain_energy import beam_energies
 from elastolink.runtime.systems import with_modal_damping
 
@@ -26,7 +35,7 @@ CASES = {
 @pytest.mark.parametrize("case", CASES)
 def test_power_of_the_drive_is_rate_of_energy_and_loss(case):
     sections, options, ratio = CASES[case]
-    system = linkage_system(FOUR_BAR, sections, joint_masses=JOINT_MASSES, elements=1, **options)
+    system = four_bar(1, sections, **options)
     if ratio is not None:
         system = with_modal_damping(system, ratio)
     found = beam_energies(system, periodic_motion(system, 20.0, 128))
@@ -47,27 +56,16 @@ def test_power_of_the_drive_of_an_element_with_rotary_inertia():
 @pytest.mark.parametrize("kind", KINDS)
 def test_strain_energy_of_a_cantilever_by_hand(kind):
     # F^2 L^3 / 6EI and N^2 L / 2EA; of shear F^2 L / 2kGA.
-    bar = Section.rectangle(0.02, 0.01, modulus=210e9, density=7850.0, poisson=0.3)
-    structure = frame(
-        {"O": (0, 0), "P": (1, 0)},
-        {"bar": ("O", "P")},
-        bar,
-        supports={"O": ("x", "y", "rotation")},
-        kind=kind,
-        nodes={"P": {"force": (700.0, 4.0)}},
-    )
-    found = beam_energies(linear_system(structure, geometric_stiffness=False))
-    expected = 16.0 / (6.0 * bar.bending_stiffness) + 700.0**2 / (2.0 * bar.axial_stiffness)
+    found = beam_energies(cantilever(kind, force=(700.0, 4.0)))
+    expected = 16.0 / (6.0 * BAR.bending_stiffness) + 700.0**2 / (2.0 * BAR.axial_stiffness)
     if kind == "timoshenko":
-        expected += 16.0 / (2.0 * bar.shear_stiffness)
+        expected += 16.0 / (2.0 * BAR.shear_stiffness)
     assert found.peak == pytest.approx(expected, rel=1e-7)
     assert found.kinetic[0] == 0.0
 
 
 def test_kinetic_energy_of_stiff_links_is_that_of_rigid_ones():
-    system = linkage_system(
-        FOUR_BAR, SECTIONS, joint_masses=JOINT_MASSES, elements=1
-    ).with_parameters(elasticity=1e8)
+    system = four_bar().with_parameters(elasticity=1e8)
     found = beam_energies(system, periodic_motion(system, 10.0))
     total = np.zeros(len(found.theta))
     motion = FOUR_BAR.motion(found.theta)
@@ -83,9 +81,7 @@ def test_kinetic_energy_of_stiff_links_is_that_of_rigid_ones():
 
 
 def test_instantaneous_form_has_no_balance_and_a_picture_all_links():
-    system = linkage_system(
-        FOUR_BAR, SECTIONS, joint_masses=JOINT_MASSES, elements=1, form="instantaneous"
-    )
+    system = four_bar(form="instantaneous")
     found = beam_energies(system, periodic_motion(system, 10.0))
     assert "balance" not in found.checks
     labels = [text.get_text() for text in found.plot().get_legend().get_texts()]

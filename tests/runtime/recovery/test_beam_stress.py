@@ -7,16 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from beam_motions import (
-    FOUR_BAR,
-    JOINT_MASSES,
     SECTIONS,
+    cantilever,
     damped_four_bar,
+    four_bar,
     periodic_motion,
     rocking,
     steadily,
     turning_bar,
 )
-from elastolink.runtime.beams import Section, frame, linear_system, linkage_system
 from elastolink.runtime.core.errors import BadInput, LinearRangeWarning
 from elastolink.runtime.periodic import simulate, steady_state
 from elastolink.runtime.recovery import stress
@@ -33,16 +32,7 @@ def at_20():
 @pytest.mark.smoke
 def test_cantilever_stress_by_hand():
     # sigma = N/A -+ M c/I: 10 N along and 2 N across the end of 1 m, 20 mm by 10 mm.
-    bar = Section.rectangle(0.02, 0.01, modulus=210e9, density=7850.0)
-    structure = frame(
-        {"O": (0, 0), "P": (1, 0)},
-        {"bar": ("O", "P")},
-        bar,
-        supports={"O": ("x", "y", "rotation")},
-        elements=1,
-        nodes={"P": {"force": (10.0, 2.0)}},
-    )
-    found = stress(linear_system(structure, geometric_stiffness=False))
+    found = stress(cantilever(force=(10.0, 2.0)))
     bending = 2.0 * 0.005 / (0.02 * 0.01**3 / 12)
     axial = 10.0 / 2e-4
     assert found.maximum.value == pytest.approx(axial + bending, rel=1e-7)
@@ -159,6 +149,5 @@ def test_unusable_arguments_are_refused(at_20):
         with pytest.raises(BadInput):
             call()
     thin = {name: replace(section, thickness=None) for name, section in SECTIONS.items()}
-    bare = linkage_system(FOUR_BAR, thin, joint_masses=JOINT_MASSES, elements=1)
     with pytest.raises(BadInput, match="thickness"):
-        stress(bare, motion)
+        stress(four_bar(1, thin), motion)

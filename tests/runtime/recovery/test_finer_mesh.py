@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from beam_motions import (
     FOUR_BAR,
-    JOINT_MASSES,
     SECTIONS,
     damped_four_bar,
     periodic_motion,
@@ -26,7 +25,6 @@ from elastolink.runtime.recovery import (
     stress,
 )
 from elastolink.runtime.recovery.finer_mesh import finer_structure, finer_system, solved
-from elastolink.runtime.systems import with_modal_damping
 
 APART = "apart"
 
@@ -54,12 +52,8 @@ def test_the_finer_system_has_parameters_and_damping_of_its_own_modes():
         elasticity=0.9, damping_ratio=0.03
     )
     found = finer_system(system)
-    made = with_modal_damping(
-        linkage_system(
-            FOUR_BAR, SECTIONS, joint_masses=JOINT_MASSES, elements=3, gravity=(0.0, -9.81)
-        ),
-        0.02,
-    ).with_parameters(elasticity=0.9, damping_ratio=0.03)
+    made = damped_four_bar(3, gravity=(0.0, -9.81))
+    made = made.with_parameters(elasticity=0.9, damping_ratio=0.03)
     theta = np.array([0.3, 2.0, 5.1])
     for name in ("M", "A", "B", "C", "K", "Kg", "f", "p"):
         np.testing.assert_array_equal(found.array(name, theta), made.array(name, theta))

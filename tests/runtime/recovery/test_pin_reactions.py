@@ -5,15 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from beam_motions import (
+    BAR,
     FOUR_BAR,
     JOINT_MASSES,
     SECTIONS,
     damped_four_bar,
+    four_bar,
     periodic_motion,
     rocking,
     turning_bar,
 )
-from elastolink.runtime.beams import Section, frame, linear_system, linkage_system
+from elastolink.runtime.beams import frame, linear_system, linkage_system
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import SliderCrank
 from elastolink.runtime.recovery import pin_reactions
@@ -95,18 +97,17 @@ def test_forces_balance_to_round_off(kind):
 
 def test_reactions_of_a_frame_by_hand():
     # A portal's support forces: weight of 3 bars and a push of 5 N at a corner.
-    bar = Section.rectangle(0.02, 0.01, modulus=210e9, density=7850.0)
     structure = frame(
         {"A": (0, 0), "B": (0, 1), "C": (1, 1), "D": (1, 0)},
         {"left": ("A", "B"), "beam": ("B", "C"), "right": ("D", "C")},
-        bar,
+        BAR,
         supports={"A": ("x", "y", "rotation"), "D": ("x", "y", "rotation")},
         nodes={"B": {"force": (5.0, 0.0)}},
     )
     system = linear_system(structure, gravity=(0.0, -9.81), geometric_stiffness=False)
     found = pin_reactions(system)
     total = found.of_ground["A"][0] + found.of_ground["D"][0]
-    weight = 3.0 * bar.mass_per_length * 9.81
+    weight = 3.0 * BAR.mass_per_length * 9.81
     np.testing.assert_allclose(total[:2], [-5.0, weight], rtol=1e-7)
     # Moments about A: the push at height 1, the weight at x = 1/2, the support at D.
     moment = total[2] + found.of_ground["D"][0, 1] * 1.0
@@ -119,13 +120,8 @@ def test_torque_is_that_of_the_energy_to_second_order_with_the_axial_forces():
     gaps = {}
     for stiffening in (True, False):
         for elasticity in (10.0, 100.0):
-            system = linkage_system(
-                FOUR_BAR,
-                SECTIONS,
-                joint_masses=JOINT_MASSES,
-                elements=1,
-                geometric_stiffness=stiffening,
-            ).with_parameters(elasticity=elasticity)
+            system = four_bar(geometric_stiffness=stiffening)
+            system = system.with_parameters(elasticity=elasticity)
             motion = periodic_motion(system, 10.0, 96)
             ours = pin_reactions(system, motion).torque()
             gaps[stiffening, elasticity] = np.max(

@@ -15,16 +15,6 @@ ENGINE = "slider_crank_example"
 SHAPER = "quick_return_example"
 
 
-def test_uniform_bars_of_smith_have_the_printed_inertia():
-    scene = load_scene(SMITH)
-    masses = scene.machine().masses
-    # W l^2 / (3 g) of 1 lbf, 12 in, 384 in/s^2 is 0.125 lbf in s^2 exactly
-    bar = masses["coupler"]
-    assert bar.inertia == pytest.approx(bar.mass * 0.3048**2 / 3, rel=1e-13)
-    assert bar.along == pytest.approx(bar.mass * 0.1524, rel=1e-13)
-    assert masses["crank"].inertia == pytest.approx(masses["crank"].mass * 0.1524**2 / 3, rel=1e-13)
-
-
 def test_a_section_and_a_density_give_the_mass():
     bar = load_scene(STEEL).machine().masses["follower"]
     assert bar.mass == pytest.approx(7850 * 0.025 * 0.00315 * 0.525, rel=1e-14)

@@ -11,9 +11,11 @@ from elastolink.runtime.core.families import Constrained, LinearPeriodic
 from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.scenes import load_scene
 from elastolink.runtime.systems.rod import OverhangBasis, rod_system
+from free_free_loads import ROD
 
 FLEXIBLE = "beale_1992_flexible_rod"
 STIFF = "beale_1992_bahgat_willmert"
+FREE = {"model.formulation": "free_free", "model.modes": 1}
 LINEAR = ("overhang", "polynomial", "two_segment", "free_free_linear")
 INCH, POUND, POUND_FORCE = 0.0254, 0.45359237, 4.4482216152605  # exact by definition
 
@@ -44,15 +46,7 @@ def test_a_linear_formulation_is_its_basis(formulation):
     )
     system = scene.system()
     assert isinstance(system, LinearPeriodic)
-    direct = rod_system(
-        formulation.removesuffix("_linear"),
-        2,
-        crank_ratio=0.15,
-        frame=0.59997,
-        length=1.0,
-        bending_stiffness=0.7e11 * 0.5208e-6,
-        mass_per_length=7.15,
-    )
+    direct = rod_system(formulation.removesuffix("_linear"), 2, crank_ratio=0.15, **ROD)
     theta = np.linspace(0.0, 6.0, 7)
     for name in "MABKf":
         np.testing.assert_allclose(
@@ -99,13 +93,8 @@ def test_a_damping_ratio_is_that_of_the_first_mode(law):
     )
     speed = 3000.0
     found = floquet_multipliers(scene.linear_system(), speed).multipliers
-    first = (
-        OverhangBasis(1)
-        .frequencies(
-            0.59997, length=1.0, bending_stiffness=0.7e11 * 0.5208e-6, mass_per_length=7.15
-        )
-        .frequencies[0, 0]
-    )
+    numbers = {name: value for name, value in ROD.items() if name != "frame"}
+    first = OverhangBasis(1).frequencies(ROD["frame"], **numbers).frequencies[0, 0]
     # |rho| = exp(-zeta omega T), T one turn.
     wanted = math.exp(-0.01 * first * 2.0 * math.pi / speed)
     assert np.min(np.abs(np.abs(found) - wanted)) < 1e-9
@@ -124,6 +113,8 @@ def test_a_damping_ratio_is_that_of_the_first_mode(law):
         ({"rod.damping_ratio": 0.1, "rod.relaxation_time": "1 ms"}, "keep one"),
         ({"model.formulation": "overhung"}, "overhang"),
         ({"model.drop": ["gravity"]}, "gravity"),
+        (FREE | {"rod.damping": 1.0}, "has no damping"),
+        (FREE | {"operation.speed": None}, "crank speed"),
     ],
 )
 def test_impossible_rods_are_refused_in_words(overrides, message):
@@ -144,11 +135,3 @@ def test_stiffness_and_section_take_each_others_place():
     # A section alone says no stiffness.
     with pytest.raises(BadInput, match="bending_stiffness"):
         load_scene(STIFF, {"rod.second_moment": "1e-6 m**4"})
-
-
-def test_the_constrained_form_refuses_damping_and_needs_a_speed():
-    free = {"model.formulation": "free_free", "model.modes": 1}
-    with pytest.raises(BadInput, match="has no damping"):
-        load_scene(FLEXIBLE, {**free, "rod.damping": 1.0}).system()
-    with pytest.raises(BadInput, match="crank speed"):
-        load_scene(FLEXIBLE, {**free, "operation.speed": None}).system()

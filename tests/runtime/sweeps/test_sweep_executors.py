@@ -36,28 +36,20 @@ def coupler():
 
 def charts(rod, coupler):
     """One chart of each path: lines at nodes, every line, a fixed speed, rows of half traces."""
-    few, more = np.linspace(0.02, 0.2, 5), np.linspace(0.02, 0.2, 14)
+    few, more = (("crank_ratio", np.linspace(0.02, 0.2, count)) for count in (5, 14))
+    stiffness = ("bending_stiffness", np.linspace(3e4, 4e4, 12))
+    inertia = ("follower_inertia", np.linspace(1e-3, 5e-3, 20))
+    damping = ("damping", np.linspace(0.0, 1.0, 18))
+
+    def speeds(low, high, count):
+        return "speed", np.linspace(low, high, count)
+
     return [
-        (rod, ("speed", np.linspace(1500.0, 4000.0, 40)), ("crank_ratio", more), {}),
-        (rod, ("speed", np.linspace(1500.0, 4000.0, 8)), ("crank_ratio", few), {}),
-        (
-            rod,
-            ("bending_stiffness", np.linspace(3e4, 4e4, 12)),
-            ("crank_ratio", few),
-            {"speed": 2000.0},
-        ),
-        (
-            coupler,
-            ("speed", np.linspace(40.0, 90.0, 30)),
-            ("follower_inertia", np.linspace(1e-3, 5e-3, 20)),
-            {},
-        ),
-        (
-            coupler,
-            ("speed", np.linspace(40.0, 90.0, 9)),
-            ("damping", np.linspace(0.0, 1.0, 18)),
-            {},
-        ),
+        (rod, speeds(1500.0, 4000.0, 40), more, {}),
+        (rod, speeds(1500.0, 4000.0, 8), few, {}),
+        (rod, stiffness, few, {"speed": 2000.0}),
+        (coupler, speeds(40.0, 90.0, 30), inertia, {}),
+        (coupler, speeds(40.0, 90.0, 9), damping, {}),
     ]
 
 
@@ -100,16 +92,8 @@ def test_what_is_no_executor_is_refused(rod):
 
 def test_the_command_line_keeps_and_finds_a_chart(tmp_path, capsys):
     store = tmp_path / "chart"
-    words = [
-        "chart",
-        "mathieu",
-        "--x",
-        "lam2=-0.5:10:40",
-        "--y",
-        "mu=0:4:30",
-        "--store",
-        str(store),
-    ]
+    words = ["chart", "mathieu", "--x", "lam2=-0.5:10:40", "--y", "mu=0:4:30"]
+    words += ["--store", str(store)]
     assert main([*words, "--estimate"]) == 0
     assert "1200 points in 1 pieces" in capsys.readouterr().out
     assert not store.exists()

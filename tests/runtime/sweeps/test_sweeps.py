@@ -325,50 +325,41 @@ def test_digests_tell_content_and_nothing_else(mathieu):
     assert seen == {digest((mathieu, {"a", "b", "c"}, el.load_scene)) + "\n"}
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("nothing_such", 1.0, {"a": [1.0]}), "name of a public function"),
-        ((3, 1.0, {"a": [1.0]}), "a name or a function"),
-        ((square_sum, 1.0, {}), "at least one named axis"),
-        ((square_sum, 1.0, {"a": []}), "at least one finite value"),
-        ((square_sum, 1.0, {"a": [1.0, np.nan]}), "at least one finite value"),
-        ((square_sum, 1.0, {"a": "x"}), "numbers"),
-        ((square_sum, 1.0, {"a": [1.0], "c": [1.0]}), "axes"),
-        (("stability_chart", 1.0, VALUES), "a linear periodic system"),
-        ((fails_at_two, 1.0, {"a": [1.0, 2.0]}), "a is two"),
-    ],
-)
-def test_bad_input_is_refused_by_name(arguments, message):
-    with pytest.raises(BadInput, match=message):
-        el.sweep(*arguments)
+CHART = "stability_chart"
 
 
 @pytest.mark.parametrize(
-    ("options", "message"),
+    ("what", "values", "options", "message"),
     [
-        ({"chunk": 0}, "chunk"),
-        ({"chunk": 2.5}, "chunk"),
-        ({"executor": 4}, "executor"),
-        ({"outputs": ()}, "outputs"),
-        ({"outputs": ("stabel",)}, "outputs"),
-        ({"options": {"mu": 1.0}}, "options"),
-        ({"store": 3}, "store"),
-        ({"store": "/proc/none/such"}, "writable"),
+        ("nothing_such", {"a": [1.0]}, {}, "name of a public function"),
+        (3, {"a": [1.0]}, {}, "a name or a function"),
+        (square_sum, {}, {}, "at least one named axis"),
+        (square_sum, {"a": []}, {}, "at least one finite value"),
+        (square_sum, {"a": [1.0, np.nan]}, {}, "at least one finite value"),
+        (square_sum, {"a": "x"}, {}, "numbers"),
+        (square_sum, {"a": [1.0], "c": [1.0]}, {}, "axes"),
+        (square_sum, {"a": [1.0]}, {"store": "/proc/none/such"}, "writable"),
+        (fails_at_two, {"a": [1.0, 2.0]}, {}, "a is two"),
+        (CHART, {"mu": MU}, {}, "two axes"),
+        (CHART, {"mu": MU, "lam": LAM2}, {}, "correct the names"),
+        ("floquet_multipliers", {"mu": MU}, {}, "a crank speed"),
+        (CHART, VALUES, {"chunk": 0}, "chunk"),
+        (CHART, VALUES, {"chunk": 2.5}, "chunk"),
+        (CHART, VALUES, {"executor": 4}, "executor"),
+        (CHART, VALUES, {"outputs": ()}, "outputs"),
+        (CHART, VALUES, {"outputs": ("stabel",)}, "outputs"),
+        (CHART, VALUES, {"options": {"mu": 1.0}}, "options"),
+        (CHART, VALUES, {"store": 3}, "store"),
     ],
 )
-def test_bad_options_are_refused_by_name(mathieu, options, message):
+def test_bad_input_is_refused_by_name(mathieu, what, values, options, message):
     with pytest.raises(BadInput, match=message):
-        el.sweep("stability_chart", mathieu, VALUES, **options)
+        el.sweep(what, mathieu, values, **options)
 
 
-def test_bad_axes_are_refused_before_work(mathieu):
-    with pytest.raises(BadInput, match="two axes"):
-        el.sweep("stability_chart", mathieu, {"mu": MU})
-    with pytest.raises(BadInput, match="correct the names"):
-        el.sweep("stability_chart", mathieu, {"mu": MU, "lam": LAM2})
-    with pytest.raises(BadInput, match="a crank speed"):
-        el.sweep("floquet_multipliers", mathieu, {"mu": MU})
+def test_a_number_is_no_system_and_no_worker_is_no_pool():
+    with pytest.raises(BadInput, match="a linear periodic system"):
+        el.sweep(CHART, 1.0, VALUES)
     with pytest.raises(BadInput, match="workers"), el.process_pool(0):
         pass
 

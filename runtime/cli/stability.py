@@ -136,10 +136,12 @@ def _chart(options: argparse.Namespace) -> int:
     speed = _fixed_speed(options, scene, (x[0], y[0]))
     if options.store is not None:
         return stored_chart.run(options, system, x, y, speed)
+    from ..core.workers import in_order
     from ..stability import stability_chart
 
     name = "coupler frequency" if tuple(scene.get("model.flexible", ())) == ("coupler",) else None
-    with stored_chart.workers(options) as pool:
+    with stored_chart.workers(options) as executor:
+        pool = map if executor is None else in_order(executor)
         chart = stability_chart(
             system,
             x=x,
@@ -148,7 +150,7 @@ def _chart(options: argparse.Namespace) -> int:
             edges=options.edges,
             speed=speed,
             marks=_marks(scene, y),
-            executor=pool,
+            workers=pool,
             frequency_name=name or "natural frequency",
         )
     return opt.finish(options, chart, _chart_lines(chart, scene))

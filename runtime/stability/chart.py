@@ -18,12 +18,10 @@ from ..hill.perturbation import check_order
 from .chart_axes import natural_frequency
 from .chart_boundaries import BoundaryCurves, boundary_curves
 from .chart_lines import invariants
-from .chart_sampling import Sampler, relative_error
+from .chart_sampling import Map, Sampler, relative_error
 from .verdict import judged, spot_check
 
 if TYPE_CHECKING:
-    from concurrent.futures import Executor
-
     from matplotlib.axes import Axes
 
 
@@ -163,7 +161,7 @@ def stability_chart(
     marks: Mapping[str, Sequence[float]] | None = None,
     speed: float | None = None,
     rtol: float = 1e-11,
-    executor: Executor | None = None,
+    workers: Map = map,
     progress: bool = False,
     frequency_name: str = "natural frequency",
 ) -> StabilityChart:
@@ -196,9 +194,10 @@ def stability_chart(
         modes that a turning crank drives, want it.  No boundaries are traced beside another one.
     rtol : float
         Wanted error of the invariants, relative to their size where that exceeds 1.
-    executor : concurrent.futures.Executor, optional
-        Threads, processes or Dask's ``client.get_executor()``, for the lines of the chart and for
-        the verdicts of several modes.  The answer does not depend on it.
+    workers : callable
+        What maps a function over the lines of the chart, and over the verdicts of several modes:
+        ``map``, or that of a pool of threads or processes, ``pool.map``, or of Dask's
+        ``client.get_executor()``.  The answer does not depend on it.
     progress : bool
         Whether to show a progress bar (extra ``progress``).
     frequency_name : str
@@ -220,9 +219,11 @@ def stability_chart(
     names, axes = _axes(system, x, y)
     _check_options(system, rtol, order, edges, names)
     named = {k: tuple(float(v) for v in vs) for k, vs in (marks or {}).items()}
-    sampler = Sampler.of_chart(system, names, axes, speed, float(rtol), executor)
-    series = invariants(sampler, progress=progress)
-    found = judged(sampler, series)
+    if not callable(workers):
+        raise bad("workers", repr(workers), "a callable like map", "give pool.map, or leave it out")
+    sampler = Sampler(system, names, axes, speed, float(rtol))
+    series = invariants(sampler, workers, progress=progress)
+    found = judged(sampler, series, workers)
     # The system as the samples see it: at another speed than 1 slowed down.
     system = sampler.system
     exact, near, rows = None, None, None

@@ -22,7 +22,7 @@ from ..periodic.equation import Equation, SampledSystem, equation_of, sampled
 from ..periodic.tables import Table, table_of
 from ..periodic.transition import levels_for, method, rung
 from .chart_axes import leaves_function_alone
-from .chart_sampling import Sampler, Series, relative_error
+from .chart_sampling import Map, Sampler, Series, relative_error
 from .invariants import from_sum, sum_weights_back, weighed_characteristic
 
 # Wanted error of the matrices, and what mirrored coefficients may differ, over the largest.
@@ -216,8 +216,8 @@ class Lines:
         # Places along a line at which the number of segments is judged.
         judged = plain(np.linspace(low, high, 5 if high > low else 1))
         unit = judged.scale[len(judged.scale) // 2]
-        # Stages among which the cheapest are taken; :func:`~.transition.cheapest`, which bounds what
-        # unresolved modes do with waves, would have charts take twice as long for no smaller error.
+        # Stages among which the cheapest are taken.  transition.cheapest, which bounds what modes
+        # that no segment resolves make of waves, doubles a chart's time for no smaller error.
         kind = "radau" if judged.damped else "gauss"
         choices = [
             (rung(int(np.max(levels_for(judged, way, _RTOL)))), way)
@@ -247,6 +247,7 @@ class HillLines:
 
     def __init__(self, sampler: Sampler, form: HillForm) -> None:
         self.inner = 0 if leaves_function_alone(form, sampler.names[0]) else 1
+        self._shared = leaves_function_alone(form, sampler.names[self.inner])
         self._form, self._back = form, sampler.back
         self._along, self._outer = sampler.names[self.inner], sampler.names[1 - self.inner]
 
@@ -264,7 +265,7 @@ class HillLines:
         speeds = np.array([p.pop("speed", 1.0) for p in points])
         lam2 = np.array([form.stiffness(**p) for p in points]) / speeds**2
         damping = np.array([form.damping(**p) for p in points]) / (2 * speeds)
-        if leaves_function_alone(form, self._along):
+        if self._shared:
             f = form.function(float(speeds[0]), **points[0])
             found = discriminant(f, lam2, 1.0, damping)
             return found.value[:, None], np.broadcast_to(found.error, found.value.shape)[:, None]
@@ -280,8 +281,8 @@ def _lines_of(sampler: Sampler) -> Lines | HillLines:
     return Lines(sampler) if sampler.form is None else HillLines(sampler, sampler.form)
 
 
-def invariants(sampler: Sampler, *, progress: bool) -> Series:
-    """Return the invariants of a chart in the way that suits it.
+def invariants(sampler: Sampler, workers: Map, *, progress: bool) -> Series:
+    """Return the invariants of a chart in the way that suits it, its lines by ``workers``.
 
     Raises
     ------
@@ -290,7 +291,7 @@ def invariants(sampler: Sampler, *, progress: bool) -> Series:
     """
     if sampler.plain is not None:
         return _plain_hill(sampler, *sampler.plain)
-    surface = _Surface(sampler)
+    surface = _Surface(sampler, workers)
     surface.find_inner()
     lines = surface.first_lines()
     while True:
@@ -338,8 +339,8 @@ class _Found(NamedTuple):
 class _Surface:
     """A chart whose inner axis is solved line by line."""
 
-    def __init__(self, sampler: Sampler) -> None:
-        self.sampler = sampler
+    def __init__(self, sampler: Sampler, workers: Map) -> None:
+        self.sampler, self.workers = sampler, workers
         self.lines = _lines_of(sampler)
         which = self.lines.inner
         self.wanted = sampler.transform(sampler.names[which], sampler.axes[which])
@@ -430,8 +431,10 @@ class _Surface:
         left = [place for place in wanted if place not in self.ends]
         done = len(places) - len(left)
         items = [(place, self.low, self.high, values) for place in left]
-        for number, found in self.sampler.workers.run(_on_line, items):
-            self.kept[left[number]] = found
+        for place, found in zip(
+            left, self.workers(partial(_on_line, self.lines), items), strict=True
+        ):
+            self.kept[place] = found
             done += 1
             if tick is not None:
                 tick(done)
@@ -524,7 +527,7 @@ class _Surface:
         The differences are those of the value itself and of its neighbours.  Half traces know their
         error.
         """
-        if self.sampler.hill:
+        if isinstance(self.lines, HillLines):
             return np.ones(len(self.values))
         with np.errstate(invalid="ignore"):
             grown = int(np.argmax(np.max(found.weight, axis=(1, 2))))
@@ -533,19 +536,19 @@ class _Surface:
         items = [
             (float(found.outer[i]), self.low, self.high, values, found.values[i]) for i in picked
         ]
-        gaps = self.sampler.workers.map(_gap_on_line, items)
-        gap = np.pad(np.max(gaps, axis=0), 1, mode="edge")
+        gaps = self.workers(partial(_gap_on_line, self.lines), items)
+        gap = np.pad(np.max(list(gaps), axis=0), 1, mode="edge")
         return np.asarray(np.maximum(np.maximum(gap[:-2], gap[1:-1]), gap[2:]) + 64 * _EPS)
 
 
-def _on_line(sampler: Sampler, place: _Place) -> tuple[Array, Array]:
+def _on_line(lines: Lines | HillLines, place: _Place) -> tuple[Array, Array]:
     """Return the invariants on a line, and the weights of their errors."""
-    return _lines_of(sampler).line(*place)(place[3])
+    return lines.line(*place)(place[3])
 
 
-def _gap_on_line(sampler: Sampler, item: tuple[float, float, float, Array, Array]) -> Array:
+def _gap_on_line(lines: Lines, item: tuple[float, float, float, Array, Array]) -> Array:
     """Return by how much another solution differs on a line."""
-    return Lines(sampler).error(*item)
+    return lines.error(*item)
 
 
 def _tail(sizes: Array) -> float:

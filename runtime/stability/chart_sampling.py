@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from copy import copy
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic
-from ..core.workers import Workers, check_executor
 from ..hill import hill_form
 from ..hill.form import is_hill
 from ..periodic.equation import equation_of
@@ -24,8 +23,8 @@ from .chart_axes import (
     plain_axes,
 )
 
-if TYPE_CHECKING:
-    from concurrent.futures import Executor
+# What does independent pieces of work, such as the builtin map.
+Map = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
 
 # Flops, roughly, that one chart may cost: an hour or so.
 _MOST_WORK = 1e13
@@ -53,9 +52,12 @@ class Series:
 
 
 class Sampler:
-    """Evaluates the invariants at given points of the transformed axes."""
+    """What is asked of a chart at a fixed speed [rad/s], or with the speed as an axis."""
 
-    def __init__(self, system: LinearPeriodic, names: Names, axes: Axes, rtol: float) -> None:
+    def __init__(
+        self, system: LinearPeriodic, names: Names, axes: Axes, speed: float | None, rtol: float
+    ) -> None:
+        system = at_speed(system, names, speed)
         self.system, self.names, self.axes, self.rtol = system, names, axes, rtol
         self.damped = is_damped(system, names, axes)
         self.reduced = is_symplectic(system, self.damped)
@@ -63,34 +65,6 @@ class Sampler:
         self.hill = is_hill(system) and not shaped and not (system.has("Kg") and "speed" in names)
         self.form = hill_form(system) if self.hill else None
         self.plain = None if self.form is None or self.damped else plain_axes(self.form, names)
-        self._executor: Executor | None = None
-        self._asked: tuple[LinearPeriodic, float | None] = (system, None)
-
-    @classmethod
-    def of_chart(
-        cls,
-        system: LinearPeriodic,
-        names: Names,
-        axes: Axes,
-        speed: float | None,
-        rtol: float,
-        executor: Executor | None = None,
-    ) -> Sampler:
-        """Return the sampler of a chart at a fixed speed [rad/s], or with the speed as an axis."""
-        check_executor(executor)
-        made = cls(at_speed(system, names, speed), names, axes, rtol)
-        made._executor, made._asked = executor, (system, speed)
-        return made
-
-    @cached_property
-    def workers(self) -> Workers:
-        """What does independent pieces, each with a sampler of its own where it is elsewhere."""
-        if self._executor is None:
-            return Workers(None, _itself, self)
-        # The system as it was given: one slowed down does not bear pickling.
-        system, speed = self._asked
-        made = (Sampler.of_chart, system, self.names, self.axes, speed, self.rtol)
-        return Workers(self._executor, *made)
 
     def rows(self, part: slice) -> Sampler:
         """Return the sampler of some rows of the chart."""
@@ -144,10 +118,6 @@ class Sampler:
                 f"at most {_MOST_WORK / work:.2g} of that",
                 "raise the lowest speed, give fewer modes or points, or narrower axes",
             )
-
-
-def _itself(sampler: Sampler) -> Sampler:
-    return sampler
 
 
 def relative_error(error: Array, values: Array) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,10 +10,9 @@ from numpy.typing import NDArray
 
 from ..core.families import Array, LinearPeriodic
 from ..core.results import Check
-from ..core.workers import Workers
 from ..periodic import floquet_multipliers
 from .chart_axes import damping_rate, on_grid
-from .chart_sampling import Sampler, Series
+from .chart_sampling import Map, Sampler, Series
 from .invariants import instability_kind, known_to, largest_modulus, root_uncertainty
 
 _SPOTS = 5
@@ -28,15 +28,15 @@ class Judged(NamedTuple):
     kind: NDArray[np.int8]
 
 
-def judged(sampler: Sampler, series: Series) -> Judged:
+def judged(sampler: Sampler, series: Series, workers: Map) -> Judged:
     """Return what is told of each point, some rows at a time, which bounds the memory."""
     rows, points = series.values.shape[:2]
     # Points that are judged together.
     together = max(1, 250_000 // max(1, points))
     parts = [slice(start, start + together) for start in range(0, rows, together)]
     # Of one mode the verdict is quicker than the way to another process and back.
-    workers = Workers(None, lambda: sampler) if sampler.hill else sampler.workers
-    blocks = workers.map(_judge, ((part, series.rows(part)) for part in parts))
+    run = map if sampler.hill else workers
+    blocks = run(partial(_judge, sampler), ((part, series.rows(part)) for part in parts))
     return Judged(*(np.concatenate(columns) for columns in zip(*blocks, strict=True)))
 
 

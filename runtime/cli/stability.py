@@ -141,7 +141,6 @@ def _chart(options: argparse.Namespace) -> int:
 
     name = "coupler frequency" if tuple(scene.get("model.flexible", ())) == ("coupler",) else None
     with stored_chart.workers(options) as executor:
-        pool = map if executor is None else in_order(executor)
         chart = stability_chart(
             system,
             x=x,
@@ -150,7 +149,7 @@ def _chart(options: argparse.Namespace) -> int:
             edges=options.edges,
             speed=speed,
             marks=_marks(scene, y),
-            workers=pool,
+            workers=map if executor is None else in_order(executor),
             frequency_name=name or "natural frequency",
         )
     return opt.finish(options, chart, _chart_lines(chart, scene))

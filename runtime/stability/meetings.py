@@ -22,7 +22,6 @@ Kind = Literal["principal", "sum", "difference"]
 # Kind, modes from 1, and harmonic.
 Condition = tuple[Kind, tuple[int, int], int]
 
-_GRID = 400
 _ARRAYS = ("M", "A", "B", "K", "Kg")
 # Real part, over the modulus, up to which an exponent of the mean system counts as imaginary.
 IMAGINARY = 1e-7
@@ -136,7 +135,7 @@ class MeanSystem:
             )
         )
 
-        grid = np.geomspace(*span, _GRID)
+        grid = np.geomspace(*span, 400)
         nu = self.frequencies(grid)
         value = nu[:, first] + np.where(minus, -1.0, 1.0) * nu[:, second] - turns
         with np.errstate(invalid="ignore"):

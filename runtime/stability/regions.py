@@ -14,8 +14,8 @@ from ..periodic import FloquetMultipliers, floquet_multipliers
 
 Array = NDArray[np.float64]
 
-# Growth, over its error, from which a verdict tells, and the part of it that must be found.
-_TELLING, _PART = 20.0, 0.1
+# Growth, over its error, from which a verdict tells.
+_TELLING = 20.0
 # Share of the way to the next end at which an end is looked at.
 _BESIDE = 0.01
 
@@ -106,7 +106,7 @@ def _narrow(system: LinearPeriodic, regions: Regions, parameters: Mapping[str, f
     grown = np.max(inside.exponents.real, axis=-1)
     if _damped(inside):
         expected = np.zeros_like(expected)
-    value: Array = middle[told & (grown <= _PART * expected)]
+    value: Array = middle[told & (grown <= 0.1 * expected)]
     return value
 
 

@@ -152,10 +152,11 @@ def _chart(options: argparse.Namespace) -> int:
     speed = _fixed_speed(options, scene, (x[0], y[0]))
     if options.store is not None:
         return _stored(options, system, (x, y), speed, count)
+    from ..core.workers import in_order
     from ..stability import stability_chart
 
     name = "coupler frequency" if tuple(scene.get("model.flexible", ())) == ("coupler",) else None
-    with _workers(count) as pool:
+    with _workers(count) as executor:
         chart = stability_chart(
             system,
             x=x,
@@ -164,7 +165,7 @@ def _chart(options: argparse.Namespace) -> int:
             edges=options.edges,
             speed=speed,
             marks=_marks(scene, y),
-            executor=pool,
+            workers=map if executor is None else in_order(executor),
             frequency_name=name or "natural frequency",
         )
     return opt.finish(options, chart, _chart_lines(chart, scene))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from math import ceil
 from typing import TYPE_CHECKING, ClassVar
 
@@ -16,7 +17,7 @@ from ..core.inputs import speed_span
 from ..core.results import Check, Result, provenance
 from ..periodic import Monodromy, monodromy
 from ..periodic.equation import equation_of
-from .fourier_matrices import Wave, real_matrices, waves
+from .fourier_matrices import real_matrices, waves
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -146,33 +147,20 @@ def speed_boundaries(
     found = waves(system, parameters)
     reach = max(wave.reach for wave in found)
     usual = ceil(rate * system.period / (2 * np.pi)) + reach + 6
-    parts = [
-        _converged(_Problem(found, system.size, system.period, sign, low, high), usual, rtol)
-        for sign in wanted
-    ]
-    return _result(system, parts, (low, high), rtol, parameters)
+    most = _MOST_ROWS // (2 * system.size)
 
-
-@dataclass(frozen=True)
-class _Problem:
-    """One truncation-free problem: boundaries of one multiplier in one range of speeds."""
-
-    found: tuple[Wave, ...]
-    size: int
-    period: float
-    multiplier: int
-    low: float
-    high: float
-
-    def matrices(self, harmonics: int) -> Matrices:
-        if self.size * (2 * harmonics + 1) > _MOST_ROWS:
+    def matrices(sign: int, harmonics: int) -> Matrices:
+        if harmonics > most:
             raise bad(
                 "speed_range",
-                f"a lowest speed of {self.low:.4g} rad/s, which needs {harmonics} harmonics",
-                f"at most {_MOST_ROWS // (2 * self.size)}",
+                f"a lowest speed of {low:.4g} rad/s, which needs {harmonics} harmonics",
+                f"at most {most}",
                 "raise the lowest speed or leave out the highest modes",
             )
-        return real_matrices(self.found, self.size, self.period, harmonics, self.multiplier)
+        return real_matrices(found, system.size, system.period, harmonics, sign)
+
+    parts = [_converged(partial(matrices, sign), sign, (low, high), usual, rtol) for sign in wanted]
+    return _result(system, parts, (low, high), rtol, parameters)
 
 
 @dataclass(frozen=True)
@@ -190,12 +178,18 @@ class _Roots:
     truncation: float = 0.0
 
 
-def _converged(problem: _Problem, harmonics: int, rtol: float) -> _Roots:
+def _converged(
+    matrices: Callable[[int], Matrices],
+    sign: int,
+    span: tuple[float, float],
+    harmonics: int,
+    rtol: float,
+) -> _Roots:
     """Raise the truncation until no root moves and none appears."""
-    coarse = _roots(problem, harmonics)
+    coarse = _roots(matrices(harmonics), sign, harmonics, span)
     while True:
         harmonics = harmonics + max(6, harmonics // 4)
-        fine = _roots(problem, harmonics)
+        fine = _roots(matrices(harmonics), sign, harmonics, span)
         if len(fine.speed) == len(coarse.speed):
             change = np.abs(fine.speed - coarse.speed)
             if np.all(change <= rtol * fine.speed):
@@ -204,12 +198,12 @@ def _converged(problem: _Problem, harmonics: int, rtol: float) -> _Roots:
         coarse = fine
 
 
-def _roots(problem: _Problem, harmonics: int) -> _Roots:
-    matrices = problem.matrices(harmonics)
+def _roots(matrices: Matrices, sign: int, harmonics: int, span: tuple[float, float]) -> _Roots:
+    low, high = span
     lowest = min(matrices)
     matrices = {power - lowest: matrix for power, matrix in matrices.items()}
     even = all(power % 2 == 0 for power in matrices)
-    unit = float(np.sqrt(problem.low * problem.high))
+    unit = float(np.sqrt(low * high))
     stride = 2 if even else 1
     degree = max(matrices) // stride
     zero = np.zeros_like(next(iter(matrices.values())))
@@ -220,16 +214,16 @@ def _roots(problem: _Problem, harmonics: int) -> _Roots:
         # A pair so close to the real axis is a double real root.
         real = (np.abs(inverse.imag) <= 1e-6 * np.abs(inverse)) & (inverse.real > 0)
         speed = np.where(real, unit * np.abs(inverse) ** (-1 / stride), np.inf)
-    near = (speed >= problem.low * (1 - 1e-3)) & (speed <= problem.high * (1 + 1e-3))
+    near = (speed >= low * (1 - 1e-3)) & (speed <= high * (1 + 1e-3))
     index = np.flatnonzero(near)
     index = index[np.argsort(speed[index], kind="stable")]
     start = None if vectors is None else vectors[:, index].T
     imaginary = np.abs(inverse.imag[index] / inverse[index]) * speed[index] / stride
     refined, error, motions = _refined(matrices, speed[index], start, symmetric)
-    inside = (refined >= problem.low) & (refined <= problem.high)
+    inside = (refined >= low) & (refined <= high)
     order = np.flatnonzero(inside)[np.argsort(refined[inside], kind="stable")]
     return _Roots(
-        problem.multiplier,
+        sign,
         harmonics,
         refined[order],
         (error + imaginary)[order],

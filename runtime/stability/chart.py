@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -17,16 +17,13 @@ from ..hill.form import is_hill
 from ..hill.perturbation import check_order
 from .chart_axes import natural_frequency
 from .chart_boundaries import BoundaryCurves, boundary_curves
-from .chart_lines import series_by_lines
-from .chart_sampling import Sampler, invariants, relative_error
+from .chart_lines import invariants
+from .chart_sampling import Map, Sampler, relative_error
 from .verdict import judged, spot_check
 
 if TYPE_CHECKING:
-    from concurrent.futures import Executor
-
     from matplotlib.axes import Axes
 
-    from .edges import StabilityEdges
 
 Axis = tuple[str, ArrayLike]
 
@@ -164,7 +161,7 @@ def stability_chart(
     marks: Mapping[str, Sequence[float]] | None = None,
     speed: float | None = None,
     rtol: float = 1e-11,
-    executor: Executor | None = None,
+    workers: Map = map,
     progress: bool = False,
     frequency_name: str = "natural frequency",
 ) -> StabilityChart:
@@ -197,9 +194,10 @@ def stability_chart(
         modes that a turning crank drives, want it.  No boundaries are traced beside another one.
     rtol : float
         Wanted error of the invariants, relative to their size where that exceeds 1.
-    executor : concurrent.futures.Executor, optional
-        Threads, processes or Dask's ``client.get_executor()``, for the lines of the chart and for
-        the verdicts of several modes.  The answer does not depend on it.
+    workers : callable
+        What maps a function over the lines of the chart, and over the verdicts of several modes:
+        ``map``, or that of a pool of threads or processes, ``pool.map``, or of Dask's
+        ``client.get_executor()``.  The answer does not depend on it.
     progress : bool
         Whether to show a progress bar (extra ``progress``).
     frequency_name : str
@@ -219,56 +217,24 @@ def stability_chart(
         axes would take an hour or so.
     """
     names, axes = _axes(system, x, y)
-    options = _options(system, rtol, order, edges, names)
+    _check_options(system, rtol, order, edges, names)
     named = {k: tuple(float(v) for v in vs) for k, vs in (marks or {}).items()}
-    sampler = Sampler.of_chart(system, names, axes, speed, options.rtol, executor)
-    found = _chart(sampler, options, boundaries=boundaries, progress=progress)
-    fixed = float("nan") if "speed" in names else float(1.0 if speed is None else speed)
-    return replace(found, marks=named, frequency_name=frequency_name, speed=fixed)
-
-
-@dataclass(frozen=True)
-class _Options:
-    rtol: float
-    order: int
-    edges: bool
-
-
-def _options(
-    system: LinearPeriodic, rtol: float, order: int, edges: bool, names: tuple[str, str]
-) -> _Options:
-    if not 1e-13 <= rtol <= 1e-2:
-        raise bad("rtol", rtol, "a number from 1e-13 to 1e-2", "choose 1e-9")
-    check_order(order)
-    if order != 1 and not is_hill(system):
-        raise bad(
-            "order",
-            order,
-            "one mode, which alone has boundaries by perturbation in a chart",
-            "leave it out; tongue has the series of several modes",
-        )
-    if edges and "speed" not in names:
-        raise bad("edges", edges, "a chart with the speed as an axis", "leave it out")
-    return _Options(rtol, int(order), bool(edges))
-
-
-def _chart(
-    sampler: Sampler, options: _Options, *, boundaries: bool, progress: bool
-) -> StabilityChart:
-    """Return the chart, less what only concerns its picture."""
-    system, names, axes = sampler.system, sampler.names, sampler.axes
-    sampled = invariants if sampler.hill else series_by_lines
-    series = sampled(sampler, progress=progress)
-    found = judged(sampler, series)
+    if not callable(workers):
+        raise bad("workers", repr(workers), "a callable like map", "give pool.map, or leave it out")
+    sampler = Sampler(system, names, axes, speed, float(rtol))
+    series = invariants(sampler, workers, progress=progress)
+    found = judged(sampler, series, workers)
+    # The system as the samples see it: at another speed than 1 slowed down.
+    system = sampler.system
     exact, near, rows = None, None, None
     shaped = any(name in system.geometry for name in names)
     if boundaries and is_hill(system) and not shaped:
-        exact, near = boundary_curves(system, names, axes, options.order)
+        exact, near = boundary_curves(system, names, axes, int(order))
     checks = {
-        "error of samples": Check(series.sample_error, max(1e-8, 1e3 * options.rtol)),
-        "spot check": spot_check(sampler, series, (found.largest, found.stable, found.slack)),
+        "error of samples": Check(series.sample_error, max(1e-8, 1e3 * rtol)),
+        "spot check": spot_check(sampler, series, found),
     }
-    if options.edges:
+    if edges:
         rows = _edge_curves(system, names, axes)
         checks["edges"] = rows.check
     return StabilityChart(
@@ -283,18 +249,34 @@ def _chart(
         x=axes[0],
         y=axes[1],
         invariants=series.values,
-        stable=found.stable,
-        largest=found.largest,
-        slack=found.slack,
-        undecided=found.undecided,
-        kind=found.kind,
+        **found._asdict(),
         exact=exact,
         perturbation=near,
-        order=options.order,
+        order=int(order),
         edges=rows,
         natural_frequency=natural_frequency(system, names, axes),
+        frequency_name=frequency_name,
+        marks=named,
         nodes=series.nodes,
+        speed=float("nan") if "speed" in names else float(1.0 if speed is None else speed),
     )
+
+
+def _check_options(
+    system: LinearPeriodic, rtol: float, order: int, edges: bool, names: tuple[str, str]
+) -> None:
+    if not 1e-13 <= rtol <= 1e-2:
+        raise bad("rtol", rtol, "a number from 1e-13 to 1e-2", "choose 1e-9")
+    check_order(order)
+    if order != 1 and not is_hill(system):
+        raise bad(
+            "order",
+            order,
+            "one mode, which alone has boundaries by perturbation in a chart",
+            "leave it out; tongue has the series of several modes",
+        )
+    if edges and "speed" not in names:
+        raise bad("edges", edges, "a chart with the speed as an axis", "leave it out")
 
 
 def _axes(system: LinearPeriodic, x: Axis, y: Axis) -> tuple[tuple[str, str], tuple[Array, Array]]:
@@ -333,10 +315,10 @@ def _edge_curves(
         values = np.linspace(values[0], values[-1], _ROWS)
     span = float(speeds[0]), float(speeds[-1])
     rows = [stability_edges(system, span, **{names[1 - which]: float(v)}) for v in values]
-    keys = sorted({key for row in rows for key in _keys(row)})
+    keys = sorted({key for row in rows for key in row.names})
     ends = np.full((3, len(keys), len(rows)), np.nan)
     for column, row in enumerate(rows):
-        for i, key in enumerate(_keys(row)):
+        for i, key in enumerate(row.names):
             ends[:, keys.index(key), column] = row.lower[i], row.upper[i], row.error[i]
     failed = sum(not check.passed for row in rows for check in row.checks.values())
     return EdgeCurves(
@@ -349,8 +331,3 @@ def _edge_curves(
         tuple(key[0] for key in keys),
         Check(float(failed), 0.0),
     )
-
-
-def _keys(row: StabilityEdges) -> list[tuple[str, int, int, int]]:
-    found = zip(row.kind, row.modes.tolist(), row.harmonic.tolist(), strict=True)
-    return [(kind, i, j, n) for kind, (i, j), n in found]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -77,8 +78,12 @@ def _slowed(system: LinearPeriodic, speed: float) -> LinearPeriodic:
     return replace(
         system,
         terms=tuple(_times(term, speed) for term in system.terms),
-        rebuild=None if rebuild is None else lambda shape: _slowed(rebuild(shape), speed),
+        rebuild=None if rebuild is None else partial(_rebuilt, rebuild, speed),
     )
+
+
+def _rebuilt(rebuild: Callable[[Any], LinearPeriodic], speed: float, shape: Any) -> LinearPeriodic:
+    return _slowed(rebuild(shape), speed)
 
 
 def _times(term: Term, speed: float) -> Term:
@@ -87,8 +92,12 @@ def _times(term: Term, speed: float) -> Term:
         return term
     given, factor = term.function, float(speed**power)
     if callable(given):
-        return replace(term, function=lambda theta: given(theta) * factor)
+        return replace(term, function=partial(_product, given, factor))
     return replace(term, function=given * factor)
+
+
+def _product(function: Callable[[Array], Array], factor: float, theta: Array) -> Array:
+    return function(theta) * factor
 
 
 def is_damped(system: LinearPeriodic, names: Names, axes: Axes) -> bool:

@@ -70,7 +70,7 @@ def boundary_curves(
     exact = np.full((3, len(regions), len(rows)), np.nan)
     for j, point in enumerate(points):
         exact[:, :, j] = point.ends(regions)
-    near = overlay_ends(form, along, other, rows, regions, order)
+    near = _overlay(form, along, other, rows, regions, order)
     tables = (
         BoundaryCurves(along, regions, rows, ends[0], ends[1], ends[2], left_out)
         for ends in (exact, near)
@@ -106,7 +106,7 @@ class _Point:
         if self.stiffness <= 0.0:
             return np.full((3, len(regions)), np.nan)
         if self.damping != 0.0:
-            return exact_speeds(self.function, self.stiffness, self.damping, regions)
+            return _damped_speeds(self.function, self.stiffness, self.damping, regions)
         found = hill_boundaries(self.function, 1.0, regions)
         lam2 = np.stack([found.lower, found.upper])
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -135,29 +135,15 @@ def _regions(ends: Array, along: str, points: list[_Point]) -> tuple[tuple[int, 
     return tuple(range(first, most + 1)), last - most
 
 
-def exact_speeds(
+def _damped_speeds(
     f: PeriodicFunction, stiffness: float, damping: float, regions: tuple[int, ...]
 ) -> Array:
-    """Return the exact ends of unstable regions, and their errors.
+    """Return speeds at the ends of damped regions in lam2, and their error, (3, regions).
 
-    Parameters
-    ----------
-    f : PeriodicFunction
-        The periodic part, the same at every speed.
-    stiffness, damping : float
-        k [1/s^2] > 0 and c [1/s] > 0.
-    regions : tuple of int
-        Numbers from 1.
+    NaN where damping has closed the region, and at the lower end of one that reaches on to infinite
+    speed.  The function f is the same at every speed, stiffness k [1/s^2] and damping c [1/s] are
+    positive.
 
-    Returns
-    -------
-    ndarray, shape (3, len(regions))
-        Speed at the lower and at the upper end in lam2, and the error of either [rad/s]; NaN
-        where damping has closed the region, and at the lower end of one that reaches on to
-        infinite speed.
-
-    Notes
-    -----
     With lam2 = s^2 and K = r s, r = c / (2 sqrt(k)), Hill's matrix gives
     ``(k^2 - f) v - 2 r s D v = s^2 v``, D = d/d theta.  A region lies within the undamped one
     moved by K^2 (see :func:`~.damped.damped`), which is how real s get its number.
@@ -218,7 +204,7 @@ def _drawn_in(local: float, half: float, sharp_half: float) -> float:
     return float(moved) + local
 
 
-def overlay_ends(
+def _overlay(
     form: HillForm, along: str, other: str, rows: Array, regions: tuple[int, ...], order: int
 ) -> Array:
     """Return lower ends, upper ends and errors in the units of the axis."""

@@ -1,20 +1,28 @@
-"""Invariants of several modes, line by line: a whole line of speeds from one table of segments."""
+"""Invariants of a chart, line by line: half traces of one mode, polynomials of several.
+
+Of several modes a whole line of speeds comes from one table of segments; of one mode a line shares
+the function of Hill's equation where the inner axis leaves that alone.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..core import chebyshev
 from ..core.families import Array
+from ..core.periodic_function import PeriodicFunction
 from ..core.progress import bar
+from ..hill import HillForm, discriminant
 from ..periodic.equation import Equation, SampledSystem, equation_of, sampled
 from ..periodic.tables import Table, table_of
 from ..periodic.transition import levels_for, method, rung
-from .chart_sampling import Sampler, Series, relative_error
+from .chart_axes import leaves_function_alone
+from .chart_sampling import Map, Sampler, Series, relative_error
 from .invariants import from_sum, sum_weights_back, weighed_characteristic
 
 # Wanted error of the matrices, and what mirrored coefficients may differ, over the largest.
@@ -208,15 +216,15 @@ class Lines:
         # Places along a line at which the number of segments is judged.
         judged = plain(np.linspace(low, high, 5 if high > low else 1))
         unit = judged.scale[len(judged.scale) // 2]
-        # Stages among which the cheapest are taken.
-        ways = [
-            method("radau" if judged.damped else "gauss", stages) for stages in (4, 5, 6, 8, 10)
+        # Stages among which the cheapest are taken.  transition.cheapest, which bounds what modes
+        # that no segment resolves make of waves, doubles a chart's time for no smaller error.
+        kind = "radau" if judged.damped else "gauss"
+        choices = [
+            (rung(int(np.max(levels_for(judged, way, _RTOL)))), way)
+            for way in (method(kind, stages) for stages in (4, 5, 6, 8, 10))
         ]
-        counts = [rung(int(np.max(levels_for(judged, way, _RTOL)))) for way in ways]
         # Solving the stages of a segment: between the square and the cube of their number.
-        work = [count * way.stages**2.5 for count, way in zip(counts, ways, strict=True)]
-        best = int(np.argmin(work))
-        way, count = ways[best], counts[best]
+        count, way = min(choices, key=lambda choice: choice[0] * choice[1].stages ** 2.5)
         # A multiple of 16 can be multiplied by pairs, of half a period too.
         count = 16 * int(np.ceil(fineness * count / 16))
 
@@ -229,15 +237,61 @@ class Lines:
         return Piece(table, count, half)
 
 
-def series_by_lines(sampler: Sampler, *, progress: bool) -> Series:
-    """Return the invariants of a chart of several modes.
+class HillLines:
+    """The lines of a chart of one mode.
+
+    The axis that changes the function of Hill's equation is the outer one.
+    """
+
+    inner_is_geometry = False
+
+    def __init__(self, sampler: Sampler, form: HillForm) -> None:
+        self.inner = 0 if leaves_function_alone(form, sampler.names[0]) else 1
+        self._shared = leaves_function_alone(form, sampler.names[self.inner])
+        self._form, self._back = form, sampler.back
+        self._along, self._outer = sampler.names[self.inner], sampler.names[1 - self.inner]
+
+    def line(
+        self, outer: float, low: float, high: float, values: Array | None = None
+    ) -> Callable[[Array], tuple[Array, Array]]:
+        """Return the line at a value of the outer axis."""
+        return partial(self._half_traces, float(self._back(self._outer, np.asarray(outer))))
+
+    def _half_traces(self, outer: float, values: Array) -> tuple[Array, Array]:
+        """Return half traces and their errors, ``(n, 1)`` each."""
+        form = self._form
+        along = self._back(self._along, values)
+        points = [{self._outer: outer, self._along: float(v)} for v in along]
+        speeds = np.array([p.pop("speed", 1.0) for p in points])
+        lam2 = np.array([form.stiffness(**p) for p in points]) / speeds**2
+        damping = np.array([form.damping(**p) for p in points]) / (2 * speeds)
+        if self._shared:
+            f = form.function(float(speeds[0]), **points[0])
+            found = discriminant(f, lam2, 1.0, damping)
+            return found.value[:, None], np.broadcast_to(found.error, found.value.shape)[:, None]
+        each = [
+            discriminant(form.function(float(w), **p), float(v), 1.0, float(k))
+            for w, p, v, k in zip(speeds, points, lam2, damping, strict=True)
+        ]
+        value, error = ([float(getattr(one, name)) for one in each] for name in ("value", "error"))
+        return np.array(value)[:, None], np.array(error)[:, None]
+
+
+def _lines_of(sampler: Sampler) -> Lines | HillLines:
+    return Lines(sampler) if sampler.form is None else HillLines(sampler, sampler.form)
+
+
+def invariants(sampler: Sampler, workers: Map, *, progress: bool) -> Series:
+    """Return the invariants of a chart in the way that suits it, its lines by ``workers``.
 
     Raises
     ------
     BadInput
         If modes, lines and nodes amount to more than an hour or so.
     """
-    surface = _Surface(sampler)
+    if sampler.plain is not None:
+        return _plain_hill(sampler, *sampler.plain)
+    surface = _Surface(sampler, workers)
     surface.find_inner()
     lines = surface.first_lines()
     while True:
@@ -254,25 +308,46 @@ def series_by_lines(sampler: Sampler, *, progress: bool) -> Series:
         lines = grown
 
 
-class _Found:
+def _plain_hill(
+    sampler: Sampler,
+    which: int,
+    f: PeriodicFunction,
+    lam2: Callable[[Array], Array],
+    factor: Callable[[Array], Array],
+) -> Series:
+    """Return half traces where the axes are lam2 and the factor of one function."""
+    axes = sampler.axes
+    order = np.argsort(lam2(axes[which]))
+    found = discriminant(f, lam2(axes[which])[order, None], factor(axes[1 - which]))
+    values, error = np.empty_like(found.value), np.empty_like(found.value)
+    values[order], error[order] = found.value, found.error
+    if which == 0:
+        values, error = values.T, error.T
+    sample = relative_error(error, values[..., None])
+    return Series(values[..., None], error, sample, (0, 0), f"half trace, {found.method}")
+
+
+class _Found(NamedTuple):
     """Invariants on lines, ``values`` and the ``weight`` of their errors ``(lines, nodes, k)``."""
 
-    def __init__(self, outer: Array, values: Array, weight: Array, direct: bool) -> None:
-        self.outer, self.values, self.weight, self.direct = outer, values, weight, direct
+    outer: Array
+    values: Array
+    weight: Array
+    direct: bool
 
 
 class _Surface:
     """A chart whose inner axis is solved line by line."""
 
-    def __init__(self, sampler: Sampler) -> None:
-        self.sampler = sampler
-        self.lines = Lines(sampler)
+    def __init__(self, sampler: Sampler, workers: Map) -> None:
+        self.sampler, self.workers = sampler, workers
+        self.lines = _lines_of(sampler)
         which = self.lines.inner
         self.wanted = sampler.transform(sampler.names[which], sampler.axes[which])
-        self.across = sampler.axes[1 - which]
+        self.across = sampler.transform(sampler.names[1 - which], sampler.axes[1 - which])
         self.low, self.high = float(self.wanted.min()), float(self.wanted.max())
         self.count = 0
-        self.ends: dict[float, Line] = {}
+        self.ends: dict[float, Callable[[Array], tuple[Array, Array]]] = {}
         # Tails before the last refinement: round-off, where it has not halved them.
         self.before = (np.inf, np.inf)
         self.kept: dict[float, tuple[Array, Array]] = {}
@@ -290,12 +365,6 @@ class _Surface:
         # Round-off of samples, roughly, relative to the largest, below which no tail falls.
         return max(self.sampler.rtol, 1e-12 * size)
 
-    def line(self, outer: float) -> Line:
-        """Return a line of the chart."""
-        if outer not in self.ends:
-            return self.lines.line(outer, self.low, self.high, self.values)
-        return self.ends[outer]
-
     def find_inner(self) -> None:
         """Settle how many nodes a line needs, judged on the lines at both ends of the other axis.
 
@@ -304,8 +373,11 @@ class _Surface:
         if len(self.wanted) <= _FIRST or self.lines.inner_is_geometry:
             return
         self.sampler.allowed(2, len(self.wanted))
-        self.ends = {float(outer): self.line(float(outer)) for outer in self.across[[0, -1]]}
         self.count = _FIRST
+        self.ends = {
+            float(outer): self.lines.line(float(outer), self.low, self.high)
+            for outer in self.across[[0, -1]]
+        }
         while self.count < 2 * len(self.wanted):
             found = [line(self.values)[0] for line in self.ends.values()]
             if any(self.too_wide(values) for values in found):
@@ -335,13 +407,15 @@ class _Surface:
 
     def first_lines(self) -> int:
         """Return with how many lines to begin; 0 stands for one at every value."""
-        return 0 if len(self.across) <= _FEWEST_LINES else _FEWEST_LINES
+        # Of one mode, whose lines are cheap, no fewer than are worth a series.
+        fewest = 2 * _FEWEST_LINES if self.sampler.hill else _FEWEST_LINES
+        return 0 if len(self.across) <= fewest else _FEWEST_LINES
 
     def places(self, lines: int) -> Array:
         """Return where the lines lie: all values of the axis, or nested Chebyshev points."""
         if not lines:
             return self.across
-        low, high = float(self.across[0]), float(self.across[-1])
+        low, high = float(self.across.min()), float(self.across.max())
         places = np.asarray(0.5 * (low + high) + 0.5 * (high - low) * chebyshev.extrema(lines))
         places[[0, -1]] = high, low
         return places
@@ -357,8 +431,10 @@ class _Surface:
         left = [place for place in wanted if place not in self.ends]
         done = len(places) - len(left)
         items = [(place, self.low, self.high, values) for place in left]
-        for number, found in self.sampler.workers.run(_on_line, items):
-            self.kept[left[number]] = found
+        for place, found in zip(
+            left, self.workers(partial(_on_line, self.lines), items), strict=True
+        ):
+            self.kept[place] = found
             done += 1
             if tick is not None:
                 tick(done)
@@ -421,7 +497,7 @@ class _Surface:
             values = found.values
             if self.lines.inner == 1:
                 values, error, errors = (np.swapaxes(a, 0, 1) for a in (values, error, errors))
-            return Series(values, error, sample, (0, 0), _method(nodes), errors)
+            return Series(values, error, sample, (0, 0), self._method(nodes), errors)
         inner, outer, size = self.tails(found)
         table = self.table(found)
         if self.count:
@@ -429,7 +505,7 @@ class _Surface:
             along = chebyshev.basis(place, self.count).T
             table = np.einsum("xi,lik->lxk", along, table, optimize=True)
         if not found.direct:
-            low, high = float(self.across[0]), float(self.across[-1])
+            low, high = float(self.across.min()), float(self.across.max())
             place = chebyshev.unit(self.across, low, high)
             table = np.tensordot(chebyshev.basis(place, len(found.outer)).T, table, axes=1)
         # Round-off of the series is spread over the chart by its largest values.
@@ -437,13 +513,22 @@ class _Surface:
         error = np.full(table.shape[:2], total)
         if self.lines.inner == 1:
             table, error = np.swapaxes(table, 0, 1), error.T
-        return Series(table, error, sample, (nodes[0], nodes[1]), _method(nodes))
+        return Series(table, error, sample, (nodes[0], nodes[1]), self._method(nodes))
+
+    def _method(self, nodes: list[int]) -> str:
+        what = "half trace" if self.sampler.hill else "characteristic polynomial"
+        if not any(nodes):
+            return f"{what} at each point"
+        return f"{what} at Chebyshev nodes, spectral interpolation"
 
     def solution_error(self, found: _Found) -> Array:
         """Return the relative error of samples at each value, from other solutions on four lines.
 
-        The differences are those of the value itself and of its neighbours.
+        The differences are those of the value itself and of its neighbours.  Half traces know their
+        error.
         """
+        if isinstance(self.lines, HillLines):
+            return np.ones(len(self.values))
         with np.errstate(invalid="ignore"):
             grown = int(np.argmax(np.max(found.weight, axis=(1, 2))))
         picked = sorted({0, len(found.outer) // 2, len(found.outer) - 1, grown})
@@ -451,25 +536,19 @@ class _Surface:
         items = [
             (float(found.outer[i]), self.low, self.high, values, found.values[i]) for i in picked
         ]
-        gaps = self.sampler.workers.map(_gap_on_line, items)
-        gap = np.pad(np.max(gaps, axis=0), 1, mode="edge")
+        gaps = self.workers(partial(_gap_on_line, self.lines), items)
+        gap = np.pad(np.max(list(gaps), axis=0), 1, mode="edge")
         return np.asarray(np.maximum(np.maximum(gap[:-2], gap[1:-1]), gap[2:]) + 64 * _EPS)
 
 
-def _on_line(sampler: Sampler, place: _Place) -> tuple[Array, Array]:
+def _on_line(lines: Lines | HillLines, place: _Place) -> tuple[Array, Array]:
     """Return the invariants on a line, and the weights of their errors."""
-    return Lines(sampler).line(*place)(place[3])
+    return lines.line(*place)(place[3])
 
 
-def _gap_on_line(sampler: Sampler, item: tuple[float, float, float, Array, Array]) -> Array:
+def _gap_on_line(lines: Lines, item: tuple[float, float, float, Array, Array]) -> Array:
     """Return by how much another solution differs on a line."""
-    return Lines(sampler).error(*item)
-
-
-def _method(nodes: list[int]) -> str:
-    if not any(nodes):
-        return "characteristic polynomial at each point"
-    return "characteristic polynomial at Chebyshev nodes, spectral interpolation"
+    return lines.error(*item)
 
 
 def _tail(sizes: Array) -> float:

@@ -110,13 +110,17 @@ class StabilityEdges(Result):
         return np.asarray((np.abs(self.detuning) > 0.5) | (self.modes[:, 0] == 0))
 
     @property
+    def names(self) -> list[tuple[str, int, int, int]]:
+        """Kind, both modes and harmonic of each region."""
+        rows = zip(self.kind, self.modes.tolist(), self.harmonic.tolist(), strict=True)
+        return [(kind, i, j, n) for kind, (i, j), n in rows]
+
+    @property
     def labels(self) -> tuple[str, ...]:
         """In words: ``region 4 of mode 1``, ``sum of modes 1 and 2, harmonic 9``."""
         return tuple(
             f"region {n} of mode {i}" if kind == "principal" else f"{kind} of {i} and {j}, n = {n}"
-            for kind, (i, j), n in zip(
-                self.kind, self.modes.tolist(), self.harmonic.tolist(), strict=True
-            )
+            for kind, i, j, n in self.names
         )
 
     def plot(self, ax: Axes | None = None) -> Axes:

@@ -23,9 +23,6 @@ from ..periodic.equation import SPEED_POWER, sampled
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-# Amplitude over the largest below which the last harmonics are round-off.
-_ROUND_OFF = 4e-16
-
 
 @dataclass(frozen=True)
 class Wave:
@@ -83,7 +80,8 @@ def waves(system: LinearPeriodic, parameters: Mapping[str, ArrayLike]) -> tuple[
     found = []
     for (array, exponent), total in sums.items():
         size = np.max(np.abs(total), axis=(1, 2))
-        reach = int(np.flatnonzero(size > _ROUND_OFF * np.max(size))[-1]) if np.any(size) else 0
+        # Below this, over the largest, the last harmonics are round-off.
+        reach = int(np.flatnonzero(size > 4e-16 * np.max(size))[-1]) if np.any(size) else 0
         upper = total[: reach + 1]
         found.append(Wave(array, exponent, np.concatenate([np.conj(upper[:0:-1]), upper])))
     return tuple(found)

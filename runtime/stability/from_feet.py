@@ -177,7 +177,7 @@ def tongue_curves(
         edges = stability_edges(here, (low, high), rtol=rtol, margin=_BEYOND)
         failed += sum(not check.passed for check in edges.checks.values())
         growth = _growth(here, edges)
-        places = [row.get((kind, *label)) for kind, *label in _labels(edges)]
+        places = [row.get((kind, *label)) for kind, *label in edges.names]
         if column:
             places = _carried_on(feet, ends[:2, :, column - 1], edges, places)
         for i, place in enumerate(places):
@@ -209,12 +209,6 @@ def tongue_curves(
     )
 
 
-def _labels(edges: StabilityEdges) -> list[tuple[str, int, int, int]]:
-    """Return kind, modes and harmonic of each region."""
-    labels = zip(edges.kind, edges.modes.tolist(), edges.harmonic.tolist(), strict=True)
-    return [(kind, i, j, n) for kind, (i, j), n in labels]
-
-
 def _carried_on(
     feet: list[Resonance], before: Array, edges: StabilityEdges, places: list[int | None]
 ) -> list[int | None]:
@@ -225,7 +219,7 @@ def _carried_on(
     begin, end = np.nan_to_num(edges.lower, nan=0.0), np.nan_to_num(edges.upper, nan=np.inf)
     last = np.nan_to_num(before[1], nan=np.inf)
     carried = list(places)
-    for i, (kind, mode, *_) in enumerate(_labels(edges)):
+    for i, (kind, mode, *_) in enumerate(edges.names):
         if mode:
             continue
         principal, sign = kind == "principal", float(edges.multiplier[i].real)

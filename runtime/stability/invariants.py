@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.families import Array
-from ..hill import HillForm, discriminant
-from .chart_axes import leaves_function_alone
 
 # Round-off of coefficients and roots, relative to the largest coefficient.
 _ROUNDING = 32.0 * float(np.finfo(float).eps)
-# Values of the outer axis whose half traces are worked out together.
-_TOGETHER = 8
 
 Moduli = tuple[Array, NDArray[np.bool_], Array]
 _EPS = float(np.finfo(float).eps)
@@ -226,61 +221,6 @@ def _roots(monic: Array) -> NDArray[np.complex128]:
     companion[..., 0, :] = -monic
     companion[..., np.arange(1, degree), np.arange(degree - 1)] = 1.0
     return np.asarray(np.linalg.eigvals(companion), dtype=complex)
-
-
-def half_traces(
-    outer: int,
-    x: Array,
-    y: Array,
-    tick: Callable[[int], None] | None,
-    run: Callable[[Iterable[tuple[int, Array, Array]]], Iterable[tuple[int, tuple[Array, Array]]]],
-) -> tuple[Array, Array]:
-    """Return the half traces of one mode on a grid, shape ``(1, nx, ny)``, and errors (nx, ny)."""
-    axes = (x, y)
-    starts = range(0, len(axes[outer]), _TOGETHER)
-    values = np.empty((len(axes[outer]), len(axes[1 - outer])))
-    errors = np.empty_like(values)
-    done = 0
-    for number, found in run(
-        (outer, axes[outer][start : start + _TOGETHER], axes[1 - outer]) for start in starts
-    ):
-        part = slice(starts[number], starts[number] + len(found[0]))
-        values[part], errors[part] = found
-        done += found[0].size
-        if tick is not None:
-            tick(done)
-    if outer == 1:
-        values, errors = values.T, errors.T
-    return values[None], errors
-
-
-def half_trace_rows(
-    form: HillForm, names: tuple[str, str], outer: int, fixed: Array, along: Array
-) -> tuple[Array, Array]:
-    """Return half traces at values of the outer axis and all of the inner one, and their errors.
-
-    A row shares one function f where the inner axis is the speed or acts on the constant stiffness
-    alone.
-    """
-    inner = 1 - outer
-    rows = []
-    for value in fixed:
-        points = [{names[outer]: float(value), names[inner]: float(v)} for v in along]
-        speeds = np.array([p.pop("speed", 1.0) for p in points])
-        lam2 = np.array([form.stiffness(**p) for p in points]) / speeds**2
-        damping = np.array([form.damping(**p) for p in points]) / (2 * speeds)
-        if leaves_function_alone(form, names[inner]):
-            f = form.function(float(speeds[0]), **points[0])
-            result = discriminant(f, lam2, 1.0, damping)
-            rows.append((result.value, np.broadcast_to(result.error, result.value.shape)))
-            continue
-        results = [
-            discriminant(form.function(float(w), **p), float(v), 1.0, float(k))
-            for w, p, v, k in zip(speeds, points, lam2, damping, strict=True)
-        ]
-        each = [(float(r.value), float(r.error)) for r in results]
-        rows.append((np.array([v for v, _ in each]), np.array([e for _, e in each])))
-    return np.stack([row for row, _ in rows]), np.stack([error for _, error in rows])
 
 
 def weighed_characteristic(

@@ -15,13 +15,13 @@ from ..core.inputs import is_whole, speed_span
 from ..core.trigonometric import even_angles
 from ..periodic.equation import SPEED_POWER, equation_of
 from ..periodic.signatures import form_matrix
+from .pairs import bracketed_roots
 
 Array = NDArray[np.float64]
 Kind = Literal["principal", "sum", "difference"]
 # Kind, modes from 1, and harmonic.
 Condition = tuple[Kind, tuple[int, int], int]
 
-_GRID = 400
 _ARRAYS = ("M", "A", "B", "K", "Kg")
 # Real part, over the modulus, up to which an exponent of the mean system counts as imaginary.
 IMAGINARY = 1e-7
@@ -135,27 +135,23 @@ class MeanSystem:
             )
         )
 
-        def distance(at: Array, which: NDArray[np.intp]) -> Array:
-            nu, rows = self.frequencies(at), np.arange(len(at))
-            other = nu[rows, second[which]]
-            both = nu[rows, first[which]] + np.where(minus[which], -other, other)
-            return np.asarray(both - turns[which])
-
-        grid = np.geomspace(*span, _GRID)
+        grid = np.geomspace(*span, 400)
         nu = self.frequencies(grid)
         value = nu[:, first] + np.where(minus, -1.0, 1.0) * nu[:, second] - turns
         with np.errstate(invalid="ignore"):
             passing = (value[:-1] * value[1:] <= 0) & (value[1:] != 0)
         which, change = np.nonzero(passing.T)
-        low, high = grid[change], grid[change + 1]
-        sign = np.sign(value[change + 1, which])
-        for _ in range(60):
-            middle = (low + high) / 2
-            above = np.sign(distance(middle, which)) == sign
-            low, high = np.where(above, low, middle), np.where(above, middle, high)
-        places: Array = (low + high) / 2
+
+        def distance(index: NDArray[np.intp], at: Array) -> tuple[Array, Array]:
+            nu, rows, condition = self.frequencies(at), np.arange(len(at)), which[index]
+            other = nu[rows, second[condition]]
+            both = nu[rows, first[condition]] + np.where(minus[condition], -other, other)
+            return np.asarray(both - turns[condition]), np.zeros(len(at))
+
+        brackets = grid[change], grid[change + 1], value[change, which], value[change + 1, which]
+        places = bracketed_roots(distance, *brackets)[0]
         # Where a mode ends, at a divergence, the numbers of the others jump.
-        met = np.abs(distance(places, which)) < 1e-7
+        met = np.abs(distance(np.arange(len(places)), places)[0]) < 1e-7
         return [places[met & (which == k)] for k in range(len(conditions))]
 
     def described(

@@ -14,8 +14,8 @@ from ..periodic import FloquetMultipliers, floquet_multipliers
 
 Array = NDArray[np.float64]
 
-# Growth, over its error, from which a verdict tells, and the part of it that must be found.
-_TELLING, _PART = 20.0, 0.1
+# Growth, over its error, from which a verdict tells.
+_TELLING = 20.0
 # Share of the way to the next end at which an end is looked at.
 _BESIDE = 0.01
 
@@ -76,21 +76,7 @@ def edge_checks(
     span: tuple[float, float],
     parameters: Mapping[str, float],
 ) -> dict[str, Check]:
-    """Return ``verdicts`` and ``samples``, each a number of contradictions."""
-    samples, verdicts = contradictions(system, regions, span, parameters)
-    return {
-        "samples": Check(float(len(samples)), 0.0),
-        "verdicts": Check(float(len(verdicts)), 0.0),
-    }
-
-
-def contradictions(
-    system: LinearPeriodic,
-    regions: Regions,
-    span: tuple[float, float],
-    parameters: Mapping[str, float],
-) -> tuple[Array, Array]:
-    """Return the speeds that :func:`edge_checks` counts: of even samples, and of verdicts."""
+    """Return ``samples`` and ``verdicts``, the numbers of speeds that contradict the regions."""
     begin, end = np.maximum(regions.begin, span[0]), np.minimum(regions.end, span[1])
     regions = replace(regions, begin=begin, end=end)
     speeds = np.linspace(*span, 64)
@@ -100,7 +86,10 @@ def contradictions(
     calm = speeds[_within(regions, speeds) & found.stable]
     narrow = _narrow(system, regions, parameters)
     counted = _counts(system, regions, span, parameters)
-    return np.concatenate([missed, calm]), np.concatenate([narrow, counted])
+    return {
+        "samples": Check(float(len(missed) + len(calm)), 0.0),
+        "verdicts": Check(float(len(narrow) + len(counted)), 0.0),
+    }
 
 
 def _narrow(system: LinearPeriodic, regions: Regions, parameters: Mapping[str, float]) -> Array:
@@ -117,7 +106,7 @@ def _narrow(system: LinearPeriodic, regions: Regions, parameters: Mapping[str, f
     grown = np.max(inside.exponents.real, axis=-1)
     if _damped(inside):
         expected = np.zeros_like(expected)
-    value: Array = middle[told & (grown <= _PART * expected)]
+    value: Array = middle[told & (grown <= 0.1 * expected)]
     return value
 
 

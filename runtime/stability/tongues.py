@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import partial
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..core.families import DAMPING, LinearPeriodic, Term
+from ..core.families import LinearPeriodic
 from ..core.inputs import numbers, require_whole
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ..hill.bloch import BEYOND, HIGHEST
@@ -19,7 +18,7 @@ from ..periodic import floquet_multipliers
 from ..periodic.equation import equation_of
 from .ends import UNBOUNDED, Ends, Several, expected, two_exponents
 from .meetings import MeanSystem, Resonance, conservative
-from .operators import Point, ResonantOperator, constant_at, resonant_operator
+from .operators import ResonantOperator, resonant_operator
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -51,9 +50,7 @@ class Tongue(Result):
         Estimate of the truncation, for either end [rad/s], shape ``batch``: how far the next two
         orders move it, and round-off.
     values : ndarray
-        Values of the parameter, broadcast to ``batch``; zeros without one.
-    damping_factor : ndarray
-        Factor on the system's own damping, ``batch``.
+        Values of the parameter, ``batch``; zero without one.
     parameter : str
         Name of the parameter; empty without one.
     resonance : Resonance
@@ -62,27 +59,19 @@ class Tongue(Result):
         Total degree in periodic part, detuning and damping.
     dimension : int
         Largest number of exponents taken together.
-    expansion : str
-        "parameter": one series in the parameter, about the system where it is zero and nothing is
-        periodic; "periodic": for each value a series in all that is periodic, about the mean.
     operators : tuple of ResonantOperator
-        The series themselves, one, or one for each value.
-    centres : ndarray
-        Expansion points [rad/s], one for each operator.
+        The series themselves, one for each value.
     """
 
     lower: Array
     upper: Array
     open: NDArray[np.bool_]
     values: Array
-    damping_factor: Array
     parameter: str
     resonance: Resonance
     order: int
     dimension: int
-    expansion: str
     operators: tuple[ResonantOperator, ...]
-    centres: Array
 
     exported: ClassVar[tuple[str, ...]] = ("width",)
 
@@ -130,16 +119,15 @@ def tongue(
     *,
     parameter: tuple[str, ArrayLike] | None = None,
     order: int = 2,
-    damping_factor: ArrayLike = 1.0,
-    merge: float = 0.04,
     **parameters: float,
 ) -> Tongue:
     """Return the ends of the tongue that starts at a resonance, to a chosen order.
 
     The Floquet operator L(theta) - d/dtheta of the canonical variables is reduced to the exponents
-    that meet: a power series in the periodic part, the detuning and the damping, all of first
-    order.  Its eigenvalues are the exponents; the ends are where the largest real part passes
-    zero.  The detuning sigma of the speed is defined by 1/w = (1 + sigma)/w0.
+    that meet, and others within 0.04 harmonics of the period: a power series about the mean system,
+    in which all that is periodic, the detuning and the damping are of first order.  Its eigenvalues
+    are the exponents; the ends are where the largest real part passes zero.  The detuning sigma of
+    the speed is defined by 1/w = (1 + sigma)/w0.
 
     Parameters
     ----------
@@ -148,15 +136,9 @@ def tongue(
     resonance : Resonance
         From :func:`~.meetings.resonances`; it is sought anew for each parameter value.
     parameter : (str, array_like), optional
-        A parameter and its values, any shape.  Where nothing is periodic once it is zero, the
-        series is one in the parameter; else all that is periodic is the small part.
+        A parameter and its values, any shape.
     order : int
         Total degree, 1 to 8.
-    damping_factor : array_like
-        Factor on the system's own damping terms, at least zero; broadcasts with the values.
-    merge : float
-        Distance of other exponents, in harmonics of the period, up to which they are treated
-        together with the two of the resonance.
     **parameters : float
         Values of further parameters that replace the system's own.
 
@@ -180,34 +162,24 @@ def tongue(
     Smith, chapter 9, suggestion 1; Smith (7.12)-(7.18) for one mode.
     """
     order = require_whole("order", order, 1, HIGHEST, "choose 2")
-    apart = numbers("merge", merge)
-    if apart.shape != () or not 0 <= apart < 0.5:
-        raise bad("merge", merge, "a number from 0 to below 0.5", "choose 0.04")
     if not isinstance(resonance, Resonance):
         raise bad("resonance", repr(resonance), "a Resonance", "take one that resonances() gives")
-    name, values, factor = _arguments(parameter, damping_factor)
-    _check_names(system, resonance, name, parameters)
-    problem = _Problem(system, resonance, dict(parameters), order, merge)
-    flat, drag = values.ravel(), factor.ravel()
-    series = name is not None and problem.starts_at_zero(name)
-    if series and name is not None:
-        radius = float(np.max(np.abs(flat), initial=0.0)) or 1.0
-        operators = [problem.operator({}, name, radius)]
-        eps, which = flat / radius, np.zeros(len(flat), dtype=int)
-    else:
-        distinct, which = np.unique(flat, return_inverse=True)
-        changes = [{} if name is None else {name: float(value)} for value in distinct]
-        operators = [problem.operator(change, None, 1.0) for change in changes]
-        eps = np.ones(len(flat))
-    places = _Places(values, factor, which, eps)
-    rows = [
-        problem.ends(operators[k][0], operators[k][1], float(size), float(delta))
-        for k, size, delta in zip(which, eps, drag, strict=True)
-    ]
+    if max(resonance.modes) > system.size or min(resonance.modes) < 1:
+        expected_modes = f"modes from 1 to {system.size}"
+        raise bad("resonance.modes", resonance.modes, expected_modes, "correct it")
+    name, values = _checked(parameter, parameters)
+    changed = {} if name is None else {name: values}
+    start = {name: system.parameters.get(name, 0.0) for name in changed}
+    equation_of(system, resonance.speed, {**parameters, **start})
+    made = {
+        value: _operator(system, {**parameters, **dict.fromkeys(changed, value)}, resonance, order)
+        for value in np.unique(values).tolist()
+    }
+    operators = tuple(made[value] for value in values.ravel().tolist())
+    rows = [_ends(operator, resonance, order) for operator in operators]
     columns = (np.array([row[i] for row in rows]) for i in range(4))
     lower, upper, opened, error = (column.reshape(values.shape) for column in columns)
-    dimension = max((operator.size for operator, _ in operators), default=2)
-    changed = {} if name is None else {name: values}
+    dimension = max((len(operator.modes) for operator in operators), default=2)
     result = Tongue(
         method=f"perturbation of order {order}, {dimension} exponents together",
         error=error,
@@ -216,161 +188,101 @@ def tongue(
         lower=lower,
         upper=upper,
         open=opened.astype(bool),
-        values=np.array(values),
-        damping_factor=np.array(factor),
+        values=values,
         parameter=name or "",
         resonance=resonance,
         order=order,
         dimension=dimension,
-        expansion="parameter" if series else "periodic",
-        operators=tuple(operator for operator, _ in operators),
-        centres=np.array([at for _, at in operators]),
+        operators=operators,
     )
-    return replace(result, checks=DeferredChecks(TongueChecks(problem, result, places)))
+    return replace(result, checks=DeferredChecks(TongueChecks(system, parameters, result)))
 
 
-def _arguments(
-    parameter: tuple[str, ArrayLike] | None, damping_factor: ArrayLike
-) -> tuple[str | None, Array, Array]:
-    """Return the parameter's name, its values and the damping factors, broadcast."""
-    name: str | None = None
-    values = np.zeros(())
-    if parameter is not None:
-        if len(parameter) != 2 or not isinstance(parameter[0], str):
-            raise bad("parameter", repr(parameter), "(name, values)", "give a pair")
-        name, values = parameter[0], numbers(parameter[0], parameter[1])
-    factor = numbers("damping_factor", damping_factor)
-    for where, array in ((name or "parameter", values), ("damping_factor", factor)):
-        if not np.all(np.isfinite(array)):
-            raise bad(where, array, "finite numbers", "correct it")
-    if np.any(factor < 0):
-        raise bad("damping_factor", damping_factor, "factors of at least 0", "0 leaves damping out")
-    try:
-        values, factor = np.broadcast_arrays(values, factor)
-    except ValueError as mismatch:
-        shapes = (values.shape, factor.shape)
-        raise bad(
-            "parameter and damping_factor", shapes, "shapes that broadcast", "add axes of length 1"
-        ) from mismatch
-    return name, values, factor
-
-
-def _check_names(
-    system: LinearPeriodic,
-    resonance: Resonance,
-    name: str | None,
-    parameters: Mapping[str, float],
-) -> None:
-    """Raise where names clash or are unknown, or a resonance does not fit the system."""
-    if name is not None and name in parameters:
+def _checked(
+    parameter: tuple[str, ArrayLike] | None, parameters: Mapping[str, float]
+) -> tuple[str | None, Array]:
+    """Return the parameter's name and its values."""
+    if parameter is None:
+        return None, np.zeros(())
+    if len(parameter) != 2 or not isinstance(parameter[0], str):
+        raise bad("parameter", repr(parameter), "(name, values)", "give a pair")
+    name, values = parameter[0], numbers(parameter[0], parameter[1])
+    if not np.all(np.isfinite(values)):
+        raise bad(name, values, "finite numbers", "correct it")
+    if name in parameters:
         raise bad("parameters", sorted([*parameters, name]), "each parameter once", "leave one out")
-    if max(resonance.modes) > system.size or min(resonance.modes) < 1:
-        expected_modes = f"modes from 1 to {system.size}"
-        raise bad("resonance.modes", resonance.modes, expected_modes, "correct it")
-    given = {} if name is None else {name: system.parameters.get(name, 0.0)}
-    equation_of(system, resonance.speed, {**parameters, **given})
+    return name, values
 
 
-class _Places(NamedTuple):
-    """Points of a tongue: values and factors; flat, which operator, and its eps."""
+def _operator(
+    system: LinearPeriodic, parameters: Mapping[str, float], resonance: Resonance, order: int
+) -> ResonantOperator:
+    """Return the effective operator, two orders beyond the wanted."""
+    span = resonance.speed / _NEAR, resonance.speed * _NEAR
+    condition = resonance.kind, resonance.modes, resonance.harmonic
+    meetings = MeanSystem(system, parameters).meetings(span, [condition])[0]
+    if not len(meetings):
+        raise bad(
+            resonance.label,
+            f"no such resonance from {span[0]:.4g} to {span[1]:.4g}",
+            "one at every parameter value",
+            "choose values nearer to those that the resonance was found at",
+        )
+    at = float(meetings[np.argmin(np.abs(meetings - resonance.speed))])
+    flow = conservative(system, at, parameters)
+    return resonant_operator(system, parameters, resonance, at, order + BEYOND, flow)
 
-    values: Array
-    damping: Array
-    which: NDArray[np.intp]
-    eps: Array
+
+def _ends(
+    operator: ResonantOperator, resonance: Resonance, order: int, *, undamped: bool = False
+) -> tuple[float, float, bool, float]:
+    """Return lower and upper end, whether open, and the error."""
+    ends = _detunings(operator, resonance, order, undamped)
+    first = ends[0]
+    if first == UNBOUNDED:
+        return 0.0, np.inf, True, np.inf
+    at = operator.speed
+    places = [np.array([_speed(e.high, at), _speed(e.low, at)]) for e in ends]
+    moved = max(float(np.max(np.abs(other - places[0]))) for other in places[1:])
+    moved = moved if np.isfinite(moved) else np.inf
+    # The next two orders show the size of what is left out, not its exact amount.  Order 1 does
+    # not see how neighbouring tongues that touch bend each other: there the error was up to 2.6
+    # times that.
+    error = (3.0 if order == 1 else 2.0) * moved + 64 * _EPS * abs(at)
+    touching = first.low == first.high and first.low.imag == 0.0
+    if not (first.open or touching):
+        return np.nan, np.nan, False, np.nan
+    low, high = sorted(places[0].real.tolist())
+    return low, high, first.open, error
 
 
-@dataclass(frozen=True)
-class _Problem:
-    """What does not change over the values of the parameter."""
-
-    system: LinearPeriodic
-    resonance: Resonance
-    parameters: dict[str, float]
-    order: int
-    merge: float
-
-    def starts_at_zero(self, name: str) -> bool:
-        """Return True where the system rests on a constant one with the parameter zero."""
-        given = {**self.parameters, name: 0.0}
-        return constant_at(self.system, given) and len(self._meetings(given)) > 0
-
-    def _meetings(self, parameters: Mapping[str, float]) -> Array:
-        """Return where the exponents of the resonance meet, not too far from where they did."""
-        item = self.resonance
-        mean = MeanSystem(self.system, parameters)
-        return mean.meetings(self._span, [(item.kind, item.modes, item.harmonic)])[0]
-
-    @property
-    def _span(self) -> tuple[float, float]:
-        return self.resonance.speed / _NEAR, self.resonance.speed * _NEAR
-
-    def operator(
-        self, changes: Mapping[str, float], name: str | None, radius: float
-    ) -> tuple[ResonantOperator, float]:
-        """Return the effective operator, two orders beyond the wanted, and its centre."""
-        given = {**self.parameters, **changes}
-        meetings = self._meetings(given if name is None else {**given, name: 0.0})
-        item = self.resonance
-        if not len(meetings):
-            low, high = self._span
-            raise bad(
-                item.label,
-                f"no such resonance from {low:.4g} to {high:.4g}",
-                "one at every parameter value",
-                "choose values nearer to those that the resonance was found at",
+def _detunings(
+    operator: ResonantOperator, resonance: Resonance, order: int, undamped: bool
+) -> list[Ends]:
+    """Return the ends in sigma at the wanted order and the two beyond it."""
+    centre, half = expected(operator.polynomials(1, undamped=True))
+    damped = operator.damped and not undamped
+    lossless = False if damped else True if operator.conservative else None
+    together = float(np.max(np.abs(operator.gaps))) <= _EXACT
+    out = []
+    for degree in range(1, order + BEYOND + 1):
+        matrices = operator.polynomials(degree, undamped=undamped)
+        if len(operator.modes) == 2:
+            ends = two_exponents(matrices, centre, lossless)
+            middle = (ends.low + ends.high).real / 2
+            centre = middle if np.isfinite(middle) else centre
+            out.append(ends)
+        elif degree >= order:
+            # Growth without damping, over the size of the operator, that round-off makes.
+            several = Several(
+                matrices,
+                operator.modes,
+                None if together else resonance.modes,
+                bool(lossless),
+                0.0 if damped else 1e-11,
             )
-        at = float(meetings[np.argmin(np.abs(meetings - item.speed))])
-        point = Point(self.system, given, at, name, radius)
-        flow = conservative(self.system, at, given if name is None else {**given, name: radius})
-        return resonant_operator(point, item, self.order + BEYOND, self.merge, flow), at
-
-    def ends(
-        self, operator: ResonantOperator, at: float, eps: float, delta: float
-    ) -> tuple[float, float, bool, float]:
-        """Return lower and upper end, whether open, and the error, at one point."""
-        ends = self._detunings(operator, eps, delta)
-        first = ends[0]
-        if first == UNBOUNDED:
-            return 0.0, np.inf, True, np.inf
-        places = [np.array([_speed(e.high, at), _speed(e.low, at)]) for e in ends]
-        moved = max(float(np.max(np.abs(other - places[0]))) for other in places[1:])
-        moved = moved if np.isfinite(moved) else np.inf
-        # The next two orders show the size of what is left out, not its exact amount.  Order 1 does
-        # not see how neighbouring tongues that touch bend each other: there the error was up to 2.6
-        # times that.
-        error = (3.0 if self.order == 1 else 2.0) * moved + 64 * _EPS * abs(at)
-        touching = first.low == first.high and first.low.imag == 0.0
-        if not (first.open or touching):
-            return np.nan, np.nan, False, np.nan
-        low, high = sorted(places[0].real.tolist())
-        return low, high, first.open, error
-
-    def _detunings(self, operator: ResonantOperator, eps: float, delta: float) -> list[Ends]:
-        """Return the ends in sigma at the wanted order and the two beyond it."""
-        centre, half = expected(operator.polynomials(eps, 0.0, 1))
-        damped = delta != 0.0 and operator.damped
-        lossless = False if damped else True if operator.conservative else None
-        together = float(np.max(np.abs(operator.gaps))) <= _EXACT
-        out = []
-        for order in range(1, self.order + BEYOND + 1):
-            matrices = operator.polynomials(eps, delta, order)
-            if operator.size == 2:
-                ends = two_exponents(matrices, centre, lossless)
-                middle = (ends.low + ends.high).real / 2
-                centre = middle if np.isfinite(middle) else centre
-                out.append(ends)
-            elif order >= self.order:
-                # Growth without damping, over the size of the operator, that round-off makes.
-                several = Several(
-                    matrices,
-                    operator.modes,
-                    None if together else self.resonance.modes,
-                    bool(lossless),
-                    0.0 if damped else 1e-11,
-                )
-                out.append(several.ends(centre, half))
-        return out[-1 - BEYOND :]
+            out.append(several.ends(centre, half))
+    return out[-1 - BEYOND :]
 
 
 def _speed(sigma: complex, at: float) -> complex:
@@ -385,9 +297,9 @@ def _speed(sigma: complex, at: float) -> complex:
 class TongueChecks:
     """Compares a tongue with multipliers from integration when it is called."""
 
-    problem: _Problem
+    system: LinearPeriodic
+    parameters: Mapping[str, float]
     tongue: Tongue
-    places: _Places
 
     def __call__(self) -> Mapping[str, Check]:
         """Return the checks by name."""
@@ -403,22 +315,16 @@ class TongueChecks:
         checks["error over half the width"] = Check(worst, 1.0)
         opened = opened[share < 1]
         if len(opened):
-            wrong = [self._contradictions(place) for place in _some(opened)]
-            names = ("stable inside", "unstable outside")
-            for name, counts in zip(names, zip(*wrong, strict=True), strict=True):
-                checks[name] = Check(float(sum(counts)), 0.0)
+            wrong = np.sum([self._contradictions(place) for place in _some(opened)], axis=0)
+            checks["stable inside"] = Check(float(wrong[0]), 0.0)
+            checks["unstable outside"] = Check(float(wrong[1]), 0.0)
         return checks
 
     def _lost(self) -> int:
         """Count the ranges that are missing although damping does not close them."""
-        missing = np.isnan(self.tongue.lower).ravel()
-        undamped = missing & (self.places.damping.ravel() == 0.0)
-        if not self.problem.system.is_damped(**self.problem.parameters):
-            undamped = missing
-        closed = np.flatnonzero(missing & ~undamped)
-        lost = int(np.sum(undamped))
-        if not len(closed):
-            return lost
+        missing = np.flatnonzero(np.isnan(self.tongue.lower.ravel())).tolist()
+        closed = np.array([k for k in missing if self.tongue.operators[k].damped], dtype=np.intp)
+        lost = len(missing) - len(closed)
         at = {int(place): self._within(int(place)) for place in closed}
         size = {k: np.max(np.abs(self._multipliers(k, x)), axis=-1) for k, x in at.items()}
         # All that the series doubts, and a few others; at the middle and the likeliest place.
@@ -427,19 +333,16 @@ class TongueChecks:
             lost += bool(np.any(modulus > 1 + error))
         return lost
 
-    def _operator(self, place: int) -> tuple[ResonantOperator, float, float]:
-        which = int(self.places.which[place])
-        result = self.tongue
-        return result.operators[which], float(result.centres[which]), float(self.places.eps[place])
-
     def _within(self, place: int) -> Array:
         """Return places, the middle first, all over the range that damping is said to close."""
-        operator, at, eps = self._operator(place)
-        low, high, _, error = self.problem.ends(operator, at, eps, 0.0)
+        operator = self.tongue.operators[place]
+        low, high, _, error = _ends(
+            operator, self.tongue.resonance, self.tongue.order, undamped=True
+        )
         if not np.all(np.isfinite([low, high, error])):
-            centre, half = expected(operator.polynomials(eps, 0.0, 1))
+            centre, half = expected(operator.polynomials(1, undamped=True))
             sigma = np.array([centre - half, centre + half])
-            low, high = np.sort(at / (1 + sigma)).tolist()
+            low, high = np.sort(operator.speed / (1 + sigma)).tolist()
             error = 0.0
         within = np.linspace(low - error, high + error, 101)
         return np.concatenate([[(low + high) / 2], within])
@@ -465,12 +368,10 @@ class TongueChecks:
 
     def _modulus(self, place: int, at: Array) -> tuple[Array, Array]:
         """Return the largest modulus of the multipliers that the series has, and its error."""
-        given = dict(self.problem.parameters)
+        given = dict(self.parameters)
         if self.tongue.parameter:
-            given[self.tongue.parameter] = float(self.places.values.ravel()[place])
-        factor = float(self.places.damping.ravel()[place])
-        damped = self.problem.system.with_changed_terms(partial(_damped, factor=factor))
-        exact = floquet_multipliers(damped, at, rtol=1e-11, **given)
+            given[self.tongue.parameter] = float(self.tongue.values.ravel()[place])
+        exact = floquet_multipliers(self.system, at, rtol=1e-11, **given)
         series = self._multipliers(place, at)
         nearest = np.argmin(np.abs(series[:, :, None] - exact.multipliers[:, None, :]), axis=-1)
         modulus = np.take_along_axis(np.abs(exact.multipliers), nearest, axis=-1)
@@ -480,24 +381,16 @@ class TongueChecks:
 
     def _multipliers(self, place: int, at: Array) -> Complex:
         """Return the multipliers of the series, two orders beyond the tongue's; ``(nb, r)``."""
-        operator, centre, eps = self._operator(place)
-        delta = float(self.places.damping.ravel()[place])
-        matrices = operator.polynomials(eps, delta, operator.order)
-        powers = (centre / at - 1)[:, None] ** np.arange(len(matrices))
+        operator = self.tongue.operators[place]
+        matrices = operator.polynomials(len(operator.terms))
+        powers = (operator.speed / at - 1)[:, None] ** np.arange(len(matrices))
         values = operator.centre + np.linalg.eigvals(np.tensordot(powers, matrices, axes=1))
-        return np.asarray(np.exp(values * self.problem.system.period))
+        return np.asarray(np.exp(values * self.system.period))
 
 
 def _some(places: NDArray[np.intp]) -> list[int]:
     """Return an even sample of places."""
+    if not len(places):
+        return []
     chosen = np.unique(np.linspace(0, len(places) - 1, 3).round().astype(int))
     return [int(place) for place in places[chosen]]
-
-
-def _damped(term: Term, factor: float) -> Term:
-    """Return a term, multiplied by a factor where it is damping."""
-    if term.array not in DAMPING or factor == 1.0:
-        return term
-    given = term.function
-    scaled = (lambda theta: factor * given(theta)) if callable(given) else factor * given
-    return replace(term, function=scaled)

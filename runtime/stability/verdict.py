@@ -2,40 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.families import Array, LinearPeriodic
 from ..core.results import Check
-from ..core.workers import Workers
 from ..periodic import floquet_multipliers
 from .chart_axes import damping_rate, on_grid
-from .chart_sampling import Sampler, Series
+from .chart_sampling import Map, Sampler, Series
 from .invariants import instability_kind, known_to, largest_modulus, root_uncertainty
 
 _SPOTS = 5
-Verdict = tuple[Array, NDArray[np.bool_], Array]
 
 
-def verdict(sampler: Sampler, series: Series) -> Verdict:
-    """Return the largest modulus, whether stable, and the slack, each ``(ny, nx)``."""
-    if not sampler.hill:
-        error = series.error if series.errors is None else series.errors
-        return largest_modulus(series.values, reduced=sampler.reduced, error=error)
-    half = np.abs(series.values[..., 0])
-    level = _level(sampler, half)
-    largest = _larger_root(half, level)
-    # An error of the half trace moves the boundary, where it is (1 + W) / 2.
-    edge = 0.5 * (1.0 + level)
-    slack = _larger_root(edge + series.error, level) - 1.0
-    return largest, half <= edge + series.error, slack
-
-
-@dataclass(frozen=True)
-class Judged:
+class Judged(NamedTuple):
     """What is told of each point, ``(ny, nx)``; see :class:`~.chart.StabilityChart`."""
 
     largest: Array
@@ -45,51 +28,39 @@ class Judged:
     kind: NDArray[np.int8]
 
 
-def judged(sampler: Sampler, series: Series) -> Judged:
+def judged(sampler: Sampler, series: Series, workers: Map) -> Judged:
     """Return what is told of each point, some rows at a time, which bounds the memory."""
     rows, points = series.values.shape[:2]
     # Points that are judged together.
     together = max(1, 250_000 // max(1, points))
     parts = [slice(start, start + together) for start in range(0, rows, together)]
-    shape = (rows, points)
-    found = Judged(
-        np.empty(shape),
-        np.empty(shape, dtype=bool),
-        np.empty(shape),
-        np.empty(shape, dtype=bool),
-        np.empty(shape, dtype=np.int8),
-    )
     # Of one mode the verdict is quicker than the way to another process and back.
-    workers = Workers(None, lambda: sampler) if sampler.hill else sampler.workers
-    items = ((part, series.rows(part)) for part in parts)
-    for number, block in workers.run(_judge, items):
-        for name, value in vars(block).items():
-            getattr(found, name)[parts[number]] = value
-    return found
+    run = map if sampler.hill else workers
+    blocks = run(partial(_judge, sampler), ((part, series.rows(part)) for part in parts))
+    return Judged(*(np.concatenate(columns) for columns in zip(*blocks, strict=True)))
 
 
 def _judge(sampler: Sampler, item: tuple[slice, Series]) -> Judged:
     """Return what is told of the points of some rows."""
     part, series = item
     rows = sampler.rows(part)
-    found = verdict(rows, series)
-    largest, stable, slack = found
-    kind = instability_kind(series.values, stable, hill=rows.hill, reduced=rows.reduced)
-    return Judged(largest, stable, slack, undecided(rows, series, found), kind)
-
-
-def undecided(sampler: Sampler, series: Series, found: Verdict) -> NDArray[np.bool_]:
-    """Return where the errors leave open whether a point is stable, ``(ny, nx)``."""
-    largest, stable, slack = found
-    if sampler.hill:
+    if rows.hill:
         half = np.abs(series.values[..., 0])
-        edge = 0.5 * (1.0 + _level(sampler, half))
-        return np.asarray(np.abs(half - edge) <= series.error)
-    unknown = np.isnan(largest)
-    if sampler.reduced:
-        return unknown | (stable & (slack > 0.0))
-    # Unstable is only what some multiplier proves beyond its own error.
-    return np.asarray(unknown | (stable & (largest + slack >= 1.0)))
+        level = _level(rows, half)
+        largest = _larger_root(half, level)
+        # An error of the half trace moves the boundary, where it is (1 + W) / 2.
+        edge = 0.5 * (1.0 + level)
+        slack = _larger_root(edge + series.error, level) - 1.0
+        stable = half <= edge + series.error
+        undecided = np.abs(half - edge) <= series.error
+    else:
+        error = series.error if series.errors is None else series.errors
+        largest, stable, slack = largest_modulus(series.values, reduced=rows.reduced, error=error)
+        # Unstable is only what some multiplier proves beyond its own error.
+        doubtful = slack > 0.0 if rows.reduced else largest + slack >= 1.0
+        undecided = np.isnan(largest) | (stable & doubtful)
+    kind = instability_kind(series.values, stable, hill=rows.hill, reduced=rows.reduced)
+    return Judged(largest, stable, slack, undecided, kind)
 
 
 def _level(sampler: Sampler, half: Array) -> Array:
@@ -113,14 +84,14 @@ def _larger_root(half: Array, level: Array) -> Array:
     return np.where(real, root, np.sqrt(level))
 
 
-def spot_check(sampler: Sampler, series: Series, found: Verdict) -> Check:
+def spot_check(sampler: Sampler, series: Series, found: Judged) -> Check:
     """Compare a handful of points with their Floquet multipliers.
 
     The value is the worst gap of the largest modulus over what the errors allow.  The allowance
     comes from the multipliers themselves, not from the slack of the verdict.
     """
     rng = np.random.default_rng(1972)
-    largest, stable, _ = found
+    largest, stable = found.largest, found.stable
     i = rng.integers(0, largest.shape[0], _SPOTS)
     j = rng.integers(0, largest.shape[1], _SPOTS)
     point: dict[str, Any] = {sampler.names[0]: sampler.axes[0][j]}

@@ -87,13 +87,13 @@ def test_spot_check_catches_damping_taken_for_none(monkeypatch):
 
 
 def test_spot_check_catches_a_slack_that_hides_a_resonance(monkeypatch):
-    sharp = verdict.verdict
+    sharp = verdict.largest_modulus
 
-    def blunt(sampler, series):
-        largest, _, slack = sharp(sampler, series)
+    def blunt(coefficients, **options):
+        largest, _, slack = sharp(coefficients, **options)
         return np.where(largest < 1.01, 1.0, largest), largest < 1.01, slack + 0.01
 
-    monkeypatch.setattr(verdict, "verdict", blunt)
+    monkeypatch.setattr(verdict, "largest_modulus", blunt)
     system = two(b=1e-3, pull=((0.0, 1.0), (1.0, 0.0)), squares=(1.0, 3.0))
     middle = 1.0 + np.sqrt(3.0)
     speeds = np.linspace(middle - 1e-4, middle + 1e-4, 21)

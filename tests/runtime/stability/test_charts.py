@@ -124,11 +124,3 @@ def test_picture_names_the_frequency_and_the_error_of_several_modes():
     axes = chart.plot()
     assert any("error of the invariants" in text.get_text() for text in axes.texts)
     assert "coupler frequency" in axes.child_axes[0].get_xlabel()
-
-
-def test_points_are_evaluated_one_by_one_where_they_are_few():
-    chart = el.stability_chart(
-        rig(**{"model.modes": 2}), ("speed", SPEEDS[::20]), ("follower_inertia", INERTIAS[::15])
-    )
-    assert chart.nodes == (0, 0)
-    assert chart.method.endswith("at each point")

@@ -68,16 +68,6 @@ def test_no_values_no_ends():
     assert found.passed
 
 
-def test_same_input_same_bytes():
-    system = _beam()
-    resonance = resonances(system, (9.0, 11.0))[0]
-    first, second = (
-        tongue(system, resonance, parameter=("load", [0.1, 0.5]), order=3) for _ in range(2)
-    )
-    assert first.lower.tobytes() == second.lower.tobytes()
-    assert first.error.tobytes() == second.error.tobytes()
-
-
 @pytest.mark.parametrize(
     ("span", "changes", "words"),
     [

@@ -45,7 +45,7 @@ SPEEDS = np.array([500.0, 611.3, 1234.5, 4000.0])
 
 def line(system, fineness=1.0, reduced=True):
     """The invariants at some speeds, from one line of a chart at zero damping."""
-    sampler = Sampler(system, ("speed", "damping"), (SPEEDS, np.array([0.0, 1e-9])), 1e-11)
+    sampler = Sampler(system, ("speed", "damping"), (SPEEDS, np.array([0.0, 1e-9])), None, 1e-11)
     lines = Lines(sampler)
     lines.reduced = reduced
     values = sampler.transform("speed", SPEEDS)

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.cli import main
 from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.workers import in_order
 
 FIELDS = ("invariants", "stable", "largest", "slack", "undecided", "kind")
 # What a chart of 1e7 points may take [bytes], issue 7.
@@ -61,8 +62,8 @@ def test_a_chart_does_not_depend_on_who_works_it_out(rod, coupler, pool, number)
     alone = el.stability_chart(system, x, y, **options)
     with ThreadPoolExecutor(3) as threads:
         others = [
-            el.stability_chart(system, x, y, executor=executor, **options)
-            for executor in (pool, threads)
+            el.stability_chart(system, x, y, workers=workers, **options)
+            for workers in (pool.map, in_order(pool), threads.map)
         ]
     for other in others:
         for name in FIELDS:
@@ -82,12 +83,10 @@ def test_points_do_not_depend_on_who_works_them_out(coupler, pool, solver):
             assert other.outputs[name].tobytes() == array.tobytes(), name
 
 
-def test_what_is_no_executor_is_refused(rod):
+def test_what_is_no_map_is_refused():
     mathieu = el.load_scene("mathieu").system()
-    with pytest.raises(BadInput, match="executor"):
-        el.stability_chart(mathieu, ("lam2", [0.0, 1.0]), ("mu", [0.0, 1.0]), executor=2)
-    with pytest.raises(BadInput, match="executor"):
-        el.stability_chart(rod, ("speed", [900.0, 1000.0]), ("crank_ratio", [0.1, 0.2]), executor=2)
+    with pytest.raises(BadInput, match=r"pool\.map"):
+        el.stability_chart(mathieu, ("lam2", [0.0, 1.0]), ("mu", [0.0, 1.0]), workers=2)
 
 
 def test_the_command_line_keeps_and_finds_a_chart(tmp_path, capsys):

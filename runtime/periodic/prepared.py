@@ -429,12 +429,17 @@ def prepare(
 
 
 class TableMaker:
-    """Makes the tables of one system, all in the units of its middle speed."""
+    """Makes the tables of one system, stiff or not, all in the units of its middle speed."""
 
     def __init__(
-        self, known: SampledSystem, speed: float, parameters: Mapping[str, ArrayLike]
+        self,
+        known: SampledSystem,
+        speed: float,
+        parameters: Mapping[str, ArrayLike],
+        *,
+        stiff: bool = True,
     ) -> None:
-        self.known, self.parameters = known, parameters
+        self.known, self.parameters, self.stiff = known, parameters, stiff
         middle = self.middle = equation_of(known, speed, parameters)
         unit = middle.scale[0]
         self.scale = np.concatenate([unit, 1.0 / unit, np.ones(int(middle.forced))])
@@ -460,7 +465,7 @@ class TableMaker:
         """
         slowest = self.equation(np.array([high]))
         n = slowest.size
-        way, segments = cheapest(slowest, rtol / _MARGIN, samples)
+        way, segments = cheapest(slowest, rtol / _MARGIN, samples, stiff=self.stiff)
         span = low, high
         table = table_of(
             self.equation, span, segments, way, 0.1 * rtol, samples=samples, nodes=nodes

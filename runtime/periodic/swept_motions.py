@@ -186,15 +186,15 @@ class Truncations:
         """
         truncated, known = self._required(modes, angles)
         low, high = span
-        maker = TableMaker(known, (low * high) ** 0.5, {})
+        maker = TableMaker(known, (low * high) ** 0.5, {}, stiff=False)
         table, whole, _, motion = maker.table(1.0 / high, 1.0 / low, angles, rtol, _NODES)
         return SweptMotions(truncated, table, maker.scale, whole, float(np.max(motion)))
 
     def trial(self, modes: int, angles: int, speeds: Array, rtol: float) -> Trial:
         """Return motions and growth at a few speeds, rising."""
         truncated, known = self._required(modes, angles)
-        maker = TableMaker(known, float(speeds[-1]), {})
-        way, count = cheapest(maker.equation(1.0 / speeds[:1]), rtol, angles)
+        maker = TableMaker(known, float(speeds[-1]), {}, stiff=False)
+        way, count = cheapest(maker.equation(1.0 / speeds[:1]), rtol, angles, stiff=False)
         flows = flows_at(maker.equation(1.0 / speeds), count, way, angles)
         z, _ = reduced(truncated, flows, maker.scale)
         waves = np.max(np.abs(np.fft.rfft(z, axis=1)), axis=2)

@@ -210,7 +210,8 @@ def _grouped(maps: Array, ends: tuple[float, float], samples: int, tail: float) 
         )
         for place in range(size):
             inner[:, rest == place] = running[:, within[rest == place]]
-            running = maps[:, place::size] @ running
+            if place + 1 < size:
+                running = maps[:, place::size] @ running
     series = [_series(merged), _series(inner)]
     sizes = np.maximum(*(np.max(np.abs(part), axis=(1, 2, 3), initial=0.0) for part in series))
     used = chebyshev.length(sizes, _EPS * float(np.max(sizes)))

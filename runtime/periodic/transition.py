@@ -21,10 +21,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from math import lgamma
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg.lapack import dgesv
 
 from ..core.collocation import gauss_tableau, radau_tableau
 from ..core.errors import BadInput, bad
@@ -49,6 +50,10 @@ _STIFF = 3.0
 # Floats of the collocation matrices that are solved in one batch: they stay in the cache.  With
 # eight times as many, nine and 27 freedoms take a fifth longer.
 _BLOCK = 500_000
+# Unknowns from which LAPACK solves system by system: a quarter quicker at 270 of them.
+_LARGE = 100
+# Power of the length of a segment that a field carries in the equations.
+_POWER = {"mass": 0, "gyroscopic": 1, "feedback": 1, "stiffness": 2}
 
 
 def rung(level: int) -> int:
@@ -81,6 +86,23 @@ class Method:
     a: Array
     inverse: Array
     ends: bool
+
+    @cache  # noqa: B019
+    def weights(self, fields: tuple[str, ...]) -> Array:
+        """Return what each field at each node adds to the equations, ``(s s, s fields)``.
+
+        Rows are unknown slope and equation, columns field and node; fields are times ``h`` to the
+        power of :data:`_POWER`.
+        """
+        s = self.stages
+        node = np.eye(s)
+        each = {
+            "mass": np.einsum("lj,jp->jlp", self.inverse, node),
+            "stiffness": -np.einsum("lj,lp->jlp", self.a, node),
+            "gyroscopic": np.einsum("lp,pj->jlp", self.inverse, self.a),
+            "feedback": -np.einsum("jl,lp->jlp", node, node),
+        }
+        return np.concatenate([each[name] for name in fields], axis=2).reshape(s * s, -1)
 
 
 @cache
@@ -146,89 +168,104 @@ def segments_from(
         Whether the slopes at the nodes are wanted too.
     """
     s = way.stages
-    together = max(1, _BLOCK // ((s * equation.size) ** 2 * len(equation.speed)))
-    parts = []
-    for begin in range(0, len(left), together):
+    nb, n, ns = len(equation.speed), equation.size, len(left)
+    m = 2 * n + equation.forced
+    whole = Segments(np.empty((nb, ns, m, m)), np.empty((nb, ns, s, n, m)) if slopes else None)
+    together = max(1, _BLOCK // ((s * n) ** 2 * nb))
+    for begin in range(0, ns, together):
+        part = slice(begin, begin + together)
         rows = None if table is None else table[begin * s : (begin + together) * s]
-        parts.append(_solved(equation, left[begin : begin + together], h, way, rows, slopes))
-    if len(parts) == 1:
-        return parts[0]
-    maps = np.concatenate([part.maps for part in parts], axis=1)
-    if not slopes:
-        return Segments(maps, None)
-    return Segments(maps, np.concatenate([p.slopes for p in parts if p.slopes is not None], axis=1))
+        ends, unknown = _solved(equation, left[part], h, way, rows)
+        whole.maps[:, part] = ends
+        if whole.slopes is not None:
+            whole.slopes[:, part] = unknown
+    return whole
 
 
 def _solved(
-    equation: Equation, left: Array, h: float, way: Method, table: Array | None, slopes: bool
-) -> Segments:
-    """Return segments that are solved in one batch of linear equations."""
+    equation: Equation, left: Array, h: float, way: Method, table: Array | None
+) -> tuple[Array, Array]:
+    """Return maps and slopes of segments that are solved in one batch of linear equations.
+
+    The matrix is one product: the weights of the method times the fields at the nodes.  It is made
+    by columns, as LAPACK wants it, and so are right sides and solutions.
+    """
     n, s = equation.size, way.stages
     angles = (left[:, None] + way.c * h).ravel()
     if table is None and equation.harmonics >= 0:
         table = waves(equation.harmonics, angles * (2 * np.pi / equation.period))
     nb, ns, m = len(equation.speed), len(left), 2 * n + equation.forced
-
-    def spread(value: Array) -> Array:
-        shape = value.shape[2:]
-        return np.broadcast_to(value, (nb, ns * s, *shape)).reshape(nb, ns, s, *shape)
-
-    def field(name: str) -> Array | None:
-        return spread(equation.at(name, angles, table)) if name in equation.fields else None
-
-    # Indices: member, segment, equation at node l, row, slope at node j, column.
-    matrix = np.empty((nb, ns, s, n, s, n))
-    mass = cast(Array, field("mass"))
-    np.multiply(way.inverse[:, None, :, None], np.moveaxis(mass, 2, 3)[:, :, None], out=matrix)
-    right = np.zeros((nb, ns, s, n, m))
-    right[..., n : 2 * n] = np.sum(way.inverse, axis=1)[:, None, None] * np.eye(n)
-    stiffness, turning, force = field("stiffness"), field("gyroscopic"), field("force")
-    if stiffness is not None:
-        matrix -= (h * h * way.a)[:, None, :, None] * stiffness[..., None, :]
-        right[..., :n] = h * stiffness
-    if turning is not None:
-        both = h * np.einsum("li,ij->lji", way.inverse, way.a).reshape(s * s, s)
-        flat = turning.reshape(nb, ns, s, n * n)
-        matrix += np.swapaxes((both @ flat).reshape(nb, ns, s, s, n, n), 3, 4)
-        right[..., :n] -= (way.inverse @ flat).reshape(nb, ns, s, n, n)
-    feedback = equation.feedback(
-        angles, table, None if turning is None else turning.reshape(nb, ns * s, n, n)
-    )
-    if feedback is not None:
-        feedback = spread(feedback)
-        node = np.arange(s)
-        matrix[:, :, node, :, node, :] -= h * np.moveaxis(feedback, 2, 0)
-    if force is not None:
-        right[..., 2 * n] = h * force
-    unknown = np.linalg.solve(
-        matrix.reshape(nb, ns, s * n, s * n), right.reshape(nb, ns, s * n, m)
-    ).reshape(nb, ns, s, n, m)
-    maps = np.zeros((nb, ns, m, m))
-    maps[..., :n, :] = np.tensordot(unknown, h * way.b, (2, 0))
+    fields = {
+        name: equation.at(name, angles, table)
+        for name in ("mass", "stiffness", "gyroscopic")
+        if name in equation.fields
+    }
+    turning = fields.get("gyroscopic")
+    if (feedback := equation.feedback(angles, table, turning)) is not None:
+        fields["feedback"] = feedback
+    # Indices: member, segment, column of a field, field, node, row.
+    stack = np.empty((nb, ns, n, len(fields), s, n))
+    at_nodes = {}
+    for place, (name, field) in enumerate(fields.items()):
+        values = np.broadcast_to(field, (nb, ns * s, n, n)).reshape(nb, ns, s, n, n)
+        np.multiply(np.moveaxis(values, 4, 2), h ** _POWER[name], out=stack[:, :, :, place])
+        at_nodes[name] = stack[:, :, :, place]
+    columns = way.weights(tuple(fields)) @ stack.reshape(nb, ns, n, len(fields) * s, n)
+    # Indices: member, segment, column, node, row.
+    right = np.zeros((nb, ns, m, s, n))
+    right[:, :, n : 2 * n] = np.eye(n)[:, None] * np.sum(way.inverse, axis=1)[:, None]
+    if "stiffness" in fields:
+        right[:, :, :n] = at_nodes["stiffness"] / h
+    if "gyroscopic" in fields:
+        right[:, :, :n] -= way.inverse @ at_nodes["gyroscopic"] / h
+    if equation.forced:
+        force = np.broadcast_to(equation.at("force", angles, table), (nb, ns * s, n))
+        right[:, :, 2 * n] = h * force.reshape(nb, ns, s, n)
+    # Slopes at the nodes: member, segment, column, coordinate, node.
+    unknown = _solution(
+        columns.reshape(nb, ns, s * n, s * n), right.reshape(nb, ns, m, s * n)
+    ).reshape(nb, ns, m, n, s)
+    # By columns too: the state at the right end.
+    ends = np.zeros((nb, ns, m, m))
+    ends[..., :n] = (unknown.reshape(-1, s) @ (h * way.b)).reshape(nb, ns, m, n)
     if way.ends:
         # The last node is the end: its momentum is M q' + A q.
-        rise = mass[:, :, -1] @ unknown[:, :, -1]
-        if turning is not None:
-            moved = maps[..., :n, :].copy()
-            moved[..., :n] += np.eye(n)
-            rise += turning[:, :, -1] @ moved
-        maps[..., n : 2 * n, :] = rise
+        rise = unknown[..., -1] @ at_nodes["mass"][..., -1, :]
+        if "gyroscopic" in fields:
+            moved = ends[..., :n].copy()
+            moved[..., :n, :] += np.eye(n)
+            rise += moved @ at_nodes["gyroscopic"][..., -1, :] / h
+        ends[..., n : 2 * n] = rise
     else:
-        rates = np.zeros((nb, ns, s, n, m))
-        if stiffness is not None:
-            places = (h * way.a @ unknown.reshape(nb, ns, s, n * m)).reshape(nb, ns, s, n, m)
-            places[..., :n] += np.eye(n)
-            rates += stiffness @ places
-        if feedback is not None:
-            rates += feedback @ unknown
-        if force is not None:
-            rates[..., 2 * n] += force
-        maps[..., n : 2 * n, :] = np.tensordot(rates, h * way.b, (2, 0))
-        maps[..., n : 2 * n, n : 2 * n] += np.eye(n)
-    maps[..., :n, :n] += np.eye(n)
-    if force is not None:
-        maps[..., 2 * n, 2 * n] = 1.0
-    return Segments(maps, np.asarray(unknown, dtype=np.float64) if slopes else None)
+        places = (unknown.reshape(-1, s) @ (h * way.a.T)).reshape(unknown.shape)
+        places[..., :n, :, :] += np.eye(n)[..., None]
+        # Gauss's weights add up the rate of the momentum, N q + (A^T - C/w) q' + F, at the nodes.
+        for name, vectors in (("stiffness", places), ("feedback", unknown)):
+            if name in fields:
+                summed = (way.b[:, None] * at_nodes[name]).reshape(nb, ns, n * s, n)
+                rate = vectors.reshape(nb, ns, m, n * s) @ summed
+                ends[..., n : 2 * n] += rate * h ** (1 - _POWER[name])
+        if equation.forced:
+            ends[..., 2 * n, n : 2 * n] += h * (way.b @ force.reshape(nb, ns, s, n))
+        ends[..., n : 2 * n, n : 2 * n] += np.eye(n)
+    ends[..., :n, :n] += np.eye(n)
+    if equation.forced:
+        ends[..., 2 * n, 2 * n] = 1.0
+    return ends.mT, np.transpose(unknown, (0, 1, 4, 3, 2))
+
+
+def _solution(columns: Array, right: Array) -> Array:
+    """Return solutions ``(..., m, k)`` of systems given by columns, both stacked alike.
+
+    LAPACK itself saves large systems the copies that NumPy makes.
+    """
+    if columns.shape[-1] < _LARGE:
+        return np.ascontiguousarray(np.linalg.solve(columns.mT, right.mT).mT)
+    for place in np.ndindex(columns.shape[:-2]):
+        *_, failed = dgesv(columns[place].T, right[place].T, overwrite_a=1, overwrite_b=1)
+        if failed:
+            raise np.linalg.LinAlgError("Singular matrix")
+    return right
 
 
 def product(maps: Array) -> tuple[Array, Whole]:
@@ -386,10 +423,10 @@ def cheapest(
         enough = (_MARGIN * errors <= rtol) & (missed <= rtol if stiff else True)
         enough &= stages * counts >= 2 * equation.reach
         if np.any(enough):
-            # Solving the stages of a segment: between the square and the cube of their number.
+            # Solving the stages of a segment: measured with nine and 27 freedoms.
             count = int(counts[np.argmax(enough)])
-            if count * stages**2.5 < least:
-                best, least = (way, count), count * stages**2.5
+            if count * stages**2.2 < least:
+                best, least = (way, count), count * stages**2.2
     if best is None:
         raise _too_fast(equation, int(np.argmax(np.max(equation.frequency, axis=1))))
     return best

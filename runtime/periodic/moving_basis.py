@@ -6,7 +6,10 @@ the subspace that they span does neither where the next frequency keeps its dist
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -268,3 +271,52 @@ def _rough(modes: int, found: str) -> Exception:
         "a subspace that is smooth and periodic in the crank angle",
         "keep one mode more or less, so that the next frequency keeps its distance at all angles",
     )
+
+
+def projections(array: str, values: Array, phi: Array, slope: Array) -> Iterator[tuple[str, Array]]:
+    """Yield the arrays that one array of a system gives on a basis and its derivative.
+
+    Parameters
+    ----------
+    array : str
+        ``M A B S C D K Kg f h g p``.
+    values : ndarray, shape (nt, n, n) or (nt, n)
+        Its samples.
+    phi, slope : ndarray, shape (nt, n, m)
+        Phi and Phi' there.
+    """
+    across = np.swapaxes(phi, -1, -2)
+    if values.ndim == 2:
+        yield array, (across @ values[..., None])[..., 0]
+        return
+    carried = values @ phi
+    yield array, across @ carried
+    turning = np.swapaxes(slope, -1, -2)
+    if array == "M":
+        yield "A", across @ (values @ slope)
+        yield "B", turning @ (values @ slope)
+    elif array == "A":
+        both = turning @ carried
+        yield "B", both + np.swapaxes(both, -1, -2)
+    elif array == "C":
+        yield "D", across @ (values @ slope)
+
+
+def deflection_on(system: LinearPeriodic, basis: MovingBasis) -> dict[str, Any]:
+    """Return what tells the deflection of a system on a basis, as fields of a LinearPeriodic."""
+    more: dict[str, Any] = {}
+    if system.shape is not None or system.moving_shape is not None:
+        more["moving_shape"] = partial(_shapes, system, basis)
+    if system.relative_deflection is not None:
+        more["relative_deflection"] = partial(_deflections, system.relative_deflection, basis)
+    return more
+
+
+def _shapes(system: LinearPeriodic, basis: MovingBasis, x: Array, theta: Array) -> Array:
+    shapes = system.shapes(x, theta)
+    assert shapes is not None
+    return np.asarray(shapes @ basis(theta))
+
+
+def _deflections(full: Callable[[Array], Array], basis: MovingBasis, theta: Array) -> Array:
+    return np.asarray(full(theta) @ basis(theta))

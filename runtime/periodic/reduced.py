@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from ..core.families import LinearPeriodic, Term
 from ..core.trigonometric import Array, even_angles, interpolated, tail
-from .moving_basis import MovingBasis, moving_basis
+from .moving_basis import MovingBasis, deflection_on, moving_basis, projections
 
 # Even angles from which the reduced arrays are interpolated.
 _FEWEST, _MOST = 128, 2048
@@ -120,11 +120,6 @@ def reduced_system(
     """
     phi = moving_basis(system, modes) if basis is None else basis
     terms = _fixed_terms(system, phi) if phi.fixed else _moving_terms(system, phi)
-    more: dict[str, object] = {}
-    if system.shape is not None or system.moving_shape is not None:
-        more["moving_shape"] = partial(_shapes, system, phi)
-    if system.relative_deflection is not None:
-        more["relative_deflection"] = partial(_deflections, system.relative_deflection, phi)
     rebuild = None
     if system.rebuild is not None:
         rebuild = partial(_reduced_anew, system.rebuild, dict(system.parameters), modes)
@@ -142,7 +137,7 @@ def reduced_system(
         limits=system.limits,
         full=system,
         basis=phi,
-        **more,  # type: ignore[arg-type]
+        **deflection_on(system, phi),
     )
 
 
@@ -154,45 +149,6 @@ def _reduced_anew(
 ) -> LinearPeriodic:
     """Return another geometry's system on its own modes."""
     return reduced_system(replace(rebuild(geometry), parameters=dict(parameters)), modes)
-
-
-def _shapes(system: LinearPeriodic, phi: MovingBasis, x: Array, theta: Array) -> Array:
-    shapes = system.shapes(x, theta)
-    assert shapes is not None
-    return np.asarray(shapes @ phi(theta))
-
-
-def _deflections(full: Callable[[Array], Array], phi: MovingBasis, theta: Array) -> Array:
-    return np.asarray(full(theta) @ phi(theta))
-
-
-def projections(array: str, values: Array, phi: Array, slope: Array) -> Iterator[tuple[str, Array]]:
-    """Yield the arrays that one array of a system gives on a basis and its derivative.
-
-    Parameters
-    ----------
-    array : str
-        ``M A B S C D K Kg f h g p``.
-    values : ndarray, shape (nt, n, n) or (nt, n)
-        Its samples.
-    phi, slope : ndarray, shape (nt, n, m)
-        Phi and Phi' there.
-    """
-    across = np.swapaxes(phi, -1, -2)
-    if values.ndim == 2:
-        yield array, (across @ values[..., None])[..., 0]
-        return
-    carried = values @ phi
-    yield array, across @ carried
-    turning = np.swapaxes(slope, -1, -2)
-    if array == "M":
-        yield "A", across @ (values @ slope)
-        yield "B", turning @ (values @ slope)
-    elif array == "A":
-        both = turning @ carried
-        yield "B", both + np.swapaxes(both, -1, -2)
-    elif array == "C":
-        yield "D", across @ (values @ slope)
 
 
 def _fixed_terms(system: LinearPeriodic, phi: MovingBasis) -> tuple[Term, ...]:

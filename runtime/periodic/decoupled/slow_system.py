@@ -13,7 +13,7 @@ from ...core.families import DAMPING, LinearPeriodic, Term
 from ...core.inputs import numbers, require_whole, speed_span
 from ...core.trigonometric import interpolated
 from ..equation import Equation, SampledSystem, at_geometry, sampled
-from ..reduced import projections
+from ..moving_basis import projections
 from .riccati import Frames, moving_frames, plain_equation, slow_part
 from .slow_modes import decoupling_error, frozen_frequencies, gap_choices, integrated
 

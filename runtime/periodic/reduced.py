@@ -78,7 +78,7 @@ class ReducedSystem(LinearPeriodic):
         Returns
         -------
         ndarray, shape (..., nt, n)
-            What the modes left out would add is missing: see :func:`modal_steady_state`.
+            What the modes left out would add is missing.
         """
         assert self.basis is not None
         return np.asarray(np.einsum("tnm,...tm->...tn", self.basis(theta), eta))

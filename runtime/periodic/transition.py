@@ -9,7 +9,7 @@ These are s n equations, for n coordinates and s nodes, and not 2 s n; the mass 
 All segments are solved in one batch, with 2n + 1 right sides.  Without damping Gauss's nodes keep
 the flow symplectic.  With damping Radau's let modes that are dead after a period vanish even where
 no segment resolves them, so that the number of segments follows from the modes that are still
-alive: see :func:`segments_for`.
+alive: see :func:`levels_for`.
 
 What comes out is checked by itself: on a ladder of numbers of segments, 8, 12, 16, 24, 32 ...,
 each step is compared with the one before (:func:`refined`).

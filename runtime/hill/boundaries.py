@@ -255,20 +255,13 @@ def _spectra(f: PeriodicFunction, odd: int, harmonic: int, mu: Array, count: int
     size = 2 * harmonic + 1 - odd
     # Large matrices with a narrow band are reduced as bands.
     if size > 160 and 4 * (2 * f.harmonics + 1) < size:
-        return np.stack([_banded(f, odd, harmonic, float(m), count) for m in mu])
+        from scipy.linalg import eig_banded
+
+        few = {"select": "i", "select_range": (0, count - 1)} if 8 * count < size else {}
+        solve = partial(eig_banded, lower=True, eigvals_only=True, check_finite=False, **few)
+        return np.stack([solve(banded(f, odd, harmonic, float(m)))[:count] for m in mu])
     stacks = (stacked(f, odd, harmonic, mu[part]) for part in chunks(mu.size, size))
     return np.concatenate([np.linalg.eigvalsh(stack)[:, :count] for stack in stacks])
-
-
-def _banded(f: PeriodicFunction, odd: int, harmonic: int, mu: float, count: int) -> Array:
-    """Return the lowest eigenvalues of a matrix that is large beside its band, shape (count,)."""
-    from scipy.linalg import eig_banded
-
-    whole = banded(f, odd, harmonic, mu)
-    few = 8 * count < whole.shape[1]
-    wanted: dict[str, Any] = {"select": "i", "select_range": (0, count - 1)} if few else {}
-    values = eig_banded(whole, lower=True, eigvals_only=True, check_finite=False, **wanted)
-    return np.asarray(values[:count])
 
 
 # ---------------------------------------------------------------- the half trace as a check
@@ -364,12 +357,7 @@ def _damped(
 def _from_matrix(
     f: PeriodicFunction, mu: Array, k: Array, regions: tuple[int, ...], sharp: Ends
 ) -> Ends:
-    """Return the ends by the real eigenvalues of the matrix; undecided are pairs almost real.
-
-    With y = exp(-K theta) u the multipliers +-1 of y belong to the half traces +-cosh(2 pi K) of
-    u at lam2 - K^2.  Within an undamped region the half trace of u has one extremum, so that a
-    damped region has two ends inside it, or none; region 0 always has its one.
-    """
+    """Return the ends by the real eigenvalues of the matrix; undecided are pairs almost real."""
     low, high = sharp.lower, sharp.upper
     shift = k * k
     cut = truncation(f, float(np.abs(mu).max()), max(regions), float(shift.max()))
@@ -400,13 +388,13 @@ def _from_matrix(
                 ends.lower[i, whole], ends.error[i, whole] = -np.inf, local[whole]
                 continue
             ends.lower[i, whole] = first + shift[whole]
-            ends.error[i, whole] = _near_tip(
+            ends.error[i, whole] = near_tip(
                 local[whole], 0.5 * (last - first), 0.5 * (high[i] - low[i])[whole]
             )
     return ends
 
 
-def _near_tip(local: Array, half: Array, sharp_half: Array) -> Array:
+def near_tip(local: Array | float, half: Array, sharp_half: Array | float) -> Array:
     """Return the error of ends ``+-half`` that damping drew in from ``+-sharp_half``.
 
     The ends follow ``sqrt(sharp_half^2 - const)``: an error of the data is magnified by

@@ -157,25 +157,13 @@ def _majorant(
 def _remainder(taps: Array, last: Array, gap: float, k: int, bound: float) -> float:
     """Bound the energy in all harmonics beyond k by a geometric series.
 
-    Where ``sum_m taps_m r^m <= gap`` the majorant falls at least like ``C r^-(j - k)`` from k on.
+    As many as there are taps are each at most ``sum(taps) / gap`` times the largest before them.
     """
-    width = len(taps)
-    if not width or not taps.any():
-        return 0.0
-    down, there = np.arange(width, 0, -1), taps > 0.0
-    logs = np.log(taps[there])
-    low, high = 0.0, 40.0
-    for _ in range(20):
-        middle = 0.5 * (low + high)
-        # exp(700) alone exceeds every gap.
-        fits = float(np.exp(np.minimum(middle * down[there] + logs, 700.0)).sum()) <= gap
-        low, high = (middle, high) if fits else (low, middle)
-    ratio = math.exp(2.0 / (k + 1) - 2.0 * low)
+    first, width = float(last.max(initial=0.0)), len(taps)
+    ratio = (float(taps.sum()) / gap) ** 2 * math.exp(2.0 * width / (k + 1))
     if ratio >= 1.0:
         return math.inf
-    back = np.arange(width - 1, -1, -1)
-    first = float((last * np.exp(-low * back)).max())
-    return 2.0 * first * first * ((k + 1.0) ** 2 + 2.0 * bound) * ratio / (1.0 - ratio)
+    return 2.0 * width * first * first * ((k + 1.0) ** 2 + 2.0 * bound) * ratio / (1.0 - ratio)
 
 
 def _too_large(reach: float, f: PeriodicFunction) -> BadInput:

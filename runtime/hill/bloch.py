@@ -45,10 +45,8 @@ from numpy.typing import ArrayLike, NDArray
 from ...generated import hill_recursion
 from ..core.errors import bad
 from ..core.periodic_function import PeriodicFunction
+from .checks import Array, Complex, Index
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Index = NDArray[np.intp]
 Couple = tuple[NDArray[Any], NDArray[Any]]
 
 # What was emitted, and what a public order leaves for the estimate of its error.

@@ -31,19 +31,24 @@ from ..core.chebyshev import analysis, nodes
 from ..core.errors import BadInput, bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, DeferredChecks, Result, provenance
-from .checks import arguments, axes_over, check_function, check_regions
+from .checks import (
+    EPS,
+    Array,
+    Complex,
+    Index,
+    Mask,
+    arguments,
+    axes_over,
+    check_function,
+    check_regions,
+)
 from .fourier_matrix import banded, by_parity, chunks, stacked, truncation
 from .half_trace import discriminant, growth_rate
 from .meissner import Meissner, meissner_ends
-from .transfer import EPS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 
 # Ends whose half trace is compared with its level, and the step of the differences there.  The
 # errors are estimates, and slope and curvature come from differences.
@@ -288,7 +293,7 @@ def _checks(
     return checks
 
 
-def sample_of(places: NDArray[np.intp]) -> NDArray[np.intp]:
+def sample_of(places: Index) -> Index:
     """Return an even sample of places ``(n, d)``, its ends included, by coordinate."""
     chosen = np.unique(np.linspace(0, len(places) - 1, min(_SAMPLE, len(places))).round())
     return np.asarray(places[chosen.astype(int)].T)
@@ -406,9 +411,7 @@ def near_tip(local: Array | float, half: Array, sharp_half: Array | float) -> Ar
     return np.asarray(moved + local)
 
 
-def _complex_spectra(
-    f: PeriodicFunction, odd: int, harmonic: int, mu: Array, k: Array
-) -> NDArray[np.complex128]:
+def _complex_spectra(f: PeriodicFunction, odd: int, harmonic: int, mu: Array, k: Array) -> Complex:
     """Return all eigenvalues of ``k^2 - 2 K d/d theta - mu f``, shape ``(n, size)``."""
     parts = chunks(mu.size, 2 * harmonic + 1 - odd)
     stacks = (stacked(f, odd, harmonic, mu[part], k[part]) for part in parts)
@@ -491,9 +494,7 @@ def _from_half_trace(
     return ends
 
 
-def crossing(
-    function: Callable[[Array, NDArray[np.intp]], Array], low: Array, high: Array
-) -> Array:
+def crossing(function: Callable[[Array, Index], Array], low: Array, high: Array) -> Array:
     """Return the roots of functions negative at ``low`` and not at ``high``, Illinois' rule.
 
     All points advance at once; ``function`` gets their numbers as well.

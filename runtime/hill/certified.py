@@ -30,6 +30,7 @@ from ..core.errors import BadInput, bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, provenance
 from .boundaries import Boundaries
+from .checks import Array, Mask
 from .fourier_matrix import (
     Truncation,
     by_parity,
@@ -40,11 +41,9 @@ from .fourier_matrix import (
     truncation,
 )
 
-Array = NDArray[np.float64]
 # Integers of any length.  A wave holds real and imaginary parts, ``(2, L)``, of the coefficients of
 # exp(i k theta), k = -(L-1)/2 ... (L-1)/2, which is whole or half-whole.
 Exact = NDArray[Any]
-Flags = NDArray[np.bool_]
 
 _U = 0.5 * float(np.finfo(float).eps)
 # What the eigenvectors leave out shall not be seen beside the rounding of the trial vectors.
@@ -93,8 +92,8 @@ class CertifiedBoundaries(Boundaries):
     upper_rest: Array
     lower_radius: Array
     upper_radius: Array
-    pair: Flags
-    closed: Flags
+    pair: Mask
+    closed: Mask
     function_error: Array
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {

@@ -16,6 +16,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+EPS = float(np.finfo(float).eps)
 
 # Harmonics of the largest Hill matrix: of some 4000 rows, seconds of work.
 LARGEST = 2048

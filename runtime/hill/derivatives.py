@@ -8,18 +8,14 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Result, provenance
 from .boundaries import hill_boundaries
-from .checks import LARGEST, arguments, check_function, check_regions
+from .checks import EPS, LARGEST, Array, Mask, arguments, check_function, check_regions
 from .fourier_matrix import layout, matrix, real_pairs, stacked, truncation
-from .transfer import EPS
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 _COEFFICIENT = re.compile(r"([ab])([0-9]+)")
 
@@ -49,7 +45,7 @@ class BoundaryDerivatives(Result):
 
     lower: Array
     upper: Array
-    double: Flags
+    double: Mask
     regions: tuple[int, ...]
     directions: tuple[str, ...]
     mu: Array
@@ -135,7 +131,7 @@ def boundary_derivatives(
     flat, friction = (np.broadcast_to(item, shape).ravel() for item in (amp, k))
     ends = hill_boundaries(f, flat, numbers, friction)
     out = np.full((3, len(wanted), len(numbers), flat.size), np.nan)
-    double: Flags = np.zeros((len(numbers), flat.size), dtype=bool)
+    double: Mask = np.zeros((len(numbers), flat.size), dtype=bool)
     highest = max(numbers, default=0)
     for column in range(flat.size):
         point = float(flat[column]), float(friction[column])

@@ -13,15 +13,10 @@ from math import ceil, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.errors import BadInput, bad
 from ..core.periodic_function import PeriodicFunction
-from .checks import LARGEST
-from .transfer import EPS
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from .checks import EPS, LARGEST, Array, Complex
 
 # What the cut leaves out by default: below the round-off of eigenvalues of size 1e3.
 _LEFT_OUT = 1e-13

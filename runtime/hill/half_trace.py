@@ -13,14 +13,14 @@ from math import ceil, log, pi, sqrt
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core import chebyshev
 from ..core.errors import bad
 from ..core.results import BROADCAST, Check, Result, provenance
-from .checks import arguments, check_function
+from .checks import EPS, Array, Index, Mask, arguments, check_function
 from .meissner import Meissner
-from .transfer import EPS, Transfer, transfer
+from .transfer import Transfer, transfer
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 
     from ..core.periodic_function import PeriodicFunction
 
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 Box = tuple[float, float, float, float]
 
 # Up to so many points direct evaluation is as fast as interpolation, and its error is entrywise.
@@ -76,7 +74,7 @@ class HalfTrace(Result):
         return np.asarray(0.5 * (1.0 + np.exp(-4.0 * pi * self.damping)))
 
     @property
-    def stable(self) -> NDArray[np.bool_]:
+    def stable(self) -> Mask:
         """True where both multipliers lie inside the unit circle (on it, when undamped)."""
         return np.asarray(np.abs(self.value) < self.level)
 

@@ -14,7 +14,7 @@ from math import comb
 from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.errors import bad
 from ..core.inputs import is_whole
@@ -22,12 +22,7 @@ from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, provenance
 from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
 from .boundaries import Boundaries
-from .checks import arguments, check_function, check_regions
-from .transfer import EPS
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Mask = NDArray[np.bool_]
+from .checks import EPS, Array, Complex, Mask, arguments, check_function, check_regions
 
 # The series is taken to converge while its components fall at least so fast from one to the next,
 # and while what is left out stays below this share of the distance to the next level.

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...generated import hill_recursion
 from ..core.errors import bad
@@ -29,14 +29,11 @@ from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, Result, provenance
 from .bloch import HIGHEST_ORDER, effective_operator, level_distance
 from .boundaries import hill_boundaries
-from .checks import check_function, check_regions, finite
-from .transfer import EPS
+from .checks import EPS, Array, Complex, check_function, check_regions, finite
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-
-Array = NDArray[np.float64]
 
 # A leading coefficient of the root is taken for zero where it is within the round-off of the terms
 # that make it, so many units of their size; above this share of its majorant it cannot be.
@@ -262,7 +259,7 @@ def _alphas(f: PeriodicFunction, n: int, order: int, ratio: float) -> tuple[Arra
     return np.stack([middle, half]), s, doubt
 
 
-def _root(drag: Array, coupling: NDArray[np.complex128]) -> Array:
+def _root(drag: Array, coupling: Complex) -> Array:
     """Return the power series of the root of ``|B|^2 - (Im A)^2``, which begins positive."""
     # A power of two, so that squares stay within the range of doubles and no digit changes.
     unit = np.ldexp(1.0, np.frexp(np.abs(coupling[0]) + np.abs(drag[0]))[1])

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, bad
 from ..core.periodic_function import PeriodicFunction
@@ -24,16 +24,13 @@ from ..core.results import Check, Result, provenance
 from ..core.sampling import finite_angles
 from .bloch import BEYOND, effective_operator, level_distance, wave_columns
 from .boundaries import hill_boundaries
-from .checks import LARGEST, check_regions
+from .checks import EPS, LARGEST, Array, Complex, check_regions
 from .fourier_matrix import couplings, stacked
 from .perturbation import Sums, check_order, combined, contraction, parameters_of
-from .transfer import EPS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 End = Literal["lower", "upper"]
 
 

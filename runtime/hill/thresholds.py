@@ -13,7 +13,7 @@ from functools import partial
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, bad
 from ..core.maxima import narrowed
@@ -21,16 +21,12 @@ from ..core.periodic_function import PeriodicFunction
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
 from .boundaries import Ends, crossing, hill_boundaries, largest_exponent, sample_of
-from .checks import arguments, axes_over, check_function, check_regions
+from .checks import EPS, Array, Index, Mask, arguments, axes_over, check_function, check_regions
 from .perturbation import CONTRACTION, Sums
-from .transfer import EPS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 
 # Values of mu per decade in the search for the first crossing, and how far it goes: to mu f of so
 # many times the square of the region's number.  Where it begins without damping any width will do.

@@ -35,7 +35,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, reduce
 from itertools import combinations_with_replacement
 from typing import Any, Protocol
 
@@ -106,23 +106,13 @@ def product_table(count: int, first: int, second: int) -> Index:
     return np.array([[place[tuple(row)] for row in rows] for rows in sums.tolist()], dtype=np.intp)
 
 
-@lru_cache(maxsize=256)
-def _factors(count: int, degree: int) -> tuple[Index, Index]:
-    """Return the first parameter of each monomial, and the place of the rest a degree below."""
-    first = np.argmax(monomials(count, degree) > 0, axis=1)
-    table = product_table(count, 1, degree - 1)
-    rest = [int(np.argmax(table[p] == place)) for place, p in enumerate(first.tolist())]
-    return first, np.array(rest, dtype=np.intp)
-
-
 def monomial_values(parameters: Array, order: int) -> Iterator[Array]:
     """Yield the values of the monomials of degree 1 ... order, shape (M_k, batch)."""
-    values = parameters
-    yield values
-    for degree in range(2, order + 1):
-        first, rest = _factors(len(parameters), degree)
-        values = parameters[first] * values[rest]
-        yield values
+    powers = np.ones((order + 1, *parameters.shape))
+    np.cumprod(np.broadcast_to(parameters, powers[1:].shape), axis=0, out=powers[1:])
+    for degree in range(1, order + 1):
+        exponents = monomials(len(parameters), degree).T
+        yield reduce(np.multiply, (powers[row, i] for i, row in enumerate(exponents)))
 
 
 def _frozen(item: NDArray[Any]) -> NDArray[Any]:

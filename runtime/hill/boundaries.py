@@ -34,13 +34,12 @@ from ..core.results import Check, DeferredChecks, Result, provenance
 from .checks import (
     EPS,
     Array,
-    Complex,
     Index,
     Mask,
-    arguments,
     axes_over,
     check_function,
     check_regions,
+    points,
 )
 from .fourier_matrix import banded, by_parity, chunks, stacked, truncation
 from .half_trace import discriminant, growth_rate
@@ -86,8 +85,7 @@ class Ends(NamedTuple):
 
     def take(self, where: Any) -> Ends:
         """Return some of the entries."""
-        lower, upper, error = (item[where] for item in self[:3])
-        return Ends(lower, upper, error, self.undecided[where])
+        return Ends(*(item[where] for item in self))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -201,15 +199,13 @@ def hill_boundaries(
     if certified or not isinstance(f, Meissner):
         check_function(f)
     numbers = check_regions(regions)
-    (amp, k), shape = arguments(mu=mu, damping=damping)
+    (flat, friction), shape = points(mu=mu, damping=damping)
     if not isinstance(certified, bool | np.bool_):
         raise bad("certified", repr(certified), "True or False", "choose one")
     if certified and isinstance(f, PeriodicFunction):
         from .certified import certified_boundaries
 
-        mus, drags = np.broadcast_arrays(amp, k)
-        return certified_boundaries(f, mus, drags, numbers)
-    flat, friction = (np.broadcast_to(item, shape).ravel() for item in (amp, k))
+        return certified_boundaries(f, flat.reshape(shape), friction.reshape(shape), numbers)
     ends = _ends(f, flat, friction, numbers)
     full = (len(numbers), *shape)
     return Boundaries(
@@ -372,8 +368,13 @@ def _from_matrix(
     slack = 4.0 * local
     ends = Ends.nothing(low.shape)
     for odd, rows in by_parity(regions):
-        values = _complex_spectra(f, odd, cut.harmonic + odd, mu, k)
-        place = values.real - shift[:, None]
+        harmonic = cut.harmonic + odd
+        stacks = (
+            stacked(f, odd, harmonic, mu[part], k[part])
+            for part in chunks(mu.size, 2 * harmonic + 1 - odd)
+        )
+        values = np.concatenate([np.linalg.eigvals(stack) for stack in stacks])
+        place = values.real - (f.a[0] * mu + shift)[:, None]
         real = np.where(values.imag == 0.0, place, np.nan)
         for i in rows:
             # NaN compares false: complex eigenvalues drop out here.
@@ -409,14 +410,6 @@ def near_tip(local: Array | float, half: Array, sharp_half: Array | float) -> Ar
     inner = np.maximum(half * half - square, 0.0)
     moved = np.where(inner > 0.0, half - np.sqrt(inner), np.sqrt(half * half + square))
     return np.asarray(moved + local)
-
-
-def _complex_spectra(f: PeriodicFunction, odd: int, harmonic: int, mu: Array, k: Array) -> Complex:
-    """Return all eigenvalues of ``k^2 - 2 K d/d theta - mu f``, shape ``(n, size)``."""
-    parts = chunks(mu.size, 2 * harmonic + 1 - odd)
-    stacks = (stacked(f, odd, harmonic, mu[part], k[part]) for part in parts)
-    values = np.concatenate([np.linalg.eigvals(stack) for stack in stacks])
-    return np.asarray(values - (f.a[0] * mu)[:, None], dtype=complex)
 
 
 # ---------------------------------------------------------------- strong damping

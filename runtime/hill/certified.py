@@ -136,32 +136,29 @@ def certified_boundaries(
 
     For an f taken with its coefficients as they stand, mu and K of one shape, all checked.
     """
-    size = len(regions), mu.size
-    names = [side + tail for side in ("lower", "upper") for tail in ("", "_rest", "_radius")]
-    arrays: dict[str, Array] = {name: np.full(size, np.nan) for name in names}
+    size = (len(regions), *mu.shape)
+    # Value, rest and radius of the lower and of the upper end.
+    found = np.full((*size, 2, 3), np.nan)
     pair, closed = np.zeros((2, *size), dtype=bool)
-    for column, (amp, k) in enumerate(zip(mu.ravel(), damping.ravel(), strict=True)):
-        for row, ends in enumerate(_slice(f, float(amp), float(k), regions)):
-            place = row, column
+    for at in np.ndindex(mu.shape):
+        mean = Fraction(float(mu[at])) * Fraction(float(f.a[0]))
+        for row, ends in enumerate(_slice(f, float(mu[at]), float(damping[at]), regions)):
+            place = (row, *at)
             if not isinstance(ends, tuple):
                 closed[place] = ends is True
                 continue
-            for side, ball in zip(("lower", "upper"), ends, strict=True):
-                parts = (-inf, 0.0, 0.0) if ball is None else _in_doubles(ball)
-                for tail, value in zip(("", "_rest", "_radius"), parts, strict=True):
-                    arrays[side + tail][place] = value
+            found[place] = [_in_doubles(ball, mean) for ball in ends]
             lower, upper = ends
             if lower is not None:
                 pair[place] = upper.middle - lower.middle <= upper.radius + lower.radius
+    names = [side + tail for side in ("lower", "upper") for tail in ("", "_rest", "_radius")]
+    arrays = dict(zip(names, np.moveaxis(found, (-2, -1), (0, 1)).reshape(6, *size), strict=True))
     # What the doubles alone are off by.
-    left = [
-        np.abs(arrays[side + "_rest"]) + arrays[side + "_radius"] for side in ("lower", "upper")
-    ]
+    left = np.max(np.abs(found[..., 1]) + found[..., 2], axis=-1)
     undecided = np.isnan(arrays["upper"]) & ~closed
-    shape = (len(regions), *mu.shape)
     return CertifiedBoundaries(
         method="Hill matrix, certified: exact residuals, Kato-Temple bounds",
-        error=np.nextafter(np.maximum(*left), np.inf).reshape(shape),
+        error=np.nextafter(left, np.inf),
         error_norm="absolute, entrywise, for either end",
         error_kind="bound",
         checks={
@@ -174,37 +171,39 @@ def certified_boundaries(
         mu=mu,
         damping=damping,
         function_error=np.abs(mu) * f.error,
-        **{name: values.reshape(shape) for name, values in arrays.items()},
-        pair=pair.reshape(shape),
-        closed=closed.reshape(shape),
+        **arrays,
+        pair=pair,
+        closed=closed,
     )
 
 
-def _in_doubles(ball: Ball) -> tuple[float, float, float]:
-    """Return the middle as the sum of two doubles, and a double above the radius."""
-    value = float(ball.middle)
-    rest = float(ball.middle - Fraction(value))
-    radius = ball.radius + abs(ball.middle - Fraction(value) - Fraction(rest))
+def _in_doubles(ball: Ball | None, mean: Fraction) -> tuple[float, float, float]:
+    """Return the middle less the mean as the sum of two doubles, and a double above the radius."""
+    if ball is None:
+        return -inf, 0.0, 0.0
+    middle = ball.middle - mean
+    value = float(middle)
+    rest = float(middle - Fraction(value))
+    radius = ball.radius + abs(middle - Fraction(value) - Fraction(rest))
     return value, rest, nextafter(float(radius), inf) if radius else 0.0
 
 
 def _slice(
     f: PeriodicFunction, mu: float, k: float, regions: tuple[int, ...]
 ) -> list[Ends | bool | None]:
-    """Return the balls of both ends of each region at one mu; no lower one for region 0.
+    """Return the balls of both ends of each region at one mu, without the mean of f.
+
+    There is no lower one for region 0.
 
     With damping: True where the region is proved closed, None where nothing is proved.
     """
-    mean = Fraction(mu) * Fraction(float(f.a[0]))
     out: dict[int, Ends | bool | None] = {}
     for odd, rows in by_parity(regions):
         numbers = sorted({regions[i] for i in rows})
         coarse = spectrum(f, mu, odd, numbers[-1] + 2, k * k)
         if k > 0.0:
             problem = DampedProblem(f, mu, k, coarse)
-            for n in numbers:
-                ends = problem.ends(n)
-                out[n] = _moved(ends, mean) if isinstance(ends, tuple) else ends
+            out.update((n, problem.ends(n)) for n in numbers)
             continue
         operator, known = HillOperator(f, mu), dict[int, Ball]()
         for n in numbers:
@@ -213,7 +212,7 @@ def _slice(
                     coarse, first, last = _group(f, mu, coarse, j)
                     balls = enclosures(coarse, operator, first, last)
                     known.update(zip(range(first, last + 1), balls, strict=True))
-            out[n] = _moved((known[n - 1] if n else None, known[n]), mean)
+            out[n] = known.get(n - 1), known[n]
     return [out[n] for n in regions]
 
 
@@ -225,12 +224,6 @@ def _group(f: PeriodicFunction, mu: float, coarse: Spectrum, j: int) -> tuple[Sp
             return coarse, *group
         coarse = spectrum(f, mu, coarse.odd, 2 * len(coarse.values) + coarse.odd)
     raise refusal(f"{len(coarse.values)} eigenvalues close together")
-
-
-def _moved(ends: Ends, mean: Fraction) -> Ends:
-    lower, upper = ends
-    moved = Ball(upper.middle - mean, upper.radius)
-    return None if lower is None else Ball(lower.middle - mean, lower.radius), moved
 
 
 def refusal(reason: str) -> BadInput:

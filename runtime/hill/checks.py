@@ -54,6 +54,12 @@ def arguments(**given: ArrayLike) -> tuple[tuple[Array, ...], tuple[int, ...]]:
         ) from reason
 
 
+def points(**given: ArrayLike) -> tuple[tuple[Array, ...], tuple[int, ...]]:
+    """Return the arguments at all points ``(n,)``, and the shape that they broadcast to."""
+    arrays, shape = arguments(**given)
+    return tuple(np.broadcast_to(item, shape).ravel() for item in arrays), shape
+
+
 def check_function(f: object) -> PeriodicFunction:
     """Return f, or refuse anything but a :class:`PeriodicFunction`."""
     if not isinstance(f, PeriodicFunction):

@@ -14,7 +14,7 @@ from ..core.errors import BadInput, bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Result, provenance
 from .boundaries import hill_boundaries
-from .checks import EPS, LARGEST, Array, Mask, arguments, check_function, check_regions
+from .checks import EPS, LARGEST, Array, Mask, check_function, check_regions, points
 from .fourier_matrix import layout, matrix, real_pairs, stacked, truncation
 
 _COEFFICIENT = re.compile(r"([ab])([0-9]+)")
@@ -126,9 +126,8 @@ def boundary_derivatives(
     """
     check_function(f)
     numbers = check_regions(regions)
-    (amp, k), shape = arguments(mu=mu, damping=damping)
+    (flat, friction), shape = points(mu=mu, damping=damping)
     wanted = [_direction(f, item, i) for i, item in enumerate(directions)]
-    flat, friction = (np.broadcast_to(item, shape).ravel() for item in (amp, k))
     ends = hill_boundaries(f, flat, numbers, friction)
     out = np.full((3, len(wanted), len(numbers), flat.size), np.nan)
     double: Mask = np.zeros((len(numbers), flat.size), dtype=bool)

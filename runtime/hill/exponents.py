@@ -15,7 +15,7 @@ from ..core.errors import bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .boundaries import half_trace_check, sample_of
-from .checks import EPS, LARGEST, Array, Mask, arguments, axes_over, check_function, check_regions
+from .checks import EPS, LARGEST, Array, Mask, axes_over, check_function, check_regions, points
 from .fourier_matrix import chunks, couplings, truncation
 from .half_trace import discriminant
 from .meissner import Meissner
@@ -183,8 +183,7 @@ def _bands(
 ) -> CharacteristicExponents:
     """Return the lam2 of each band with a given multiplier ``exp(2 pi (i nu - K))``."""
     numbers = check_regions(bands, most=LARGEST - 1, name="bands")
-    (amp, phase, k), shape = arguments(mu=mu, nu=nu, damping=damping)
-    flat, turn, friction = (np.broadcast_to(item, shape).ravel() for item in (amp, phase, k))
+    (flat, turn, friction), shape = points(mu=mu, nu=nu, damping=damping)
     lam2, error = _eigenvalues(f, flat, turn, numbers)
     lam2 = lam2 + friction * friction
     error = error + EPS * friction * friction

@@ -147,9 +147,10 @@ def discriminant(
     if not exact:
         check_function(f)
     (lam, amp, k), shape = arguments(lam2=lam2, mu=mu, damping=damping)
-    x = _collapsed(_padded(lam - k * k, len(shape)))
-    y = _collapsed(_padded(amp, len(shape)))
-    log2_scale = _collapsed(_padded(k * (-2.0 * pi / log(2.0)), len(shape)))
+    x, y, log2_scale = (
+        _collapsed(np.array(item, ndmin=len(shape)))
+        for item in (lam - k * k, amp, k * (-2.0 * pi / log(2.0)))
+    )
     x, log2_scale = np.broadcast_arrays(x, log2_scale)
     if all(min(n, m) == 1 for n, m in zip(x.shape, y.shape, strict=True)):
         work = _Work(f, x.ravel(), y.ravel(), log2_scale.ravel(), grid=True)
@@ -351,10 +352,6 @@ def _guess(span: float, low: float) -> int:
     start = sqrt(max(low, 0.0))
     half_phase = pi * (sqrt(start * start + span) - start)
     return min(16 * ceil((1.4 * half_phase + 14.0) / 16.0), _MOST_NODES)
-
-
-def _padded(values: Array, ndim: int) -> Array:
-    return values.reshape((1,) * (ndim - values.ndim) + values.shape)
 
 
 def _collapsed(values: Array) -> Array:

@@ -22,7 +22,7 @@ from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, provenance
 from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
 from .boundaries import Boundaries
-from .checks import EPS, Array, Complex, Mask, arguments, check_function, check_regions
+from .checks import EPS, Array, Complex, Mask, check_function, check_regions, points
 
 # The series is taken to converge while its components fall at least so fast from one to the next,
 # and while what is left out stays below this share of the distance to the next level.
@@ -122,23 +122,22 @@ def perturbation_boundaries(
     ratio, with a margin of a quarter, reaches 0.9, or the error half the distance to the
     neighbouring level of the same period.
     """
-    functions, amps, k, shape = parameters_of(f, mu, damping)
+    functions, flat, shape = parameters_of(f, mu, damping)
     numbers = check_regions(regions)
     check_order(order)
     if outside not in ("nan", "value"):
         raise bad("outside", repr(outside), "'nan' or 'value'", "choose one")
-    flat = np.stack([np.broadcast_to(item, shape).ravel() for item in (*amps, k)])
     count = flat.shape[1]
     lower, upper, error = np.empty((3, len(numbers), count))
     flagged, closed, undecided = np.empty((3, len(numbers), count), dtype=bool)
     share = 0.0
     with np.errstate(all="ignore"):
-        points = _Points(functions, flat, int(order))
+        problem = _Points(functions, flat, int(order))
         for i, n in enumerate(numbers):
-            operator = points.operator(n)
+            operator = problem.operator(n)
             for start in range(0, count, _CHUNK):
                 part = slice(start, start + _CHUNK)
-                ends, split = points.ends(operator, part)
+                ends, split = problem.ends(operator, part)
                 share = max(share, split)
                 half = ends.half
                 if outside == "nan" and ends.outside.any():
@@ -185,11 +184,11 @@ def parameters_of(
     f: PeriodicFunction | Sequence[PeriodicFunction],
     mu: ArrayLike | Sequence[ArrayLike],
     damping: ArrayLike,
-) -> tuple[tuple[PeriodicFunction, ...], tuple[Array, ...], Array, tuple[int, ...]]:
-    """Return functions, their parameters, the damping, and the shape that these broadcast to."""
+) -> tuple[tuple[PeriodicFunction, ...], Array, tuple[int, ...]]:
+    """Return the functions, their parameters with K last at all points, and the shape of these."""
     if isinstance(f, PeriodicFunction):
-        (amp, k), shape = arguments(mu=mu, damping=damping)  # type: ignore[arg-type]
-        return (f,), (amp,), k, shape
+        flat, shape = points(mu=mu, damping=damping)  # type: ignore[arg-type]
+        return (f,), np.stack(flat), shape
     if not isinstance(f, Sequence) or not f:
         check_function(f)
     functions = tuple(check_function(item) for item in f)
@@ -201,8 +200,8 @@ def parameters_of(
             "pass mu=[eps_1, eps_2, ...]",
         )
     named = {f"mu[{i}]" if len(mu) > 1 else "mu": value for i, value in enumerate(mu)}
-    (*amps, k), shape = arguments(**named, damping=damping)
-    return functions, tuple(amps), k, shape
+    flat, shape = points(**named, damping=damping)
+    return functions, np.stack(flat), shape
 
 
 def combined(functions: tuple[PeriodicFunction, ...], values: Array) -> PeriodicFunction:

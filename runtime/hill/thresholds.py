@@ -21,7 +21,7 @@ from ..core.periodic_function import PeriodicFunction
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
 from .boundaries import Ends, crossing, hill_boundaries, largest_exponent, sample_of
-from .checks import EPS, Array, Index, Mask, arguments, axes_over, check_function, check_regions
+from .checks import EPS, Array, Index, Mask, axes_over, check_function, check_regions, points
 from .perturbation import CONTRACTION, Sums
 
 if TYPE_CHECKING:
@@ -214,8 +214,7 @@ def _sums(operator: EffectiveOperator, f: PeriodicFunction, mu: Array, damping: 
 
 
 def _critical(f: PeriodicFunction, mu: ArrayLike, regions: tuple[int, ...]) -> Thresholds:
-    (amp, _), shape = arguments(mu=mu, damping=0.0)
-    flat = np.broadcast_to(amp, shape).ravel()
+    (flat, _), shape = points(mu=mu, damping=0.0)
     rows = [_closing(f, n, flat) for n in regions]
     k, lam2, error = (
         np.reshape([row[i] for row in rows], (len(regions), flat.size)) for i in range(3)
@@ -259,8 +258,7 @@ def _either_side(
 
 
 def _least(f: PeriodicFunction, damping: ArrayLike, regions: tuple[int, ...]) -> Thresholds:
-    (k,), shape = arguments(damping=damping)
-    flat = np.broadcast_to(k, shape).ravel()
+    (flat,), shape = points(damping=damping)
     reach = float(f.amplitudes[1:].sum())
     scale = max(max(regions, default=1), float(flat.max(initial=0.0)))
     top = _FARTHEST * scale**2 / reach if reach > 0.0 else 0.0

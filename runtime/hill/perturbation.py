@@ -306,30 +306,6 @@ class Sums(NamedTuple):
     ratio: Array
     """Ratio at which the components fall, with its margin."""
 
-    @property
-    def square(self) -> Array:
-        """``S = |B|^2 - (Im A)^2``; as a product, so that nothing cancels beyond the data."""
-        return (self.split - self.drag) * (self.split + self.drag)
-
-    @property
-    def fewest(self) -> Array:
-        """The least that S may be."""
-        low, high = np.maximum(self.split - self.spread, 0.0), self.drag + self.turned
-        return np.asarray((low - high) * (low + high))
-
-    @property
-    def most(self) -> Array:
-        """The most that S may be."""
-        high, low = self.split + self.spread, np.maximum(self.drag - self.turned, 0.0)
-        return np.asarray((high - low) * (high + low))
-
-    def root(self) -> tuple[Array, Array]:
-        """Return the root of S, 0 where that is negative, and its error."""
-        half = np.sqrt(np.maximum(self.square, 0.0))
-        outer = np.sqrt(np.maximum(self.most, 0.0)) - half
-        inner = half - np.sqrt(np.maximum(self.fewest, 0.0))
-        return half, np.maximum(outer, inner)
-
     @classmethod
     def of(cls, n: int, order: int, a: Complex, b: Complex, noise: Array, strength: Array) -> Sums:
         """Sum up A and B of region n from their components ``(N + 2, n)``.
@@ -357,13 +333,21 @@ class Sums(NamedTuple):
         half, error = np.zeros_like(self.centre), self.moved
         undecided = np.zeros(half.shape, dtype=bool)
         if self.region:
-            half, spread = self.root()
-            half[damped & (self.square < 0.0)] = np.nan
-            error = self.moved + spread
-            undecided = damped & (self.fewest < 0.0) & (self.most >= 0.0)
+            square = _square(self.split, self.drag)
+            least = _square(np.maximum(self.split - self.spread, 0.0), self.drag + self.turned)
+            most = _square(self.split + self.spread, np.maximum(self.drag - self.turned, 0.0))
+            inner, half, outer = (np.sqrt(np.maximum(s, 0.0)) for s in (least, square, most))
+            error = self.moved + np.maximum(outer - half, half - inner)
+            half[damped & (square < 0.0)] = np.nan
+            undecided = damped & (least < 0.0) & (most >= 0.0)
         inside = (self.ratio < CONTRACTION) & (error < _SHARE * level_distance(self.region))
         inside &= np.isfinite(self.centre)
         return SeriesEnds(self.centre, half, error, ~inside, undecided & inside)
+
+
+def _square(split: Array, drag: Array) -> Array:
+    """Return ``S = |B|^2 - (Im A)^2`` as a product: nothing cancels beyond the data."""
+    return (split - drag) * (split + drag)
 
 
 def contraction(sizes: Array, reference: Array | float) -> Array:

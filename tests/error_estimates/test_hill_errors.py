@@ -83,6 +83,7 @@ def test_boundaries_against_enclosures(rng, damped):
     mu *= 10.0 ** rng.uniform(0, 2)
     k = float(10.0 ** rng.uniform(-2, 0.8)) if damped else 0.0
     plain, proved = (hill_boundaries(f, mu, (0, 1, 2, 3), k, certified=c) for c in BOTH)
+    assert np.isnan(plain.upper[proved.closed]).all()
     errors, gaps = [], []
     for end in ("lower", "upper"):
         known = np.isfinite(getattr(proved, end))

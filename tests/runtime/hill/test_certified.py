@@ -7,12 +7,13 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from boundary_cases import closing_damping, rough
+from boundary_cases import rough
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import (
     boundary_derivatives,
     characteristic_exponents,
+    critical_damping,
     hill_boundaries,
 )
 from elastolink.runtime.hill.fourier_matrix import stacked, truncation
@@ -185,10 +186,10 @@ def test_damped_intervals_hold_an_eigenvalue_at_40_digits(mu, k):
 
 def test_damping_closes_with_proof_and_near_the_tip_says_undecided():
     mu = 0.6
-    low, high = closing_damping(COSINE, mu, 0.2, 0.4)
-    inside = hill_boundaries(COSINE, mu, (1,), low * (1 - 1e-6), certified=True)
-    beyond = hill_boundaries(COSINE, mu, (1,), high * (1 + 1e-3), certified=True)
-    tip = hill_boundaries(COSINE, mu, (1,), 0.5 * (low + high), certified=True)
+    closing = float(critical_damping(COSINE, mu, (1,)).damping[0])
+    inside, beyond, tip = (
+        hill_boundaries(COSINE, mu, (1,), closing * k, certified=True) for k in (1 - 1e-6, 1.001, 1)
+    )
     assert inside.passed and not inside.closed[0] and inside.lower[0] < inside.upper[0]
     assert beyond.passed and beyond.closed[0] and np.isnan(beyond.upper[0])
     assert not tip.passed and not tip.closed[0] and np.isnan(tip.upper[0])

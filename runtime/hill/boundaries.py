@@ -60,8 +60,6 @@ _RESOLVED, _NARROW = 0.25, 0.01
 _NODES, _MOST_NODES = 16, 256
 # Half traces at a time: beyond some thousand scattered points they would be interpolated.
 _POINTS = 4096
-# Beyond this excess of the half trace over its level the exponent is a mere logarithm.
-_LOGARITHMIC = 1e12
 
 
 class Ends(NamedTuple):
@@ -549,13 +547,17 @@ def _excess(
     return (sign * value - np.exp(-2.0 * np.pi * k)).reshape(shape), error.reshape(shape)
 
 
-def _exponent(excess: Array) -> Array:
-    """Return ``arccosh(1 + x) / (2 pi)`` without cancellation, and without overflow."""
-    few = np.minimum(excess, _LOGARITHMIC)
-    near = np.log1p(few + np.sqrt(few * (2.0 + few)))
-    # log(2 + 2 x) from here on; the next term is 1 / (4 x^2).
-    far = np.log(np.maximum(excess, 1.0)) + np.log(2.0) + 1.0 / np.maximum(excess, 1.0)
-    return np.asarray(np.where(excess > _LOGARITHMIC, far, near) / (2.0 * np.pi))
+def _exponent(excess: Array, drag: Array | float = 0.0) -> tuple[Array, Array]:
+    """Return ``arccosh(1 + x) / (2 pi)`` from ``excess = x exp(-2 pi drag)``, and its steepness.
+
+    Without cancellation, and without overflow; its derivative to the excess is 1 over 2 pi times
+    the steepness.
+    """
+    unit = np.exp(-2.0 * np.pi * np.asarray(drag))
+    root = np.sqrt(excess) * np.sqrt(2.0 * unit + excess)
+    rest = np.maximum(unit + excess + root, np.finfo(float).tiny)
+    growth = np.where(unit < 1.0, np.log(rest), np.log1p(excess + root))
+    return np.asarray(drag + growth / (2.0 * np.pi)), root
 
 
 def _narrow(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: Ends) -> Array:
@@ -578,7 +580,7 @@ def _narrow(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: Ends) -> A
         g, rise = _at(c, x), _at(slope, x) / _RESOLVED
         place = 0.5 * (1.0 - place * place) * half * rise / g
     g = np.maximum(_at(c, place * half / _RESOLVED), 0.0)
-    k = _exponent(half * half * (1.0 - place * place) * g)
+    k, _ = _exponent(half * half * (1.0 - place * place) * g)
     rate = np.sqrt(2.0 * g) / (2.0 * np.pi)
     doubt = rate * sharp.error + 0.5 * k * tail / np.maximum(g, EPS) + 4.0 * EPS * k
     return np.stack([k, centre + place * half, doubt])
@@ -601,13 +603,8 @@ def _wide(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: Ends) -> Arr
             place = _peak(c[:, done])
             x = np.maximum(_at(c[:, done], place), 0.0)
             doubt = tail[done] + error[:, done].max(axis=0) + 4.0 * EPS * most[done]
-            k, steep = _exponent(x), np.sqrt(x) * np.sqrt(2.0 + x)
-            scaled = drag[left[done]] > 0.0
-            # arccosh of a large x of which a factor was taken out.
-            far = np.log(2.0 * np.maximum(x, np.finfo(float).tiny)) / (2.0 * np.pi)
-            k = np.where(scaled, drag[left[done]] + far, k)
-            steep = np.where(scaled, x, steep)
-            reply = doubt / np.maximum(2.0 * np.pi * steep, np.where(scaled, 0.0, EPS))
+            k, steep = _exponent(x, drag[left[done]])
+            reply = doubt / np.maximum(2.0 * np.pi * steep, EPS)
             out[:, left[done]] = k, m[done] + h[done] * place, reply + 4.0 * EPS * k
         left, count = left[~done], 2 * count
     return out

@@ -35,8 +35,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache, reduce
+from functools import lru_cache
 from itertools import combinations_with_replacement
+from math import comb
 from typing import Any, Protocol
 
 import numpy as np
@@ -108,11 +109,13 @@ def product_table(count: int, first: int, second: int) -> Index:
 
 def monomial_values(parameters: Array, order: int) -> Iterator[Array]:
     """Yield the values of the monomials of degree 1 ... order, shape (M_k, batch)."""
-    powers = np.ones((order + 1, *parameters.shape))
-    np.cumprod(np.broadcast_to(parameters, powers[1:].shape), axis=0, out=powers[1:])
-    for degree in range(1, order + 1):
-        exponents = monomials(len(parameters), degree).T
-        yield reduce(np.multiply, (powers[row, i] for i, row in enumerate(exponents)))
+    values = parameters
+    yield values
+    for degree in range(2, order + 1):
+        # Those that begin with a parameter: it times the last ones below, which have none before.
+        sizes = (comb(degree - 2 + m, m - 1) for m in range(len(parameters), 0, -1))
+        values = np.concatenate([x * values[-k:] for x, k in zip(parameters, sizes, strict=True)])
+        yield values
 
 
 def _frozen(item: NDArray[Any]) -> NDArray[Any]:

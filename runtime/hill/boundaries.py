@@ -31,16 +31,7 @@ from ..core.chebyshev import analysis, nodes
 from ..core.errors import BadInput, bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, DeferredChecks, Result, provenance
-from .checks import (
-    EPS,
-    Array,
-    Index,
-    Mask,
-    axes_over,
-    check_function,
-    check_regions,
-    points,
-)
+from .checks import EPS, Array, Index, Mask, axes_over, check_function, check_regions, points
 from .fourier_matrix import banded, by_parity, chunks, stacked, truncation
 from .half_trace import discriminant, growth_rate
 from .meissner import Meissner, meissner_ends

@@ -6,10 +6,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.hill import (
-    critical_damping,
-    hill_boundaries,
-)
+from elastolink.runtime.hill import critical_damping, hill_boundaries
 from elastolink.runtime.hill.boundaries import half_trace_check
 from hill_functions import COSINE, functions
 from hypothesis import given, settings

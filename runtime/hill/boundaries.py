@@ -404,50 +404,44 @@ def near_tip(local: Array | float, half: Array, sharp_half: Array | float) -> Ar
 # ---------------------------------------------------------------- strong damping
 
 
-@dataclass(frozen=True)
-class _Level:
-    """How far the half trace is above the level of region n, at its points ``(n,)``."""
+def _end(
+    f: PeriodicFunction | Meissner, n: int, mu: Array, k: Array, outer: Array, inner: Array
+) -> tuple[Array, Array]:
+    """Return where half traces cross the level of region n, and the error, at points ``(m,)``.
 
-    f: PeriodicFunction | Meissner
-    sign: float
-    mu: Array
-    k: Array
+    Between a place ``outer`` below the level and one ``inner`` above it.
+    """
+    sign, turned = 1.0 if n % 2 == 0 else -1.0, np.where(inner < outer, -1.0, 1.0)
 
-    def share(self, lam2: Array, which: Index) -> Array:
-        """Return the logarithm of half trace over level, clipped where all are alike."""
-        half = discriminant(self.f, lam2, self.mu[which], self.k[which])
-        share = self.sign * half.value / half.level
-        return np.asarray(np.log(np.clip(share, 1e-304, 1e304)))
+    def share(t: Array, which: Index) -> Array:
+        # The logarithm of half trace over level, clipped where all are alike.
+        half = discriminant(f, turned[which] * t, mu[which], k[which])
+        return np.asarray(np.log(np.clip(sign * half.value / half.level, 1e-304, 1e304)))
 
-    def sure(self, lam2: Array, which: Index, above: bool) -> Mask:
-        """Return True where the half trace is above, or below, by more than its error."""
-        half = discriminant(self.f, lam2, self.mu[which], self.k[which])
-        gap = self.sign * half.value - half.level
+    def sure(lam2: Array, which: Index, above: bool) -> Mask:
+        # Whether the half trace is above, or below, by more than its error.
+        half = discriminant(f, lam2, mu[which], k[which])
+        gap = sign * half.value - half.level
         error = np.where(np.isfinite(half.value), half.error, 0.0) + 2.0 * EPS * half.level
         return np.asarray(gap > error if above else gap < -error)
 
-    def end(self, outer: Array, inner: Array) -> tuple[Array, Array]:
-        """Return the crossing between a place below the level and one above, and its error."""
-        turned = np.where(inner < outer, -1.0, 1.0)
-        place = turned * crossing(
-            lambda t, which: self.share(turned[which] * t, which), turned * outer, turned * inner
-        )
-        size = np.maximum(np.abs(place), self.k * self.k) + 1.0
-        error, left = 2.0 * EPS * size, np.arange(place.size)
-        # Proposals of the error, each three times the one before.
-        for _ in range(40):
-            step = turned[left] * error[left]
-            within, beyond = place[left] + step, place[left] - step
-            # Between the undamped end and the extremum there is a crossing in any case.
-            past = turned[left] * (within - inner[left]) >= 0.0
-            before = turned[left] * (outer[left] - beyond) >= 0.0
-            good = past | self.sure(np.where(past, inner[left], within), left, above=True)
-            good &= before | self.sure(np.where(before, outer[left], beyond), left, above=False)
-            left = left[~good]
-            if not left.size:
-                break
-            error[left] *= 3.0
-        return place, error
+    place = turned * crossing(share, turned * outer, turned * inner)
+    error = 2.0 * EPS * (np.maximum(np.abs(place), k * k) + 1.0)
+    left = np.arange(place.size)
+    # Proposals of the error, each three times the one before.
+    for _ in range(40):
+        step = turned[left] * error[left]
+        within, beyond = place[left] + step, place[left] - step
+        # Between the undamped end and the extremum there is a crossing in any case.
+        past = turned[left] * (within - inner[left]) >= 0.0
+        before = turned[left] * (outer[left] - beyond) >= 0.0
+        good = past | sure(np.where(past, inner[left], within), left, above=True)
+        good &= before | sure(np.where(before, outer[left], beyond), left, above=False)
+        left = left[~good]
+        if not left.size:
+            break
+        error[left] *= 3.0
+    return place, error
 
 
 def _from_half_trace(
@@ -455,22 +449,21 @@ def _from_half_trace(
 ) -> Ends:
     """Return the ends of region n for mu and K ``(n,)``; undecided where K may be critical."""
     ends = Ends.nothing(mu.shape)
-    sign, shift, slack = 1.0 if n % 2 == 0 else -1.0, k * k, sharp.error
+    shift, slack = k * k, sharp.error
     if n == 0:
         # With z = y'/y the equation says that the mean of lam2 + mu f is that of -z^2 on the end;
         # where it is below zero all the way round, the solutions grow faster than K.
         reach = np.abs(mu) * f.bound() * (1.0 + 4.0 * EPS)
         most = np.minimum(sharp.upper + shift + slack, EPS * reach + slack - mu * f.mean)
-        upper, error = _Level(f, sign, mu, k).end(most, -reach - 1.0)
+        upper, error = _end(f, n, mu, k, most, -reach - 1.0)
         return Ends(np.full(mu.shape, -np.inf), upper, error, ends.undecided)
     critical, peak, doubt = largest_exponent(f, n, mu, sharp)
     ends.undecided[:] = ~(np.abs(k - critical) > doubt)
     there = np.flatnonzero((k < critical) & ~ends.undecided)
     if there.size:
-        level = _Level(f, sign, mu[there], k[there])
-        top = (peak + shift)[there]
-        lower, first = level.end((sharp.lower + shift - slack)[there], top)
-        upper, last = level.end((sharp.upper + shift + slack)[there], top)
+        point, top = (f, n, mu[there], k[there]), (peak + shift)[there]
+        lower, first = _end(*point, (sharp.lower + shift - slack)[there], top)
+        upper, last = _end(*point, (sharp.upper + shift + slack)[there], top)
         open_ = np.zeros(there.shape, dtype=bool)
         ends.put(there, Ends(lower, upper, np.maximum(first, last), open_))
     return ends

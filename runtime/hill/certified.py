@@ -31,15 +31,7 @@ from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, provenance
 from .boundaries import Boundaries
 from .checks import Array, Mask
-from .fourier_matrix import (
-    Truncation,
-    by_parity,
-    exponentials,
-    layout,
-    real_pairs,
-    stacked,
-    truncation,
-)
+from .fourier_matrix import by_parity, exponentials, finest, layout, real_pairs, stacked
 
 # Integers of any length.  A wave holds real and imaginary parts, ``(2, L)``, of the coefficients of
 # exp(i k theta), k = -(L-1)/2 ... (L-1)/2, which is whole or half-whole.
@@ -279,7 +271,9 @@ def spectrum(
     ``highest`` is even for the whole problem and odd for the half-whole one; ``shift`` asks for
     harmonics enough for eigenvalues that damping moves up by so much.
     """
-    cut = _cut(f, mu, highest, shift)
+    goal = _GOAL * (1.0 + abs(mu) * float(f.amplitudes[1:].sum()))
+    goals = [min(_LOOSEST, 1e4**step * goal) for step in range(7)]
+    cut = finest(f, abs(mu), highest, shift, goals)
     harmonic = cut.harmonic + odd
     matrix = stacked(f, odd, harmonic, np.array([mu]))[0]
     values, vectors = np.linalg.eigh(matrix)
@@ -300,30 +294,11 @@ def spectrum(
     return Spectrum(values[:count], vectors[:, :count], reach, cut.norm, odd, harmonic)
 
 
-def _cut(f: PeriodicFunction, mu: float, highest: int, shift: float) -> Truncation:
-    """Return the truncation at the finest goal that 2048 harmonics reach."""
-    goal = _GOAL * (1.0 + abs(mu) * float(f.amplitudes[1:].sum()))
-    while True:
-        try:
-            return truncation(f, abs(mu), highest, shift, goal)
-        except BadInput:
-            if goal >= _LOOSEST:
-                raise
-            goal = min(_LOOSEST, 1e4 * goal)
-
-
 # ---------------------------------------------------------------- exact products
 
 
 class HillOperator:
-    """``4 (k^2 - mu (f - mean) - 2 K d/d theta)`` on waves, in units of ``2**-160``.
-
-    Attributes
-    ----------
-    rounding : Fraction
-        Bound of the norm of what rounding the coefficients changed in the operator without the
-        factor 4 (the damping term is exact).
-    """
+    """``4 (k^2 - mu (f - mean) - 2 K d/d theta)`` on waves, in units of ``2**-160``."""
 
     def __init__(self, f: PeriodicFunction, mu: float, damping: float = 0.0) -> None:
         factor, unit = Fraction(mu), 1 << _FUNCTION_BITS
@@ -336,7 +311,7 @@ class HillOperator:
         # K = m 2^-e with a long e has digits beyond the unit: they count as rounding as well.
         self._drag = round(drag)
         self._drag_rounding = Fraction(0 if drag == self._drag else 1, unit)
-        self.rounding = Fraction(2 * f.harmonics, unit)
+        self._rounding = Fraction(2 * f.harmonics, unit)
 
     def __call__(self, x: Exact) -> Exact:
         """Apply the operator; the result reaches as many harmonics further as f has."""
@@ -357,8 +332,11 @@ class HillOperator:
         return np.concatenate([np.stack([lower[0], -lower[1]]), out], axis=1)
 
     def doubt(self, x: Exact) -> Fraction:
-        """Bound what rounding changes in a product with a vector of norm 1 as long as ``x``."""
-        return self.rounding + self._drag_rounding * int(x.shape[1] // 2 + 2)
+        """Bound what rounding changes in a quarter of the product with a wave of norm 1.
+
+        ``x`` is as long as the wave.
+        """
+        return self._rounding + self._drag_rounding * int(x.shape[1] // 2 + 2)
 
 
 def wave(odd: int, column: Array) -> Exact:
@@ -413,7 +391,8 @@ def enclosures(coarse: Spectrum, operator: HillOperator, first: int, last: int) 
     overlap = np.array([[inner(x, y) for y in waves] for x in waves], dtype=object)
     residual = _residual(waves, images, coupling, overlap)
     values = [Fraction(float(v)) for v in coarse.values]
-    reach = Fraction(coarse.reach) + operator.rounding
+    rounding = operator.doubt(waves[0])
+    reach = Fraction(coarse.reach) + rounding
     gaps = [values[last + 1] - values[last]]
     if first:
         gaps.append(values[first] - values[first - 1])
@@ -424,7 +403,7 @@ def enclosures(coarse: Spectrum, operator: HillOperator, first: int, last: int) 
     there = all(low <= b.middle - b.radius and b.middle + b.radius <= high for b in balls)
     if not (there and 4 * residual < gap):
         raise refusal(f"a residual of {float(residual):.1e} beside a gap of {float(gap):.1e}")
-    spread = residual * residual / (gap - 2 * residual) + operator.rounding
+    spread = residual * residual / (gap - 2 * residual) + rounding
     return [Ball(ball.middle, ball.radius + spread) for ball in balls]
 
 
@@ -478,13 +457,7 @@ def _off_norm(matrix: Exact, metric: Exact) -> Fraction:
 
 
 class DampedProblem:
-    """The damped matrix in one of the two problems, without its mean, cut and uncut.
-
-    Attributes
-    ----------
-    pairs : tuple of ndarray
-        Real eigenvalues of the cut matrix, with right and left vectors of norm 1 as columns.
-    """
+    """The damped matrix in one of the two problems, without its mean, cut and uncut."""
 
     def __init__(self, f: PeriodicFunction, mu: float, k: float, coarse: Spectrum) -> None:
         self.coarse, self.k = coarse, k
@@ -498,7 +471,7 @@ class DampedProblem:
         self._beyond = (harmonic + (0.5 if odd else 1.0)) ** 2
         self._bound = abs(mu) * float(f.amplitudes[1:].sum()) * (1.0 + 1e-12)
         self._right, self._left = HillOperator(f, mu, k), HillOperator(f, mu, -k)
-        self.pairs = real_pairs(self._low)
+        self._pairs = real_pairs(self._low)
 
     def ends(self, n: int) -> tuple[Ball | None, Ball] | bool | None:
         """Return the enclosed ends of region n; True where it is proved closed, None if undecided.
@@ -514,9 +487,9 @@ class DampedProblem:
         below = values[n - 2] + reach if n >= 2 else -inf
         above = values[n + 1] - reach
         balls = []
-        near = (self.pairs[0] - k * k >= low - slack) & (self.pairs[0] - k * k <= high + slack)
+        near = (self._pairs[0] - k * k >= low - slack) & (self._pairs[0] - k * k <= high + slack)
         for i in np.flatnonzero(near):
-            value, right, left = (item[..., i] for item in self.pairs)
+            value, right, left = (item[..., i] for item in self._pairs)
             ball = self._eigenvalue(float(value), right, left)
             if ball is None:
                 continue

@@ -10,12 +10,12 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.errors import BadInput, bad
+from ..core.errors import bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Result, provenance
 from .boundaries import hill_boundaries
 from .checks import EPS, LARGEST, Array, Mask, check_function, check_regions, points
-from .fourier_matrix import layout, matrix, real_pairs, stacked, truncation
+from .fourier_matrix import LEFT_OUT, finest, layout, matrix, real_pairs, stacked
 
 _COEFFICIENT = re.compile(r"([ab])([0-9]+)")
 
@@ -189,11 +189,8 @@ class _Slice:
 
     def __init__(self, f: PeriodicFunction, mu: float, k: float, odd: int, highest: int) -> None:
         self.f, self.mu, self.k, self.odd = f, mu, k, odd
-        try:
-            # Far below a rounding, so that the truncation need not be weighed against it.
-            self.cut = truncation(f, abs(mu), highest + 2, k * k, goal=1e-20)
-        except BadInput:
-            self.cut = truncation(f, abs(mu), highest + 2, k * k)
+        # Far below a rounding, so that the truncation need not be weighed against it.
+        self.cut = finest(f, abs(mu), highest + 2, k * k, (1e-20, LEFT_OUT))
         # The highest k that matters to the solutions.
         self.level = 0.5 * (highest + 2) + (abs(mu) * f.bound()) ** 0.5
         self.harmonic = self.cut.harmonic + odd

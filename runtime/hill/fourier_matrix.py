@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from functools import lru_cache
 from math import ceil, sqrt
 from typing import Any, NamedTuple
@@ -19,7 +20,7 @@ from ..core.periodic_function import PeriodicFunction
 from .checks import EPS, LARGEST, Array, Complex
 
 # What the cut leaves out by default: below the round-off of eigenvalues of size 1e3.
-_LEFT_OUT = 1e-13
+LEFT_OUT = 1e-13
 
 
 def chunks(count: int, size: int) -> Iterator[slice]:
@@ -61,7 +62,7 @@ def truncation(
     reach: float,
     highest: int,
     shift: float = 0.0,
-    goal: float = _LEFT_OUT,
+    goal: float = LEFT_OUT,
 ) -> Truncation:
     """Choose the truncation for the regions up to ``highest`` at ``|mu| <= reach``.
 
@@ -87,6 +88,16 @@ def truncation(
     return _truncation(f, max(octave, reach), highest, shift, goal)
 
 
+def finest(
+    f: PeriodicFunction, reach: float, highest: int, shift: float, goals: Sequence[float]
+) -> Truncation:
+    """Return the truncation at the first of some rising goals that can be reached."""
+    for goal in goals[:-1]:
+        with suppress(BadInput):
+            return truncation(f, reach, highest, shift, goal)
+    return truncation(f, reach, highest, shift, goals[-1])
+
+
 @lru_cache(maxsize=256)
 def _truncation(
     f: PeriodicFunction, reach: float, highest: int, shift: float, goal: float
@@ -100,7 +111,7 @@ def _truncation(
     dropped = 4.0 * float(half[kept:].sum())
     # A hair above, for the rounding of the distance of k^2 from it.
     ceiling = (0.25 * highest * highest + shift + 1.5 * bound) * (1.0 + 8.0 * EPS)
-    goal = max(goal, EPS * ceiling) if goal >= _LEFT_OUT else goal
+    goal = max(goal, EPS * ceiling) if goal >= LEFT_OUT else goal
     spread = 0.25 * highest * highest + shift + 2.0 * bound
     start = int(sqrt(ceiling)) + 1
     cut = _majorant(half[:kept][::-1], ceiling, start, bound, goal)

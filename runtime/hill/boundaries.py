@@ -195,7 +195,7 @@ def hill_boundaries(
         from .certified import certified_boundaries
 
         return certified_boundaries(f, flat.reshape(shape), friction.reshape(shape), numbers)
-    ends = _ends(f, flat, friction, numbers)
+    ends = ends_at(f, flat, friction, numbers)
     full = (len(numbers), *shape)
     return Boundaries(
         method="zeros of Meissner's factors" if isinstance(f, Meissner) else "Hill matrix",
@@ -211,7 +211,7 @@ def hill_boundaries(
     )
 
 
-def _ends(f: PeriodicFunction | Meissner, mu: Array, k: Array, regions: tuple[int, ...]) -> Ends:
+def ends_at(f: PeriodicFunction | Meissner, mu: Array, k: Array, regions: tuple[int, ...]) -> Ends:
     """Return the ends for mu and K ``(n,)``."""
     if not regions or not mu.size:
         return Ends.nothing((len(regions), mu.size))

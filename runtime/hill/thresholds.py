@@ -20,7 +20,7 @@ from ..core.maxima import narrowed
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
-from .boundaries import Ends, crossing, hill_boundaries, largest_exponent, sample_of
+from .boundaries import crossing, ends_at, hill_boundaries, largest_exponent, sample_of
 from .checks import EPS, Array, Index, Mask, axes_over, check_function, check_regions, points
 from .perturbation import CONTRACTION, Sums
 
@@ -156,8 +156,7 @@ class Closing(NamedTuple):
 
 def _closing(f: PeriodicFunction, n: int, mu: Array) -> Closing:
     """Return where region n closes, by perturbation where that has the smaller error."""
-    bounds = hill_boundaries(f, mu, (n,))
-    sharp = Ends(bounds.lower[0], bounds.upper[0], bounds.error[0], np.zeros(mu.shape, dtype=bool))
+    sharp = ends_at(f, mu, np.zeros_like(mu), (n,)).take(0)
     k, place, error = largest_exponent(f, n, mu, sharp)
     exact = Closing(k, place + k * k, error)
     coarse = np.flatnonzero(error > 1e-13 * k)

@@ -139,14 +139,11 @@ def _majorant(
     width = len(taps)
     # Component k stands at index width + k; all that lies below the start is bounded by 1.
     size = np.ones(width + 4 * LARGEST + 1)
-    # Small steps first: many problems need few harmonics.
-    check = start + 8
     for k in range(start, 4 * LARGEST):
         gap = k * k - ceiling
         size[width + k] = min(1.0, float(taps @ size[k : width + k]) / gap)
-        if k < check:
+        if (k - start) % 16 != 8:
             continue
-        check = k + max(8, (k - start) // 8)
         rest = _remainder(taps, size[k + 1 : width + k + 1], (k + 1) ** 2 - ceiling, k, bound)
         if rest <= 0.1 * goal:
             squares = 2.0 * np.square(size[width + start : width + k + 1])

@@ -11,7 +11,7 @@ from ..core.families import Array, LinearPeriodic
 from ..core.periodic_function import PeriodicFunction
 from ..hill import HillForm, hill_boundaries, hill_form, perturbation_boundaries
 from ..hill.boundaries import near_tip
-from ..hill.fourier_matrix import layout, stacked, truncation
+from ..hill.fourier_matrix import by_parity, layout, stacked, truncation
 from .chart_axes import is_damped, is_stiffness, leaves_function_alone
 
 _EPS = float(np.finfo(float).eps)
@@ -155,14 +155,10 @@ def _damped_speeds(
     cut = truncation(f, 1.0, max(regions), (ratio * highest) ** 2)
     local = cut.left_out + 8.0 * _EPS * (cut.norm + 2.0 * ratio * highest * cut.harmonic) + f.error
     out = np.full((3, len(regions)), np.nan)
-    for odd in (0, 1):
-        if not any(n % 2 == odd for n in regions):
-            continue
+    for odd, rows in by_parity(regions):
         s = _inverse_speeds(f, odd, cut.harmonic + odd, ratio)
         shifted = s * s * (1.0 - ratio * ratio)
-        for i, n in enumerate(regions):
-            if n % 2 != odd:
-                continue
+        for i in rows:
             low, high = float(sharp.lower[i]), float(sharp.upper[i])
             own = np.sort(s[(shifted >= low - 4 * local) & (shifted <= high + 4 * local)])
             if low < 0.0 < high and len(own):

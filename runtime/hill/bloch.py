@@ -37,6 +37,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations_with_replacement
+from math import comb
 from typing import Any, Protocol
 
 import numpy as np
@@ -45,10 +46,8 @@ from numpy.typing import ArrayLike, NDArray
 from ...generated import hill_recursion
 from ..core.errors import bad
 from ..core.periodic_function import PeriodicFunction
+from .checks import Array, Complex, Index
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Index = NDArray[np.intp]
 Couple = tuple[NDArray[Any], NDArray[Any]]
 
 # What was emitted, and what a public order leaves for the estimate of its error.
@@ -108,22 +107,14 @@ def product_table(count: int, first: int, second: int) -> Index:
     return np.array([[place[tuple(row)] for row in rows] for rows in sums.tolist()], dtype=np.intp)
 
 
-@lru_cache(maxsize=256)
-def _factors(count: int, degree: int) -> tuple[Index, Index]:
-    """Return the first parameter of each monomial, and the place of the rest a degree below."""
-    first = np.argmax(monomials(count, degree) > 0, axis=1)
-    table = product_table(count, 1, degree - 1)
-    rest = [int(np.argmax(table[p] == place)) for place, p in enumerate(first.tolist())]
-    return first, np.array(rest, dtype=np.intp)
-
-
 def monomial_values(parameters: Array, order: int) -> Iterator[Array]:
     """Yield the values of the monomials of degree 1 ... order, shape (M_k, batch)."""
     values = parameters
     yield values
     for degree in range(2, order + 1):
-        first, rest = _factors(len(parameters), degree)
-        values = parameters[first] * values[rest]
+        # Those that begin with a parameter: it times the last ones below, which have none before.
+        sizes = (comb(degree - 2 + m, m - 1) for m in range(len(parameters), 0, -1))
+        values = np.concatenate([x * values[-k:] for x, k in zip(parameters, sizes, strict=True)])
         yield values
 
 

@@ -31,19 +31,14 @@ from ..core.chebyshev import analysis, nodes
 from ..core.errors import BadInput, bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, DeferredChecks, Result, provenance
-from .checks import arguments, axes_over, check_function, check_regions
+from .checks import EPS, Array, Index, Mask, axes_over, check_function, check_regions, points
 from .fourier_matrix import banded, by_parity, chunks, stacked, truncation
 from .half_trace import discriminant, growth_rate
 from .meissner import Meissner, meissner_ends
-from .transfer import EPS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 
 # Ends whose half trace is compared with its level, and the step of the differences there.  The
 # errors are estimates, and slope and curvature come from differences.
@@ -56,8 +51,6 @@ _RESOLVED, _NARROW = 0.25, 0.01
 _NODES, _MOST_NODES = 16, 256
 # Half traces at a time: beyond some thousand scattered points they would be interpolated.
 _POINTS = 4096
-# Beyond this excess of the half trace over its level the exponent is a mere logarithm.
-_LOGARITHMIC = 1e12
 
 
 class Ends(NamedTuple):
@@ -81,8 +74,7 @@ class Ends(NamedTuple):
 
     def take(self, where: Any) -> Ends:
         """Return some of the entries."""
-        lower, upper, error = (item[where] for item in self[:3])
-        return Ends(lower, upper, error, self.undecided[where])
+        return Ends(*(item[where] for item in self))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -196,16 +188,14 @@ def hill_boundaries(
     if certified or not isinstance(f, Meissner):
         check_function(f)
     numbers = check_regions(regions)
-    (amp, k), shape = arguments(mu=mu, damping=damping)
+    (flat, friction), shape = points(mu=mu, damping=damping)
     if not isinstance(certified, bool | np.bool_):
         raise bad("certified", repr(certified), "True or False", "choose one")
     if certified and isinstance(f, PeriodicFunction):
         from .certified import certified_boundaries
 
-        mus, drags = np.broadcast_arrays(amp, k)
-        return certified_boundaries(f, mus, drags, numbers)
-    flat, friction = (np.broadcast_to(item, shape).ravel() for item in (amp, k))
-    ends = _ends(f, flat, friction, numbers)
+        return certified_boundaries(f, flat.reshape(shape), friction.reshape(shape), numbers)
+    ends = ends_at(f, flat, friction, numbers)
     full = (len(numbers), *shape)
     return Boundaries(
         method="zeros of Meissner's factors" if isinstance(f, Meissner) else "Hill matrix",
@@ -221,7 +211,7 @@ def hill_boundaries(
     )
 
 
-def _ends(f: PeriodicFunction | Meissner, mu: Array, k: Array, regions: tuple[int, ...]) -> Ends:
+def ends_at(f: PeriodicFunction | Meissner, mu: Array, k: Array, regions: tuple[int, ...]) -> Ends:
     """Return the ends for mu and K ``(n,)``."""
     if not regions or not mu.size:
         return Ends.nothing((len(regions), mu.size))
@@ -255,20 +245,13 @@ def _spectra(f: PeriodicFunction, odd: int, harmonic: int, mu: Array, count: int
     size = 2 * harmonic + 1 - odd
     # Large matrices with a narrow band are reduced as bands.
     if size > 160 and 4 * (2 * f.harmonics + 1) < size:
-        return np.stack([_banded(f, odd, harmonic, float(m), count) for m in mu])
+        from scipy.linalg import eig_banded
+
+        few = {"select": "i", "select_range": (0, count - 1)} if 8 * count < size else {}
+        solve = partial(eig_banded, lower=True, eigvals_only=True, check_finite=False, **few)
+        return np.stack([solve(banded(f, odd, harmonic, float(m)))[:count] for m in mu])
     stacks = (stacked(f, odd, harmonic, mu[part]) for part in chunks(mu.size, size))
     return np.concatenate([np.linalg.eigvalsh(stack)[:, :count] for stack in stacks])
-
-
-def _banded(f: PeriodicFunction, odd: int, harmonic: int, mu: float, count: int) -> Array:
-    """Return the lowest eigenvalues of a matrix that is large beside its band, shape (count,)."""
-    from scipy.linalg import eig_banded
-
-    whole = banded(f, odd, harmonic, mu)
-    few = 8 * count < whole.shape[1]
-    wanted: dict[str, Any] = {"select": "i", "select_range": (0, count - 1)} if few else {}
-    values = eig_banded(whole, lower=True, eigvals_only=True, check_finite=False, **wanted)
-    return np.asarray(values[:count])
 
 
 # ---------------------------------------------------------------- the half trace as a check
@@ -295,7 +278,7 @@ def _checks(
     return checks
 
 
-def sample_of(places: NDArray[np.intp]) -> NDArray[np.intp]:
+def sample_of(places: Index) -> Index:
     """Return an even sample of places ``(n, d)``, its ends included, by coordinate."""
     chosen = np.unique(np.linspace(0, len(places) - 1, min(_SAMPLE, len(places))).round())
     return np.asarray(places[chosen.astype(int)].T)
@@ -364,12 +347,7 @@ def _damped(
 def _from_matrix(
     f: PeriodicFunction, mu: Array, k: Array, regions: tuple[int, ...], sharp: Ends
 ) -> Ends:
-    """Return the ends by the real eigenvalues of the matrix; undecided are pairs almost real.
-
-    With y = exp(-K theta) u the multipliers +-1 of y belong to the half traces +-cosh(2 pi K) of
-    u at lam2 - K^2.  Within an undamped region the half trace of u has one extremum, so that a
-    damped region has two ends inside it, or none; region 0 always has its one.
-    """
+    """Return the ends by the real eigenvalues of the matrix; undecided are pairs almost real."""
     low, high = sharp.lower, sharp.upper
     shift = k * k
     cut = truncation(f, float(np.abs(mu).max()), max(regions), float(shift.max()))
@@ -379,8 +357,13 @@ def _from_matrix(
     slack = 4.0 * local
     ends = Ends.nothing(low.shape)
     for odd, rows in by_parity(regions):
-        values = _complex_spectra(f, odd, cut.harmonic + odd, mu, k)
-        place = values.real - shift[:, None]
+        harmonic = cut.harmonic + odd
+        stacks = (
+            stacked(f, odd, harmonic, mu[part], k[part])
+            for part in chunks(mu.size, 2 * harmonic + 1 - odd)
+        )
+        values = np.concatenate([np.linalg.eigvals(stack) for stack in stacks])
+        place = values.real - (f.a[0] * mu + shift)[:, None]
         real = np.where(values.imag == 0.0, place, np.nan)
         for i in rows:
             # NaN compares false: complex eigenvalues drop out here.
@@ -400,13 +383,13 @@ def _from_matrix(
                 ends.lower[i, whole], ends.error[i, whole] = -np.inf, local[whole]
                 continue
             ends.lower[i, whole] = first + shift[whole]
-            ends.error[i, whole] = _near_tip(
+            ends.error[i, whole] = near_tip(
                 local[whole], 0.5 * (last - first), 0.5 * (high[i] - low[i])[whole]
             )
     return ends
 
 
-def _near_tip(local: Array, half: Array, sharp_half: Array) -> Array:
+def near_tip(local: Array | float, half: Array, sharp_half: Array | float) -> Array:
     """Return the error of ends ``+-half`` that damping drew in from ``+-sharp_half``.
 
     The ends follow ``sqrt(sharp_half^2 - const)``: an error of the data is magnified by
@@ -418,63 +401,47 @@ def _near_tip(local: Array, half: Array, sharp_half: Array) -> Array:
     return np.asarray(moved + local)
 
 
-def _complex_spectra(
-    f: PeriodicFunction, odd: int, harmonic: int, mu: Array, k: Array
-) -> NDArray[np.complex128]:
-    """Return all eigenvalues of ``k^2 - 2 K d/d theta - mu f``, shape ``(n, size)``."""
-    parts = chunks(mu.size, 2 * harmonic + 1 - odd)
-    stacks = (stacked(f, odd, harmonic, mu[part], k[part]) for part in parts)
-    values = np.concatenate([np.linalg.eigvals(stack) for stack in stacks])
-    return np.asarray(values - (f.a[0] * mu)[:, None], dtype=complex)
-
-
 # ---------------------------------------------------------------- strong damping
 
 
-@dataclass(frozen=True)
-class _Level:
-    """How far the half trace is above the level of region n, at its points ``(n,)``."""
+def _end(
+    f: PeriodicFunction | Meissner, n: int, mu: Array, k: Array, outer: Array, inner: Array
+) -> tuple[Array, Array]:
+    """Return where half traces cross the level of region n, and the error, at points ``(m,)``.
 
-    f: PeriodicFunction | Meissner
-    sign: float
-    mu: Array
-    k: Array
+    Between a place ``outer`` below the level and one ``inner`` above it.
+    """
+    sign, turned = 1.0 if n % 2 == 0 else -1.0, np.where(inner < outer, -1.0, 1.0)
 
-    def share(self, lam2: Array, which: Index) -> Array:
-        """Return the logarithm of half trace over level, clipped where all are alike."""
-        half = discriminant(self.f, lam2, self.mu[which], self.k[which])
-        share = self.sign * half.value / half.level
-        return np.asarray(np.log(np.clip(share, 1e-304, 1e304)))
+    def share(t: Array, which: Index) -> Array:
+        # The logarithm of half trace over level, clipped where all are alike.
+        half = discriminant(f, turned[which] * t, mu[which], k[which])
+        return np.asarray(np.log(np.clip(sign * half.value / half.level, 1e-304, 1e304)))
 
-    def sure(self, lam2: Array, which: Index, above: bool) -> Mask:
-        """Return True where the half trace is above, or below, by more than its error."""
-        half = discriminant(self.f, lam2, self.mu[which], self.k[which])
-        gap = self.sign * half.value - half.level
+    def sure(lam2: Array, which: Index, above: bool) -> Mask:
+        # Whether the half trace is above, or below, by more than its error.
+        half = discriminant(f, lam2, mu[which], k[which])
+        gap = sign * half.value - half.level
         error = np.where(np.isfinite(half.value), half.error, 0.0) + 2.0 * EPS * half.level
         return np.asarray(gap > error if above else gap < -error)
 
-    def end(self, outer: Array, inner: Array) -> tuple[Array, Array]:
-        """Return the crossing between a place below the level and one above, and its error."""
-        turned = np.where(inner < outer, -1.0, 1.0)
-        place = turned * crossing(
-            lambda t, which: self.share(turned[which] * t, which), turned * outer, turned * inner
-        )
-        size = np.maximum(np.abs(place), self.k * self.k) + 1.0
-        error, left = 2.0 * EPS * size, np.arange(place.size)
-        # Proposals of the error, each three times the one before.
-        for _ in range(40):
-            step = turned[left] * error[left]
-            within, beyond = place[left] + step, place[left] - step
-            # Between the undamped end and the extremum there is a crossing in any case.
-            past = turned[left] * (within - inner[left]) >= 0.0
-            before = turned[left] * (outer[left] - beyond) >= 0.0
-            good = past | self.sure(np.where(past, inner[left], within), left, above=True)
-            good &= before | self.sure(np.where(before, outer[left], beyond), left, above=False)
-            left = left[~good]
-            if not left.size:
-                break
-            error[left] *= 3.0
-        return place, error
+    place = turned * crossing(share, turned * outer, turned * inner)
+    error = 2.0 * EPS * (np.maximum(np.abs(place), k * k) + 1.0)
+    left = np.arange(place.size)
+    # Proposals of the error, each three times the one before.
+    for _ in range(40):
+        step = turned[left] * error[left]
+        within, beyond = place[left] + step, place[left] - step
+        # Between the undamped end and the extremum there is a crossing in any case.
+        past = turned[left] * (within - inner[left]) >= 0.0
+        before = turned[left] * (outer[left] - beyond) >= 0.0
+        good = past | sure(np.where(past, inner[left], within), left, above=True)
+        good &= before | sure(np.where(before, outer[left], beyond), left, above=False)
+        left = left[~good]
+        if not left.size:
+            break
+        error[left] *= 3.0
+    return place, error
 
 
 def _from_half_trace(
@@ -482,30 +449,27 @@ def _from_half_trace(
 ) -> Ends:
     """Return the ends of region n for mu and K ``(n,)``; undecided where K may be critical."""
     ends = Ends.nothing(mu.shape)
-    sign, shift, slack = 1.0 if n % 2 == 0 else -1.0, k * k, sharp.error
+    shift, slack = k * k, sharp.error
     if n == 0:
         # With z = y'/y the equation says that the mean of lam2 + mu f is that of -z^2 on the end;
         # where it is below zero all the way round, the solutions grow faster than K.
         reach = np.abs(mu) * f.bound() * (1.0 + 4.0 * EPS)
         most = np.minimum(sharp.upper + shift + slack, EPS * reach + slack - mu * f.mean)
-        upper, error = _Level(f, sign, mu, k).end(most, -reach - 1.0)
+        upper, error = _end(f, n, mu, k, most, -reach - 1.0)
         return Ends(np.full(mu.shape, -np.inf), upper, error, ends.undecided)
     critical, peak, doubt = largest_exponent(f, n, mu, sharp)
     ends.undecided[:] = ~(np.abs(k - critical) > doubt)
     there = np.flatnonzero((k < critical) & ~ends.undecided)
     if there.size:
-        level = _Level(f, sign, mu[there], k[there])
-        top = (peak + shift)[there]
-        lower, first = level.end((sharp.lower + shift - slack)[there], top)
-        upper, last = level.end((sharp.upper + shift + slack)[there], top)
+        point, top = (f, n, mu[there], k[there]), (peak + shift)[there]
+        lower, first = _end(*point, (sharp.lower + shift - slack)[there], top)
+        upper, last = _end(*point, (sharp.upper + shift + slack)[there], top)
         open_ = np.zeros(there.shape, dtype=bool)
         ends.put(there, Ends(lower, upper, np.maximum(first, last), open_))
     return ends
 
 
-def crossing(
-    function: Callable[[Array, NDArray[np.intp]], Array], low: Array, high: Array
-) -> Array:
+def crossing(function: Callable[[Array, Index], Array], low: Array, high: Array) -> Array:
     """Return the roots of functions negative at ``low`` and not at ``high``, Illinois' rule.
 
     All points advance at once; ``function`` gets their numbers as well.
@@ -567,13 +531,17 @@ def _excess(
     return (sign * value - np.exp(-2.0 * np.pi * k)).reshape(shape), error.reshape(shape)
 
 
-def _exponent(excess: Array) -> Array:
-    """Return ``arccosh(1 + x) / (2 pi)`` without cancellation, and without overflow."""
-    few = np.minimum(excess, _LOGARITHMIC)
-    near = np.log1p(few + np.sqrt(few * (2.0 + few)))
-    # log(2 + 2 x) from here on; the next term is 1 / (4 x^2).
-    far = np.log(np.maximum(excess, 1.0)) + np.log(2.0) + 1.0 / np.maximum(excess, 1.0)
-    return np.asarray(np.where(excess > _LOGARITHMIC, far, near) / (2.0 * np.pi))
+def _exponent(excess: Array, drag: Array | float = 0.0) -> tuple[Array, Array]:
+    """Return ``arccosh(1 + x) / (2 pi)`` from ``excess = x exp(-2 pi drag)``, and its steepness.
+
+    Without cancellation, and without overflow; its derivative to the excess is 1 over 2 pi times
+    the steepness.
+    """
+    unit = np.exp(-2.0 * np.pi * np.asarray(drag))
+    root = np.sqrt(excess) * np.sqrt(2.0 * unit + excess)
+    rest = np.maximum(unit + excess + root, np.finfo(float).tiny)
+    growth = np.where(unit < 1.0, np.log(rest), np.log1p(excess + root))
+    return np.asarray(drag + growth / (2.0 * np.pi)), root
 
 
 def _narrow(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: Ends) -> Array:
@@ -596,7 +564,7 @@ def _narrow(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: Ends) -> A
         g, rise = _at(c, x), _at(slope, x) / _RESOLVED
         place = 0.5 * (1.0 - place * place) * half * rise / g
     g = np.maximum(_at(c, place * half / _RESOLVED), 0.0)
-    k = _exponent(half * half * (1.0 - place * place) * g)
+    k, _ = _exponent(half * half * (1.0 - place * place) * g)
     rate = np.sqrt(2.0 * g) / (2.0 * np.pi)
     doubt = rate * sharp.error + 0.5 * k * tail / np.maximum(g, EPS) + 4.0 * EPS * k
     return np.stack([k, centre + place * half, doubt])
@@ -619,13 +587,8 @@ def _wide(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: Ends) -> Arr
             place = _peak(c[:, done])
             x = np.maximum(_at(c[:, done], place), 0.0)
             doubt = tail[done] + error[:, done].max(axis=0) + 4.0 * EPS * most[done]
-            k, steep = _exponent(x), np.sqrt(x) * np.sqrt(2.0 + x)
-            scaled = drag[left[done]] > 0.0
-            # arccosh of a large x of which a factor was taken out.
-            far = np.log(2.0 * np.maximum(x, np.finfo(float).tiny)) / (2.0 * np.pi)
-            k = np.where(scaled, drag[left[done]] + far, k)
-            steep = np.where(scaled, x, steep)
-            reply = doubt / np.maximum(2.0 * np.pi * steep, np.where(scaled, 0.0, EPS))
+            k, steep = _exponent(x, drag[left[done]])
+            reply = doubt / np.maximum(2.0 * np.pi * steep, EPS)
             out[:, left[done]] = k, m[done] + h[done] * place, reply + 4.0 * EPS * k
         left, count = left[~done], 2 * count
     return out

@@ -30,21 +30,12 @@ from ..core.errors import BadInput, bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, provenance
 from .boundaries import Boundaries
-from .fourier_matrix import (
-    Truncation,
-    by_parity,
-    exponentials,
-    layout,
-    real_pairs,
-    stacked,
-    truncation,
-)
+from .checks import Array, Mask
+from .fourier_matrix import by_parity, exponentials, finest, layout, real_pairs, stacked
 
-Array = NDArray[np.float64]
 # Integers of any length.  A wave holds real and imaginary parts, ``(2, L)``, of the coefficients of
 # exp(i k theta), k = -(L-1)/2 ... (L-1)/2, which is whole or half-whole.
 Exact = NDArray[Any]
-Flags = NDArray[np.bool_]
 
 _U = 0.5 * float(np.finfo(float).eps)
 # What the eigenvectors leave out shall not be seen beside the rounding of the trial vectors.
@@ -93,8 +84,8 @@ class CertifiedBoundaries(Boundaries):
     upper_rest: Array
     lower_radius: Array
     upper_radius: Array
-    pair: Flags
-    closed: Flags
+    pair: Mask
+    closed: Mask
     function_error: Array
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
@@ -137,32 +128,29 @@ def certified_boundaries(
 
     For an f taken with its coefficients as they stand, mu and K of one shape, all checked.
     """
-    size = len(regions), mu.size
-    names = [side + tail for side in ("lower", "upper") for tail in ("", "_rest", "_radius")]
-    arrays: dict[str, Array] = {name: np.full(size, np.nan) for name in names}
+    size = (len(regions), *mu.shape)
+    # Value, rest and radius of the lower and of the upper end.
+    found = np.full((*size, 2, 3), np.nan)
     pair, closed = np.zeros((2, *size), dtype=bool)
-    for column, (amp, k) in enumerate(zip(mu.ravel(), damping.ravel(), strict=True)):
-        for row, ends in enumerate(_slice(f, float(amp), float(k), regions)):
-            place = row, column
+    for at in np.ndindex(mu.shape):
+        mean = Fraction(float(mu[at])) * Fraction(float(f.a[0]))
+        for row, ends in enumerate(_slice(f, float(mu[at]), float(damping[at]), regions)):
+            place = (row, *at)
             if not isinstance(ends, tuple):
                 closed[place] = ends is True
                 continue
-            for side, ball in zip(("lower", "upper"), ends, strict=True):
-                parts = (-inf, 0.0, 0.0) if ball is None else _in_doubles(ball)
-                for tail, value in zip(("", "_rest", "_radius"), parts, strict=True):
-                    arrays[side + tail][place] = value
+            found[place] = [_in_doubles(ball, mean) for ball in ends]
             lower, upper = ends
             if lower is not None:
                 pair[place] = upper.middle - lower.middle <= upper.radius + lower.radius
+    names = [side + tail for side in ("lower", "upper") for tail in ("", "_rest", "_radius")]
+    arrays = dict(zip(names, np.moveaxis(found, (-2, -1), (0, 1)).reshape(6, *size), strict=True))
     # What the doubles alone are off by.
-    left = [
-        np.abs(arrays[side + "_rest"]) + arrays[side + "_radius"] for side in ("lower", "upper")
-    ]
+    left = np.max(np.abs(found[..., 1]) + found[..., 2], axis=-1)
     undecided = np.isnan(arrays["upper"]) & ~closed
-    shape = (len(regions), *mu.shape)
     return CertifiedBoundaries(
         method="Hill matrix, certified: exact residuals, Kato-Temple bounds",
-        error=np.nextafter(np.maximum(*left), np.inf).reshape(shape),
+        error=np.nextafter(left, np.inf),
         error_norm="absolute, entrywise, for either end",
         error_kind="bound",
         checks={
@@ -175,37 +163,39 @@ def certified_boundaries(
         mu=mu,
         damping=damping,
         function_error=np.abs(mu) * f.error,
-        **{name: values.reshape(shape) for name, values in arrays.items()},
-        pair=pair.reshape(shape),
-        closed=closed.reshape(shape),
+        **arrays,
+        pair=pair,
+        closed=closed,
     )
 
 
-def _in_doubles(ball: Ball) -> tuple[float, float, float]:
-    """Return the middle as the sum of two doubles, and a double above the radius."""
-    value = float(ball.middle)
-    rest = float(ball.middle - Fraction(value))
-    radius = ball.radius + abs(ball.middle - Fraction(value) - Fraction(rest))
+def _in_doubles(ball: Ball | None, mean: Fraction) -> tuple[float, float, float]:
+    """Return the middle less the mean as the sum of two doubles, and a double above the radius."""
+    if ball is None:
+        return -inf, 0.0, 0.0
+    middle = ball.middle - mean
+    value = float(middle)
+    rest = float(middle - Fraction(value))
+    radius = ball.radius + abs(middle - Fraction(value) - Fraction(rest))
     return value, rest, nextafter(float(radius), inf) if radius else 0.0
 
 
 def _slice(
     f: PeriodicFunction, mu: float, k: float, regions: tuple[int, ...]
 ) -> list[Ends | bool | None]:
-    """Return the balls of both ends of each region at one mu; no lower one for region 0.
+    """Return the balls of both ends of each region at one mu, without the mean of f.
+
+    There is no lower one for region 0.
 
     With damping: True where the region is proved closed, None where nothing is proved.
     """
-    mean = Fraction(mu) * Fraction(float(f.a[0]))
     out: dict[int, Ends | bool | None] = {}
     for odd, rows in by_parity(regions):
         numbers = sorted({regions[i] for i in rows})
         coarse = spectrum(f, mu, odd, numbers[-1] + 2, k * k)
         if k > 0.0:
             problem = DampedProblem(f, mu, k, coarse)
-            for n in numbers:
-                ends = problem.ends(n)
-                out[n] = _moved(ends, mean) if isinstance(ends, tuple) else ends
+            out.update((n, problem.ends(n)) for n in numbers)
             continue
         operator, known = HillOperator(f, mu), dict[int, Ball]()
         for n in numbers:
@@ -214,7 +204,7 @@ def _slice(
                     coarse, first, last = _group(f, mu, coarse, j)
                     balls = enclosures(coarse, operator, first, last)
                     known.update(zip(range(first, last + 1), balls, strict=True))
-            out[n] = _moved((known[n - 1] if n else None, known[n]), mean)
+            out[n] = known.get(n - 1), known[n]
     return [out[n] for n in regions]
 
 
@@ -226,12 +216,6 @@ def _group(f: PeriodicFunction, mu: float, coarse: Spectrum, j: int) -> tuple[Sp
             return coarse, *group
         coarse = spectrum(f, mu, coarse.odd, 2 * len(coarse.values) + coarse.odd)
     raise refusal(f"{len(coarse.values)} eigenvalues close together")
-
-
-def _moved(ends: Ends, mean: Fraction) -> Ends:
-    lower, upper = ends
-    moved = Ball(upper.middle - mean, upper.radius)
-    return None if lower is None else Ball(lower.middle - mean, lower.radius), moved
 
 
 def refusal(reason: str) -> BadInput:
@@ -287,7 +271,9 @@ def spectrum(
     ``highest`` is even for the whole problem and odd for the half-whole one; ``shift`` asks for
     harmonics enough for eigenvalues that damping moves up by so much.
     """
-    cut = _cut(f, mu, highest, shift)
+    goal = _GOAL * (1.0 + abs(mu) * float(f.amplitudes[1:].sum()))
+    goals = [min(_LOOSEST, 1e4**step * goal) for step in range(7)]
+    cut = finest(f, abs(mu), highest, shift, goals)
     harmonic = cut.harmonic + odd
     matrix = stacked(f, odd, harmonic, np.array([mu]))[0]
     values, vectors = np.linalg.eigh(matrix)
@@ -308,30 +294,11 @@ def spectrum(
     return Spectrum(values[:count], vectors[:, :count], reach, cut.norm, odd, harmonic)
 
 
-def _cut(f: PeriodicFunction, mu: float, highest: int, shift: float) -> Truncation:
-    """Return the truncation at the finest goal that 2048 harmonics reach."""
-    goal = _GOAL * (1.0 + abs(mu) * float(f.amplitudes[1:].sum()))
-    while True:
-        try:
-            return truncation(f, abs(mu), highest, shift, goal)
-        except BadInput:
-            if goal >= _LOOSEST:
-                raise
-            goal = min(_LOOSEST, 1e4 * goal)
-
-
 # ---------------------------------------------------------------- exact products
 
 
 class HillOperator:
-    """``4 (k^2 - mu (f - mean) - 2 K d/d theta)`` on waves, in units of ``2**-160``.
-
-    Attributes
-    ----------
-    rounding : Fraction
-        Bound of the norm of what rounding the coefficients changed in the operator without the
-        factor 4 (the damping term is exact).
-    """
+    """``4 (k^2 - mu (f - mean) - 2 K d/d theta)`` on waves, in units of ``2**-160``."""
 
     def __init__(self, f: PeriodicFunction, mu: float, damping: float = 0.0) -> None:
         factor, unit = Fraction(mu), 1 << _FUNCTION_BITS
@@ -344,7 +311,7 @@ class HillOperator:
         # K = m 2^-e with a long e has digits beyond the unit: they count as rounding as well.
         self._drag = round(drag)
         self._drag_rounding = Fraction(0 if drag == self._drag else 1, unit)
-        self.rounding = Fraction(2 * f.harmonics, unit)
+        self._rounding = Fraction(2 * f.harmonics, unit)
 
     def __call__(self, x: Exact) -> Exact:
         """Apply the operator; the result reaches as many harmonics further as f has."""
@@ -365,8 +332,11 @@ class HillOperator:
         return np.concatenate([np.stack([lower[0], -lower[1]]), out], axis=1)
 
     def doubt(self, x: Exact) -> Fraction:
-        """Bound what rounding changes in a product with a vector of norm 1 as long as ``x``."""
-        return self.rounding + self._drag_rounding * int(x.shape[1] // 2 + 2)
+        """Bound what rounding changes in a quarter of the product with a wave of norm 1.
+
+        ``x`` is as long as the wave.
+        """
+        return self._rounding + self._drag_rounding * int(x.shape[1] // 2 + 2)
 
 
 def wave(odd: int, column: Array) -> Exact:
@@ -421,7 +391,8 @@ def enclosures(coarse: Spectrum, operator: HillOperator, first: int, last: int) 
     overlap = np.array([[inner(x, y) for y in waves] for x in waves], dtype=object)
     residual = _residual(waves, images, coupling, overlap)
     values = [Fraction(float(v)) for v in coarse.values]
-    reach = Fraction(coarse.reach) + operator.rounding
+    rounding = operator.doubt(waves[0])
+    reach = Fraction(coarse.reach) + rounding
     gaps = [values[last + 1] - values[last]]
     if first:
         gaps.append(values[first] - values[first - 1])
@@ -432,7 +403,7 @@ def enclosures(coarse: Spectrum, operator: HillOperator, first: int, last: int) 
     there = all(low <= b.middle - b.radius and b.middle + b.radius <= high for b in balls)
     if not (there and 4 * residual < gap):
         raise refusal(f"a residual of {float(residual):.1e} beside a gap of {float(gap):.1e}")
-    spread = residual * residual / (gap - 2 * residual) + operator.rounding
+    spread = residual * residual / (gap - 2 * residual) + rounding
     return [Ball(ball.middle, ball.radius + spread) for ball in balls]
 
 
@@ -486,13 +457,7 @@ def _off_norm(matrix: Exact, metric: Exact) -> Fraction:
 
 
 class DampedProblem:
-    """The damped matrix in one of the two problems, without its mean, cut and uncut.
-
-    Attributes
-    ----------
-    pairs : tuple of ndarray
-        Real eigenvalues of the cut matrix, with right and left vectors of norm 1 as columns.
-    """
+    """The damped matrix in one of the two problems, without its mean, cut and uncut."""
 
     def __init__(self, f: PeriodicFunction, mu: float, k: float, coarse: Spectrum) -> None:
         self.coarse, self.k = coarse, k
@@ -506,7 +471,7 @@ class DampedProblem:
         self._beyond = (harmonic + (0.5 if odd else 1.0)) ** 2
         self._bound = abs(mu) * float(f.amplitudes[1:].sum()) * (1.0 + 1e-12)
         self._right, self._left = HillOperator(f, mu, k), HillOperator(f, mu, -k)
-        self.pairs = real_pairs(self._low)
+        self._pairs = real_pairs(self._low)
 
     def ends(self, n: int) -> tuple[Ball | None, Ball] | bool | None:
         """Return the enclosed ends of region n; True where it is proved closed, None if undecided.
@@ -522,9 +487,9 @@ class DampedProblem:
         below = values[n - 2] + reach if n >= 2 else -inf
         above = values[n + 1] - reach
         balls = []
-        near = (self.pairs[0] - k * k >= low - slack) & (self.pairs[0] - k * k <= high + slack)
+        near = (self._pairs[0] - k * k >= low - slack) & (self._pairs[0] - k * k <= high + slack)
         for i in np.flatnonzero(near):
-            value, right, left = (item[..., i] for item in self.pairs)
+            value, right, left = (item[..., i] for item in self._pairs)
             ball = self._eigenvalue(float(value), right, left)
             if ball is None:
                 continue

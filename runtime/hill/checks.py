@@ -16,6 +16,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+EPS = float(np.finfo(float).eps)
 
 # Harmonics of the largest Hill matrix: of some 4000 rows, seconds of work.
 LARGEST = 2048
@@ -47,6 +52,12 @@ def arguments(**given: ArrayLike) -> tuple[tuple[Array, ...], tuple[int, ...]]:
             "shapes that broadcast",
             "reshape them, for example to (n, 1) and (1, m)",
         ) from reason
+
+
+def points(**given: ArrayLike) -> tuple[tuple[Array, ...], tuple[int, ...]]:
+    """Return the arguments at all points ``(n,)``, and the shape that they broadcast to."""
+    arrays, shape = arguments(**given)
+    return tuple(np.broadcast_to(item, shape).ravel() for item in arrays), shape
 
 
 def check_function(f: object) -> PeriodicFunction:

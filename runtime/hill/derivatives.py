@@ -8,18 +8,14 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ..core.errors import BadInput, bad
+from ..core.errors import bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Result, provenance
 from .boundaries import hill_boundaries
-from .checks import LARGEST, arguments, check_function, check_regions
-from .fourier_matrix import layout, matrix, real_pairs, stacked, truncation
-from .transfer import EPS
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
+from .checks import EPS, LARGEST, Array, Mask, check_function, check_regions, points
+from .fourier_matrix import LEFT_OUT, finest, layout, matrix, real_pairs, stacked
 
 _COEFFICIENT = re.compile(r"([ab])([0-9]+)")
 
@@ -49,7 +45,7 @@ class BoundaryDerivatives(Result):
 
     lower: Array
     upper: Array
-    double: Flags
+    double: Mask
     regions: tuple[int, ...]
     directions: tuple[str, ...]
     mu: Array
@@ -130,12 +126,11 @@ def boundary_derivatives(
     """
     check_function(f)
     numbers = check_regions(regions)
-    (amp, k), shape = arguments(mu=mu, damping=damping)
+    (flat, friction), shape = points(mu=mu, damping=damping)
     wanted = [_direction(f, item, i) for i, item in enumerate(directions)]
-    flat, friction = (np.broadcast_to(item, shape).ravel() for item in (amp, k))
     ends = hill_boundaries(f, flat, numbers, friction)
     out = np.full((3, len(wanted), len(numbers), flat.size), np.nan)
-    double: Flags = np.zeros((len(numbers), flat.size), dtype=bool)
+    double: Mask = np.zeros((len(numbers), flat.size), dtype=bool)
     highest = max(numbers, default=0)
     for column in range(flat.size):
         point = float(flat[column]), float(friction[column])
@@ -194,11 +189,8 @@ class _Slice:
 
     def __init__(self, f: PeriodicFunction, mu: float, k: float, odd: int, highest: int) -> None:
         self.f, self.mu, self.k, self.odd = f, mu, k, odd
-        try:
-            # Far below a rounding, so that the truncation need not be weighed against it.
-            self.cut = truncation(f, abs(mu), highest + 2, k * k, goal=1e-20)
-        except BadInput:
-            self.cut = truncation(f, abs(mu), highest + 2, k * k)
+        # Far below a rounding, so that the truncation need not be weighed against it.
+        self.cut = finest(f, abs(mu), highest + 2, k * k, (1e-20, LEFT_OUT))
         # The highest k that matters to the solutions.
         self.level = 0.5 * (highest + 2) + (abs(mu) * f.bound()) ** 0.5
         self.harmonic = self.cut.harmonic + odd

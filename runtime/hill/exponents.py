@@ -9,22 +9,19 @@ from math import pi
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.errors import bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .boundaries import half_trace_check, sample_of
-from .checks import LARGEST, arguments, axes_over, check_function, check_regions
+from .checks import EPS, LARGEST, Array, Mask, axes_over, check_function, check_regions, points
 from .fourier_matrix import chunks, couplings, truncation
 from .half_trace import discriminant
 from .meissner import Meissner
-from .transfer import EPS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,7 +58,7 @@ class CharacteristicExponents(Result):
     exported: ClassVar[tuple[str, ...]] = ("stable",)
 
     @property
-    def stable(self) -> NDArray[np.bool_]:
+    def stable(self) -> Mask:
         """True where no solution grows."""
         return np.asarray(self.growth < 0.0) | (np.asarray(self.growth == 0.0) & (self.nu > 0.0))
 
@@ -186,8 +183,7 @@ def _bands(
 ) -> CharacteristicExponents:
     """Return the lam2 of each band with a given multiplier ``exp(2 pi (i nu - K))``."""
     numbers = check_regions(bands, most=LARGEST - 1, name="bands")
-    (amp, phase, k), shape = arguments(mu=mu, nu=nu, damping=damping)
-    flat, turn, friction = (np.broadcast_to(item, shape).ravel() for item in (amp, phase, k))
+    (flat, turn, friction), shape = points(mu=mu, nu=nu, damping=damping)
     lam2, error = _eigenvalues(f, flat, turn, numbers)
     lam2 = lam2 + friction * friction
     error = error + EPS * friction * friction

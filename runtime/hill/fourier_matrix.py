@@ -8,23 +8,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from functools import lru_cache
 from math import ceil, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.errors import BadInput, bad
 from ..core.periodic_function import PeriodicFunction
-from .checks import LARGEST
-from .transfer import EPS
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
+from .checks import EPS, LARGEST, Array, Complex
 
 # What the cut leaves out by default: below the round-off of eigenvalues of size 1e3.
-_LEFT_OUT = 1e-13
+LEFT_OUT = 1e-13
 
 
 def chunks(count: int, size: int) -> Iterator[slice]:
@@ -66,7 +62,7 @@ def truncation(
     reach: float,
     highest: int,
     shift: float = 0.0,
-    goal: float = _LEFT_OUT,
+    goal: float = LEFT_OUT,
 ) -> Truncation:
     """Choose the truncation for the regions up to ``highest`` at ``|mu| <= reach``.
 
@@ -92,6 +88,16 @@ def truncation(
     return _truncation(f, max(octave, reach), highest, shift, goal)
 
 
+def finest(
+    f: PeriodicFunction, reach: float, highest: int, shift: float, goals: Sequence[float]
+) -> Truncation:
+    """Return the truncation at the first of some rising goals that can be reached."""
+    for goal in goals[:-1]:
+        with suppress(BadInput):
+            return truncation(f, reach, highest, shift, goal)
+    return truncation(f, reach, highest, shift, goals[-1])
+
+
 @lru_cache(maxsize=256)
 def _truncation(
     f: PeriodicFunction, reach: float, highest: int, shift: float, goal: float
@@ -105,7 +111,7 @@ def _truncation(
     dropped = 4.0 * float(half[kept:].sum())
     # A hair above, for the rounding of the distance of k^2 from it.
     ceiling = (0.25 * highest * highest + shift + 1.5 * bound) * (1.0 + 8.0 * EPS)
-    goal = max(goal, EPS * ceiling) if goal >= _LEFT_OUT else goal
+    goal = max(goal, EPS * ceiling) if goal >= LEFT_OUT else goal
     spread = 0.25 * highest * highest + shift + 2.0 * bound
     start = int(sqrt(ceiling)) + 1
     cut = _majorant(half[:kept][::-1], ceiling, start, bound, goal)
@@ -133,14 +139,11 @@ def _majorant(
     width = len(taps)
     # Component k stands at index width + k; all that lies below the start is bounded by 1.
     size = np.ones(width + 4 * LARGEST + 1)
-    # Small steps first: many problems need few harmonics.
-    check = start + 8
     for k in range(start, 4 * LARGEST):
         gap = k * k - ceiling
         size[width + k] = min(1.0, float(taps @ size[k : width + k]) / gap)
-        if k < check:
+        if (k - start) % 16 != 8:
             continue
-        check = k + max(8, (k - start) // 8)
         rest = _remainder(taps, size[k + 1 : width + k + 1], (k + 1) ** 2 - ceiling, k, bound)
         if rest <= 0.1 * goal:
             squares = 2.0 * np.square(size[width + start : width + k + 1])
@@ -157,25 +160,13 @@ def _majorant(
 def _remainder(taps: Array, last: Array, gap: float, k: int, bound: float) -> float:
     """Bound the energy in all harmonics beyond k by a geometric series.
 
-    Where ``sum_m taps_m r^m <= gap`` the majorant falls at least like ``C r^-(j - k)`` from k on.
+    As many as there are taps are each at most ``sum(taps) / gap`` times the largest before them.
     """
-    width = len(taps)
-    if not width or not taps.any():
-        return 0.0
-    down, there = np.arange(width, 0, -1), taps > 0.0
-    logs = np.log(taps[there])
-    low, high = 0.0, 40.0
-    for _ in range(20):
-        middle = 0.5 * (low + high)
-        # exp(700) alone exceeds every gap.
-        fits = float(np.exp(np.minimum(middle * down[there] + logs, 700.0)).sum()) <= gap
-        low, high = (middle, high) if fits else (low, middle)
-    ratio = math.exp(2.0 / (k + 1) - 2.0 * low)
+    first, width = float(last.max(initial=0.0)), len(taps)
+    ratio = (float(taps.sum()) / gap) ** 2 * math.exp(2.0 * width / (k + 1))
     if ratio >= 1.0:
         return math.inf
-    back = np.arange(width - 1, -1, -1)
-    first = float((last * np.exp(-low * back)).max())
-    return 2.0 * first * first * ((k + 1.0) ** 2 + 2.0 * bound) * ratio / (1.0 - ratio)
+    return 2.0 * width * first * first * ((k + 1.0) ** 2 + 2.0 * bound) * ratio / (1.0 - ratio)
 
 
 def _too_large(reach: float, f: PeriodicFunction) -> BadInput:
@@ -188,76 +179,58 @@ def _too_large(reach: float, f: PeriodicFunction) -> BadInput:
 
 
 class Layout(NamedTuple):
-    """Where the coefficients of f stand in its matrix, the squares of k, and 2 d/dtheta."""
+    """The squares of k in the basis of Hill's matrix, and the matrix of 2 d/dtheta in it."""
 
-    first: Index
-    second: Index
     squares: Array
-    highest: int
     slope: Array
 
 
 @lru_cache(maxsize=64)
 def layout(odd: int, harmonic: int) -> Layout:
-    """Return the index arrays for k up to ``harmonic`` (whole) or so many half-whole k.
+    """Return the basis for k up to ``harmonic`` (whole) or so many half-whole k.
 
-    The basis runs cos 0, cos 1, sin 1, ... or cos 1/2, sin 1/2, cos 3/2, ...  Products of two
-    functions give the coefficients at the sum and at the difference of their numbers.
+    It runs cos 0, cos 1, sin 1, ... or cos 1/2, sin 1/2, cos 3/2, ...
     """
-    twice, sine = _basis(odd, harmonic)
-    m = int(twice[-1]) + 1
-    first, second = _places(twice[:, None], sine[:, None], twice, sine, m)
-    slope = np.zeros(first.shape)
+    twice = np.arange(odd, 2 * harmonic + 1, 2)
+    slope = np.zeros((2 * twice.size, 2 * twice.size))
+    cos = 2 * np.arange(twice.size)
     # d/d theta takes cos k to -k sin k and sin k to k cos k, which stand side by side.
-    cos = np.flatnonzero(~sine & (twice > 0))
-    slope[cos + 1, cos], slope[cos, cos + 1] = -twice[cos], twice[cos]
-    squares: Array = np.square(0.5 * twice)
-    for item in (first, second, squares, slope):
+    slope[cos + 1, cos], slope[cos, cos + 1] = -twice, twice
+    out = Layout(_squares(odd, harmonic), slope[1 - odd :, 1 - odd :])
+    for item in out:
         item.setflags(write=False)
-    return Layout(first, second, squares, m - 1, slope)
+    return out
 
 
-def _basis(odd: int, harmonic: int) -> tuple[Index, NDArray[np.bool_]]:
-    """Return 2 k of each function of the basis, and whether it is a sine."""
-    twice = np.repeat(np.arange(odd, 2 * harmonic + 1, 2), 2)
-    sine = np.tile([False, True], len(twice) // 2)
-    return (twice, sine) if odd else (np.delete(twice, 1), np.delete(sine, 1))
+def _squares(odd: int, harmonic: int) -> Array:
+    """Return k^2 of each function of the basis; there is no sin 0."""
+    twice = np.arange(odd, 2 * harmonic + 1, 2)
+    return np.repeat(np.square(0.5 * twice), 2)[1 - odd :]
 
 
-def _places(
-    j: Index, js: NDArray[np.bool_], k: Index, ks: NDArray[np.bool_], m: int
-) -> tuple[Index, Index]:
-    """Return where the coefficients for the sum and the difference stand in the table."""
-    total, apart = (j + k) // 2, np.abs(j - k) // 2
-    # Blocks of the table: a/2, b/2, -b/2, -a/2.
-    mixed = js != ks
-    larger = np.where(js, j > k, k > j)
-    first = np.where(mixed, total + m, np.where(js & ks, total + 3 * m, total))
-    second = np.where(mixed, apart + np.where(larger, m, 2 * m), apart)
-    return first, second
-
-
-def _table(f: PeriodicFunction, m: int) -> Array:
-    """Return half the coefficients up to m - 1 in four blocks, without the mean."""
-    table = np.zeros(4 * m)
-    n = min(m, len(f.a))
-    table[1:n] = 0.5 * f.a[1:n]
-    table[m + 1 : m + n] = 0.5 * f.b[1:n]
-    table[2 * m : 3 * m] = -table[m : 2 * m]
-    table[3 * m :] = -table[:m]
-    return table
+def _waves(f: PeriodicFunction, size: int) -> Complex:
+    """Return the coefficients of exp(i m theta), |m| < size, at place m; 0 for the mean."""
+    c = np.zeros(2 * size, dtype=complex)
+    kept = min(f.harmonics + 1, size)
+    c[1:kept] = 0.5 * (f.a - 1j * f.b)[1:kept]
+    c[size + 1 :] = c[size - 1 : 0 : -1].conj()
+    return c
 
 
 @lru_cache(maxsize=64)
 def matrix(f: PeriodicFunction, odd: int, harmonic: int) -> Array:
     """Return the matrix of ``f - mean`` in the basis of :func:`layout`, read-only."""
-    where = layout(odd, harmonic)
-    table = _table(f, where.highest + 1)
-    out: Array = table[where.first]
-    out += table[where.second]
+    twice = np.arange(odd, 2 * harmonic + 1, 2)
+    c = _waves(f, 2 * harmonic + 1)
+    apart, total = c[(twice[:, None] - twice) // 2], c[(twice[:, None] + twice) // 2]
+    even, uneven = apart + total, apart - total
+    pairs = np.array([[even.real, uneven.imag], [-even.imag, uneven.real]])
+    out: Array = pairs.transpose(2, 0, 3, 1).reshape(2 * twice.size, 2 * twice.size)
     if not odd:
-        out[0] *= sqrt(0.5)
-        out[:, 0] *= sqrt(0.5)
+        # The constant of norm 1 in place of cos 0 and sin 0.
+        out[1], out[:, 1] = sqrt(0.5) * out[0], sqrt(0.5) * out[:, 0]
+        out[1, 1] = 0.0
+        out = out[1:, 1:]
     out.setflags(write=False)
     return out
 
@@ -278,35 +251,23 @@ def stacked(
 def banded(f: PeriodicFunction, odd: int, harmonic: int, mu: float) -> Array:
     """Return the lower band of one of those matrices, shape ``(width + 1, size)``, for SciPy.
 
-    In this order of the basis the matrix has ``2 f.harmonics + 1`` diagonals below the main one.
+    In this order of the basis the matrix has ``2 f.harmonics + 1`` diagonals below the main one,
+    which from ``k = f.harmonics`` on repeat with each k.
     """
-    twice, sine = _basis(odd, harmonic)
-    size, m = len(twice), int(twice[-1]) + 1
-    width = min(2 * f.harmonics + 1, size - 1)
-    table = _table(f, m)
-    out = np.zeros((width + 1, size))
-    for i in range(width + 1):
-        n = size - i
-        first, second = _places(twice[i:], sine[i:], twice[:n], sine[:n], m)
-        out[i, :n] = -mu * (table[first] + table[second])
-    if not odd:
-        out[1:, 0] *= sqrt(0.5)
-        out[0, 0] *= 0.5
-    out[0] += np.square(0.5 * twice)
-    return out
-
-
-Complex = NDArray[np.complex128]
+    squares = _squares(odd, harmonic)
+    first, width = 2 * f.harmonics + 2 - odd, 2 * f.harmonics + 1
+    corner = matrix(f, odd, 2 * f.harmonics + 2)
+    band = np.array([np.append(corner.diagonal(-i), np.zeros(i)) for i in range(width + 1)])
+    columns = np.arange(squares.size)
+    out = -mu * band[:, np.where(columns < first, columns, first + (columns - first) % 2)]
+    out[0] += squares
+    return np.asarray(out)
 
 
 def couplings(f: PeriodicFunction, size: int) -> Complex:
     """Return ``-c_(k-l)`` for all pairs of so many harmonics exp(i k theta), the mean left out."""
-    c = np.zeros(size, dtype=complex)
-    kept = min(f.harmonics + 1, size)
-    c[:kept] = -0.5 * (f.a - 1j * f.b)[:kept]
-    c[0] = 0.0
-    apart = np.subtract.outer(np.arange(size), np.arange(size))
-    return np.where(apart >= 0, c[np.abs(apart)], c[np.abs(apart)].conj())
+    every = np.arange(size)
+    return np.asarray(-_waves(f, size)[np.subtract.outer(every, every)])
 
 
 def real_pairs(whole: Array) -> tuple[Array, Array, Array]:

@@ -13,14 +13,14 @@ from math import ceil, log, pi, sqrt
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core import chebyshev
 from ..core.errors import bad
 from ..core.results import BROADCAST, Check, Result, provenance
-from .checks import arguments, check_function
+from .checks import EPS, Array, Index, Mask, arguments, check_function
 from .meissner import Meissner
-from .transfer import EPS, Transfer, transfer
+from .transfer import Transfer, transfer
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 
     from ..core.periodic_function import PeriodicFunction
 
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 Box = tuple[float, float, float, float]
 
 # Up to so many points direct evaluation is as fast as interpolation, and its error is entrywise.
@@ -76,7 +74,7 @@ class HalfTrace(Result):
         return np.asarray(0.5 * (1.0 + np.exp(-4.0 * pi * self.damping)))
 
     @property
-    def stable(self) -> NDArray[np.bool_]:
+    def stable(self) -> Mask:
         """True where both multipliers lie inside the unit circle (on it, when undamped)."""
         return np.asarray(np.abs(self.value) < self.level)
 
@@ -149,9 +147,10 @@ def discriminant(
     if not exact:
         check_function(f)
     (lam, amp, k), shape = arguments(lam2=lam2, mu=mu, damping=damping)
-    x = _collapsed(_padded(lam - k * k, len(shape)))
-    y = _collapsed(_padded(amp, len(shape)))
-    log2_scale = _collapsed(_padded(k * (-2.0 * pi / log(2.0)), len(shape)))
+    x, y, log2_scale = (
+        _collapsed(np.array(item, ndmin=len(shape)))
+        for item in (lam - k * k, amp, k * (-2.0 * pi / log(2.0)))
+    )
     x, log2_scale = np.broadcast_arrays(x, log2_scale)
     if all(min(n, m) == 1 for n, m in zip(x.shape, y.shape, strict=True)):
         work = _Work(f, x.ravel(), y.ravel(), log2_scale.ravel(), grid=True)
@@ -353,10 +352,6 @@ def _guess(span: float, low: float) -> int:
     start = sqrt(max(low, 0.0))
     half_phase = pi * (sqrt(start * start + span) - start)
     return min(16 * ceil((1.4 * half_phase + 14.0) / 16.0), _MOST_NODES)
-
-
-def _padded(values: Array, ndim: int) -> Array:
-    return values.reshape((1,) * (ndim - values.ndim) + values.shape)
 
 
 def _collapsed(values: Array) -> Array:

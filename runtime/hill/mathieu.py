@@ -7,19 +7,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.errors import bad
 from ..core.inputs import is_whole
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import BROADCAST, Result, provenance
 from .boundaries import hill_boundaries
-from .checks import axes_over, finite
+from .checks import Array, axes_over, finite
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 Kind = Literal["a", "b"]
 
 _LARGEST_NUMBER = 500

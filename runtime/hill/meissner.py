@@ -15,14 +15,12 @@ from math import pi
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...generated import hill_meissner
 from ..core.errors import bad
-from .checks import finite
-from .transfer import EPS, Exponents, HalfTraces, in_parts, normalised, product
-
-Array = NDArray[np.float64]
+from .checks import EPS, Array, finite
+from .transfer import Exponents, HalfTraces, in_parts, normalised, product
 
 _interval: Callable[..., tuple[Array, Array]] = hill_meissner.interval
 

@@ -14,7 +14,7 @@ from math import comb
 from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.errors import bad
 from ..core.inputs import is_whole
@@ -22,12 +22,7 @@ from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, provenance
 from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
 from .boundaries import Boundaries
-from .checks import arguments, check_function, check_regions
-from .transfer import EPS
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Mask = NDArray[np.bool_]
+from .checks import EPS, Array, Complex, Mask, check_function, check_regions, points
 
 # The series is taken to converge while its components fall at least so fast from one to the next,
 # and while what is left out stays below this share of the distance to the next level.
@@ -127,23 +122,22 @@ def perturbation_boundaries(
     ratio, with a margin of a quarter, reaches 0.9, or the error half the distance to the
     neighbouring level of the same period.
     """
-    functions, amps, k, shape = parameters_of(f, mu, damping)
+    functions, flat, shape = parameters_of(f, mu, damping)
     numbers = check_regions(regions)
     check_order(order)
     if outside not in ("nan", "value"):
         raise bad("outside", repr(outside), "'nan' or 'value'", "choose one")
-    flat = np.stack([np.broadcast_to(item, shape).ravel() for item in (*amps, k)])
     count = flat.shape[1]
     lower, upper, error = np.empty((3, len(numbers), count))
     flagged, closed, undecided = np.empty((3, len(numbers), count), dtype=bool)
     share = 0.0
     with np.errstate(all="ignore"):
-        points = _Points(functions, flat, int(order))
+        problem = _Points(functions, flat, int(order))
         for i, n in enumerate(numbers):
-            operator = points.operator(n)
+            operator = problem.operator(n)
             for start in range(0, count, _CHUNK):
                 part = slice(start, start + _CHUNK)
-                ends, split = points.ends(operator, part)
+                ends, split = problem.ends(operator, part)
                 share = max(share, split)
                 half = ends.half
                 if outside == "nan" and ends.outside.any():
@@ -190,11 +184,11 @@ def parameters_of(
     f: PeriodicFunction | Sequence[PeriodicFunction],
     mu: ArrayLike | Sequence[ArrayLike],
     damping: ArrayLike,
-) -> tuple[tuple[PeriodicFunction, ...], tuple[Array, ...], Array, tuple[int, ...]]:
-    """Return functions, their parameters, the damping, and the shape that these broadcast to."""
+) -> tuple[tuple[PeriodicFunction, ...], Array, tuple[int, ...]]:
+    """Return the functions, their parameters with K last at all points, and the shape of these."""
     if isinstance(f, PeriodicFunction):
-        (amp, k), shape = arguments(mu=mu, damping=damping)  # type: ignore[arg-type]
-        return (f,), (amp,), k, shape
+        flat, shape = points(mu=mu, damping=damping)  # type: ignore[arg-type]
+        return (f,), np.stack(flat), shape
     if not isinstance(f, Sequence) or not f:
         check_function(f)
     functions = tuple(check_function(item) for item in f)
@@ -206,8 +200,8 @@ def parameters_of(
             "pass mu=[eps_1, eps_2, ...]",
         )
     named = {f"mu[{i}]" if len(mu) > 1 else "mu": value for i, value in enumerate(mu)}
-    (*amps, k), shape = arguments(**named, damping=damping)
-    return functions, tuple(amps), k, shape
+    flat, shape = points(**named, damping=damping)
+    return functions, np.stack(flat), shape
 
 
 def combined(functions: tuple[PeriodicFunction, ...], values: Array) -> PeriodicFunction:
@@ -312,30 +306,6 @@ class Sums(NamedTuple):
     ratio: Array
     """Ratio at which the components fall, with its margin."""
 
-    @property
-    def square(self) -> Array:
-        """``S = |B|^2 - (Im A)^2``; as a product, so that nothing cancels beyond the data."""
-        return (self.split - self.drag) * (self.split + self.drag)
-
-    @property
-    def fewest(self) -> Array:
-        """The least that S may be."""
-        low, high = np.maximum(self.split - self.spread, 0.0), self.drag + self.turned
-        return np.asarray((low - high) * (low + high))
-
-    @property
-    def most(self) -> Array:
-        """The most that S may be."""
-        high, low = self.split + self.spread, np.maximum(self.drag - self.turned, 0.0)
-        return np.asarray((high - low) * (high + low))
-
-    def root(self) -> tuple[Array, Array]:
-        """Return the root of S, 0 where that is negative, and its error."""
-        half = np.sqrt(np.maximum(self.square, 0.0))
-        outer = np.sqrt(np.maximum(self.most, 0.0)) - half
-        inner = half - np.sqrt(np.maximum(self.fewest, 0.0))
-        return half, np.maximum(outer, inner)
-
     @classmethod
     def of(cls, n: int, order: int, a: Complex, b: Complex, noise: Array, strength: Array) -> Sums:
         """Sum up A and B of region n from their components ``(N + 2, n)``.
@@ -363,13 +333,21 @@ class Sums(NamedTuple):
         half, error = np.zeros_like(self.centre), self.moved
         undecided = np.zeros(half.shape, dtype=bool)
         if self.region:
-            half, spread = self.root()
-            half[damped & (self.square < 0.0)] = np.nan
-            error = self.moved + spread
-            undecided = damped & (self.fewest < 0.0) & (self.most >= 0.0)
+            square = _square(self.split, self.drag)
+            least = _square(np.maximum(self.split - self.spread, 0.0), self.drag + self.turned)
+            most = _square(self.split + self.spread, np.maximum(self.drag - self.turned, 0.0))
+            inner, half, outer = (np.sqrt(np.maximum(s, 0.0)) for s in (least, square, most))
+            error = self.moved + np.maximum(outer - half, half - inner)
+            half[damped & (square < 0.0)] = np.nan
+            undecided = damped & (least < 0.0) & (most >= 0.0)
         inside = (self.ratio < CONTRACTION) & (error < _SHARE * level_distance(self.region))
         inside &= np.isfinite(self.centre)
         return SeriesEnds(self.centre, half, error, ~inside, undecided & inside)
+
+
+def _square(split: Array, drag: Array) -> Array:
+    """Return ``S = |B|^2 - (Im A)^2`` as a product: nothing cancels beyond the data."""
+    return (split - drag) * (split + drag)
 
 
 def contraction(sizes: Array, reference: Array | float) -> Array:

@@ -11,7 +11,6 @@ damping, which brings ``-2 i K (m - n/2)``.  The formulas say so: in their sums
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -20,7 +19,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...generated import hill_recursion
 from ..core.errors import bad
@@ -29,20 +28,16 @@ from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, Result, provenance
 from .bloch import HIGHEST_ORDER, effective_operator, level_distance
 from .boundaries import hill_boundaries
-from .checks import check_function, check_regions, finite
-from .transfer import EPS
+from .checks import EPS, Array, Complex, check_function, check_regions, finite
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-Array = NDArray[np.float64]
-
 # A leading coefficient of the root is taken for zero where it is within the round-off of the terms
 # that make it, so many units of their size; above this share of its majorant it cannot be.
 _ROUNDED, _CLEAR = 64.0, 1e-6
 HIGHEST_FORMULA = max(hill_recursion.WORDS)
-_POWER = re.compile(r"R(?:\^(\d+))?")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -262,7 +257,7 @@ def _alphas(f: PeriodicFunction, n: int, order: int, ratio: float) -> tuple[Arra
     return np.stack([middle, half]), s, doubt
 
 
-def _root(drag: Array, coupling: NDArray[np.complex128]) -> Array:
+def _root(drag: Array, coupling: Complex) -> Array:
     """Return the power series of the root of ``|B|^2 - (Im A)^2``, which begins positive."""
     # A power of two, so that squares stay within the range of doubles and no digit changes.
     unit = np.ldexp(1.0, np.frexp(np.abs(coupling[0]) + np.abs(drag[0]))[1])
@@ -303,7 +298,10 @@ def boundary_latex(order: int, n: int | None = None, damped: bool = False) -> st
         lines = [r"\lambda^2 &= " + _sum_of("A", order)]
         lines += _parts("A", "0", "0", order, region, damped)
     else:
-        centre = r"\frac{n^2}{4}" if n is None else _fraction(n)
+        if n is None:
+            centre = r"\frac{n^2}{4}"
+        else:
+            centre = rf"\frac{{{n * n}}}{{4}}" if n % 2 else str((n // 2) ** 2)
         lines = [
             rf"\lambda^2 &= {centre} + \operatorname{{Re}} A \pm "
             r"\sqrt{\left|B\right|^2 - \left(\operatorname{Im} A\right)^2}",
@@ -326,12 +324,6 @@ def _checked(order: int, n: int | None) -> str:
     if not is_whole(n, 0):
         raise bad("region", repr(n), "a whole number >= 0", "correct it")
     return str(int(n))
-
-
-def _fraction(n: int) -> str:
-    if n % 2 == 0:
-        return str((n // 2) ** 2)
-    return rf"\frac{{{n * n}}}{{4}}"
 
 
 def _sum_of(letter: str, order: int) -> str:
@@ -369,7 +361,8 @@ def _terms(order: int, end: str, start: str, damped: bool, region: str) -> _Term
     resonant = ("0",) if region == "0" else ("0", "n")
     for coefficient, word in hill_recursion.WORDS[order]:
         stops = word.split(" V ")[1:-1]
-        powers = [0 if stop == "P" else _power(stop) for stop in stops]
+        # P, R, R^2 ...
+        powers = [0 if stop == "P" else int(stop[2:] or 1) for stop in stops]
         sign = coefficient * (-1) ** (order + sum(powers))
         for chains in _paths(end, start, powers, resonant):
             still = [chain for chain in chains if not chain.powers and chain.end == chain.start]
@@ -381,13 +374,6 @@ def _terms(order: int, end: str, start: str, damped: bool, region: str) -> _Term
             kept = tuple(_Chain("n", "n", ()) if c == _Chain("0", "0", ()) else c for c in kept)
             found[tuple(sorted(kept))] += sign * (-1) ** turned
     return {key: value for key, value in sorted(found.items()) if value}
-
-
-def _power(letter: str) -> int:
-    match = _POWER.fullmatch(letter)
-    if match is None:
-        raise ValueError(f"word of the emitted module: unknown letter {letter}")
-    return int(match[1] or 1)
 
 
 def _paths(

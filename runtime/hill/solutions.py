@@ -16,24 +16,21 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, Result, provenance
 from ..core.sampling import finite_angles
-from .bloch import BEYOND, effective_operator, level_distance, wave_columns
+from .bloch import BEYOND, effective_operator, wave_columns
 from .boundaries import hill_boundaries
-from .checks import LARGEST, check_regions
+from .checks import EPS, LARGEST, Array, Complex, check_regions
 from .fourier_matrix import couplings, stacked
-from .perturbation import Sums, check_order, combined, contraction, parameters_of
-from .transfer import EPS
+from .perturbation import Sums, check_order, combined, parameters_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 End = Literal["lower", "upper"]
 
 
@@ -158,23 +155,23 @@ def boundary_solution(
     Smith (7.13)-(7.36), (7.41)-(7.47): the columns of Bloch's wave operator and the eigenvector
     of the effective operator.
     """
-    functions, amps, k, shape = parameters_of(f, mu, damping)
+    functions, (*amps, k), shape = parameters_of(f, mu, damping)
     (number,) = check_regions((n,))
     if end not in ("lower", "upper") or (end == "lower" and number == 0):
         expected = "'upper'" if number == 0 else "'lower' or 'upper'"
         raise bad("end", repr(end), expected, "region 0 has an upper end alone")
     if shape:
         raise bad("mu, damping", f"arrays of shape {shape}", "numbers", "call once for each point")
-    point = np.array([float(v) for v in amps])
+    point = np.concatenate(amps)
     if float(np.sum(np.abs(point) * [item.bound() for item in functions])) > 1e100:
         raise bad("mu", "a product mu f beyond 1e100", "a moderate one", "scale the equation")
     whole = combined(functions, point)
     if order is None:
-        solution = _exact(whole, number, end, float(k))
+        solution = _exact(whole, number, end, float(k[0]))
     else:
         check_order(order)
-        solution = _to_order(whole, number, end, int(order), float(k))
-    return _result(solution, point, float(k), number, end, order)
+        solution = _to_order(whole, number, end, int(order), float(k[0]))
+    return _result(solution, point, float(k[0]), number, end, order)
 
 
 class _Solution(NamedTuple):
@@ -251,8 +248,8 @@ def _to_order(f: PeriodicFunction, n: int, end: End, order: int, damping: float)
     reach = f.bound() + n * damping
     noise = np.array([4.0 * EPS * (0.25 * n * n + reach) + f.error])
     with np.errstate(all="ignore"):
-        ends = Sums.of(n, order, a, b, noise, noise + reach).ends(np.array([damped]))
-        fall = float(contraction(np.abs(a) + np.abs(b), level_distance(n))[0])
+        sums = Sums.of(n, order, a, b, noise, noise + reach)
+        ends = sums.ends(np.array([damped]))
     if ends.outside[0]:
         raise bad(
             "boundary_solution",
@@ -274,7 +271,7 @@ def _to_order(f: PeriodicFunction, n: int, end: End, order: int, damping: float)
         every = every + every[:, ::-1].conj()
     v, rest = every[: order + 1].sum(axis=0), np.abs(every[order + 1 :])
     k = _wave_numbers(v)
-    geometric = 1.0 / (1.0 - min(1.25 * fall, 0.95))
+    geometric = 1.0 / (1.0 - min(float(sums.ratio[0]), 0.95))
     body = float(np.abs(v).sum())
     error = 2.0 * geometric * float(rest.sum()) + (turn + 8.0 * EPS) * body
     detours = float((np.abs(k * k - 0.25 * n * n) * rest).sum())

@@ -13,24 +13,20 @@ from functools import partial
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, bad
 from ..core.maxima import narrowed
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
-from .boundaries import Ends, crossing, hill_boundaries, largest_exponent, sample_of
-from .checks import arguments, axes_over, check_function, check_regions
+from .boundaries import crossing, ends_at, hill_boundaries, largest_exponent, sample_of
+from .checks import EPS, Array, Index, Mask, axes_over, check_function, check_regions, points
 from .perturbation import CONTRACTION, Sums
-from .transfer import EPS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 
 # Values of mu per decade in the search for the first crossing, and how far it goes: to mu f of so
 # many times the square of the region's number.  Where it begins without damping any width will do.
@@ -160,8 +156,7 @@ class Closing(NamedTuple):
 
 def _closing(f: PeriodicFunction, n: int, mu: Array) -> Closing:
     """Return where region n closes, by perturbation where that has the smaller error."""
-    bounds = hill_boundaries(f, mu, (n,))
-    sharp = Ends(bounds.lower[0], bounds.upper[0], bounds.error[0], np.zeros(mu.shape, dtype=bool))
+    sharp = ends_at(f, mu, np.zeros_like(mu), (n,)).take(0)
     k, place, error = largest_exponent(f, n, mu, sharp)
     exact = Closing(k, place + k * k, error)
     coarse = np.flatnonzero(error > 1e-13 * k)
@@ -218,8 +213,7 @@ def _sums(operator: EffectiveOperator, f: PeriodicFunction, mu: Array, damping: 
 
 
 def _critical(f: PeriodicFunction, mu: ArrayLike, regions: tuple[int, ...]) -> Thresholds:
-    (amp, _), shape = arguments(mu=mu, damping=0.0)
-    flat = np.broadcast_to(amp, shape).ravel()
+    (flat, _), shape = points(mu=mu, damping=0.0)
     rows = [_closing(f, n, flat) for n in regions]
     k, lam2, error = (
         np.reshape([row[i] for row in rows], (len(regions), flat.size)) for i in range(3)
@@ -263,8 +257,7 @@ def _either_side(
 
 
 def _least(f: PeriodicFunction, damping: ArrayLike, regions: tuple[int, ...]) -> Thresholds:
-    (k,), shape = arguments(damping=damping)
-    flat = np.broadcast_to(k, shape).ravel()
+    (flat,), shape = points(damping=damping)
     reach = float(f.amplitudes[1:].sum())
     scale = max(max(regions, default=1), float(flat.max(initial=0.0)))
     top = _FARTHEST * scale**2 / reach if reach > 0.0 else 0.0

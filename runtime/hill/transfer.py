@@ -22,13 +22,12 @@ from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.periodic_function import PeriodicFunction, segment_values
+from .checks import EPS, Array
 
-Array = NDArray[np.float64]
 Exponents = NDArray[np.int64]
 Range = tuple[float, float]
 HalfTraces = tuple[Array, Array, Exponents, Array]
 
-EPS = float(np.finfo(float).eps)
 _MOST_SEGMENTS = 2**16
 _NODE_COUNTS = np.arange(8, 25)
 # log (2q - 1)!! of them.

@@ -10,7 +10,6 @@ from functools import cache
 import numpy as np
 import pytest
 from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.hill import hill_boundaries
 from exact_hill import ExactHarmonics, combine
 from hill_functions import functions
 from omitted_orders import Curve
@@ -45,17 +44,6 @@ def rough(harmonics):
     b = rng.uniform(-1, 1, m.size) * size
     b[0] = 0.0
     return PeriodicFunction(rng.uniform(-1, 1, m.size) * size, b)
-
-
-def closing_damping(f, mu, low, high):
-    """Return bounds of the damping at which region 1 closes, by bisection."""
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        if np.isnan(hill_boundaries(f, mu, (1,), middle).lower[0]):
-            high = middle
-        else:
-            low = middle
-    return low, high
 
 
 @cache

@@ -26,8 +26,9 @@ extended = pytest.mark.skipif(
 PI = 4 * np.arctan(np.longdouble(1))
 # Errors below the references' own are not told apart from zero.
 LEAST = 1e-17
-STEP = 2.0**-14
+STEP = 2.0**-17
 BOTH = (False, True)
+G = PeriodicFunction([0.25, 0.5, -0.375], [0.0, 0.125, 0.75])
 
 
 def scene(rng, counts=(1, 2, 4, 8)):
@@ -83,6 +84,7 @@ def test_boundaries_against_enclosures(rng, damped):
     mu *= 10.0 ** rng.uniform(0, 2)
     k = float(10.0 ** rng.uniform(-2, 0.8)) if damped else 0.0
     plain, proved = (hill_boundaries(f, mu, (0, 1, 2, 3), k, certified=c) for c in BOTH)
+    assert np.isnan(plain.upper[proved.closed]).all()
     errors, gaps = [], []
     for end in ("lower", "upper"):
         known = np.isfinite(getattr(proved, end))
@@ -109,30 +111,44 @@ def test_bands_against_enclosures(rng):
     return ours.error, ours.lam2 - 0.25 * proved.lower - 0.25 * proved.lower_rest
 
 
-def exact_ends(f, mu, n, k):
+def exact_ends(n, f, mu, k):
     found = hill_boundaries(f, mu, (n,), k, certified=True)
     return [sum(found.enclosure(end, 0)) / 2 for end in ("lower", "upper")]
 
 
+def moved(f, mu, k, name, step):
+    """Return the problem after a change of one parameter."""
+    if name in ("a1", "b1"):
+        a, b = f.a.copy(), f.b.copy()
+        {"a1": a, "b1": b}[name][1] += step
+        return PeriodicFunction(a, b), mu, k
+    if name == "g":
+        return f * mu + G * step, 1.0, k
+    return f, mu + step * (name == "mu"), k + step * (name == "K")
+
+
 @over_scenes(23, few=10, many=100, floor=LEAST)
-@pytest.mark.parametrize("k", [0.0, 2.0**-6])
-def test_derivatives_against_differences_of_enclosures(rng, k):
+@pytest.mark.parametrize(
+    ("name", "k"),
+    [("mu", 0.0), ("mu", 2.0**-6), ("a1", 0.0), ("b1", 2.0**-6), ("g", 0.0), ("K", 2.0**-6)],
+)
+def test_derivatives_against_differences_of_enclosures(rng, name, k):
     """Central differences of sixth order, between ends known to 1e-20 or better."""
     weights = {1: Fraction(3, 4), 2: Fraction(-3, 20), 3: Fraction(1, 60)}
     f, mu = scene(rng)
     n = int(rng.integers(1, 4))
-    found = boundary_derivatives(f, mu, (n,), damping=k)
+    found = boundary_derivatives(f, mu, (n,), (G if name == "g" else name,), k)
     if not hill_boundaries(f, mu, (n,), k).width[0] > 0.02:
         # Closed, or so narrow that the ends turn about each other within the steps.
         return None
     slopes = [Fraction(0), Fraction(0)]
     for j, weight in weights.items():
-        up, down = (exact_ends(f, mu + side * j * STEP, n, k) for side in (1, -1))
+        up, down = (exact_ends(n, *moved(f, mu, k, name, side * j * STEP)) for side in (1, -1))
         for end in (0, 1):
             slopes[end] += weight * (up[end] - down[end]) / Fraction(STEP)
     ours = (found.lower[0, 0], found.upper[0, 0])
     # The difference itself: the seventh derivative over 140, at most about 1 / width^6 there,
-    # times STEP^6 = 5e-26.
+    # times STEP^6 = 2e-31.
     gaps = [float(Fraction(float(x)) - y) for x, y in zip(ours, slopes, strict=True)]
     return found.error[0, 0], gaps
 

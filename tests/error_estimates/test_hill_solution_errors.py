@@ -10,9 +10,11 @@ from __future__ import annotations
 import mpmath
 import numpy as np
 import pytest
+from boundary_truth import BITS, combined, fixed, hill_rows
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import boundary_solution, hill_boundaries
+from exact_hill import ExactHarmonics
 from honesty import over_scenes
 
 pytestmark = pytest.mark.skipif(
@@ -54,41 +56,20 @@ def as_long(values):
     return high.astype(np.longdouble) + rest
 
 
-def fourier_matrix(functions, mu, damping, k, exact):
-    """Return the matrix of ``-y'' - 2 K y' - F y`` on cos k theta, then sin k theta."""
-    places = {float(wave): i for i, wave in enumerate(k)}
-    size, half = len(k), more_digits([0.5], exact)[0]
-    highest = max(f.harmonics for f in functions)
-    a, b = (more_digits(np.zeros(1 + highest), exact) for _ in range(2))
-    for f, value in zip(functions, more_digits(mu, exact), strict=True):
-        a[: f.harmonics + 1] += value * more_digits(f.a, exact)
-        b[: f.harmonics + 1] += value * more_digits(f.b, exact)
-    out = np.array([more_digits(np.zeros(2 * size), exact) for _ in range(2 * size)])
+def fourier_matrix(functions, mu, damping, n, highest, exact):
+    """Return ``2 k, sine`` of cos 0, cos 1, sin 1, ... and the matrix of ``-y'' - 2 K y' - F y``.
 
-    def add(wave, sine, column, amount):
-        """Add to cos or sin of any wave number, negative ones included."""
-        row = places.get(abs(wave))
-        if row is not None and not (sine and wave == 0):
-            sign = -1 if sine and wave < 0 else 1
-            out[row + size * sine, column] -= sign * amount
-
-    for i, wave in enumerate(k):
-        square = more_digits([wave * wave], exact)[0]
-        out[i, i] += square
-        out[i + size, i + size] += square
-        turn = 2 * more_digits([damping], exact)[0] * more_digits([wave], exact)[0]
-        out[i + size, i] += turn  # cos' = -k sin
-        out[i, i + size] -= turn
-        for h in range(len(a)):
-            add(wave + h, 0, i, half * a[h])
-            add(wave - h, 0, i, half * a[h])
-            add(wave + h, 1, i, half * b[h])
-            add(h - wave, 1, i, half * b[h])
-            add(wave + h, 1, i + size, half * a[h])
-            add(wave - h, 1, i + size, half * a[h])
-            add(h - wave, 0, i + size, half * b[h])
-            add(h + wave, 0, i + size, -half * b[h])
-    return out
+    In long doubles, or in numbers of 60 digits.
+    """
+    parts = [ExactHarmonics.of(f.mean, f.a[1:].tolist(), f.b[1:].tolist()) for f in functions]
+    series = ([fixed(x) for x in part] for part in combined(parts, mu))
+    rows = hill_rows(*series, fixed(damping), n % 2, highest - 1)
+    columns = {key: place for place, key in enumerate(rows)}
+    out = np.full((len(rows), len(rows)), mpmath.mpf(0))
+    for row, entries in zip(out, rows.values(), strict=True):
+        for key, value in entries.items():
+            row[columns[key]] = mpmath.ldexp(mpmath.mpf(value), -BITS)
+    return np.array(list(rows)), out if exact else as_long(out.ravel()).reshape(out.shape)
 
 
 def eliminated(matrix):
@@ -146,17 +127,14 @@ def neighbours(functions, mu, n, end, damping):
 
 
 def truth(given, found):
-    """Return wave numbers, the solution, and the space of all solutions that lie close by."""
+    """Return 2 k and kinds, the solution, and the space of all solutions that lie close by."""
     functions, mu, n, _, damping = given
     target, gap, first = neighbours(*given)
     exact = gap < CLOSE
     seen = np.flatnonzero(np.hypot(found.a, found.b) > 1e-14)[-1]
     # A way beyond these and back is 1e-28 of the coupling of the pair.
     highest = int(seen) + 2 + max(f.harmonics for f in functions)
-    k = np.arange(highest) + 0.5 * (n % 2)
-    matrix = fourier_matrix(functions, mu, damping, k, exact)
-    if n % 2 == 0:  # no sine of 0
-        matrix = np.delete(np.delete(matrix, highest, 0), highest, 1)
+    kinds, matrix = fourier_matrix(functions, mu, damping, n, highest, exact)
     pair = gap < 1e-2 * max(1.0, abs(target))
     # Between the two, or a little beyond both.
     away = max(0.55 * gap if pair else 0.0, 1e-7 * max(1.0, abs(target))) * (1 if first else -1)
@@ -180,29 +158,27 @@ def truth(given, found):
         one, two = (h[0, 1], root - half), (root + half, h[1, 0])
         weight = max(one, two, key=lambda v: max(abs(v[0]), abs(v[1])))
         solution = x[:, 0] * weight[0] + x[:, 1] * weight[1]
-    return k, solution, x
+    return kinds, solution, x
 
 
 def deviation(given, found):
     """Return the largest deviation over theta from the true solution."""
-    k, solution, space = truth(given, found)
-    n = found.n
-    drop = [len(k)] if n % 2 == 0 else []
+    kinds, solution, space = truth(given, found)
+    k, sine = 0.5 * kinds[:, 0], kinds[:, 1]
     scale = np.where(k == 0.0, 1.0, np.sqrt(np.longdouble(0.5)))
-    scale = np.delete(np.concatenate([scale, scale]), drop)
-    both = np.zeros((2, len(k)), dtype=np.longdouble)
-    kept = min(len(k), len(found.a))
-    both[:, :kept] = found.a[:kept], found.b[:kept]
-    ours = np.delete(both.ravel(), drop) * scale
+    places = kinds[:, 0] // 2
+    kept = places < len(found.a)
+    ours = np.zeros_like(scale)
+    ours[kept] = np.stack([found.a, found.b])[sine[kept], places[kept]]
+    ours *= scale
     if found.degenerate:
         basis = orthonormal(np.stack([as_long(c) for c in space.T], axis=-1) * scale[:, None])
         exact = basis @ (basis.T @ ours)
     else:
         exact = as_long(solution) * scale
         exact *= np.sign(np.sum(exact * ours)) / np.sqrt(np.sum(exact * exact))
-    exact = np.insert(exact / scale, drop, 0.0).reshape(2, -1)
     phase = np.multiply.outer(THETA.astype(np.longdouble), k.astype(np.longdouble))
-    values = np.cos(phase) @ exact[0] + np.sin(phase) @ exact[1]
+    values = np.where(sine, np.sin(phase), np.cos(phase)) @ (exact / scale)
     return float(np.max(np.abs(found(THETA) - values)))
 
 

@@ -14,7 +14,6 @@ from elastolink.runtime.hill import (
     discriminant,
     hill_boundaries,
 )
-from scipy.integrate import solve_ivp
 
 # Abramowitz & Stegun table 20.1 (DLMF 28.1 cites it), all digits printed there.
 TABLE = {
@@ -53,27 +52,12 @@ def test_the_characteristic_values_of_a_constant_coefficient():
     assert found.passed and found.plot().lines
 
 
-def solved(coefficient, period):
-    """Half trace of x'' + coefficient(t) x = 0 over a period, by an integrator."""
-    columns = []
-    for start in ([1.0, 0.0], [0.0, 1.0]):
-        run = solve_ivp(
-            lambda t, s: [s[1], -coefficient(t) * s[0]],
-            (0.0, period),
-            start,
-            rtol=1e-11,
-            atol=1e-12,
-        )
-        columns.append(run.y[:, -1])
-    return 0.5 * (columns[0][0] + columns[1][1])
-
-
 def test_mathieus_notation():
-    """The equation as printed, integrated in x, has the half trace of its Hill form."""
-    a, q = 1.7, 0.9
-    case = Mathieu(a, q)
-    ours = discriminant(case.function(), case.lam2, case.mu).value
-    assert ours == pytest.approx(solved(lambda x: a - 2 * q * np.cos(2 * x), np.pi), abs=1e-8)
+    """On the printed boundaries the Hill form has the half traces 1 and -1 in turn."""
+    for name, values in TABLE.items():
+        case = Mathieu(values[0], 5.0)
+        half = discriminant(case.function(), case.lam2, case.mu).value
+        assert half == pytest.approx((-1.0) ** int(name[1]), abs=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -86,7 +70,7 @@ def test_mathieus_notation():
         (lambda: Mathieu.characteristic(1, 1e7), "q"),
         (lambda: Mathieu.characteristic(1, np.nan), "q"),
         (lambda: Meissner((1.0, np.inf)), "levels"),
-        (lambda: Meissner((1.0, 0.0), (1.0, 2.0)), "lengths"),
+        (lambda: Meissner((1.0, 0.0), (1.0, 2.0)), "2 pi"),
         (lambda: Meissner((1.0, 0.0, 2.0)), "Meissner"),
         (lambda: Mathieu(np.nan, 1.0).lam2, "a"),
     ],
@@ -186,8 +170,6 @@ def test_a_region_that_damping_closed_is_stable_throughout():
         ({"mu": 1.0, "levels": (1.0, 2.0, 3.0), "lengths": (1.0, 1.0, TURN - 2.0)}, "two"),
         ({"damping": -1.0}, "damping"),
         ({"regions": (-1,)}, "regions"),
-        ({"levels": (1.0, 2.0, 3.0)}, "levels"),
-        ({"lengths": (1.0, 1.0)}, "2 pi"),
         ({"lengths": (-1.0, TURN + 1.0)}, "lengths"),
     ],
 )

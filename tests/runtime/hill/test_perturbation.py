@@ -151,9 +151,6 @@ def test_what_would_not_fit_is_refused():
         perturbation_boundaries([f, f, f], [np.zeros(2)] * 3, (1,), 8, 0.1)
 
 
-# Number of parts, damping, order.
-
-
 EPS = float(np.finfo(float).eps)
 
 
@@ -289,19 +286,6 @@ def test_memory_of_order_eight(damping):
         tracemalloc.stop()
     # Five results of 1e5 doubles and what blocks of 4096 points take.
     assert peak < 1e8
-
-
-@pytest.mark.parametrize("damping", [0.0, 1e-3])
-def test_negative_mu_is_the_negative_function(damping):
-    mu = np.array([1e-5, 0.01, 0.05])
-    for order in (1, 3, 8):
-        one = perturbation_boundaries(MIXED, -mu, range(5), order, damping)
-        other = perturbation_boundaries(-MIXED, mu, range(5), order, damping)
-        for name in ("lower", "upper", "error"):
-            np.testing.assert_allclose(
-                getattr(one, name), getattr(other, name), rtol=1e-13, atol=1e-15
-            )
-        np.testing.assert_array_equal(one.outside, other.outside)
 
 
 def test_very_high_regions():

@@ -54,19 +54,6 @@ def test_mathieu_functions_are_even_or_odd():
         assert np.abs(odd.a).max() < 1e-12
 
 
-def test_the_first_correction_by_hand():
-    """Region 1 of cos theta: y = cos(theta/2) + mu/4 cos(3 theta/2) + ... up to its norm.
-
-    With y0 = cos(theta/2) the product cos theta y0 holds cos(3 theta/2)/2, which (1/4 - 9/4) has to
-    balance: the coefficient is mu/4.
-    """
-    mu = 1e-4
-    found = boundary_solution(COSINE, mu, 1, "lower", order=1)
-    at = {float(k): i for i, k in enumerate(found.wave_numbers)}
-    assert found.lam2 == pytest.approx(0.25 - mu / 2, abs=1e-15)
-    assert found.a[at[1.5]] / found.a[at[0.5]] == pytest.approx(mu / 4, rel=1e-8)
-
-
 def test_several_parameters():
     second = PeriodicFunction([0.0, 0.0, 1.0])
     whole = COSINE * 0.1 + second * 0.05

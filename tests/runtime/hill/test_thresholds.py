@@ -4,11 +4,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.hill import (
-    critical_damping,
-    discriminant,
-    perturbation_boundaries,
-)
+from elastolink.runtime.hill import critical_damping, discriminant, perturbation_boundaries
 from hill_functions import ANOTHER as GENERAL
 from hill_functions import COSINE
 

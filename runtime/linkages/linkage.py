@@ -80,9 +80,7 @@ class LinkMotion:
         -------
         PointMotion
         """
-        cos, sin = np.cos(self.angle), np.sin(self.angle)
-        x = cos * along - sin * np.asarray(across)
-        y = sin * along + cos * np.asarray(across)
+        x, y = self.turned(along, across)
         speed, change = self.speed, self.angular_acceleration
         square = speed * speed
         return PointMotion(
@@ -90,6 +88,12 @@ class LinkMotion:
             self.velocity + pair(-speed * y, speed * x),
             self.acceleration + pair(-square * x - change * y, change * x - square * y),
         )
+
+    def turned(self, along: ArrayLike, across: ArrayLike) -> tuple[Array, Array]:
+        """Return a vector given along and across the link by its fixed components."""
+        cos, sin = np.cos(self.angle), np.sin(self.angle)
+        u, v = np.asarray(along), np.asarray(across)
+        return cos * u - sin * v, sin * u + cos * v
 
 
 def pair(x: ArrayLike, y: ArrayLike) -> Array:

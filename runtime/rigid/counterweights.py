@@ -117,33 +117,6 @@ class Bounds:
         if problems:
             raise BadInput(*problems)
 
-    def completed(self, machine: Machine, link: str) -> tuple[float, float]:
-        """Return greatest mass [kg] and offset [m], with the machine's defaults."""
-        lengths = machine.linkage.lengths
-        mass = self.mass or sum(machine.mass(name).mass for name in machine.linkage.links)
-        offset = self.offset or lengths.get(link)
-        if not mass:
-            raise bad(f"bounds.{link}", "a machine without mass", "a greatest mass", "give mass")
-        if offset is None:
-            raise bad(f"bounds.{link}", "no offset", "a greatest offset", "give offset")
-        return mass, offset
-
-
-def bounds_by_link(
-    links: tuple[str, ...], bounds: Bounds | Mapping[str, Bounds] | None
-) -> dict[str, Bounds]:
-    """Return the bounds of each link, or raise BadInput where they are none or name another."""
-    if isinstance(bounds, Mapping):
-        for link in bounds:
-            require_link(link, links, "bounds")
-        given = {link: bounds.get(link, Bounds()) for link in links}
-    else:
-        given = dict.fromkeys(links, Bounds() if bounds is None else bounds)
-    for each in given.values():
-        if not isinstance(each, Bounds):
-            raise bad("bounds", type(each).__name__, "Bounds", "give Bounds(mass=..., offset=...)")
-    return given
-
 
 def with_counterweights(machine: Machine, counterweights: Iterable[Counterweight]) -> Machine:
     """Return the machine with counterweights added to its links.

@@ -7,17 +7,17 @@ from dataclasses import dataclass, fields, replace
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.errors import BadInput, Problem, bad
+from ..linkages.linkage import Array, LinkMotion, PointMotion
 from .inputs import not_finite
 
-Array: TypeAlias = NDArray[np.float64]
 End: TypeAlias = tuple[str, float, float]
 Wrench: TypeAlias = tuple[Array, Array, Array]
 """Force components in the fixed frame at the first joint [N], and couple [N m]."""
 
 FRAME = "frame"
+_STILL = LinkMotion(*[np.zeros(2)] * 3, *[np.zeros(())] * 3)
 
 
 @dataclass(frozen=True)
@@ -136,12 +136,11 @@ def frozen(load: Load, motion: Any, crank_speed: Array) -> tuple[Array, Array]:
 
 def at_first_joint(load: Load, motion: Any, force: Array, couple: Array) -> Wrench:
     """Return a force along the load's axes and a couple as a wrench at the link's first joint."""
-    angle = motion.link(load.link).angle
-    cos, sin = np.cos(angle), np.sin(angle)
+    moving = motion.link(load.link)
     fx, fy = force[..., 0], force[..., 1]
     if load.axes == "link":
-        fx, fy = cos * fx - sin * fy, sin * fx + cos * fy
-    x, y = cos * load.along - sin * load.across, sin * load.along + cos * load.across
+        fx, fy = moving.turned(fx, fy)
+    x, y = moving.turned(load.along, load.across)
     return fx, fy, couple + x * fy - y * fx
 
 
@@ -232,8 +231,8 @@ class Spring:
         stretch = length - self.free_length
         return np.asarray(self.stiffness / 2.0 * stretch**2 + self.preload * stretch)
 
-    def _span(self, motion: Any) -> tuple[_Place, _Place, Array, Array]:
-        a, b = (_place(motion, *end) for end in (self.first, self.second))
+    def _span(self, motion: Any) -> tuple[PointMotion, PointMotion, Array, Array]:
+        a, b = (_moving(motion, link).point(*at) for link, *at in (self.first, self.second))
         span = b.position - a.position
         # Beside the real axis, where derivatives come from, there is no hypot.
         real = not np.iscomplexobj(span)
@@ -298,10 +297,8 @@ class TorsionSpring:
 
     def wrenches(self, motion: Any, crank_speed: Array) -> dict[str, Wrench]:
         """Return the wrench on each of the links; see :meth:`Load.wrenches`."""
-        twist, rate = (
-            np.asarray(_turning(motion, self.second)[i] - _turning(motion, self.first)[i])
-            for i in (0, 1)
-        )
+        first, second = (_moving(motion, link) for link in self.links)
+        twist, rate = second.angle - first.angle, second.speed - first.speed
         couple = self.preload + self.stiffness * (twist - self.free_angle) + self.damping * rate
         none = np.zeros(np.shape(couple))
         ends = ((self.first, couple), (self.second, -couple))
@@ -309,31 +306,15 @@ class TorsionSpring:
 
     def potential(self, motion: Any) -> Array:
         """Return the energy stored [J], zero at the free angle."""
-        twist = _turning(motion, self.second)[0] - _turning(motion, self.first)[0]
-        twist = twist - self.free_angle
+        first, second = (_moving(motion, link) for link in self.links)
+        twist = second.angle - first.angle - self.free_angle
         return np.asarray(self.stiffness / 2.0 * twist**2 + self.preload * twist)
 
 
-@dataclass(frozen=True)
-class _Place:
-    """Position and velocity of a point, shape (..., 2)."""
-
-    position: Array
-    velocity: Array
-
-
-def _place(motion: Any, link: str, along: float, across: float) -> _Place:
-    if link == FRAME:
-        return _Place(np.array([along, across]), np.zeros(2))
-    point = motion.point(link, along, across)
-    return _Place(point.position, point.velocity)
-
-
-def _turning(motion: Any, link: str) -> tuple[Array, Array]:
-    if link == FRAME:
-        return np.zeros(()), np.zeros(())
-    moving = motion.link(link)
-    return moving.angle, moving.speed
+def _moving(motion: Any, link: str) -> LinkMotion:
+    """Return the motion of a link; the frame's is none."""
+    moving: LinkMotion = _STILL if link == FRAME else motion.link(link)
+    return moving
 
 
 def evaluated(law: Any, given: Any, size: int, where: str, shape: tuple[int, ...]) -> Array:

@@ -157,16 +157,12 @@ class ClearanceRange(Result):
         ax.legend()
         return ax
 
-    def _pieces(self) -> NDArray[np.int64]:
+    def _pieces(self) -> Array:
         """Return a number for each crank angle, the same for those that one curve joins."""
-        theta = np.ravel(self.theta2)
-        pieces = np.ravel(self.folds).astype(np.int64)
-        if not self.linkage.crank_turns:
-            for k, (low, high) in enumerate(self.linkage.crank_ranges()):
-                turns = np.round((theta - (low + high) / 2.0) / math.tau)
-                inside = np.abs(theta - math.tau * turns - (low + high) / 2.0)
-                here = inside <= (high - low) / 2.0 + 1e-6
-                pieces += np.where(here, 2 * (k + 1) + 6 * turns.astype(np.int64), 0)
+        theta, pieces = np.ravel(self.theta2), np.ravel(self.folds).astype(float)
+        for low, _ in () if self.linkage.crank_turns else self.linkage.crank_ranges():
+            # Of the ranges, as many as have begun.
+            pieces += 2.0 * np.floor((theta - low + 1e-6) / math.tau)
         return pieces
 
 

@@ -308,7 +308,7 @@ def _four_bar(linkage: FourBar, band: tuple[float, float]) -> TransmissionAngle:
     inner, outer = linkage.limits.ends
     turns = not inner and outer in (None, pi)
     centres, outputs = _four_bar_centres(s, crank, coupler, linkage.branch)
-    output_range = _follower_range(s, linkage.branch)
+    output_range = _follower_range(s, outputs, linkage.branch)
     return _result(
         linkage,
         band,
@@ -346,11 +346,12 @@ def _four_bar_centres(
     return {name: _turned(angle) for name, angle in centres.items()}, outputs
 
 
-def _follower_range(s: _Sums, branch: float) -> tuple[float, float] | None:
+def _follower_range(
+    s: _Sums, centres: Mapping[str, float], branch: float
+) -> tuple[float, float] | None:
     """Return the follower's range: an outer limit, an inner one, both or none."""
-    outer = _angle((s.four, s.total), (s.less_frame, s.less_follower)) if s.four > 0 else None
-    folded = s.two * s.three < 0
-    inner = _angle((s.less_coupler, s.less_crank), (s.two, s.three)) if folded else None
+    outer = abs(centres["extended"]) if s.four > 0 else None
+    inner = abs(centres["folded"]) if s.two * s.three < 0 else None
     if outer is not None and inner is not None:
         return (outer, inner) if branch > 0 else (-inner, -outer)
     if outer is not None:

@@ -9,6 +9,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from ..core.errors import BadInput, Problem, bad
+from ..core.inputs import are_finite
 from ..linkages.linkage import Array, LinkMotion, PointMotion
 from .inputs import not_finite
 
@@ -92,18 +93,13 @@ class Load:
 
     def __post_init__(self) -> None:
         """Check the numbers and the choices."""
-        force: Any = ((0.0, 0.0),) if callable(self.force) else (self.force,)
         numbers: dict[str, Any] = {"along": self.along, "across": self.across}
         if not callable(self.couple):
             numbers["couple"] = self.couple
         problems = not_finite("Load", numbers)
-        try:
-            fx, fy = force[0]
-            problems += not_finite("Load", {"force": fx}) or not_finite("Load", {"force": fy})
-        except (TypeError, ValueError):
-            problems.append(
-                Problem("Load.force", repr(self.force)[:60], "a pair of numbers", "give (fx, fy)")
-            )
+        if not (callable(self.force) or are_finite(self.force, 2)):
+            expected = "a pair of finite numbers"
+            problems.append(Problem("Load.force", repr(self.force)[:60], expected, "give (fx, fy)"))
         for name, choices in (("axes", ("fixed", "link")), ("given", ("angle", "motion"))):
             if getattr(self, name) not in choices:
                 given = repr(getattr(self, name))[:60]

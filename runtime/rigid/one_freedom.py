@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.inputs import is_finite
@@ -169,28 +167,22 @@ class OneFreedom:
         return float(inertia[best]) + self.flywheel, float(angles[best])
 
 
-@dataclass(frozen=True)
-class _Series:
-    """A function of the crank angle as a Fourier series: what an integrator evaluates often."""
+def _series(function: Callable[[Array], Array]) -> Callable[[float], float] | None:
+    """Return a function of the crank angle as its harmonics down to round-off.
 
-    # orders, terms: (k,): ``i`` times the harmonics, and complex coefficients; the function
-    # is the real part of their sum with the waves
-    orders: NDArray[np.complexfloating]
-    terms: NDArray[np.complexfloating]
+    None where there are too many.
+    """
 
-    def __call__(self, theta: float) -> float:
-        return float((self.terms @ np.exp(self.orders * theta)).real)
+    def series(theta: float) -> float:
+        return float((terms @ np.exp(orders * theta)).real)
 
-
-def _series(function: Callable[[Array], Array]) -> _Series | None:
-    """Return a function as harmonics down to round-off; None where there are too many."""
     count = 64
     while count <= 1024:
         values = np.asarray(function(even_angles(TURN, count)))
         # A series ends in round-off, and meets its function off the samples, or is not used.
         if tail(values) <= 1e-14:
             terms = interpolated(values, TURN).coefficients
-            series = _Series(1j * np.arange(len(terms)), terms)
+            orders = 1j * np.arange(len(terms))
             gap = max(abs(series(at) - float(function(np.array(at)))) for at in _PROBES)
             return series if gap <= 1e-12 * float(np.max(np.abs(values))) else None
         count *= 2

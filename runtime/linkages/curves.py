@@ -139,7 +139,18 @@ class CouplerCurve(Result):
         if not isinstance(self.linkage, FourBar) or self.link != "coupler":
             kind = f"the {self.link} of a {type(self.linkage).__name__}"
             raise bad("cognates", kind, "the coupler of a FourBar", "others have no cognates")
-        return _cognates(Circuit(self.linkage, self.circuit), complex(self.along, self.across))
+        place = complex(self.along, self.across)
+        f, c, m, n = (float(size) for size in self.linkage.lengths.values())
+        if min(abs(place), abs(m - place)) <= 1e-12 * m:
+            joint = f"{place.real:g}, {place.imag:g}"
+            raise bad("along, across", joint, "no joint of the coupler", "choose another")
+        at = Circuit(self.linkage, self.circuit).links(np.array([0.3]), 0)
+        crank, u, follower = (complex(at[link].direction.c[0, 0]) for link in self.linkage.links)
+        k, rest = place / m, m - place
+        return (
+            _cognate(0j, k * f, place * u, k * c * crank, c * crank),
+            _cognate(complex(f), k * f, -rest * u, rest / m * n * follower, n * follower),
+        )
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw path and linkage at some positions, cusps and double points marked."""
@@ -544,21 +555,6 @@ class Cognate:
         """Return places in the axes of the first linkage, shape (..., 2)."""
         place = np.asarray(position)[..., 0] + 1j * np.asarray(position)[..., 1]
         return np.asarray(self.pivot + planar(place * np.exp(1j * self.turn)))
-
-
-def _cognates(motion: Circuit, place: complex) -> tuple[Cognate, Cognate]:
-    f, c, m, n = (float(size) for size in motion.linkage.lengths.values())
-    if min(abs(place), abs(m - place)) <= 1e-12 * m:
-        joint = f"{place.real:g}, {place.imag:g}"
-        raise bad("along, across", joint, "no joint of the coupler", "choose another")
-    s = np.array([0.3])
-    at = motion.links(s, 0)
-    e2, u, e4 = (complex(at[link].direction.c[0, 0]) for link in ("crank", "coupler", "follower"))
-    k, rest = place / m, m - place
-    j = rest / m
-    first = _cognate(0j, k * f, place * u, k * c * e2, c * e2)
-    second = _cognate(complex(f), k * f, -rest * u, j * n * e4, n * e4)
-    return first, second
 
 
 def _cognate(

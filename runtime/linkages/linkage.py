@@ -402,8 +402,7 @@ class Linkage(ABC):
                 **emitted(self, self.kinematics, "motion", angles, self.unit_lengths),
             }
         reached = np.logical_and.reduce([np.isfinite(value) for value in m.values()])
-        self.require(reached, angles, self._expected)
-        self.require(self._decided(m), angles)
+        self.require(reached & self._decided(m), angles, self._expected)
         error = self._error(m)
         shape = drive[0].shape
         fields: dict[str, Any] = {}

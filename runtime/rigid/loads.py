@@ -319,8 +319,17 @@ def evaluated(law: Any, given: Any, size: int, where: str, shape: tuple[int, ...
     ``size`` 0 stands for numbers.
     """
     expected = f"{size or 'one'} number{'s' if size else ''} for each of the angles"
-    value = _called(law, given, where, expected) if callable(law) else law
-    if callable(law) and size and _may_be_turned(value, shape):
+    value = law
+    if callable(law):
+        try:
+            value = law(given)
+        except BadInput:
+            raise
+        except (TypeError, ValueError, IndexError) as refusal:
+            found = f"a callable that raises {type(refusal).__name__}: {refusal}"[:160]
+            raise bad(where, found, expected, "correct the callable") from refusal
+    square = shape and isinstance(value, np.ndarray) and value.shape == (2,) * (len(shape) + 1)
+    if callable(law) and size and square:
         # As many angles as components: at one angle more, the array shows its order.
         longer = (int(np.prod(shape)) + 1,)
         evaluated(law, _one_more(given, shape), size, where, longer)
@@ -340,39 +349,12 @@ def evaluated(law: Any, given: Any, size: int, where: str, shape: tuple[int, ...
     return values
 
 
-def _called(law: Callable[[Any], Any], given: Any, where: str, expected: str) -> Any:
-    """Return what a callable returns; name the load where it mistakes shapes or types."""
-    try:
-        return law(given)
-    except BadInput:
-        raise
-    except (TypeError, ValueError, IndexError) as refusal:
-        value = f"a callable that raises {type(refusal).__name__}: {refusal}"[:160]
-        raise bad(where, value, expected, "correct the callable") from refusal
-
-
-def _may_be_turned(value: Any, shape: tuple[int, ...]) -> bool:
-    """Tell whether the components of an array may be along its first axis, or its last one."""
-    return isinstance(value, np.ndarray) and value.shape == (2,) * (len(shape) + 1) and bool(shape)
-
-
 def _one_more(given: Any, shape: tuple[int, ...]) -> Any:
     """Return what a callable is given, with the first of its places once more at the end."""
     if isinstance(given, LoadState):
-        pairs = ("position", "velocity")
-        return LoadState(
-            **{
-                item.name: _with_first(
-                    getattr(given, item.name), shape, (2,) if item.name in pairs else ()
-                )
-                for item in fields(given)
-            }
-        )
-    return _with_first(given, shape, ())
-
-
-def _with_first(values: Array, shape: tuple[int, ...], inner: tuple[int, ...]) -> Array:
-    flat = np.broadcast_to(values, (*shape, *inner)).reshape(-1, *inner)
+        return LoadState(*(_one_more(getattr(given, item.name), shape) for item in fields(given)))
+    inner = np.shape(given)[len(shape) :]
+    flat = np.broadcast_to(given, (*shape, *inner)).reshape(-1, *inner)
     return np.concatenate([flat, flat[:1]])
 
 

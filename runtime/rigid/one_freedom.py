@@ -9,6 +9,7 @@ import numpy as np
 
 from ..core.errors import bad
 from ..core.inputs import is_finite
+from ..core.maxima import narrowed
 from ..core.trigonometric import even_angles, interpolated, tail
 from ..linkages.linkage import TURN, Array
 from .evaluation import Evaluation
@@ -135,36 +136,27 @@ class OneFreedom:
         low, high = self.range_about(theta)
         angles = self._scan(low, high)
         inertia = self.coefficients(angles)[0]
-        spacing = angles[1] - angles[0]
+        spacing = float(angles[1] - angles[0])
         middle = float(np.median(inertia))
         dips = (inertia <= np.roll(inertia, 1)) & (inertia <= np.roll(inertia, -1))
         # Within half a degree of a zero nearly nothing is left.
         dips &= inertia + self.flywheel <= 0.05 * middle
-        for dip in angles[dips]:
-            ends = max(dip - spacing, low), min(dip + spacing, high)
-            least, at = self._least_inertia(*ends)
-            # A reduced inertia below this share of its median gives no usable acceleration.
-            if not least > 1e-12 * middle:
-                none = f"none at {at:.6g} rad, where the links that have mass stand still"
-                fix = "give the crank an inertia, or add a flywheel"
-                raise bad("Machine.masses", none, "inertia at every crank angle", fix)
+        # The ends of the range are folds.
+        inside = low + 1e-9 * spacing, high - 1e-9 * spacing
+        ends = (np.clip(angles[dips] + side, *inside) for side in (-spacing, spacing))
+        at = np.mean(narrowed(lambda tried: -self.coefficients(tried)[0], *ends, 19), axis=0)
+        # A reduced inertia below this share of its median gives no usable acceleration.
+        zeros = at[~(self.coefficients(at)[0] + self.flywheel > 1e-12 * middle)]
+        if zeros.size:
+            none = f"none at {zeros[0]:.6g} rad, where the links that have mass stand still"
+            fix = "give the crank an inertia, or add a flywheel"
+            raise bad("Machine.masses", none, "inertia at every crank angle", fix)
 
     def _scan(self, low: float = -np.inf, high: float = np.inf) -> Array:
         """Return angles over a turn or a range; they miss its ends, and special positions."""
         if not np.isfinite(high - low):
             low, high = 0.0, TURN
         return low + (high - low) * (np.arange(_SCANNED) + 0.5) / _SCANNED
-
-    def _least_inertia(self, low: float, high: float) -> tuple[float, float]:
-        """Return the least inertia with the flywheel [kg m^2] in an interval, and its angle."""
-        # Each time to a sixth of the width, in the end to 1e-11 of it.
-        for _ in range(14):
-            angles = np.linspace(low, high, 13)[1:-1]
-            inertia = self.coefficients(angles)[0]
-            best = int(np.argmin(inertia))
-            width = (high - low) / 12.0
-            low, high = max(low, angles[best] - width), min(high, angles[best] + width)
-        return float(inertia[best]) + self.flywheel, float(angles[best])
 
 
 def _series(function: Callable[[Array], Array]) -> Callable[[float], float] | None:

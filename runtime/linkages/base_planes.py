@@ -69,11 +69,11 @@ class BasePlane(Result):
             flat = corners @ _AXES.T
             colour = "#cfe0ee" if symbol.startswith("G") else "#f2c6a8"
             ax.fill(flat[:, 0], flat[:, 1], facecolor=colour, edgecolor="#444444", lw=0.8)
-            place = _area_and_centroid(corners)[1]
+            x, y = _area_and_centroid(corners)[1]
             ax.annotate(
                 symbol,
-                place,
-                xytext=(0.0, self._aside(place, mark)),
+                (x, y),
+                xytext=(0.0, self._aside((x, y), mark)),
                 textcoords="offset points",
                 ha="center",
                 va="center",
@@ -89,7 +89,7 @@ class BasePlane(Result):
         ax.set_title(rf"base plane $\lambda$ = {self.lam:.4g}")
         return ax
 
-    def _aside(self, place: Array, mark: Sequence[float] | None) -> float:
+    def _aside(self, place: tuple[float, float], mark: Sequence[float] | None) -> float:
         """Return how far a symbol moves up or down [points] to leave the mark free."""
         if mark is None:
             return 0.0

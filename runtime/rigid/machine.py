@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, Problem, bad
 from ..core.inputs import are_finite
-from ..linkages import Linkage
-from .loads import FRAME, Array, Load, Spring, TorsionSpring, Wrench
+from ..linkages.linkage import Array, Linkage
+from .loads import FRAME, Load, Spring, TorsionSpring, Wrench
 from .masses import MassDistribution
 
 if TYPE_CHECKING:

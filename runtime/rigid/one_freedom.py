@@ -143,8 +143,8 @@ class OneFreedom:
         dips &= inertia + self.flywheel <= 0.05 * middle
         # The ends of the range are folds.
         inside = low + 1e-9 * spacing, high - 1e-9 * spacing
-        ends = (np.clip(angles[dips] + side, *inside) for side in (-spacing, spacing))
-        at = np.mean(narrowed(lambda tried: -self.coefficients(tried)[0], *ends, 19), axis=0)
+        first, last = (np.clip(angles[dips] + side, *inside) for side in (-spacing, spacing))
+        at = np.mean(narrowed(lambda tried: -self.coefficients(tried)[0], first, last, 19), axis=0)
         # A reduced inertia below this share of its median gives no usable acceleration.
         zeros = at[~(self.coefficients(at)[0] + self.flywheel > 1e-12 * middle)]
         if zeros.size:

@@ -27,6 +27,7 @@ from .linkage import (
     assembly_problems,
     length_problems,
     turning,
+    units_of,
 )
 
 
@@ -58,24 +59,9 @@ class FourBarMotion(Motion):
     alpha4: Array
     transmission_angle: Array
 
-    places: ClassVar[Mapping[str, str]] = {
-        "theta3": "rad",
-        "theta4": "rad",
-        "transmission_angle": "rad",
-    }
-    rates: ClassVar[Mapping[str, str]] = {
-        "omega3": "rad/s",
-        "omega4": "rad/s",
-        "alpha3": "rad/s^2",
-        "alpha4": "rad/s^2",
-    }
+    places, rates = units_of(four_bar_kinematics)
     norm: ClassVar[str] = "worse of theta3 and theta4 [rad]"
-    drawn: ClassVar[Mapping[str, str]] = {
-        "theta4": r"\theta_4",
-        "omega4": r"\omega_4",
-        "alpha4": r"\alpha_4",
-        "omega3": r"\omega_3",
-    }
+    drawn: ClassVar[tuple[str, ...]] = ("theta4", "omega4", "alpha4", "omega3")
 
     def _other_link(self, name: str) -> LinkMotion:
         if name == "coupler":

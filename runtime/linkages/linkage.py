@@ -96,6 +96,18 @@ class LinkMotion:
         return cos * u - sin * v, sin * u + cos * v
 
 
+def units_of(kinematics: ModuleType) -> tuple[dict[str, str], dict[str, str]]:
+    """Return the units of places and of rates that an emitted motion returns, by name."""
+    kinds = {"velocity": "m/s", "acceleration": "m/s^2", "omega": "rad/s", "alpha": "rad/s^2"}
+    kinds |= {"position": "m", "slide": "m", "": "rad"}
+    units: dict[str, str] = {
+        name: next(unit for kind, unit in kinds.items() if kind in name)
+        for name in kinematics.RETURNS["motion"]
+    }
+    places = {name: unit for name, unit in units.items() if "/" not in unit}
+    return places, {name: unit for name, unit in units.items() if name not in places}
+
+
 def pair(x: ArrayLike, y: ArrayLike) -> Array:
     """Return two components as one array, shape (..., 2)."""
     x, y = np.asarray(x), np.asarray(y)
@@ -130,8 +142,8 @@ class Motion(Result, ABC):
     places: ClassVar[Mapping[str, str]] = {}
     rates: ClassVar[Mapping[str, str]] = {}
     norm: ClassVar[str] = ""
-    # What is drawn against the crank angle, with its symbol.
-    drawn: ClassVar[Mapping[str, str]] = {}
+    # What is drawn against the crank angle.
+    drawn: ClassVar[tuple[str, ...]] = ()
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the motion of the output against the crank angle.
@@ -145,9 +157,11 @@ class Motion(Result, ABC):
         degrees = np.degrees(self.theta2)
         units: dict[str, None] = {}
         over = {"omega": r"/\omega_2", "alpha": r"/\omega_2^2"} if self.relative else {}
-        for name, words in self.drawn.items():
+        for name in self.drawn:
             values, unit = getattr(self, name), self.unit(name)
-            words = f"${words}{over.get(name[:5], '')}$" if words[0] == "\\" else words
+            greek, link = name[:-1], name[-1]
+            words = rf"$\{greek}_{link}{over.get(greek, '')}$"
+            words = words if link.isdigit() else name.removeprefix("slider_")
             peak = float(np.max(np.abs(values), initial=0.0))
             scaled = peak > 0.0 and not self.relative
             power = int(np.floor(np.log10(peak))) if scaled else 0

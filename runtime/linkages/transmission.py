@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from ..core.errors import bad
 from ..core.results import Check, Result, provenance
-from .four_bar import FourBar
+from .four_bar import FourBar, LoopSums
 from .linkage import EPS, Array, require_linkage
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
@@ -269,41 +269,10 @@ def _result(
     )
 
 
-@dataclass(frozen=True)
-class _Sums:
-    """Sums of the four lengths of a loop ABCD, each correctly rounded.
-
-    ``less_x`` is the sum of the other three less x, ``two``, ``three`` and ``four`` are frame +
-    crank, frame + coupler and frame + follower less the other two.
-    """
-
-    total: float
-    less_frame: float
-    less_crank: float
-    less_coupler: float
-    less_follower: float
-    two: float
-    three: float
-    four: float
-
-    @classmethod
-    def of(cls, a: float, b: float, c: float, d: float) -> _Sums:
-        return cls(
-            fsum((a, b, c, d)),
-            fsum((-a, b, c, d)),
-            fsum((a, -b, c, d)),
-            fsum((a, b, -c, d)),
-            fsum((a, b, c, -d)),
-            fsum((a, b, -c, -d)),
-            fsum((a, -b, c, -d)),
-            fsum((a, -b, -c, d)),
-        )
-
-
 def _four_bar(linkage: FourBar, band: tuple[float, float]) -> TransmissionAngle:
     """Return the positions of a four-bar linkage (Aannaque 3.9, 3.10, and the triangles ACD)."""
-    frame, crank, coupler, follower = linkage.unit_lengths.values()
-    s = _Sums.of(frame, crank, coupler, follower)
+    _, crank, coupler, follower = linkage.unit_lengths.values()
+    s = linkage.sums
     # Transmission angle 0 or pi at the folds, else from the diagonal frame -+ crank.
     inner, outer = linkage.limits.ends
     turns = not inner and outer in (None, pi)
@@ -328,7 +297,7 @@ def _four_bar(linkage: FourBar, band: tuple[float, float]) -> TransmissionAngle:
 
 
 def _four_bar_centres(
-    s: _Sums, crank: float, coupler: float, branch: float
+    s: LoopSums, crank: float, coupler: float, branch: float
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Return crank and follower angles where crank and coupler lie in one line.
 
@@ -347,7 +316,7 @@ def _four_bar_centres(
 
 
 def _follower_range(
-    s: _Sums, centres: Mapping[str, float], branch: float
+    s: LoopSums, centres: Mapping[str, float], branch: float
 ) -> tuple[float, float] | None:
     """Return the follower's range: an outer limit, an inner one, both or none."""
     outer = abs(centres["extended"]) if s.four > 0 else None

@@ -105,9 +105,15 @@ class Machine:
         BadInput
             If the machine has a load that is a function.
         """
-        from .parametric import ParametricMachine, require_constant_loads
+        from .parametric import ParametricMachine
 
-        require_constant_loads(self)
+        if any(callable(item.force) or callable(item.couple) for item in self.loads):
+            raise bad(
+                "tolerances",
+                "a machine with a load that is a function",
+                "masses, gravity, constant loads and springs",
+                "leave it out, or ask for the linkage alone",
+            )
         drive = (theta, speed, acceleration)
         return ParametricMachine(self.linkage, *drive, machine=self, bars=masses == "bars")
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..core.errors import bad
 from ..core.results import Result, provenance
 from .four_bar import FourBar, LoopSums
-from .linkage import EPS
+from .linkage import EPS, finite_array
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
 
@@ -343,14 +343,11 @@ def _many(lengths: NDArray[Any]) -> NDArray[np.int64]:
 
     Exact for any doubles: a sum whose sign rounding may have changed is taken in fractions.
     """
-    try:
-        array = np.asarray(lengths, dtype=float)
-    except (TypeError, ValueError) as refusal:
-        raise bad("lengths", repr(lengths)[:60], "an array of lengths", "correct it") from refusal
+    array = finite_array("lengths", lengths, "positive lengths")
     if array.shape[-1] != 4:
         raise bad("lengths", f"shape {array.shape}", "shape (..., 4)", "put the four links last")
-    if not np.all((array > 0) & (array < np.inf)):
-        raise bad("lengths", "a value that is none", "positive finite lengths", "correct it")
+    if not np.all(array > 0.0):
+        raise bad("lengths", "a value that is none", "positive lengths", "correct it")
     flat = array.reshape(-1, 4)
     frame, crank, coupler, follower = flat.T
     with np.errstate(over="ignore", invalid="ignore"):

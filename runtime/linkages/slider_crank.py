@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from numbers import Real
 from types import ModuleType
 from typing import ClassVar
 
@@ -14,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...generated import slider_crank_kinematics
 from ..core.errors import BadInput, Problem, bad
+from ..core.inputs import is_finite
 from .linkage import (
     ROUND_OFFS,
     TINY,
@@ -120,7 +120,7 @@ class SliderCrank(Linkage):
         """Check the lengths."""
         positive = {"crank": self.crank, "coupler": self.coupler}
         problems = length_problems("SliderCrank", positive)
-        if not (isinstance(self.offset, Real) and abs(float(self.offset)) < np.inf):
+        if not is_finite(self.offset):
             problems.append(
                 Problem("SliderCrank.offset", repr(self.offset), "a finite length", "correct it")
             )

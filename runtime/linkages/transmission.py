@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import bad
+from ..core.inputs import are_finite
 from ..core.results import Check, Result, provenance
 from .four_bar import FourBar, LoopSums
 from .linkage import EPS, Array, require_linkage
@@ -220,7 +221,10 @@ def transmission_angle(
     BadInput
         If the band is not two rising angles between 0 and pi, or this is no linkage.
     """
-    band = _checked_band(band)
+    if not (are_finite(band, 2) and 0.0 <= band[0] < band[1] <= pi):
+        given = repr(band)[:60]
+        raise bad("band", given, "two angles, 0 <= low < high <= pi", "give radians, rising")
+    band = float(band[0]), float(band[1])
     require_linkage(linkage)
     if isinstance(linkage, SliderCrank):
         return _slider_crank(linkage, band)
@@ -456,14 +460,3 @@ def _speed_ratio(linkage: FourBar | SliderCrank | QuickReturn, motion: Any) -> t
     turned = EPS * (np.abs(motion.theta2) + 4.0)
     lever = (linkage.frame + linkage.crank) / motion.slide
     return ratio, turned * lever**2 * (1.0 + np.abs(ratio))
-
-
-def _checked_band(band: tuple[float, float]) -> tuple[float, float]:
-    """Return the band as two floats, or raise BadInput."""
-    try:
-        low, high = map(float, band)
-    except (TypeError, ValueError) as refusal:
-        raise bad("band", repr(band)[:60], "two angles [rad]", "give (low, high)") from refusal
-    if not 0 <= low < high <= math.pi:
-        raise bad("band", repr(band)[:60], "0 <= low < high <= pi", "give radians, rising")
-    return low, high

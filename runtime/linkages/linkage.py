@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..core.deferred import Deferred, DeferredField
 from ..core.errors import Problem, bad
 from ..core.inputs import is_finite
 from ..core.results import Check, DeferredChecks, Result, provenance
@@ -31,6 +32,7 @@ TINY = float(np.finfo(float).tiny)
 ROUND_OFFS = 1.5 * EPS
 # A position that a round-off of the lengths moves so far [rad] is a change point.
 UNDECIDED = 0.5
+_LATER = DeferredField()
 
 
 @dataclass(frozen=True)
@@ -137,6 +139,7 @@ class Motion(Result, ABC):
     theta2: Array
     omega2: Array
     alpha2: Array
+    error: Any = _LATER
 
     # What moves, by name, with its unit: angles and places, then rates.
     places: ClassVar[Mapping[str, str]] = {}
@@ -408,7 +411,7 @@ class Linkage(ABC):
     def _moved(
         self, kind: type[M], theta: ArrayLike, speed: ArrayLike, acceleration: ArrayLike
     ) -> M:
-        """Return the motion, with its error and checks."""
+        """Return the motion; its error and checks are computed when they are first read."""
         angles, drive = drive_of(theta, speed, acceleration)
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             m = {
@@ -417,7 +420,6 @@ class Linkage(ABC):
             }
         reached = np.logical_and.reduce([np.isfinite(value) for value in m.values()])
         self.require(reached & self._decided(m), angles, self._expected)
-        error = self._error(m)
         shape = drive[0].shape
         fields: dict[str, Any] = {}
         for name, value in driven(m, *drive).items():
@@ -430,9 +432,9 @@ class Linkage(ABC):
             alpha2=drive[1],
             **fields,
             method="closed form",
-            error=np.array(np.broadcast_to(error, shape)),
+            error=Deferred(partial(_error, self, m, shape)),
             error_norm=f"{kind.norm}, absolute, entrywise",
-            checks=DeferredChecks(partial(_checks, self, m, error)),
+            checks=DeferredChecks(partial(_checks, self, m)),
             provenance=provenance(self.provenance),
         )
 
@@ -559,8 +561,14 @@ def driven(m: Mapping[str, Any], speed: Any, acceleration: Any) -> dict[str, Any
     return moved
 
 
-def _checks(linkage: Linkage, m: Mapping[str, Array], error: Array) -> dict[str, Check]:
+def _error(linkage: Linkage, m: Mapping[str, Array], shape: tuple[int, ...]) -> Array:
+    """Return the error at the places of a result."""
+    return np.array(np.broadcast_to(linkage._error(m), shape))
+
+
+def _checks(linkage: Linkage, m: Mapping[str, Array]) -> dict[str, Check]:
     """Close the loop, and its first and second derivative."""
+    error = linkage._error(m)
     places, *rates = linkage._loop(m)
     longest = max(abs(value) for value in linkage.unit_lengths.values())
     closure = float(np.max(np.abs(sum(places)), initial=0.0) / longest)

@@ -423,7 +423,7 @@ def test_checks_see_a_rate_that_is_wrong():
     m = {"theta2": motion.theta2, **{name: getattr(motion, name) for name in outputs(slider)}}
     for name in ("position", "slider_velocity", "slider_acceleration"):
         m[name] = m[name] * 2.0**slider.scale
-    assert all(check.passed for check in _checks(slider, m, motion.error).values())
+    assert all(check.passed for check in _checks(slider, m).values())
     for name, which in (("omega3", "speeds"), ("slider_acceleration", "accelerations")):
         wrong = {**m, name: m[name] * (1 + 1e-13)}
-        assert not _checks(slider, wrong, motion.error)[f"closure of {which} over its error"].passed
+        assert not _checks(slider, wrong)[f"closure of {which} over its error"].passed

@@ -56,8 +56,9 @@ class BasePlane(Result):
     @property
     def shares(self) -> dict[str, float]:
         """Share of each class in the area of the plane where linkages exist."""
-        whole = _area(self.outline)
-        return {symbol: _area(corners) / whole for symbol, corners in self.regions.items()}
+        whole, _ = _area_and_centroid(self.outline)
+        parts = {symbol: _area_and_centroid(part)[0] for symbol, part in self.regions.items()}
+        return {symbol: part / whole for symbol, part in parts.items()}
 
     def plot(self, ax: Axes | None = None, *, mark: Sequence[float] | None = None) -> Axes:
         """Draw regions and borders with the symbols of the classes; ``mark`` is one linkage."""
@@ -68,11 +69,11 @@ class BasePlane(Result):
             flat = corners @ _AXES.T
             colour = "#cfe0ee" if symbol.startswith("G") else "#f2c6a8"
             ax.fill(flat[:, 0], flat[:, 1], facecolor=colour, edgecolor="#444444", lw=0.8)
-            place = _centroid(flat)
+            x, y = _area_and_centroid(corners)[1]
             ax.annotate(
                 symbol,
-                place,
-                xytext=(0.0, self._aside(place, mark)),
+                (x, y),
+                xytext=(0.0, self._aside((x, y), mark)),
                 textcoords="offset points",
                 ha="center",
                 va="center",
@@ -189,15 +190,9 @@ def _clipped(corners: Array, axis: int, at: float, side: float) -> Array:
     return np.array(kept).reshape(-1, 3)
 
 
-def _area(corners: Array) -> float:
-    """Return the area of a polygon of the plane."""
-    x, y = (corners @ _AXES.T).T
-    return float(abs(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2.0)
-
-
-def _centroid(flat: Array) -> tuple[float, float]:
-    """Return the centroid of a polygon."""
-    (x, y), (u, v) = flat.T, np.roll(flat, -1, axis=0).T
-    cross = x * v - u * y
-    whole = 3.0 * cross.sum()
-    return float(((x + u) * cross).sum() / whole), float(((y + v) * cross).sum() / whole)
+def _area_and_centroid(corners: Array) -> tuple[float, Array]:
+    """Return the area of a polygon of the plane, and its centroid in the plane."""
+    here = corners @ _AXES.T
+    after = np.roll(here, -1, axis=0)
+    cross = here[:, 0] * after[:, 1] - after[:, 0] * here[:, 1]
+    return float(abs(cross.sum()) / 2.0), cross @ (here + after) / (3.0 * cross.sum())

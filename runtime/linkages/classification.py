@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.results import Result, provenance
-from .four_bar import FourBar
-from .linkage import EPS
+from .four_bar import FourBar, LoopSums
+from .linkage import EPS, finite_array
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
 
@@ -119,16 +119,6 @@ def turning(signs: Sequence[int]) -> dict[tuple[str, str], bool]:
         pairs["frame", beside] = signs[i] <= 0 <= product
         pairs[others[0], others[1]] = signs[i] >= 0 >= product
     return pairs
-
-
-def exact_sums(lengths: Sequence[Fraction]) -> tuple[Fraction, Fraction, Fraction]:
-    """Return S_2, S_3, S_4 exactly."""
-    frame, crank, coupler, follower = lengths
-    return (
-        frame + crank - coupler - follower,
-        frame + coupler - crank - follower,
-        frame + follower - crank - coupler,
-    )
 
 
 # Row of the table for each pattern of signs, at 9 (S_2 + 1) + 3 (S_3 + 1) + (S_4 + 1).
@@ -353,14 +343,11 @@ def _many(lengths: NDArray[Any]) -> NDArray[np.int64]:
 
     Exact for any doubles: a sum whose sign rounding may have changed is taken in fractions.
     """
-    try:
-        array = np.asarray(lengths, dtype=float)
-    except (TypeError, ValueError) as refusal:
-        raise bad("lengths", repr(lengths)[:60], "an array of lengths", "correct it") from refusal
+    array = finite_array("lengths", lengths, "positive lengths")
     if array.shape[-1] != 4:
         raise bad("lengths", f"shape {array.shape}", "shape (..., 4)", "put the four links last")
-    if not np.all((array > 0) & (array < np.inf)):
-        raise bad("lengths", "a value that is none", "positive finite lengths", "correct it")
+    if not np.all(array > 0.0):
+        raise bad("lengths", "a value that is none", "positive lengths", "correct it")
     flat = array.reshape(-1, 4)
     frame, crank, coupler, follower = flat.T
     with np.errstate(over="ignore", invalid="ignore"):
@@ -376,9 +363,9 @@ def _many(lengths: NDArray[Any]) -> NDArray[np.int64]:
         two, three, four, spare = np.where(certain, np.sign(sums), 0.0).astype(np.int64)
     rows = np.where(spare > 0, _ROWS[9 * (two + 1) + 3 * (three + 1) + four + 1], 0)
     for i in np.flatnonzero(~certain):
-        exact = [*map(Fraction, flat[i].tolist())]
-        signs = [(value > 0) - (value < 0) for value in exact_sums(exact)]
-        rows[i] = number_of_signs(signs) if 2 * max(exact) < sum(exact) else 0
+        exact = LoopSums.of(map(Fraction, flat[i].tolist()), sum)
+        signs = [(value > 0) - (value < 0) for value in exact.pairs]
+        rows[i] = number_of_signs(signs) if min(exact.less) > 0 else 0
     return np.asarray(rows.reshape(array.shape[:-1]), dtype=np.int64)
 
 
@@ -398,9 +385,8 @@ def _four_bar_of(lengths: Iterable[float]) -> FourBar:
 def _four_bar(linkage: FourBar, driven: Input, tolerance: Fraction) -> Classification:
     lengths: dict[str, Any] = {link: float(size) for link, size in linkage.lengths.items()}
     exact = [Fraction(value) for value in lengths.values()]
-    perimeter = sum(exact)
-    sums = exact_sums(exact)
-    signs, least = _signs(exact, sums, tolerance)
+    sums = LoopSums.of(exact, sum)
+    signs, least = _signs(exact, sums.pairs, tolerance)
     shortest, p, q, longest = sorted(exact)
     pairs = turning(signs)
     # Input, coupler and output in this order: the other way round where the follower is driven.
@@ -416,14 +402,14 @@ def _four_bar(linkage: FourBar, driven: Input, tolerance: Fraction) -> Classific
         turns={link: pairs["frame", link] for link in LINKS[1:]},
         relative_turns={"-".join(pair): turns for pair, turns in sorted(pairs.items())},
         inversions=dict(zip(order, _inversions(seen), strict=True)),
-        distance=float((shortest + longest - p - q) / perimeter),
+        distance=float((shortest + longest - p - q) / sums.total),
         change_distances={
-            name: float(value / perimeter) for name, value in zip(_CONDITIONS, sums, strict=True)
+            name: float(value / sums.total)
+            for name, value in zip(_CONDITIONS, sums.pairs, strict=True)
         },
         nearest_change=_CONDITIONS[least],
         closing_distances={
-            link: float((2 * value - perimeter) / perimeter)
-            for link, value in zip(LINKS, exact, strict=True)
+            link: float(-less / sums.total) for link, less in zip(LINKS, sums.less, strict=True)
         },
         tolerance=float(tolerance),
         method="signs of three sums of links, in exact arithmetic",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -16,7 +16,7 @@ from ..core.errors import BadInput, Problem, bad
 from ..core.inputs import is_finite
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .four_bar import FourBar
-from .joint_play import CrankPosition, Play, Route, route_of
+from .joint_play import OUTPUTS, CrankPosition, Outputs, Play, Route
 from .linkage import EPS, Array, finite_array
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
@@ -25,13 +25,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _JOINTS = ("12", "23", "34", "41")
-_OUTPUTS: Mapping[type, tuple[str, ...]] = {
-    FourBar: ("follower", "coupler"),
-    SliderCrank: ("slider", "coupler"),
-    QuickReturn: ("rod",),
-}
-# The joint that slides, and does not turn: its clearance is across its guide.
-_SLIDING: Mapping[type, str] = {SliderCrank: "41", QuickReturn: "34"}
 # Fields that are computed when they are first looked at.
 _LATER = {name: DeferredField() for name in ("error", "nominal_error")}
 # Of the play at which the linkage folds: the terms beyond the first order are of its square.
@@ -164,16 +157,12 @@ class ClearanceRange(Result):
         ax.legend()
         return ax
 
-    def _pieces(self) -> NDArray[np.int64]:
+    def _pieces(self) -> Array:
         """Return a number for each crank angle, the same for those that one curve joins."""
-        theta = np.ravel(self.theta2)
-        pieces = np.ravel(self.folds).astype(np.int64)
-        if not self.linkage.crank_turns:
-            for k, (low, high) in enumerate(self.linkage.crank_ranges()):
-                turns = np.round((theta - (low + high) / 2.0) / math.tau)
-                inside = np.abs(theta - math.tau * turns - (low + high) / 2.0)
-                here = inside <= (high - low) / 2.0 + 1e-6
-                pieces += np.where(here, 2 * (k + 1) + 6 * turns.astype(np.int64), 0)
+        theta, pieces = np.ravel(self.theta2), np.ravel(self.folds).astype(float)
+        for low, _ in () if self.linkage.crank_turns else self.linkage.crank_ranges():
+            # Of the ranges, as many as have begun.
+            pieces += 2.0 * np.floor((theta - low + 1e-6) / math.tau)
         return pieces
 
 
@@ -233,9 +222,21 @@ def clearance_range(
     >>> round(float(play.width), 4), round(float(play.small), 4)
     (0.0503, 0.0503)
     """
-    task = Task.of(linkage, clearances, theta, joint, link)
-    position, play = task.play()
-    errors = DeferredGroup(partial(_errors, task, position, play))
+    outputs = next((of for kind, of in OUTPUTS.items() if isinstance(linkage, kind)), None)
+    if outputs is None:
+        expected = "FourBar, SliderCrank or QuickReturn"
+        raise bad("linkage", repr(linkage)[:60], expected, "give one of them")
+    link = outputs.links[0] if link is None else link
+    if link not in outputs.links:
+        raise bad("link", repr(link)[:60], f"one of {', '.join(outputs.links)}", "choose one")
+    plays = _checked(linkage, clearances, joint)
+    if theta is None and linkage.crank_turns:
+        theta = np.linspace(0.0, math.tau, 361)
+    elif theta is None:
+        theta = np.concatenate([np.linspace(*ends, 181) for ends in linkage.crank_ranges()])
+    task = _Task(linkage, link, outputs, plays, finite_array("theta", theta, "angles [rad]"))
+    play = task.play
+    errors = DeferredGroup(partial(_errors, task))
     nominal, below, above, small = (
         task.in_units(part) for part in (play.nominal, play.below, play.above, play.small)
     )
@@ -262,75 +263,53 @@ def clearance_range(
         method="differences of half-angles, from those of their squared sines",
         error=errors.later("error"),
         error_norm=f"below, above and width [{unit}], absolute, entrywise",
-        checks=DeferredChecks(partial(_checks, task, position, play)),
+        checks=DeferredChecks(partial(_checks, task)),
         provenance=provenance({**linkage.provenance, **given}),
     )
 
 
 @dataclass(frozen=True)
-class Task:
+class _Task:
     """A request, checked; radius, guide and sizes below 1 by a power of two."""
 
     linkage: FourBar | SliderCrank | QuickReturn
     link: str
+    outputs: Outputs
     clearances: Mapping[str, float]
     theta: Array
-    radius: float
-    guide: float
-    exponent: int
-
-    @classmethod
-    def of(
-        cls,
-        linkage: FourBar | SliderCrank | QuickReturn,
-        clearances: float | Mapping[str, float],
-        theta: ArrayLike | None,
-        joint: str | None,
-        link: str | None,
-    ) -> Task:
-        """Return the request, or raise BadInput."""
-        kind = next((kind for kind in _OUTPUTS if isinstance(linkage, kind)), None)
-        if kind is None:
-            expected = "FourBar, SliderCrank or QuickReturn"
-            raise bad("linkage", repr(linkage)[:60], expected, "give one of them")
-        outputs = _OUTPUTS[kind]
-        link = outputs[0] if link is None else link
-        if link not in outputs:
-            raise bad("link", repr(link)[:60], f"one of {', '.join(outputs)}", "choose one")
-        plays = _checked(linkage, clearances, joint)
-        exponent = -linkage.scale
-        halves = {name: math.ldexp(c / 2.0, -exponent) for name, c in plays.items()}
-        guide = halves.pop(_SLIDING.get(kind, ""), 0.0)
-        angles = _angles(linkage, theta)
-        return cls(linkage, link, plays, angles, math.fsum(halves.values()), guide, exponent)
 
     @property
     def route(self) -> Route:
         """The way to the play of this output."""
-        return route_of(self.linkage, self.link)
+        return self.outputs.route(self.linkage, self.link)
+
+    @cached_property
+    def slack(self) -> tuple[float, float]:
+        """Radius of the play of all pins, and half the clearance across the guide."""
+        scale = self.linkage.scale
+        halves = {name: math.ldexp(c / 2.0, scale) for name, c in self.clearances.items()}
+        guide = halves.pop(self.outputs.sliding, 0.0)
+        return math.fsum(halves.values()), guide
+
+    @cached_property
+    def position(self) -> CrankPosition:
+        """The crank at its angles."""
+        return self.route.position(self.theta)
+
+    @cached_property
+    def play(self) -> Play:
+        """The play there; refused where the linkage cannot be."""
+        play = self.route.at(self.position, *self.slack)
+        reached = play.margin >= -self.position.margin_error
+        if isinstance(self.linkage, FourBar):
+            # With the crank's pin on the follower's pivot, every follower angle is the nominal one.
+            reached &= self.position.variable > self.position.margin_error
+        self.linkage.require(reached, self.theta)
+        return play
 
     def in_units(self, value: Array | float) -> Array:
         """Return places in the linkage's unit: those of a slider are lengths."""
-        return np.asarray(np.ldexp(value, self.exponent if self.link == "slider" else 0))
-
-    def play(self) -> tuple[CrankPosition, Play]:
-        """Return the play at the crank angles, or raise BadInput where the linkage cannot be."""
-        position = self.route.position(self.theta)
-        play = self.route.at(position, self.radius, self.guide)
-        reached = play.margin >= -position.margin_error
-        if isinstance(self.linkage, FourBar):
-            # With the crank's pin on the follower's pivot, every follower angle is the nominal one.
-            reached &= position.variable > position.margin_error
-        self.linkage.require(reached, self.theta)
-        return position, play
-
-
-def _angles(linkage: FourBar | SliderCrank | QuickReturn, theta: ArrayLike | None) -> Array:
-    if theta is None:
-        if linkage.crank_turns:
-            return np.linspace(0.0, math.tau, 361)
-        return np.concatenate([np.linspace(*ends, 181) for ends in linkage.crank_ranges()])
-    return finite_array("theta", theta, "angles [rad]")
+        return np.asarray(np.ldexp(value, -self.linkage.scale if self.link == "slider" else 0))
 
 
 def _checked(
@@ -360,7 +339,7 @@ def _checked(
     return {name: float(given[name]) for name in _JOINTS if name in given}
 
 
-def _extremes(task: Task) -> tuple[WidthExtreme, WidthExtreme]:
+def _extremes(task: _Task) -> tuple[WidthExtreme, WidthExtreme]:
     """Return least and greatest width over the crank's range.
 
     The width depends on one variable, the diagonal, the gap or the slide, and can be extreme where
@@ -372,12 +351,12 @@ def _extremes(task: Task) -> tuple[WidthExtreme, WidthExtreme]:
         # A diagonal of no length has no angle.
         low = max(low, 64.0 * EPS * high)
     places = [low, high]
-    for place in route.candidates(task.radius, task.guide):
+    for place in route.candidates(*task.slack):
         # The width jumps where a fold begins, so that both sides of the place count.
         nudge = 16.0 * EPS * max(abs(low), abs(high))
         places += [place - nudge, place, place + nudge]
     inside = np.unique([place for place in places if low <= place <= high])
-    play = route.measure(inside, task.radius, task.guide)
+    play = route.measure(inside, *task.slack)
     width = play.below + play.above
     least, greatest = (
         WidthExtreme(route.crank(float(inside[i])), float(task.in_units(width[i])))
@@ -386,24 +365,24 @@ def _extremes(task: Task) -> tuple[WidthExtreme, WidthExtreme]:
     return least, greatest
 
 
-def _errors(task: Task, position: CrankPosition, play: Play) -> dict[str, Array]:
+def _errors(task: _Task) -> dict[str, Array]:
     """Return the errors of the result in its units."""
-    error, nominal_error = task.route.errors(position, task.radius, task.guide, play)
+    error, nominal_error = task.route.errors(task.position, *task.slack, task.play)
     return {"error": task.in_units(2.0 * error), "nominal_error": task.in_units(nominal_error)}
 
 
-def _checks(task: Task, position: CrankPosition, play: Play) -> dict[str, Check]:
+def _checks(task: _Task) -> dict[str, Check]:
     """Close the loop at both ends, and take a small part of the clearances."""
-    error = np.add(*task.route.errors(position, task.radius, task.guide, play))
     return {
-        "loop closure at both ends over its round-off": Check(_gap(task, play, error), 1.0),
-        "small clearances against the first order": Check(_first_order(task, position, play), 1.0),
+        "loop closure at both ends over its round-off": Check(_gap(task), 1.0),
+        "small clearances against the first order": Check(_first_order(task), 1.0),
     }
 
 
-def _gap(task: Task, play: Play, error: Array) -> float:
+def _gap(task: _Task) -> float:
     """Return how far the loop with all clearance taken up stays open, over its round-off."""
-    sizes = task.linkage.unit_lengths
+    play, sizes = task.play, task.linkage.unit_lengths
+    error = np.add(*task.route.errors(task.position, *task.slack, play))
     longest = max(abs(size) for size in sizes.values())
     limit = 64.0 * EPS * longest * np.maximum(np.abs(task.theta), 1.0)
     blur = limit + longest * error
@@ -415,9 +394,9 @@ def _gap(task: Task, play: Play, error: Array) -> float:
     return worst
 
 
-def _missing(task: Task, sizes: Mapping[str, float], pin: Any, end: Array) -> Array:
+def _missing(task: _Task, sizes: Mapping[str, float], pin: Any, end: Array) -> Array:
     """Return by how much the loop at an end of the range leaves or exceeds the play."""
-    play, guide = task.radius, task.guide
+    play, guide = task.slack
     if isinstance(task.linkage, QuickReturn):
         away = np.abs(((pin + sizes["frame"]) * np.exp(-1j * end)).imag)
         return np.asarray(away - (play + guide))
@@ -442,18 +421,18 @@ def _nearest(one: Any, other: Any) -> Array:
     return np.asarray(np.minimum(np.abs(one), np.abs(other)))
 
 
-def _first_order(task: Task, position: CrankPosition, play: Play) -> float:
+def _first_order(task: _Task) -> float:
     """Return how far small clearances leave the first order, over what the next order may do.
 
     The series in the radius of play converges up to the first fold; its next term but one is of
     the second power of that ratio.
     """
-    whole = task.radius + task.guide
-    if whole == 0.0 or task.theta.size == 0:
+    radius, guide = task.slack
+    if radius + guide == 0.0 or task.theta.size == 0:
         return 0.0
-    margin = np.maximum(play.margin, 0.0)
-    part = _SMALL_PLAY * margin / whole
-    given = position, task.radius * part, task.guide * part
+    margin = np.maximum(task.play.margin, 0.0)
+    part = _SMALL_PLAY * margin / (radius + guide)
+    given = task.position, radius * part, guide * part
     small = task.route.at(*given)
     error, _ = task.route.errors(*given, small)
     apart = np.abs(small.below + small.above - small.small)
@@ -461,6 +440,6 @@ def _first_order(task: Task, position: CrankPosition, play: Play) -> float:
     if task.link == "slider":
         # Across the guide the first order vanishes where the coupler lies along it.
         leg = np.sqrt(task.linkage.unit_lengths["coupler"] * np.maximum(margin, EPS))
-        allowed = allowed + 2.0 * (task.guide * part) ** 2 / leg
-    clear = play.margin > 1e6 * position.margin_error
+        allowed = allowed + 2.0 * (guide * part) ** 2 / leg
+    clear = task.play.margin > 1e6 * task.position.margin_error
     return float(np.max(apart[clear] / allowed[clear], initial=0.0))

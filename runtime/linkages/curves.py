@@ -139,7 +139,18 @@ class CouplerCurve(Result):
         if not isinstance(self.linkage, FourBar) or self.link != "coupler":
             kind = f"the {self.link} of a {type(self.linkage).__name__}"
             raise bad("cognates", kind, "the coupler of a FourBar", "others have no cognates")
-        return _cognates(Circuit(self.linkage, self.circuit), complex(self.along, self.across))
+        place = complex(self.along, self.across)
+        f, c, m, n = (float(size) for size in self.linkage.lengths.values())
+        if min(abs(place), abs(m - place)) <= 1e-12 * m:
+            joint = f"{place.real:g}, {place.imag:g}"
+            raise bad("along, across", joint, "no joint of the coupler", "choose another")
+        at = Circuit(self.linkage, self.circuit).links(np.array([0.3]), 0)
+        crank, u, follower = (complex(at[link].direction.c[0, 0]) for link in self.linkage.links)
+        k, rest = place / m, m - place
+        return (
+            _cognate(0j, k * f, place * u, k * c * crank, c * crank),
+            _cognate(complex(f), k * f, -rest * u, rest / m * n * follower, n * follower),
+        )
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw path and linkage at some positions, cusps and double points marked."""
@@ -375,7 +386,7 @@ class _Trace:
 
     def _blur(self, s: Array) -> Array:
         """Return the error of the direction of the link in units of round-off."""
-        size, lim = self.motion.sizes, self.motion.limits
+        size, lim, stops = self.motion.sizes, self.motion.limits, self.motion.swings
         if self.link in ("crank", "slider"):
             return np.ones(s.shape)
         if self.motion.linkage.mechanism == "quick_return":
@@ -383,8 +394,15 @@ class _Trace:
             return 2.0 + (size["frame"] + size["crank"]) / reach
         psi = self.motion.crank_angle(s) - self.motion.linkage.fold_axis
         q = np.sin(psi / 2) ** 2
-        # The root passes on the round-off of its factors.
-        root = _root_blur(q, lim.q1, lim.q2, *self.motion.swings)
+        low, high = np.maximum(q - lim.q1, 0.0), np.maximum(lim.q2 - q, 0.0)
+        root = np.zeros(s.shape)
+        for end, other, limit, stop in (
+            (low, high, lim.q1, stops[0]),
+            (high, low, lim.q2, stops[1]),
+        ):
+            # The root passes on the round-off of its factors, but for a cos s in both of them.
+            lost = (q + abs(limit)) * np.sqrt(other / np.maximum(end, 1e-300))
+            root += np.sqrt(end * other) if stop else lost
         if self.motion.linkage.mechanism == "slider_crank":
             return 3.0 + 2.0 * size["crank"] * root / size["coupler"]
         f, c, m, n = (size[k] for k in ("frame", "crank", "coupler", "follower"))
@@ -392,19 +410,6 @@ class _Trace:
         length = n if self.link == "follower" else m
         base = (f + c) / reach + (reach**2 + m**2 + n**2) / (reach * length)
         return np.asarray(base + 2.0 * f * c * root / (reach * length))
-
-
-def _root_blur(q: Array, q1: float, q2: float, lower: bool, upper: bool) -> Array:
-    """Return the error of the root of (q - q1)(q2 - q), each end uncertain by its round-off."""
-    ends = (np.maximum(q - q1, 0.0), np.maximum(q2 - q, 0.0))
-    parts = []
-    for end, other, limit, stops in ((*ends, q1, lower), (*ends[::-1], q2, upper)):
-        if stops:
-            # cos s factors out: the width alone is uncertain.
-            parts.append(np.sqrt(end * other) + 0 * q)
-        else:
-            parts.append((np.abs(q) + abs(limit)) * np.sqrt(other / np.maximum(end, 1e-300)))
-    return np.asarray(parts[0] + parts[1])
 
 
 def _motion_of(motion: Circuit, s: Array) -> Any:
@@ -550,21 +555,6 @@ class Cognate:
         """Return places in the axes of the first linkage, shape (..., 2)."""
         place = np.asarray(position)[..., 0] + 1j * np.asarray(position)[..., 1]
         return np.asarray(self.pivot + planar(place * np.exp(1j * self.turn)))
-
-
-def _cognates(motion: Circuit, place: complex) -> tuple[Cognate, Cognate]:
-    f, c, m, n = (float(size) for size in motion.linkage.lengths.values())
-    if min(abs(place), abs(m - place)) <= 1e-12 * m:
-        joint = f"{place.real:g}, {place.imag:g}"
-        raise bad("along, across", joint, "no joint of the coupler", "choose another")
-    s = np.array([0.3])
-    at = motion.links(s, 0)
-    e2, u, e4 = (complex(at[link].direction.c[0, 0]) for link in ("crank", "coupler", "follower"))
-    k, rest = place / m, m - place
-    j = rest / m
-    first = _cognate(0j, k * f, place * u, k * c * e2, c * e2)
-    second = _cognate(complex(f), k * f, -rest * u, j * n * e4, n * e4)
-    return first, second
 
 
 def _cognate(

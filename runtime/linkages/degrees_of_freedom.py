@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from numbers import Integral
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..core.errors import bad
 from ..core.results import Check, Result, provenance
-from .linkage import Array
+from .linkage import Array, finite_array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,17 +108,11 @@ def mobility(
     )
 
 
-def _points(coordinates: Sequence[Sequence[float]], count: int) -> Array:
+def _points(coordinates: ArrayLike, count: int) -> Array:
     """Return finite coordinates, one row for each pin, centred and over their size."""
-    try:
-        points = np.array(coordinates, dtype=float)
-    except (TypeError, ValueError) as refusal:
-        given = repr(coordinates)[:60]
-        raise bad("coordinates", given, "a pair for each pin", "correct it") from refusal
-    if points.shape != (count, 2) or not np.all(np.isfinite(points)):
-        raise bad(
-            "coordinates", f"shape {points.shape}", f"{count} finite pairs", "give one per pin"
-        )
+    points = finite_array("coordinates", coordinates, "pairs, one for each pin")
+    if points.shape != (count, 2):
+        raise bad("coordinates", f"shape {points.shape}", f"{count} pairs", "give one per pin")
     points = points / (np.abs(points).max() or 1.0)
     points = points - points.mean(axis=0)
     return np.asarray(points / (np.abs(points).max() or 1.0))

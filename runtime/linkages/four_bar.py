@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from types import ModuleType
-from typing import ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,7 +27,43 @@ from .linkage import (
     assembly_problems,
     length_problems,
     turning,
+    units_of,
 )
+
+
+class LoopSums(NamedTuple):
+    """Sums of the four lengths of a loop ABCD.
+
+    ``less_x`` is the sum of the other three less x, ``two``, ``three`` and ``four`` are frame +
+    crank, frame + coupler and frame + follower less the other two.
+    """
+
+    total: Any
+    less_frame: Any
+    less_crank: Any
+    less_coupler: Any
+    less_follower: Any
+    two: Any
+    three: Any
+    four: Any
+
+    @classmethod
+    def of(cls, lengths: Iterable[Any], add: Callable[[Any], Any]) -> LoopSums:
+        """Return the sums of frame, crank, coupler and follower by a function that adds."""
+        a, b, c, d = lengths
+        less = (-a, b, c, d), (a, -b, c, d), (a, b, -c, d), (a, b, c, -d)
+        pairs = (a, b, -c, -d), (a, -b, c, -d), (a, -b, -c, d)
+        return cls(add((a, b, c, d)), *map(add, less), *map(add, pairs))
+
+    @property
+    def less(self) -> tuple[Any, ...]:
+        """The sums of three links less the other one: positive where they close and can move."""
+        return self[1:5]
+
+    @property
+    def pairs(self) -> tuple[Any, ...]:
+        """The sums of the frame and another link less the other two."""
+        return self[5:]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,24 +94,9 @@ class FourBarMotion(Motion):
     alpha4: Array
     transmission_angle: Array
 
-    places: ClassVar[Mapping[str, str]] = {
-        "theta3": "rad",
-        "theta4": "rad",
-        "transmission_angle": "rad",
-    }
-    rates: ClassVar[Mapping[str, str]] = {
-        "omega3": "rad/s",
-        "omega4": "rad/s",
-        "alpha3": "rad/s^2",
-        "alpha4": "rad/s^2",
-    }
+    places, rates = units_of(four_bar_kinematics)
     norm: ClassVar[str] = "worse of theta3 and theta4 [rad]"
-    drawn: ClassVar[Mapping[str, str]] = {
-        "theta4": r"\theta_4",
-        "omega4": r"\omega_4",
-        "alpha4": r"\alpha_4",
-        "omega3": r"\omega_3",
-    }
+    drawn: ClassVar[tuple[str, ...]] = ("theta4", "omega4", "alpha4", "omega3")
 
     def _other_link(self, name: str) -> LinkMotion:
         if name == "coupler":
@@ -125,10 +146,10 @@ class FourBar(Linkage):
             longest = max(self.lengths, key=lambda name: self.lengths[name])
             rest = sum(self.lengths.values()) - self.lengths[longest]
             # Exact, as the class is: a sum in floats may close what cannot close.
-            exact = {name: Fraction(float(size)) for name, size in self.lengths.items()}
-            excess = 2 * exact[longest] - sum(exact.values())
-            why = "cannot close" if excess > 0 else "is stretched and cannot move"
-            if excess >= 0:
+            exact = LoopSums.of((Fraction(float(size)) for size in self.lengths.values()), sum)
+            spare = min(exact.less)
+            why = "cannot close" if spare < 0 else "is stretched and cannot move"
+            if spare <= 0:
                 problems.append(
                     Problem(
                         f"FourBar.{longest}",
@@ -146,20 +167,22 @@ class FourBar(Linkage):
         return abs(self.coupler - self.follower), self.coupler + self.follower
 
     @property
+    def sums(self) -> LoopSums:
+        """Sums of ``unit_lengths``, each correctly rounded."""
+        return LoopSums.of(self.unit_lengths.values(), math.fsum)
+
+    @property
     def limits(self) -> Limits:
         """Where the loop can close: where coupler and follower come into one line."""
-        f, c, m, n = self.unit_lengths.values()
-
-        def product(one: tuple[float, ...], other: tuple[float, ...]) -> float:
-            frame, crank = (2.0 * max(size, TINY) for size in (f, c))
-            return math.fsum(one) / frame * (math.fsum(other) / crank)
-
-        return Limits(
-            product((m, -n, c, -f), (m, -n, f, -c)),
-            product((f, c, n, -m), (f, c, m, -n)),
-            product((m, n, c, -f), (m, n, f, -c)),
-            product((f, c, -m, -n), (f, c, m, n)),
+        s = self.sums
+        frame, crank = (2.0 * max(self.unit_lengths[name], TINY) for name in ("frame", "crank"))
+        factors = (
+            (0.0 - s.four, s.three),
+            (s.less_coupler, s.less_follower),
+            (s.less_frame, s.less_crank),
+            (s.two, s.total),
         )
+        return Limits(*(one / frame * (other / crank) for one, other in factors))
 
     def require_full_turn(self) -> None:
         """Raise BadInput where the crank cannot turn fully."""

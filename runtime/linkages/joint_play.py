@@ -10,9 +10,10 @@ or the slide DB.  Its error is how far the round-off of that variable moves it.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -95,15 +96,6 @@ class Route:
         # Beside the variable's, the round-off of the last few operations.
         error = np.maximum(below + 8.0 * EPS * play.below, above + 8.0 * EPS * play.above)
         return error, nominal + position.start_error + 4.0 * EPS * np.abs(play.nominal)
-
-
-def route_of(linkage: FourBar | SliderCrank | QuickReturn, link: str) -> Route:
-    """Return the way to the play of an output."""
-    if isinstance(linkage, FourBar):
-        return _four_bar(linkage, link)
-    if isinstance(linkage, SliderCrank):
-        return _slider_crank(linkage, link)
-    return _quick_return(linkage)
 
 
 @dataclass(frozen=True)
@@ -303,7 +295,7 @@ def _across_coupler(
     return _of_angles((least, nominal, greatest), (play / scale, play / scale), small, margin)
 
 
-def _quick_return(linkage: QuickReturn) -> Route:
+def _quick_return(linkage: QuickReturn, link: str) -> Route:
     """Return the play of the rod's angle."""
     frame, crank, rod = linkage.unit_lengths.values()
     short, long = abs(frame - crank), frame + crank
@@ -338,3 +330,19 @@ def _beside(slide: ArrayLike, radius: ArrayLike, guide: ArrayLike) -> Play:
 def _angle_of(sine2: float, cosine2: float) -> float:
     """Return the angle from the squares of sine and cosine of its half, or what is as they."""
     return float(2.0 * np.arctan2(np.sqrt(max(sine2, 0.0)), np.sqrt(max(cosine2, 0.0))))
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """What of a kind of linkage can be ranged."""
+
+    links: tuple[str, ...]  # the output first
+    sliding: str  # joint that slides, and does not turn: its clearance is across its guide
+    route: Callable[[Any, str], Route]  # to the play of one of the links
+
+
+OUTPUTS: Mapping[type, Outputs] = {
+    FourBar: Outputs(("follower", "coupler"), "", _four_bar),
+    SliderCrank: Outputs(("slider", "coupler"), "41", _slider_crank),
+    QuickReturn: Outputs(("rod",), "34", _quick_return),
+}

@@ -191,7 +191,55 @@ class Tolerances(Result):
         BadInput
             If a number is out of range or the distribution is unknown.
         """
-        return _trial(self, samples, seed, distribution)
+        if distribution not in _SPREADS:
+            raise bad(
+                "distribution", repr(distribution), f"one of {sorted(_SPREADS)}", "choose one"
+            )
+        for name, number, fewest in (("samples", samples, 2), ("seed", seed, 0)):
+            if not is_whole(number, fewest):
+                raise bad(name, repr(number), f"an integer of at least {fewest}", "correct it")
+        random = np.random.default_rng(seed)
+        # Deviations over the worst case: their squares neither overflow nor vanish.
+        unit = np.where(self.worst_case > 0.0, self.worst_case, 1.0)
+        total = np.zeros_like(unit)
+        squares, kept, done = np.zeros_like(total), 0, 0
+        least, greatest = np.full_like(total, np.inf), np.full_like(total, -np.inf)
+        # Numbers in one array at a time.
+        chunk = max(1, 200_000 // max(1, self.theta2.size))
+        while done < samples:
+            count = min(chunk, samples - done)
+            deviation = _deviations(self, random, count, distribution) / unit
+            good = np.all(np.isfinite(deviation), axis=tuple(range(1, deviation.ndim)))
+            deviation = deviation[good]
+            total += np.sum(deviation, axis=0)
+            squares += np.sum(np.square(deviation), axis=0)
+            least = np.minimum(least, np.min(deviation, axis=0, initial=np.inf))
+            greatest = np.maximum(greatest, np.max(deviation, axis=0, initial=-np.inf))
+            kept, done = kept + int(np.count_nonzero(good)), done + count
+        if kept < 2:
+            given = f"{kept} linkages that reach every angle"
+            raise bad("tolerances", given, "at least 2", "narrow the tolerances")
+        mean = total / kept
+        spread = unit * np.sqrt(np.maximum(squares - kept * np.square(mean), 0.0) / (kept - 1))
+        shift = unit * mean
+        expected = self.root_sum_square * _SPREADS[distribution]
+        error = _quantile(kept - 1) * spread
+        return ToleranceTrial(
+            outputs=self.outputs,
+            mean_shift=shift,
+            standard_deviation=spread,
+            expected=expected,
+            least=unit * least,
+            greatest=unit * greatest,
+            samples=samples,
+            lost=samples - kept,
+            distribution=distribution,
+            method=f"Monte Carlo, seed {seed}",
+            error=error,
+            error_norm="standard deviation of each output, absolute, entrywise",
+            checks=_trial_checks(self, shift, spread, expected, kept),
+            provenance=self.provenance,
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain lists, numbers and strings, ready for JSON."""
@@ -517,59 +565,6 @@ class ToleranceTrial(Result):
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
         ("mean_shift", "standard_deviation", "expected", "least", "greatest", "error"),
         ("output", "angle"),
-    )
-
-
-def _trial(
-    nominal: Tolerances, samples: int, seed: int, distribution: Distribution
-) -> ToleranceTrial:
-    """Return the outcome of a Monte Carlo trial; see :meth:`Tolerances.monte_carlo`."""
-    if distribution not in _SPREADS:
-        raise bad("distribution", repr(distribution), f"one of {sorted(_SPREADS)}", "choose one")
-    for name, number, fewest in (("samples", samples, 2), ("seed", seed, 0)):
-        if not is_whole(number, fewest):
-            raise bad(name, repr(number), f"an integer of at least {fewest}", "correct it")
-    random = np.random.default_rng(seed)
-    # Deviations over the worst case: their squares neither overflow nor vanish.
-    unit = np.where(nominal.worst_case > 0.0, nominal.worst_case, 1.0)
-    total = np.zeros_like(unit)
-    squares, kept, done = np.zeros_like(total), 0, 0
-    least, greatest = np.full_like(total, np.inf), np.full_like(total, -np.inf)
-    # Numbers in one array at a time.
-    chunk = max(1, 200_000 // max(1, nominal.theta2.size))
-    while done < samples:
-        count = min(chunk, samples - done)
-        deviation = _deviations(nominal, random, count, distribution) / unit
-        good = np.all(np.isfinite(deviation), axis=tuple(range(1, deviation.ndim)))
-        deviation = deviation[good]
-        total += np.sum(deviation, axis=0)
-        squares += np.sum(np.square(deviation), axis=0)
-        least = np.minimum(least, np.min(deviation, axis=0, initial=np.inf))
-        greatest = np.maximum(greatest, np.max(deviation, axis=0, initial=-np.inf))
-        kept, done = kept + int(np.count_nonzero(good)), done + count
-    if kept < 2:
-        given = f"{kept} linkages that reach every angle"
-        raise bad("tolerances", given, "at least 2", "narrow the tolerances")
-    mean = total / kept
-    spread = unit * np.sqrt(np.maximum(squares - kept * np.square(mean), 0.0) / (kept - 1))
-    shift = unit * mean
-    expected = nominal.root_sum_square * _SPREADS[distribution]
-    error = _quantile(kept - 1) * spread
-    return ToleranceTrial(
-        outputs=nominal.outputs,
-        mean_shift=shift,
-        standard_deviation=spread,
-        expected=expected,
-        least=unit * least,
-        greatest=unit * greatest,
-        samples=samples,
-        lost=samples - kept,
-        distribution=distribution,
-        method=f"Monte Carlo, seed {seed}",
-        error=error,
-        error_norm="standard deviation of each output, absolute, entrywise",
-        checks=_trial_checks(nominal, shift, spread, expected, kept),
-        provenance=nominal.provenance,
     )
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..core.deferred import Deferred, DeferredField
 from ..core.errors import Problem, bad
 from ..core.inputs import is_finite
 from ..core.results import Check, DeferredChecks, Result, provenance
@@ -31,6 +32,7 @@ TINY = float(np.finfo(float).tiny)
 ROUND_OFFS = 1.5 * EPS
 # A position that a round-off of the lengths moves so far [rad] is a change point.
 UNDECIDED = 0.5
+_LATER = DeferredField()
 
 
 @dataclass(frozen=True)
@@ -80,9 +82,7 @@ class LinkMotion:
         -------
         PointMotion
         """
-        cos, sin = np.cos(self.angle), np.sin(self.angle)
-        x = cos * along - sin * np.asarray(across)
-        y = sin * along + cos * np.asarray(across)
+        x, y = self.turned(along, across)
         speed, change = self.speed, self.angular_acceleration
         square = speed * speed
         return PointMotion(
@@ -90,6 +90,24 @@ class LinkMotion:
             self.velocity + pair(-speed * y, speed * x),
             self.acceleration + pair(-square * x - change * y, change * x - square * y),
         )
+
+    def turned(self, along: ArrayLike, across: ArrayLike) -> tuple[Array, Array]:
+        """Return a vector given along and across the link by its fixed components."""
+        cos, sin = np.cos(self.angle), np.sin(self.angle)
+        u, v = np.asarray(along), np.asarray(across)
+        return cos * u - sin * v, sin * u + cos * v
+
+
+def units_of(kinematics: ModuleType) -> tuple[dict[str, str], dict[str, str]]:
+    """Return the units of places and of rates that an emitted motion returns, by name."""
+    kinds = {"velocity": "m/s", "acceleration": "m/s^2", "omega": "rad/s", "alpha": "rad/s^2"}
+    kinds |= {"position": "m", "slide": "m", "": "rad"}
+    units: dict[str, str] = {
+        name: next(unit for kind, unit in kinds.items() if kind in name)
+        for name in kinematics.RETURNS["motion"]
+    }
+    places = {name: unit for name, unit in units.items() if "/" not in unit}
+    return places, {name: unit for name, unit in units.items() if name not in places}
 
 
 def pair(x: ArrayLike, y: ArrayLike) -> Array:
@@ -121,13 +139,14 @@ class Motion(Result, ABC):
     theta2: Array
     omega2: Array
     alpha2: Array
+    error: Any = _LATER
 
     # What moves, by name, with its unit: angles and places, then rates.
     places: ClassVar[Mapping[str, str]] = {}
     rates: ClassVar[Mapping[str, str]] = {}
     norm: ClassVar[str] = ""
-    # What is drawn against the crank angle, with its symbol.
-    drawn: ClassVar[Mapping[str, str]] = {}
+    # What is drawn against the crank angle.
+    drawn: ClassVar[tuple[str, ...]] = ()
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the motion of the output against the crank angle.
@@ -141,9 +160,11 @@ class Motion(Result, ABC):
         degrees = np.degrees(self.theta2)
         units: dict[str, None] = {}
         over = {"omega": r"/\omega_2", "alpha": r"/\omega_2^2"} if self.relative else {}
-        for name, words in self.drawn.items():
+        for name in self.drawn:
             values, unit = getattr(self, name), self.unit(name)
-            words = f"${words}{over.get(name[:5], '')}$" if words[0] == "\\" else words
+            greek, link = name[:-1], name[-1]
+            words = rf"$\{greek}_{link}{over.get(greek, '')}$"
+            words = words if link.isdigit() else name.removeprefix("slider_")
             peak = float(np.max(np.abs(values), initial=0.0))
             scaled = peak > 0.0 and not self.relative
             power = int(np.floor(np.log10(peak))) if scaled else 0
@@ -390,7 +411,7 @@ class Linkage(ABC):
     def _moved(
         self, kind: type[M], theta: ArrayLike, speed: ArrayLike, acceleration: ArrayLike
     ) -> M:
-        """Return the motion, with its error and checks."""
+        """Return the motion; its error and checks are computed when they are first read."""
         angles, drive = drive_of(theta, speed, acceleration)
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             m = {
@@ -398,9 +419,7 @@ class Linkage(ABC):
                 **emitted(self, self.kinematics, "motion", angles, self.unit_lengths),
             }
         reached = np.logical_and.reduce([np.isfinite(value) for value in m.values()])
-        self.require(reached, angles, self._expected)
-        self.require(self._decided(m), angles)
-        error = self._error(m)
+        self.require(reached & self._decided(m), angles, self._expected)
         shape = drive[0].shape
         fields: dict[str, Any] = {}
         for name, value in driven(m, *drive).items():
@@ -413,9 +432,9 @@ class Linkage(ABC):
             alpha2=drive[1],
             **fields,
             method="closed form",
-            error=np.array(np.broadcast_to(error, shape)),
+            error=Deferred(partial(_error, self, m, shape)),
             error_norm=f"{kind.norm}, absolute, entrywise",
-            checks=DeferredChecks(partial(_checks, self, m, error)),
+            checks=DeferredChecks(partial(_checks, self, m)),
             provenance=provenance(self.provenance),
         )
 
@@ -542,8 +561,14 @@ def driven(m: Mapping[str, Any], speed: Any, acceleration: Any) -> dict[str, Any
     return moved
 
 
-def _checks(linkage: Linkage, m: Mapping[str, Array], error: Array) -> dict[str, Check]:
+def _error(linkage: Linkage, m: Mapping[str, Array], shape: tuple[int, ...]) -> Array:
+    """Return the error at the places of a result."""
+    return np.array(np.broadcast_to(linkage._error(m), shape))
+
+
+def _checks(linkage: Linkage, m: Mapping[str, Array]) -> dict[str, Check]:
     """Close the loop, and its first and second derivative."""
+    error = linkage._error(m)
     places, *rates = linkage._loop(m)
     longest = max(abs(value) for value in linkage.unit_lengths.values())
     closure = float(np.max(np.abs(sum(places)), initial=0.0) / longest)

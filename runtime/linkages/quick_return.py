@@ -26,6 +26,7 @@ from .linkage import (
     Terms,
     length_problems,
     turning,
+    units_of,
 )
 
 _ROUND = 4.0 * EPS
@@ -60,19 +61,9 @@ class QuickReturnMotion(Motion):
     slide_velocity: Array
     slide_acceleration: Array
 
-    places: ClassVar[Mapping[str, str]] = {"theta4": "rad", "slide": "m"}
-    rates: ClassVar[Mapping[str, str]] = {
-        "omega4": "rad/s",
-        "alpha4": "rad/s^2",
-        "slide_velocity": "m/s",
-        "slide_acceleration": "m/s^2",
-    }
+    places, rates = units_of(quick_return_kinematics)
     norm: ClassVar[str] = "worse of theta4 [rad] and slide over its greatest value"
-    drawn: ClassVar[Mapping[str, str]] = {
-        "theta4": r"\theta_4",
-        "omega4": r"\omega_4",
-        "alpha4": r"\alpha_4",
-    }
+    drawn: ClassVar[tuple[str, ...]] = ("theta4", "omega4", "alpha4")
 
     def _other_link(self, name: str) -> LinkMotion:
         if name == "block":

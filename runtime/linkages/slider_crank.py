@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from numbers import Real
 from types import ModuleType
 from typing import ClassVar
 
@@ -14,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...generated import slider_crank_kinematics
 from ..core.errors import BadInput, Problem, bad
+from ..core.inputs import is_finite
 from .linkage import (
     ROUND_OFFS,
     TINY,
@@ -29,6 +29,7 @@ from .linkage import (
     length_problems,
     pair,
     turning,
+    units_of,
 )
 
 
@@ -66,23 +67,9 @@ class SliderCrankMotion(Motion):
     slider_acceleration: Array
     transmission_angle: Array
 
-    places: ClassVar[Mapping[str, str]] = {
-        "theta3": "rad",
-        "position": "m",
-        "transmission_angle": "rad",
-    }
-    rates: ClassVar[Mapping[str, str]] = {
-        "omega3": "rad/s",
-        "alpha3": "rad/s^2",
-        "slider_velocity": "m/s",
-        "slider_acceleration": "m/s^2",
-    }
+    places, rates = units_of(slider_crank_kinematics)
     norm: ClassVar[str] = "worse of theta3 [rad] and position over the longest length"
-    drawn: ClassVar[Mapping[str, str]] = {
-        "position": "position",
-        "slider_velocity": "velocity",
-        "slider_acceleration": "acceleration",
-    }
+    drawn: ClassVar[tuple[str, ...]] = ("position", "slider_velocity", "slider_acceleration")
 
     def _other_link(self, name: str) -> LinkMotion:
         if name == "coupler":
@@ -133,7 +120,7 @@ class SliderCrank(Linkage):
         """Check the lengths."""
         positive = {"crank": self.crank, "coupler": self.coupler}
         problems = length_problems("SliderCrank", positive)
-        if not (isinstance(self.offset, Real) and abs(float(self.offset)) < np.inf):
+        if not is_finite(self.offset):
             problems.append(
                 Problem("SliderCrank.offset", repr(self.offset), "a finite length", "correct it")
             )

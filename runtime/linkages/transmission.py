@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import bad
+from ..core.inputs import are_finite
 from ..core.results import Check, Result, provenance
-from .four_bar import FourBar
+from .four_bar import FourBar, LoopSums
 from .linkage import EPS, Array, require_linkage
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
@@ -220,7 +221,10 @@ def transmission_angle(
     BadInput
         If the band is not two rising angles between 0 and pi, or this is no linkage.
     """
-    band = _checked_band(band)
+    if not (are_finite(band, 2) and 0.0 <= band[0] < band[1] <= pi):
+        given = repr(band)[:60]
+        raise bad("band", given, "two angles, 0 <= low < high <= pi", "give radians, rising")
+    band = float(band[0]), float(band[1])
     require_linkage(linkage)
     if isinstance(linkage, SliderCrank):
         return _slider_crank(linkage, band)
@@ -269,46 +273,15 @@ def _result(
     )
 
 
-@dataclass(frozen=True)
-class _Sums:
-    """Sums of the four lengths of a loop ABCD, each correctly rounded.
-
-    ``less_x`` is the sum of the other three less x, ``two``, ``three`` and ``four`` are frame +
-    crank, frame + coupler and frame + follower less the other two.
-    """
-
-    total: float
-    less_frame: float
-    less_crank: float
-    less_coupler: float
-    less_follower: float
-    two: float
-    three: float
-    four: float
-
-    @classmethod
-    def of(cls, a: float, b: float, c: float, d: float) -> _Sums:
-        return cls(
-            fsum((a, b, c, d)),
-            fsum((-a, b, c, d)),
-            fsum((a, -b, c, d)),
-            fsum((a, b, -c, d)),
-            fsum((a, b, c, -d)),
-            fsum((a, b, -c, -d)),
-            fsum((a, -b, c, -d)),
-            fsum((a, -b, -c, d)),
-        )
-
-
 def _four_bar(linkage: FourBar, band: tuple[float, float]) -> TransmissionAngle:
     """Return the positions of a four-bar linkage (Aannaque 3.9, 3.10, and the triangles ACD)."""
-    frame, crank, coupler, follower = linkage.unit_lengths.values()
-    s = _Sums.of(frame, crank, coupler, follower)
+    _, crank, coupler, follower = linkage.unit_lengths.values()
+    s = linkage.sums
     # Transmission angle 0 or pi at the folds, else from the diagonal frame -+ crank.
     inner, outer = linkage.limits.ends
     turns = not inner and outer in (None, pi)
     centres, outputs = _four_bar_centres(s, crank, coupler, linkage.branch)
-    output_range = _follower_range(s, linkage.branch)
+    output_range = _follower_range(s, outputs, linkage.branch)
     return _result(
         linkage,
         band,
@@ -328,7 +301,7 @@ def _four_bar(linkage: FourBar, band: tuple[float, float]) -> TransmissionAngle:
 
 
 def _four_bar_centres(
-    s: _Sums, crank: float, coupler: float, branch: float
+    s: LoopSums, crank: float, coupler: float, branch: float
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Return crank and follower angles where crank and coupler lie in one line.
 
@@ -346,11 +319,12 @@ def _four_bar_centres(
     return {name: _turned(angle) for name, angle in centres.items()}, outputs
 
 
-def _follower_range(s: _Sums, branch: float) -> tuple[float, float] | None:
+def _follower_range(
+    s: LoopSums, centres: Mapping[str, float], branch: float
+) -> tuple[float, float] | None:
     """Return the follower's range: an outer limit, an inner one, both or none."""
-    outer = _angle((s.four, s.total), (s.less_frame, s.less_follower)) if s.four > 0 else None
-    folded = s.two * s.three < 0
-    inner = _angle((s.less_coupler, s.less_crank), (s.two, s.three)) if folded else None
+    outer = abs(centres["extended"]) if s.four > 0 else None
+    inner = abs(centres["folded"]) if s.two * s.three < 0 else None
     if outer is not None and inner is not None:
         return (outer, inner) if branch > 0 else (-inner, -outer)
     if outer is not None:
@@ -486,14 +460,3 @@ def _speed_ratio(linkage: FourBar | SliderCrank | QuickReturn, motion: Any) -> t
     turned = EPS * (np.abs(motion.theta2) + 4.0)
     lever = (linkage.frame + linkage.crank) / motion.slide
     return ratio, turned * lever**2 * (1.0 + np.abs(ratio))
-
-
-def _checked_band(band: tuple[float, float]) -> tuple[float, float]:
-    """Return the band as two floats, or raise BadInput."""
-    try:
-        low, high = map(float, band)
-    except (TypeError, ValueError) as refusal:
-        raise bad("band", repr(band)[:60], "two angles [rad]", "give (low, high)") from refusal
-    if not 0 <= low < high <= math.pi:
-        raise bad("band", repr(band)[:60], "0 <= low < high <= pi", "give radians, rising")
-    return low, high

@@ -12,14 +12,13 @@ from numpy.typing import ArrayLike
 from ..core.errors import BadInput, bad
 from ..core.inputs import require_whole
 from ..core.results import Check, Result, provenance
-from ..linkages.linkage import Array
+from ..linkages.linkage import Array, finite_array
 from .counterweights import (
     CASES,
     Bounds,
     Case,
     Counterweight,
     Offsets,
-    bounds_by_link,
     case_counterweights,
     with_counterweights,
 )
@@ -355,25 +354,36 @@ def _units(
     machine: Machine, links: tuple[str, ...], bounds: Bounds | Mapping[str, Bounds] | None
 ) -> tuple[Array, Array, Array]:
     """Return greatest masses [kg] and offsets [m], and the stiffness of scaled counterweights."""
-    masses, offsets, stiffness = (np.zeros(len(links)) for _ in range(3))
-    for i, (link, each) in enumerate(bounds_by_link(links, bounds).items()):
-        masses[i], offsets[i] = each.completed(machine, link)
+    bounds = Bounds() if bounds is None else bounds
+    given = bounds if isinstance(bounds, Mapping) else dict.fromkeys(links, bounds)
+    for link, each in given.items():
+        require_link(link, links, "bounds")
+        if not isinstance(each, Bounds):
+            raise bad("bounds", type(each).__name__, "Bounds", "give Bounds(mass=..., offset=...)")
+    whole = sum(machine.mass(link).mass for link in machine.linkage.links)
+    rows = []
+    for link in links:
+        each = given.get(link, Bounds())
+        mass, offset = each.mass or whole, each.offset or machine.linkage.lengths.get(link)
+        if not mass:
+            raise bad(f"bounds.{link}", "a machine without mass", "a greatest mass", "give mass")
+        if offset is None:
+            raise bad(f"bounds.{link}", "no offset", "a greatest offset", "give offset")
+        stiffness = 0.0
         if each.density is not None and each.thickness is not None:
             # Inertia of a cylinder over the square of its mass: 1/(2 pi h rho).
-            cylinder = 2.0 * np.pi * each.thickness * each.density
-            stiffness[i] = masses[i] / (cylinder * offsets[i] ** 2)
-    return masses, offsets, stiffness
+            stiffness = mass / (2.0 * np.pi * each.thickness * each.density * offset**2)
+        rows.append((mass, offset, stiffness))
+    masses, offsets, stiff = np.array(rows).T
+    return masses, offsets, stiff
 
 
 def _angles(basis: ForceBasis, angles: ArrayLike | None) -> tuple[Array, bool]:
     """Return the angles that count, and whether the peaks between them count too."""
     if angles is not None:
-        try:
-            theta = np.asarray(angles, dtype=float).ravel()
-        except (TypeError, ValueError) as refusal:
-            raise bad("angles", repr(angles)[:60], "angles [rad]", "correct it") from refusal
-        if theta.size == 0 or not np.all(np.isfinite(theta)):
-            raise bad("angles", "nothing or not finite", "finite angles [rad]", "correct it")
+        theta = finite_array("angles", angles, "angles [rad]").ravel()
+        if theta.size == 0:
+            raise bad("angles", "none", "finite angles [rad]", "give one or more")
         return theta, False
     if not basis.machine.linkage.crank_turns:
         fix = "give angles that the crank can reach"

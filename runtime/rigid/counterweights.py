@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
@@ -117,33 +117,6 @@ class Bounds:
         if problems:
             raise BadInput(*problems)
 
-    def completed(self, machine: Machine, link: str) -> tuple[float, float]:
-        """Return greatest mass [kg] and offset [m], with the machine's defaults."""
-        lengths = machine.linkage.lengths
-        mass = self.mass or sum(machine.mass(name).mass for name in machine.linkage.links)
-        offset = self.offset or lengths.get(link)
-        if not mass:
-            raise bad(f"bounds.{link}", "a machine without mass", "a greatest mass", "give mass")
-        if offset is None:
-            raise bad(f"bounds.{link}", "no offset", "a greatest offset", "give offset")
-        return mass, offset
-
-
-def bounds_by_link(
-    links: tuple[str, ...], bounds: Bounds | Mapping[str, Bounds] | None
-) -> dict[str, Bounds]:
-    """Return the bounds of each link, or raise BadInput where they are none or name another."""
-    if isinstance(bounds, Mapping):
-        for link in bounds:
-            require_link(link, links, "bounds")
-        given = {link: bounds.get(link, Bounds()) for link in links}
-    else:
-        given = dict.fromkeys(links, Bounds() if bounds is None else bounds)
-    for each in given.values():
-        if not isinstance(each, Bounds):
-            raise bad("bounds", type(each).__name__, "Bounds", "give Bounds(mass=..., offset=...)")
-    return given
-
 
 def with_counterweights(machine: Machine, counterweights: Iterable[Counterweight]) -> Machine:
     """Return the machine with counterweights added to its links.
@@ -189,6 +162,8 @@ def _cylinder_problems(where: str, density: float | None, thickness: float | Non
 Case: TypeAlias = Literal["a", "b", "c", "d", "reciprocating"]
 CASES: tuple[Case, ...] = ("a", "b", "c", "d")
 Offsets: TypeAlias = float | Mapping[str, float] | None
+# Makes counterweights of wanted first moments.
+_Place: TypeAlias = Callable[[Mapping[str, complex]], dict[str, Counterweight]]
 
 
 def case_counterweights(
@@ -248,12 +223,26 @@ def case_counterweights(
     if isinstance(offsets, Mapping):
         for link in offsets:
             require_link(link, links, "offsets")
-    place = _Placing(machine, offsets, density, thickness)
+
+    def place(moments: Mapping[str, complex]) -> dict[str, Counterweight]:
+        """Return counterweights with these first moments; none where there is nothing to do."""
+        added = {}
+        for link, wanted in ((link, moment) for link, moment in moments.items() if moment):
+            given = offsets.get(link) if isinstance(offsets, Mapping) else offsets
+            length = machine.linkage.lengths.get(link) if given is None else given
+            offset = finite_number(length, f"offsets.{link}")
+            if not offset > 0.0:
+                raise bad(f"offsets.{link}", f"{offset:g}", "a distance above zero", "correct it")
+            mass = abs(wanted) / offset
+            at = wanted / mass
+            added[link] = Counterweight(link, mass, at.real, at.imag, 0.0, density, thickness)
+        return added
+
     if case == "a":
         return {}
     if case == "b":
         turning = [link for link in (links[0], links[-1]) if link != "slider"]
-        return place.all({link: -_moment(machine, link) for link in turning})
+        return place({link: -_moment(machine, link) for link in turning})
     if case == "reciprocating":
         return _reciprocating(machine, place, finite_number(fraction, "fraction"))
     kinds: dict[str, Any] = {"slider": _slider_crank, "rod": _quick_return, "follower": _four_bar}
@@ -267,37 +256,12 @@ def _moment(machine: Machine, link: str) -> complex:
     return complex(mass.along, mass.across)
 
 
-@dataclass(frozen=True)
-class _Placing:
-    """Makes counterweights of wanted first moments at given offsets."""
-
-    machine: Machine
-    offsets: Offsets
-    density: float | None
-    thickness: float | None
-
-    def all(self, moments: Mapping[str, complex]) -> dict[str, Counterweight]:
-        """Return counterweights with these first moments; none where there is nothing to do."""
-        return {link: self._one(link, wanted) for link, wanted in moments.items() if wanted}
-
-    def _one(self, link: str, wanted: complex) -> Counterweight:
-        given = self.offsets.get(link) if isinstance(self.offsets, Mapping) else self.offsets
-        length = self.machine.linkage.lengths.get(link) if given is None else given
-        offset = finite_number(length, f"offsets.{link}")
-        if not offset > 0.0:
-            raise bad(f"offsets.{link}", f"{offset:g}", "a distance above zero", "correct it")
-        mass = abs(wanted) / offset
-        at = wanted / mass
-        body = {"density": self.density, "thickness": self.thickness}
-        return Counterweight(link, mass, at.real, at.imag, 0.0, **body)
-
-
-def _four_bar(machine: Machine, case: Case, place: _Placing) -> dict[str, Counterweight]:
+def _four_bar(machine: Machine, case: Case, place: _Place) -> dict[str, Counterweight]:
     lengths = machine.linkage.lengths
     coupler = machine.mass("coupler")
     crank, follower = _moment(machine, "crank"), _moment(machine, "follower")
     if case == "c":
-        middle = place.all({"coupler": -_moment(machine, "coupler")})
+        middle = place({"coupler": -_moment(machine, "coupler")})
         at_pin = coupler.mass + sum(weight.mass for weight in middle.values())
         crank += at_pin * lengths["crank"]
     else:
@@ -306,34 +270,34 @@ def _four_bar(machine: Machine, case: Case, place: _Placing) -> dict[str, Counte
         crank += (coupler.mass - at_c) * lengths["crank"]
         follower += at_c * lengths["follower"]
         middle = {}
-    return {**place.all({"crank": -crank}), **middle, **place.all({"follower": -follower})}
+    return {**place({"crank": -crank}), **middle, **place({"follower": -follower})}
 
 
-def _slider_crank(machine: Machine, case: Case, place: _Placing) -> dict[str, Counterweight]:
+def _slider_crank(machine: Machine, case: Case, place: _Place) -> dict[str, Counterweight]:
     if case == "d":
         fix = "use case 'c', or 'reciprocating' for a crank counterweight alone"
         raise bad("case", "'d' for a slider-crank", "case b, c or reciprocating", fix)
     lengths = machine.linkage.lengths
     slider, coupler = machine.mass("slider"), machine.mass("coupler")
     # The slider does not turn: wherever its centre is, it moves as a point mass at C.
-    middle = place.all({"coupler": -_moment(machine, "coupler") - slider.mass * lengths["coupler"]})
+    middle = place({"coupler": -_moment(machine, "coupler") - slider.mass * lengths["coupler"]})
     at_pin = slider.mass + coupler.mass + sum(weight.mass for weight in middle.values())
     return {
-        **place.all({"crank": -_moment(machine, "crank") - at_pin * lengths["crank"]}),
+        **place({"crank": -_moment(machine, "crank") - at_pin * lengths["crank"]}),
         **middle,
     }
 
 
-def _quick_return(machine: Machine, case: Case, place: _Placing) -> dict[str, Counterweight]:
+def _quick_return(machine: Machine, case: Case, place: _Place) -> dict[str, Counterweight]:
     # The block's mass sits on the crank pin; its first moments turn with the rod.
     crank = (
         _moment(machine, "crank") + machine.mass("block").mass * machine.linkage.lengths["crank"]
     )
     rod = _moment(machine, "rod") + _moment(machine, "block")
-    return place.all({"crank": -crank, "rod": -rod})
+    return place({"crank": -crank, "rod": -rod})
 
 
-def _reciprocating(machine: Machine, place: _Placing, fraction: float) -> dict[str, Counterweight]:
+def _reciprocating(machine: Machine, place: _Place, fraction: float) -> dict[str, Counterweight]:
     if tuple(machine.linkage.links)[-1] != "slider":
         given = f"'reciprocating' for a {type(machine.linkage).__name__}"
         raise bad("case", given, "a SliderCrank", "use case b, c or d")
@@ -342,4 +306,4 @@ def _reciprocating(machine: Machine, place: _Placing, fraction: float) -> dict[s
     rotating = _moment(machine, "crank") + (machine.mass("coupler").mass - at_c) * lengths["crank"]
     # An uneven share at C (a centre beside the line BC) is no mass: it stays out of the fraction.
     reciprocating = machine.mass("slider").mass + at_c.real
-    return place.all({"crank": -(rotating + fraction * reciprocating * lengths["crank"])})
+    return place({"crank": -(rotating + fraction * reciprocating * lengths["crank"])})

@@ -131,51 +131,38 @@ class Evaluation:
         names: list[str],
         more: bool = False,
     ) -> float:
-        """Evaluate an emitted function into the named rows, or add it to what is there."""
+        """Evaluate an emitted function into the named rows of ``out``, or add it to what is there.
+
+        In blocks that stay in the processor's cache.  An argument that does not vary along an axis
+        is not spread along it: what depends on the crank angle alone is evaluated once for all the
+        speeds of a block.  Returns a sum that is no finite number where an entry is none.
+        """
+        total = 0.0
+        if out.size == 0 or not names:
+            return total
         call: Callable[..., Any] = getattr(self.kernels, function)
         given = [self.theta, *(numbers[name] for name in arguments(call)[1:])]
+        # One number as NumPy's, whose powers and quotients overflow without an exception.
+        given = [np.float64(item) if np.ndim(item) == 0 else item for item in given]
         returned = self.kernels.RETURNS[function]
         places = [(rows[name], returned.index(name)) for name in names]
-        # One number as NumPy's, whose powers and quotients overflow without an exception.
-        plain = [np.float64(item) if np.ndim(item) == 0 else item for item in given]
-        return _evaluate(call, plain, out, places, add=more)
-
-
-def _evaluate(
-    function: Callable[..., Any],
-    given: Sequence[Any],
-    out: Array,
-    rows: Sequence[tuple[int, int]],
-    *,
-    add: bool,
-) -> float:
-    """Evaluate a function that broadcasts, in blocks that stay in the processor's cache.
-
-    An argument that does not vary along an axis is not spread along it: what depends on the crank
-    angle alone is evaluated once for all the speeds of a block.  ``rows`` are pairs: row of
-    ``out``, shape (k, *batch), and place among the returned arrays.  Returns a sum that is no
-    finite number where an entry is none.
-    """
-    total = 0.0
-    if out.size == 0 or not rows:
+        watched = {places[0][1], places[min(1, len(places) - 1)][1], places[-1][1]}
+        batch = out.shape[1:]
+        axis = max(range(len(batch)), key=batch.__getitem__, default=0)
+        longest = batch[axis] if batch else 1
+        step = max(1, BLOCK * longest * len(out) // out.size)
+        for start in range(0, longest, step):
+            part = slice(start, start + step)
+            arrays = call(*(_part(item, part, axis - len(batch) or -1) for item in given))
+            arrays = arrays if isinstance(arrays, tuple) else (arrays,)
+            target = out[(slice(None),) * (axis + 1) + (part,)] if batch else out
+            for row, place in places:
+                target[row] = target[row] + arrays[place] if more else arrays[place]
+            # An angle out of reach spoils every row; what overflows shows in the first ones or the
+            # last, to which the others add up.  All of them would take a twentieth of the time.
+            for place in watched:
+                total += float(np.add.reduce(arrays[place], axis=None))
         return total
-    watched = {rows[0][1], rows[min(1, len(rows) - 1)][1], rows[-1][1]}
-    batch = out.shape[1:]
-    axis = max(range(len(batch)), key=batch.__getitem__, default=0)
-    longest = batch[axis] if batch else 1
-    step = max(1, BLOCK * longest * len(out) // out.size)
-    for start in range(0, longest, step):
-        part = slice(start, start + step)
-        arrays = function(*(_part(item, part, axis - len(batch) or -1) for item in given))
-        arrays = arrays if isinstance(arrays, tuple) else (arrays,)
-        target = out[(slice(None),) * (axis + 1) + (part,)] if batch else out
-        for row, place in rows:
-            target[row] = target[row] + arrays[place] if add else arrays[place]
-        # An angle out of reach spoils every row; what overflows shows in the first ones or the
-        # last, to which the others add up.  All of them would take a twentieth of the time.
-        for place in watched:
-            total += float(np.add.reduce(arrays[place], axis=None))
-    return total
 
 
 def _part(item: Any, part: slice, axis: int) -> Any:

@@ -225,7 +225,7 @@ def flywheel_inertia(machine: Machine, speed: float, fluctuation: float = 0.02) 
     error = slope + (16.0 * EPS + 8.0 * motion.moved) / fluctuation * inertia
     # The fluctuation goes with the inverse of the whole inertia; it is off by its error's share.
     share = error / (inertia + float(np.mean(motion.reduced)))
-    confirmed = (machine, inertia, motion.torque, float(speeds[0]), reached, share, motion.moved)
+    confirmed = (machine, motion, float(speeds[0]), reached, share)
     return Flywheel(
         machine=machine,
         inertia=inertia,
@@ -362,23 +362,17 @@ def _mean_check(machine: Machine, speed: float, mean: float, size: float) -> dic
 
 
 def _confirmed(
-    machine: Machine,
-    inertia: float,
-    motor: float,
-    start: float,
-    reached: float,
-    share: float,
-    moved: float,
+    machine: Machine, motion: _Motion, start: float, reached: float, share: float
 ) -> dict[str, Check]:
     """Run a revolution under the motor's torque."""
     from .motor_run import run_up
 
     run = run_up(
         machine,
-        motor,
+        motion.torque,
         revolutions=1.0,
         speed0=start,
-        flywheel=inertia,
+        flywheel=motion.inertia,
         tolerance=1e-11,
         samples=4001,
     )
@@ -388,7 +382,7 @@ def _confirmed(
     # Forward dynamics confirm the coefficient of fluctuation to this share of it.
     return {
         "fluctuation by forward dynamics, relative": Check(float(gap), 1e-5 + share),
-        "speeds not settled, relative": Check(moved, _UNSETTLED),
+        "speeds not settled, relative": Check(motion.moved, _UNSETTLED),
     }
 
 

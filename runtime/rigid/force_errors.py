@@ -249,8 +249,7 @@ class _Balance:
     def _momentum(self, link: str) -> Wrench:
         """Return the rate of change of a link's momentum, and of its moment at the first joint."""
         moving, mass = self.motion.link(link), self.machine.mass(link)
-        cos, sin = np.cos(moving.angle), np.sin(moving.angle)
-        x, y = cos * mass.along - sin * mass.across, sin * mass.along + cos * mass.across
+        x, y = moving.turned(mass.along, mass.across)
         ax, ay = moving.acceleration[..., 0], moving.acceleration[..., 1]
         alpha, square = moving.angular_acceleration, moving.speed**2
         return (

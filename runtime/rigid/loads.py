@@ -7,17 +7,18 @@ from dataclasses import dataclass, fields, replace
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.errors import BadInput, Problem, bad
+from ..core.inputs import are_finite
+from ..linkages.linkage import Array, LinkMotion, PointMotion
 from .inputs import not_finite
 
-Array: TypeAlias = NDArray[np.float64]
 End: TypeAlias = tuple[str, float, float]
 Wrench: TypeAlias = tuple[Array, Array, Array]
 """Force components in the fixed frame at the first joint [N], and couple [N m]."""
 
 FRAME = "frame"
+_STILL = LinkMotion(*[np.zeros(2)] * 3, *[np.zeros(())] * 3)
 
 
 @dataclass(frozen=True)
@@ -92,18 +93,13 @@ class Load:
 
     def __post_init__(self) -> None:
         """Check the numbers and the choices."""
-        force: Any = ((0.0, 0.0),) if callable(self.force) else (self.force,)
         numbers: dict[str, Any] = {"along": self.along, "across": self.across}
         if not callable(self.couple):
             numbers["couple"] = self.couple
         problems = not_finite("Load", numbers)
-        try:
-            fx, fy = force[0]
-            problems += not_finite("Load", {"force": fx}) or not_finite("Load", {"force": fy})
-        except (TypeError, ValueError):
-            problems.append(
-                Problem("Load.force", repr(self.force)[:60], "a pair of numbers", "give (fx, fy)")
-            )
+        if not (callable(self.force) or are_finite(self.force, 2)):
+            expected = "a pair of finite numbers"
+            problems.append(Problem("Load.force", repr(self.force)[:60], expected, "give (fx, fy)"))
         for name, choices in (("axes", ("fixed", "link")), ("given", ("angle", "motion"))):
             if getattr(self, name) not in choices:
                 given = repr(getattr(self, name))[:60]
@@ -136,12 +132,11 @@ def frozen(load: Load, motion: Any, crank_speed: Array) -> tuple[Array, Array]:
 
 def at_first_joint(load: Load, motion: Any, force: Array, couple: Array) -> Wrench:
     """Return a force along the load's axes and a couple as a wrench at the link's first joint."""
-    angle = motion.link(load.link).angle
-    cos, sin = np.cos(angle), np.sin(angle)
+    moving = motion.link(load.link)
     fx, fy = force[..., 0], force[..., 1]
     if load.axes == "link":
-        fx, fy = cos * fx - sin * fy, sin * fx + cos * fy
-    x, y = cos * load.along - sin * load.across, sin * load.along + cos * load.across
+        fx, fy = moving.turned(fx, fy)
+    x, y = moving.turned(load.along, load.across)
     return fx, fy, couple + x * fy - y * fx
 
 
@@ -232,8 +227,8 @@ class Spring:
         stretch = length - self.free_length
         return np.asarray(self.stiffness / 2.0 * stretch**2 + self.preload * stretch)
 
-    def _span(self, motion: Any) -> tuple[_Place, _Place, Array, Array]:
-        a, b = (_place(motion, *end) for end in (self.first, self.second))
+    def _span(self, motion: Any) -> tuple[PointMotion, PointMotion, Array, Array]:
+        a, b = (_moving(motion, link).point(*at) for link, *at in (self.first, self.second))
         span = b.position - a.position
         # Beside the real axis, where derivatives come from, there is no hypot.
         real = not np.iscomplexobj(span)
@@ -298,10 +293,8 @@ class TorsionSpring:
 
     def wrenches(self, motion: Any, crank_speed: Array) -> dict[str, Wrench]:
         """Return the wrench on each of the links; see :meth:`Load.wrenches`."""
-        twist, rate = (
-            np.asarray(_turning(motion, self.second)[i] - _turning(motion, self.first)[i])
-            for i in (0, 1)
-        )
+        first, second = (_moving(motion, link) for link in self.links)
+        twist, rate = second.angle - first.angle, second.speed - first.speed
         couple = self.preload + self.stiffness * (twist - self.free_angle) + self.damping * rate
         none = np.zeros(np.shape(couple))
         ends = ((self.first, couple), (self.second, -couple))
@@ -309,31 +302,15 @@ class TorsionSpring:
 
     def potential(self, motion: Any) -> Array:
         """Return the energy stored [J], zero at the free angle."""
-        twist = _turning(motion, self.second)[0] - _turning(motion, self.first)[0]
-        twist = twist - self.free_angle
+        first, second = (_moving(motion, link) for link in self.links)
+        twist = second.angle - first.angle - self.free_angle
         return np.asarray(self.stiffness / 2.0 * twist**2 + self.preload * twist)
 
 
-@dataclass(frozen=True)
-class _Place:
-    """Position and velocity of a point, shape (..., 2)."""
-
-    position: Array
-    velocity: Array
-
-
-def _place(motion: Any, link: str, along: float, across: float) -> _Place:
-    if link == FRAME:
-        return _Place(np.array([along, across]), np.zeros(2))
-    point = motion.point(link, along, across)
-    return _Place(point.position, point.velocity)
-
-
-def _turning(motion: Any, link: str) -> tuple[Array, Array]:
-    if link == FRAME:
-        return np.zeros(()), np.zeros(())
-    moving = motion.link(link)
-    return moving.angle, moving.speed
+def _moving(motion: Any, link: str) -> LinkMotion:
+    """Return the motion of a link; the frame's is none."""
+    moving: LinkMotion = _STILL if link == FRAME else motion.link(link)
+    return moving
 
 
 def evaluated(law: Any, given: Any, size: int, where: str, shape: tuple[int, ...]) -> Array:
@@ -342,8 +319,17 @@ def evaluated(law: Any, given: Any, size: int, where: str, shape: tuple[int, ...
     ``size`` 0 stands for numbers.
     """
     expected = f"{size or 'one'} number{'s' if size else ''} for each of the angles"
-    value = _called(law, given, where, expected) if callable(law) else law
-    if callable(law) and size and _may_be_turned(value, shape):
+    value = law
+    if callable(law):
+        try:
+            value = law(given)
+        except BadInput:
+            raise
+        except (TypeError, ValueError, IndexError) as refusal:
+            found = f"a callable that raises {type(refusal).__name__}: {refusal}"[:160]
+            raise bad(where, found, expected, "correct the callable") from refusal
+    square = shape and isinstance(value, np.ndarray) and value.shape == (2,) * (len(shape) + 1)
+    if callable(law) and size and square:
         # As many angles as components: at one angle more, the array shows its order.
         longer = (int(np.prod(shape)) + 1,)
         evaluated(law, _one_more(given, shape), size, where, longer)
@@ -363,39 +349,12 @@ def evaluated(law: Any, given: Any, size: int, where: str, shape: tuple[int, ...
     return values
 
 
-def _called(law: Callable[[Any], Any], given: Any, where: str, expected: str) -> Any:
-    """Return what a callable returns; name the load where it mistakes shapes or types."""
-    try:
-        return law(given)
-    except BadInput:
-        raise
-    except (TypeError, ValueError, IndexError) as refusal:
-        value = f"a callable that raises {type(refusal).__name__}: {refusal}"[:160]
-        raise bad(where, value, expected, "correct the callable") from refusal
-
-
-def _may_be_turned(value: Any, shape: tuple[int, ...]) -> bool:
-    """Tell whether the components of an array may be along its first axis, or its last one."""
-    return isinstance(value, np.ndarray) and value.shape == (2,) * (len(shape) + 1) and bool(shape)
-
-
 def _one_more(given: Any, shape: tuple[int, ...]) -> Any:
     """Return what a callable is given, with the first of its places once more at the end."""
     if isinstance(given, LoadState):
-        pairs = ("position", "velocity")
-        return LoadState(
-            **{
-                item.name: _with_first(
-                    getattr(given, item.name), shape, (2,) if item.name in pairs else ()
-                )
-                for item in fields(given)
-            }
-        )
-    return _with_first(given, shape, ())
-
-
-def _with_first(values: Array, shape: tuple[int, ...], inner: tuple[int, ...]) -> Array:
-    flat = np.broadcast_to(values, (*shape, *inner)).reshape(-1, *inner)
+        return LoadState(*(_one_more(getattr(given, item.name), shape) for item in fields(given)))
+    inner = np.shape(given)[len(shape) :]
+    flat = np.broadcast_to(given, (*shape, *inner)).reshape(-1, *inner)
     return np.concatenate([flat, flat[:1]])
 
 

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, Problem, bad
 from ..core.inputs import are_finite
-from ..linkages import Linkage
-from .loads import FRAME, Array, Load, Spring, TorsionSpring, Wrench
+from ..linkages.linkage import Array, Linkage
+from .loads import FRAME, Load, Spring, TorsionSpring, Wrench
 from .masses import MassDistribution
 
 if TYPE_CHECKING:
@@ -105,9 +105,15 @@ class Machine:
         BadInput
             If the machine has a load that is a function.
         """
-        from .parametric import ParametricMachine, require_constant_loads
+        from .parametric import ParametricMachine
 
-        require_constant_loads(self)
+        if any(callable(item.force) or callable(item.couple) for item in self.loads):
+            raise bad(
+                "tolerances",
+                "a machine with a load that is a function",
+                "masses, gravity, constant loads and springs",
+                "leave it out, or ask for the linkage alone",
+            )
         drive = (theta, speed, acceleration)
         return ParametricMachine(self.linkage, *drive, machine=self, bars=masses == "bars")
 
@@ -158,7 +164,7 @@ class Machine:
         parts = []
         for link, mass in self.masses.items():
             moving = motion.link(link)
-            x, y = _turned(moving.angle, mass)
+            x, y = moving.turned(mass.along, mass.across)
             vx, vy = np.moveaxis(np.asarray(moving.velocity), -1, 0)
             translation = mass.mass * (vx * vx + vy * vy) / 2.0
             mixed = moving.speed * (x * vy - y * vx)
@@ -181,7 +187,7 @@ class Machine:
             gx, gy = self.gravity
             for link, mass in self.masses.items():
                 moving = motion.link(link)
-                x, y = _turned(moving.angle, mass)
+                x, y = moving.turned(mass.along, mass.across)
                 ox, oy = np.moveaxis(np.asarray(moving.origin), -1, 0)
                 parts.append(-gx * (mass.mass * ox + x) - gy * (mass.mass * oy + y))
         return _sum(parts, motion)
@@ -237,9 +243,8 @@ def _weights(machine: Machine, motion: Any) -> dict[str, Wrench]:
     gx, gy = machine.gravity
     weights = {}
     for link, mass in machine.masses.items():
-        angle = motion.link(link).angle
-        x, y = _turned(angle, mass)
-        none = np.zeros(np.shape(angle))
+        x, y = motion.link(link).turned(mass.along, mass.across)
+        none = np.zeros(np.shape(x))
         weights[link] = (none + mass.mass * gx, none + mass.mass * gy, x * gy - y * gx)
     return weights
 
@@ -258,12 +263,6 @@ def require_machine(machine: object) -> None:
     """Raise BadInput for what is no Machine."""
     if not isinstance(machine, Machine):
         raise bad("machine", type(machine).__name__, "a Machine", "build one of a linkage")
-
-
-def _turned(angle: Array, mass: MassDistribution) -> tuple[Array, Array]:
-    """Return the first moments in the fixed frame."""
-    cos, sin = np.cos(angle), np.sin(angle)
-    return cos * mass.along - sin * mass.across, sin * mass.along + cos * mass.across
 
 
 def _sum(parts: Iterable[Array], motion: Any) -> Array:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 import sys
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import BadInput, bad
 from .inputs import not_finite
 
 
@@ -53,27 +54,17 @@ class MassDistribution:
 
     def __post_init__(self) -> None:
         """Refuse what no body can have."""
-        _require_numbers(mass=self.mass, along=self.along, across=self.across, inertia=self.inertia)
-        problems = [
-            Problem(f"MassDistribution.{name}", f"{value:g}", "zero or more", "correct the sign")
-            for name, value in (("mass", self.mass), ("inertia", self.inertia))
-            if value < 0
-        ]
-        if not problems:
-            moment = math.hypot(self.along, self.across)
-            most = math.sqrt(self.mass) * math.sqrt(self.inertia)
-            # Data with ten digits may lie this far beyond what a rigid body can have.
-            if moment > most * (1.0 + 1e-9) and not self._underflows(moment):
-                problems = [
-                    Problem(
-                        "MassDistribution",
-                        f"first moment {moment:g} kg m",
-                        f"at most sqrt(mass inertia) = {most:g} kg m",
-                        "no body has these; give the inertia about the first joint of the link",
-                    )
-                ]
-        if problems:
-            raise BadInput(*problems)
+        _require({"mass": self.mass, "inertia": self.inertia}, along=self.along, across=self.across)
+        moment = math.hypot(self.along, self.across)
+        most = math.sqrt(self.mass) * math.sqrt(self.inertia)
+        # Data with ten digits may lie this far beyond what a rigid body can have.
+        if moment > most * (1.0 + 1e-9) and not self._underflows(moment):
+            raise bad(
+                "MassDistribution",
+                f"first moment {moment:g} kg m",
+                f"at most sqrt(mass inertia) = {most:g} kg m",
+                "no body has these; give the inertia about the first joint of the link",
+            )
 
     def __add__(self, other: MassDistribution) -> MassDistribution:
         """Return both together, fixed to one link."""
@@ -108,9 +99,7 @@ class MassDistribution:
         BadInput
             If a value is not finite or is negative.
         """
-        _require_numbers(mass=mass, length=length)
-        if length < 0:
-            raise bad("MassDistribution.length", f"{length:g}", "zero or more", "correct the sign")
+        _require({"mass": mass, "length": length})
         return cls(mass, mass * length / 2.0, 0.0, mass * length * length / 3.0)
 
     @classmethod
@@ -135,9 +124,7 @@ class MassDistribution:
         BadInput
             If a value is not finite, or mass or radius is negative.
         """
-        _require_numbers(mass=mass, radius=radius)
-        if radius < 0:
-            raise bad("MassDistribution.radius", f"{radius:g}", "zero or more", "correct the sign")
+        _require({"mass": mass, "radius": radius})
         return cls.about_centre(mass, along, across, mass * radius * radius / 2.0)
 
     @classmethod
@@ -160,13 +147,13 @@ class MassDistribution:
         BadInput
             If a value is not finite, or mass or inertia is negative.
         """
-        _require_numbers(mass=mass, along=along_distance, across=across_distance, inertia=inertia)
-        if inertia < 0:
-            raise bad("MassDistribution.inertia", f"{inertia:g}", "zero or more", "correct it")
+        _require({"mass": mass, "inertia": inertia}, along=along_distance, across=across_distance)
         square = along_distance * along_distance + across_distance * across_distance
         return cls(mass, mass * along_distance, mass * across_distance, inertia + mass * square)
 
 
-def _require_numbers(**values: object) -> None:
-    if problems := not_finite("MassDistribution", values):
+def _require(sizes: Mapping[str, object], **places: object) -> None:
+    """Refuse sizes that are no finite numbers of zero or more, and places that are no numbers."""
+    problems = not_finite("MassDistribution", sizes, least=0.0)
+    if problems := problems + not_finite("MassDistribution", places):
         raise BadInput(*problems)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.inputs import is_finite
+from ..core.maxima import narrowed
 from ..core.trigonometric import even_angles, interpolated, tail
 from ..linkages.linkage import TURN, Array
 from .evaluation import Evaluation
@@ -137,19 +136,21 @@ class OneFreedom:
         low, high = self.range_about(theta)
         angles = self._scan(low, high)
         inertia = self.coefficients(angles)[0]
-        spacing = angles[1] - angles[0]
+        spacing = float(angles[1] - angles[0])
         middle = float(np.median(inertia))
         dips = (inertia <= np.roll(inertia, 1)) & (inertia <= np.roll(inertia, -1))
         # Within half a degree of a zero nearly nothing is left.
         dips &= inertia + self.flywheel <= 0.05 * middle
-        for dip in angles[dips]:
-            ends = max(dip - spacing, low), min(dip + spacing, high)
-            least, at = self._least_inertia(*ends)
-            # A reduced inertia below this share of its median gives no usable acceleration.
-            if not least > 1e-12 * middle:
-                none = f"none at {at:.6g} rad, where the links that have mass stand still"
-                fix = "give the crank an inertia, or add a flywheel"
-                raise bad("Machine.masses", none, "inertia at every crank angle", fix)
+        # The ends of the range are folds.
+        inside = low + 1e-9 * spacing, high - 1e-9 * spacing
+        first, last = (np.clip(angles[dips] + side, *inside) for side in (-spacing, spacing))
+        at = np.mean(narrowed(lambda tried: -self.coefficients(tried)[0], first, last, 19), axis=0)
+        # A reduced inertia below this share of its median gives no usable acceleration.
+        zeros = at[~(self.coefficients(at)[0] + self.flywheel > 1e-12 * middle)]
+        if zeros.size:
+            none = f"none at {zeros[0]:.6g} rad, where the links that have mass stand still"
+            fix = "give the crank an inertia, or add a flywheel"
+            raise bad("Machine.masses", none, "inertia at every crank angle", fix)
 
     def _scan(self, low: float = -np.inf, high: float = np.inf) -> Array:
         """Return angles over a turn or a range; they miss its ends, and special positions."""
@@ -157,40 +158,23 @@ class OneFreedom:
             low, high = 0.0, TURN
         return low + (high - low) * (np.arange(_SCANNED) + 0.5) / _SCANNED
 
-    def _least_inertia(self, low: float, high: float) -> tuple[float, float]:
-        """Return the least inertia with the flywheel [kg m^2] in an interval, and its angle."""
-        # Each time to a sixth of the width, in the end to 1e-11 of it.
-        for _ in range(14):
-            angles = np.linspace(low, high, 13)[1:-1]
-            inertia = self.coefficients(angles)[0]
-            best = int(np.argmin(inertia))
-            width = (high - low) / 12.0
-            low, high = max(low, angles[best] - width), min(high, angles[best] + width)
-        return float(inertia[best]) + self.flywheel, float(angles[best])
 
+def _series(function: Callable[[Array], Array]) -> Callable[[float], float] | None:
+    """Return a function of the crank angle as its harmonics down to round-off.
 
-@dataclass(frozen=True)
-class _Series:
-    """A function of the crank angle as a Fourier series: what an integrator evaluates often."""
+    None where there are too many.
+    """
 
-    # orders, terms: (k,): ``i`` times the harmonics, and complex coefficients; the function
-    # is the real part of their sum with the waves
-    orders: NDArray[np.complexfloating]
-    terms: NDArray[np.complexfloating]
+    def series(theta: float) -> float:
+        return float((terms @ np.exp(orders * theta)).real)
 
-    def __call__(self, theta: float) -> float:
-        return float((self.terms @ np.exp(self.orders * theta)).real)
-
-
-def _series(function: Callable[[Array], Array]) -> _Series | None:
-    """Return a function as harmonics down to round-off; None where there are too many."""
     count = 64
     while count <= 1024:
         values = np.asarray(function(even_angles(TURN, count)))
         # A series ends in round-off, and meets its function off the samples, or is not used.
         if tail(values) <= 1e-14:
             terms = interpolated(values, TURN).coefficients
-            series = _Series(1j * np.arange(len(terms)), terms)
+            orders = 1j * np.arange(len(terms))
             gap = max(abs(series(at) - float(function(np.array(at)))) for at in _PROBES)
             return series if gap <= 1e-12 * float(np.max(np.abs(values))) else None
         count *= 2

@@ -9,13 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from ..core.errors import bad
-from ..linkages.linkage import Motion, emitted
+from ..linkages.linkage import emitted
 from ..linkages.parametric import Parametric
 from .evaluation import force_kernels, pushes
 from .machine import Machine
 
-MOMENTS = ("mass", "along", "across", "inertia")
 # How mass, first moments and inertia of a bar grow with its length.
 _GROWTH = {"mass": 1, "along": 2, "across": 1, "inertia": 3}
 
@@ -34,7 +32,7 @@ class ParametricMachine(Parametric):
         values = super().values
         for link in self.linkage.links:
             mass = self.machine.mass(link)
-            values |= {f"{link}.{name}": float(getattr(mass, name)) for name in MOMENTS}
+            values |= {f"{link}.{name}": float(getattr(mass, name)) for name in _GROWTH}
         return values
 
     @property
@@ -83,45 +81,23 @@ class ParametricMachine(Parametric):
             given |= {f"{k}{place}": value * units.get(k, 1.0) for k, value in mass.items()}
         forces = emitted(self.linkage, kernels, "forces", theta, given)
         if self.machine.loaded:
-            self._add_loads(forces, theta, lengths, masses, self._motion(theta, numbers, moved))
+            # Their masses are those of the numbers.
+            acting: Any = SimpleNamespace(
+                masses=masses,
+                gravity=self.machine.gravity,
+                loads=self.loads or self.machine.loads,
+                springs=self.machine.springs,
+            )
+            motion = self._motion(theta, numbers, moved)
+            for names, pushed in pushes(acting, motion, self.speed, [*forces], size):
+                more = emitted(self.linkage, kernels, "load_forces", theta, {**lengths, **pushed})
+                forces |= {name: forces[name] + more[name] for name in names}
         return {k: value / size if self.unit(k) == "N m" else value for k, value in forces.items()}
 
-    def _add_loads(
-        self,
-        forces: dict[str, Any],
-        theta: Any,
-        lengths: Mapping[str, Any],
-        masses: Mapping[str, Any],
-        motion: Motion,
-    ) -> None:
-        """Add what weights, loads and springs do; lengths in the unit of the emitted functions."""
-        kernels = force_kernels(self.linkage.mechanism)
-        acting: Any = SimpleNamespace(
-            masses=masses,
-            gravity=self.machine.gravity,
-            loads=self.loads or self.machine.loads,
-            springs=self.machine.springs,
-        )
-        unit = 2.0**self.linkage.scale
-        for names, pushed in pushes(acting, motion, self.speed, [*forces], unit):
-            more = emitted(self.linkage, kernels, "load_forces", theta, {**lengths, **pushed})
-            forces |= {name: forces[name] + more[name] for name in names}
-
     def _mass(self, link: str, numbers: Mapping[str, Any]) -> dict[str, Any]:
-        mass = {name: numbers[f"{link}.{name}"] for name in MOMENTS}
+        mass = {name: numbers[f"{link}.{name}"] for name in _GROWTH}
         # The block and the slider are no bars.
         if not self.bars or link not in self.linkage.names:
             return mass
         grown = numbers[link] / self.linkage.lengths[link]
         return {name: value * grown ** _GROWTH[name] for name, value in mass.items()}
-
-
-def require_constant_loads(machine: Machine) -> None:
-    """Refuse what has no known derivative: loads that are functions."""
-    if any(callable(item.force) or callable(item.couple) for item in machine.loads):
-        raise bad(
-            "tolerances",
-            "a machine with a load that is a function",
-            "masses, gravity, constant loads and springs",
-            "leave it out, or ask for the linkage alone",
-        )

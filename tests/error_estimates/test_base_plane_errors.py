@@ -109,7 +109,19 @@ def test_the_least_plane_and_the_largest():
 
 
 @pytest.mark.parametrize(
-    "given", [(None,), ("a",), (True,), ([1.2],), (np.nan,), (1.2, 2.5), (1.2, "a"), (1.2, 10**9)]
+    "given",
+    [
+        (None,),
+        ("a",),
+        (True,),
+        ([1.2],),
+        (np.nan,),
+        (0.5,),
+        (1.0, 1),
+        (1.2, 2.5),
+        (1.2, "a"),
+        (1.2, 10**9),
+    ],
 )
 def test_unusable_arguments_are_refused_in_one_line(given):
     with pytest.raises(BadInput) as caught:

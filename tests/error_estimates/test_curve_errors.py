@@ -4,19 +4,10 @@ import math
 
 import mpmath
 import numpy as np
-from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.linkages.curves import coupler_curve
 from elastolink.runtime.linkages.harmonic_analysis import harmonics
 from honesty import over_scenes
-
-
-def random_linkage(rng):
-    while True:
-        try:
-            return FourBar(*rng.uniform(0.2, 3.0, 4))
-        except BadInput:
-            continue
+from random_linkages import random_linkage
 
 
 def exact_place(linkage, theta, branch, place):

@@ -9,7 +9,8 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
 from honesty import covers
 from judging import Point
-from linkage_truth import LENGTHS, angles, nasty_points, random_points
+from linkage_truth import LENGTHS, nasty_points, random_points
+from linkage_truth import motion as four_bar_motion
 from sliding_truth import (
     nasty_rods,
     nasty_sliders,
@@ -19,45 +20,31 @@ from sliding_truth import (
     slider_motion,
 )
 
+TRUTHS = {FourBar: four_bar_motion, SliderCrank: slider_motion, QuickReturn: rod_motion}
 
-def four_bar_errors(point):
-    """Return the estimate and the worse of the two actual errors, of a four-bar."""
-    lengths = [point.inputs[name] for name in LENGTHS]
-    assembly = "open" if point.fixed["assembly"] > 0 else "crossed"
-    motion = FourBar(*lengths, assembly).motion(point.inputs["theta2"])
+
+def errors_of(kind, point):
+    """Return the estimate and the worse of the two actual errors of the places."""
+    lengths = {name: value for name, value in point.inputs.items() if name != "theta2"}
+    if kind is QuickReturn:
+        lengths["rod"] = lengths["frame"] + lengths["crank"]
+    else:
+        lengths["assembly"] = "open" if point.fixed["assembly"] > 0 else "crossed"
+    motion = kind(**lengths).motion(point.inputs["theta2"])
+    sizes = {
+        "position": max(map(abs, motion.linkage.lengths.values())),
+        "slide": lengths.get("rod"),
+    }
+    actual = []
     with mpmath.workdps(80):
-        theta2, *exact = (mpmath.mpf(v) for v in (point.inputs["theta2"], *lengths))
-        true = angles(theta2, *exact, mpmath.mpf(point.fixed["assembly"]))
-        actual = []
-        for value, truth in zip((motion.theta3, motion.theta4), true, strict=True):
-            apart = mpmath.mpf(float(value)) - truth
-            turn = 2 * mpmath.pi
-            actual.append(float(abs(apart - turn * mpmath.nint(apart / turn))))
+        truth = TRUTHS[kind]({name: mpmath.mpf(v) for name, v in point.arguments.items()})
+        for name in set(truth) & {"theta3", "theta4", *sizes}:
+            apart, turn = mpmath.mpf(float(getattr(motion, name))) - truth[name], 2 * mpmath.pi
+            if name in sizes:
+                actual.append(float(abs(apart / sizes[name])))
+            else:
+                actual.append(float(abs(apart - turn * mpmath.nint(apart / turn))))
     return float(motion.error), max(actual)
-
-
-def slider_errors(point):
-    """Return the estimate and the worse of the two actual errors, of a slider-crank."""
-    lengths = [point.inputs[name] for name in ("crank", "coupler", "offset")]
-    assembly = "open" if point.fixed["assembly"] > 0 else "crossed"
-    motion = SliderCrank(*lengths, assembly).motion(point.inputs["theta2"])
-    with mpmath.workdps(80):
-        truth = slider_motion({name: mpmath.mpf(v) for name, v in point.arguments.items()})
-        turned = abs(mpmath.mpf(float(motion.theta3)) - truth["theta3"])
-        moved = abs(mpmath.mpf(float(motion.position)) - truth["position"])
-        return float(motion.error), float(max(turned, moved / max(map(abs, lengths))))
-
-
-def rod_errors(point):
-    """Return the estimate and the worse of the two actual errors, of a quick-return."""
-    frame, crank = (point.inputs[name] for name in ("frame", "crank"))
-    motion = QuickReturn(frame, crank, frame + crank).motion(point.inputs["theta2"])
-    with mpmath.workdps(80):
-        numbers = {name: mpmath.mpf(v) for name, v in point.arguments.items()}
-        found = mpmath.mpf(float(motion.theta4))
-        truth = rod_motion(numbers, found)
-        moved = abs(mpmath.mpf(float(motion.slide)) - truth["slide"]) / (frame + crank)
-        return float(motion.error), float(max(abs(found - truth["theta4"]), moved))
 
 
 def short_followers(count, seed):
@@ -82,30 +69,30 @@ def short_followers(count, seed):
 
 
 RANDOM = {
-    "four-bar": (four_bar_errors, random_points, 31),
-    "slider-crank": (slider_errors, random_sliders, 32),
-    "quick-return": (rod_errors, random_rods, 33),
-    "short follower": (four_bar_errors, short_followers, 3),
+    "four-bar": (FourBar, random_points, 31),
+    "slider-crank": (SliderCrank, random_sliders, 32),
+    "quick-return": (QuickReturn, random_rods, 33),
+    "short follower": (FourBar, short_followers, 3),
 }
 NASTY = {
-    "four-bar": (four_bar_errors, nasty_points),
-    "slider-crank": (slider_errors, nasty_sliders),
-    "quick-return": (rod_errors, nasty_rods),
+    "four-bar": (FourBar, nasty_points),
+    "slider-crank": (SliderCrank, nasty_sliders),
+    "quick-return": (QuickReturn, nasty_rods),
 }
 
 
 @pytest.mark.parametrize("count", [60, pytest.param(300, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("kind", RANDOM)
 def test_estimate_covers_the_error_and_is_not_idle(kind, count):
-    errors, points, seed = RANDOM[kind]
-    estimates, actual = zip(*map(errors, points(count, seed)), strict=True)
+    linkage, points, seed = RANDOM[kind]
+    estimates, actual = zip(*(errors_of(linkage, p) for p in points(count, seed)), strict=True)
     covers(estimates, actual, count)
 
 
 @pytest.mark.parametrize("kind", NASTY)
 def test_estimate_covers_the_error_at_every_nasty_point(kind):
-    errors, points = NASTY[kind]
-    estimates, actual = zip(*map(errors, points()), strict=True)
+    linkage, points = NASTY[kind]
+    estimates, actual = zip(*(errors_of(linkage, p) for p in points()), strict=True)
     assert np.all(np.array(actual) <= estimates)
     covers(estimates, actual)
 
@@ -126,5 +113,5 @@ def test_estimate_covers_the_error_at_every_nasty_point(kind):
 def test_estimate_covers_the_round_off_of_the_diagonal(lengths, theta):
     """Without it the estimate was a ninth and a twentieth of the error."""
     inputs = {**dict(zip(LENGTHS, lengths, strict=True)), "theta2": theta}
-    estimate, actual = four_bar_errors(Point("short follower", inputs, {"assembly": 1.0}))
+    estimate, actual = errors_of(FourBar, Point("short follower", inputs, {"assembly": 1.0}))
     assert actual <= estimate

@@ -1,7 +1,6 @@
 """Coupler curves and their moving pictures: place, length, cusps, double points, cognates."""
 
 import json
-from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -10,6 +9,7 @@ from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
 from elastolink.runtime.linkages.curves import coupler_curve, sextic_residual
 from elastolink.runtime.linkages.pictures import animate
 from PIL import Image
+from random_linkages import KINDS, random_linkage
 
 CRANK_ROCKER = FourBar(2.0, 1.0, 2.0, 2.0)
 CROSSED = FourBar(2.0, 1.0, 2.0, 2.0, assembly="crossed")
@@ -38,12 +38,6 @@ def assembled(linkage, branch):
     if isinstance(linkage, QuickReturn):
         return linkage
     return type(linkage)(*linkage.lengths.values(), assembly="open" if branch > 0 else "crossed")
-
-
-def random_four_bar(rng):
-    while True:
-        with suppress(BadInput):
-            return FourBar(*rng.uniform(0.3, 3.0, 4))
 
 
 def complex_of(places):
@@ -163,24 +157,13 @@ def polyline_crossings(z):
     return 0.25 * (z + after)[i[apart]] + 0.25 * (z + after)[j[apart]]
 
 
-def random_case(rng, kind):
-    """Return a linkage and a link whose points may cross their own paths."""
-    while True:
-        first, second, third = rng.uniform(0.3, 3.0, 3)
-        with suppress(BadInput):
-            if kind == 0:
-                return random_four_bar(rng), "coupler"
-            if kind == 1:
-                return SliderCrank(first, second, third - 1.5), "coupler"
-            return QuickReturn(first, second, 1.2 * (first + second)), "block"
-
-
 @pytest.mark.parametrize("scenes", [6, pytest.param(45, marks=pytest.mark.slow)])
 def test_double_points_are_where_the_path_crosses_itself(scenes):
     found = 0
     for seed in range(scenes):
         rng = np.random.default_rng(seed)
-        linkage, link = random_case(rng, seed % 3)
+        kind, link = KINDS[seed % 3], ("coupler", "coupler", "block")[seed % 3]
+        linkage = random_linkage(rng, kind)
         place = rng.uniform((-2, -2), (3, 2)) * linkage.lengths.get(link, 1.0)
         for circuit in (0, 1):
             try:

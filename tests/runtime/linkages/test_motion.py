@@ -1,4 +1,4 @@
-"""Motions of every linkage: many digits, symmetry and limits, ranges, refusals, the result."""
+"""Motions of every linkage: many digits, ranges, refusals, the result."""
 
 from __future__ import annotations
 
@@ -29,7 +29,6 @@ LINKAGES = {
     "Whitworth": QuickReturn(1.0, 2.5, 4.0),
 }
 EVERY = pytest.mark.parametrize("linkage", LINKAGES.values(), ids=LINKAGES)
-FOUR_BARS = pytest.mark.parametrize("bar", [v for v in LINKAGES.values() if isinstance(v, FourBar)])
 
 
 def outputs(linkage):
@@ -127,20 +126,6 @@ def test_angles_are_continuous_and_periodic_over_many_turns(linkage):
         assert np.all(jump <= 1.05 * np.abs(getattr(motion, rate)).max() * TURN / steps + 1e-14)
     for name in set(outputs(linkage)) & {"theta3", "theta4"}:
         assert -np.pi < getattr(motion, name)[5 * steps] <= 1.5 * np.pi
-
-
-# ---------------------------------------------------------------- symmetry, hand cases, limits
-
-
-@FOUR_BARS
-def test_mirror_about_the_frame_swaps_the_assemblies(bar):
-    """Turned over, open becomes crossed and every angle changes its sign."""
-    angle = np.linspace(-9.0, 9.0, 401)
-    other = FourBar(*bar.lengths.values(), "open" if bar.assembly == "crossed" else "crossed")
-    one, two = bar.motion(angle), other.motion(-angle)
-    for name in outputs(bar):
-        sign = 1.0 if name.startswith(("omega", "transmission")) else -1.0
-        np.testing.assert_array_equal(getattr(one, name), sign * getattr(two, name))
 
 
 # ---------------------------------------------------------------- joints, links, drives
@@ -438,7 +423,7 @@ def test_checks_see_a_rate_that_is_wrong():
     m = {"theta2": motion.theta2, **{name: getattr(motion, name) for name in outputs(slider)}}
     for name in ("position", "slider_velocity", "slider_acceleration"):
         m[name] = m[name] * 2.0**slider.scale
-    assert all(check.passed for check in _checks(slider, m, motion.error).values())
+    assert all(check.passed for check in _checks(slider, m).values())
     for name, which in (("omega3", "speeds"), ("slider_acceleration", "accelerations")):
         wrong = {**m, name: m[name] * (1 + 1e-13)}
-        assert not _checks(slider, wrong, motion.error)[f"closure of {which} over its error"].passed
+        assert not _checks(slider, wrong)[f"closure of {which} over its error"].passed

@@ -1,10 +1,9 @@
-"""Transmission angle, dead centres and mechanical advantage against swept motions and 40 digits."""
+"""Transmission angle, dead centres and mechanical advantage against swept motions."""
 
 from __future__ import annotations
 
 import math
 
-import mpmath
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
@@ -30,22 +29,6 @@ def test_crank_rocker_against_a_sweep(lengths, assembly):
         assert abs(at.omega4) < 1e-13
         turned = (at.theta4 - found.output_at_dead_centres[name]) / (2.0 * np.pi)
         assert turned == pytest.approx(round(float(turned)), abs=1e-13)
-
-
-def test_extremes_carry_their_bound_next_to_a_change_point():
-    random = np.random.default_rng(5)
-    for _ in range(200):
-        b, c, d = random.uniform(0.5, 2.0, 3)
-        a = c + d - b - 10.0 ** random.uniform(-15, -1)
-        if not 0 < a < b + c + d or max(a, b, c, d) >= (a + b + c + d) / 2:
-            continue
-        found = transmission_angle(FourBar(a, b, c, d))
-        with mpmath.workdps(60):
-            frame, crank, coupler, follower = map(mpmath.mpf, (a, b, c, d))
-            for value, diagonal in ((found.least, frame - crank), (found.greatest, frame + crank)):
-                cosine = (coupler**2 + follower**2 - diagonal**2) / (2 * coupler * follower)
-                exact = mpmath.acos(max(-1, min(1, cosine)))
-                assert abs(exact - value) <= found.error
 
 
 def test_folds_of_a_triple_rocker_bound_its_crank():

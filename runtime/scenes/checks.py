@@ -23,14 +23,8 @@ def geometry_problems(values: Values, layout: Layout) -> list[Problem]:
 
     The diagonal between the crank pin and the second fixed pivot runs from ``|l1 - l2|`` to
     ``l1 + l2`` as the crank turns, and coupler and follower reach from ``|l3 - l4|`` to
-    ``l3 + l4``; equality is a change point, where the motion is not determined.
-
-    Parameters
-    ----------
-    values : mapping
-        Tables in SI units; a table with problems of its own may lack keys.
-    layout : Layout
-        Says which links bend.
+    ``l3 + l4``; equality is a change point, where the motion is not determined.  A table with
+    problems of its own may lack keys.
     """
     links = values.get("links", {})
     if layout.mechanism == "slider_crank":
@@ -106,13 +100,6 @@ def body_problems(values: Values, layout: Layout) -> list[Problem]:
 
     About the same joint the inertia is at least the square of the first moment over the mass,
     what the whole mass at its centre would have.
-
-    Parameters
-    ----------
-    values : mapping
-        Tables in SI units, with what follows from the given quantities filled in.
-    layout : Layout
-        Of a linkage; others pass.
     """
     problems: list[Problem] = []
     for link in layout.links:

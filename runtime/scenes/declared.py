@@ -24,14 +24,8 @@ def declared_layout(
     of a number (``length = "length"``), or ``"text"`` or ``"count"``, or gives an inline table of
     the fields of :class:`~elastolink.runtime.scenes.schema.Key`.  A key without a default is
     required.  ``closed_in_modes = true`` says that one module serves any number of modes, and
-    ``parameters`` names what a chart may vary, with dimensions.
-
-    Parameters
-    ----------
-    document : mapping
-        The scene as TOML gives it.
-    problems : list of Problem
-        What is wrong with the declaration is added here.
+    ``parameters`` names what a chart may vary, with dimensions.  What is wrong with the declaration
+    is added to ``problems``.
     """
     schema = document.get("schema")
     if schema is None:

@@ -23,24 +23,10 @@ _TOP = ("title", "source", "model")
 
 
 def validate(document: Mapping[str, Any]) -> tuple[Layout, Values]:
-    """Check a whole scene and convert its quantities.
+    """Check a whole scene and convert its quantities, every problem in one error.
 
-    Parameters
-    ----------
-    document : mapping
-        The tables as TOML gives them.
-
-    Returns
-    -------
-    layout : Layout
-        What the scene's mechanism and formulation call for.
-    values : dict of dict
-        By table and key: SI floats, tuples of them, counts and texts, defaults filled in.
-
-    Raises
-    ------
-    BadInput
-        With every problem found, in the order of the file.
+    The values are by table and key: SI floats, tuples of them, counts and texts, defaults filled
+    in.
     """
     problems: list[Problem] = []
     layouts = declared_layout(document, problems) or LAYOUTS
@@ -274,11 +260,8 @@ def _quantities(
     # A chart's own axis decides the dimension of its range; see chart_problems.
     if key.name in {"x_range", "y_range"}:
         return tuple(items)
-    read = [_quantity(item, key, f"{where}[{i}]", problems) for i, item in enumerate(items)]
-    numbers = tuple(number for number in read if number is not None)
-    if len(numbers) < len(items):
-        return None
-    if key.rising and any(b <= a for a, b in pairwise(numbers)):
+    numbers = _each(_quantity, items, key, where, problems)
+    if numbers is not None and key.rising and any(b <= a for a, b in pairwise(numbers)):
         problems.append(Problem(where, show(value), "values that increase", "sort them"))
         return None
     return numbers

@@ -290,11 +290,8 @@ def _formulas(options: argparse.Namespace) -> int:
     damped = hill.hill_form(opt.load(options).linear_system()).damping() > 0.0
     regions = (None,) if options.regions is None else _regions(options.regions)
     texts = [boundary_latex(options.order, n, damped) for n in regions]
-    if options.json:
-        opt.print_json({"order": options.order, "regions": regions, "latex": texts})
-    else:
-        print("\n\n".join(texts))
-    return 0
+    content = {"order": options.order, "regions": regions, "latex": texts}
+    return opt.say(options, content, "\n\n".join(texts))
 
 
 def _values(text: str) -> Array | list[float]:

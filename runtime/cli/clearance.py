@@ -57,10 +57,8 @@ def _clearance(options: argparse.Namespace) -> int:
     if len(found) == 1:
         return opt.finish(options, found[0], _lines(found[0]), draw)
     opt.draw_into(options, draw)
-    if options.json:
-        opt.print_json({"ranges": [result.to_dict() for result in found]})
-    else:
-        print("\n\n".join("\n".join(_lines(result)) for result in found))
+    content = {"ranges": [result.to_dict() for result in found]}
+    opt.say(options, content, "\n\n".join("\n".join(_lines(result)) for result in found))
     return opt.exit_status(options, [result.checks for result in found])
 
 

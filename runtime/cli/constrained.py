@@ -23,7 +23,6 @@ def is_constrained(scene: Scene) -> bool:
 
 def at_speed(options: argparse.Namespace, scene: Scene) -> FreeFreeRod:
     """Return the scene's system at the one crank speed of the option or of the scene."""
-    from ..scenes import load_scene
     from .linkages import speed_of
 
     if options.speed is not None and ":" in options.speed:
@@ -31,10 +30,8 @@ def at_speed(options: argparse.Namespace, scene: Scene) -> FreeFreeRod:
         raise bad(
             "--speed", repr(options.speed), "one speed: each has its own periodic motion", fix
         )
-    speed = speed_of(options, scene)
-    changes = opt.settings(options.set)
-    found = load_scene(options.scene, overrides={**changes, "operation.speed": speed})
-    system: FreeFreeRod = found.system()  # type: ignore[assignment]
+    moved = opt.load(options, **{"operation.speed": speed_of(options, scene)})
+    system: FreeFreeRod = moved.system()  # type: ignore[assignment]
     return system
 
 

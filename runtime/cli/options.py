@@ -79,11 +79,11 @@ def scene_options(parser: argparse.ArgumentParser, nargs: str | None = None) -> 
     add(parser, {"--modules DIR": "look for emitted modules in this folder first"})
 
 
-def load(options: argparse.Namespace) -> Scene:
-    """Return the scene that the options name, with its overrides."""
+def load(options: argparse.Namespace, **more: Any) -> Scene:
+    """Return the scene that the options name, with its overrides and ``more``."""
     from ..scenes import load_scene
 
-    return load_scene(options.scene, overrides=settings(options.set))
+    return load_scene(options.scene, overrides={**settings(options.set), **more})
 
 
 def settings(pairs: Sequence[str]) -> dict[str, Any]:
@@ -181,11 +181,9 @@ def finish(
             # Where two have a check of one name, the one that failed is told.
             if name not in checks or (checks[name].passed and not check.passed):
                 checks[name] = check
-    if options.json:
-        passed = all(check.passed for check in checks.values())
-        print_json({**result.to_dict(), **(more or {}), "passed": passed})
-    else:
-        print("\n".join([*lines, *_verdict(result, checks)]))
+    passed = all(check.passed for check in checks.values())
+    content = {**result.to_dict(), **(more or {}), "passed": passed} if options.json else None
+    say(options, content, "\n".join([*lines, *_verdict(result, checks)]))
     return exit_status(options, [checks])
 
 
@@ -209,9 +207,15 @@ def exit_status(options: argparse.Namespace, found: Iterable[Mapping[str, Check]
     return int(bool(failed))
 
 
-def print_json(content: Any) -> None:
-    """Print JSON with sorted keys; what is not finite becomes null, for JSON has no word for it."""
-    print(json.dumps(_finite(content), sort_keys=True, indent=1, allow_nan=False))
+def say(options: argparse.Namespace, content: Any, text: str) -> int:
+    """Print the content as JSON, or else the text, and return the exit status.
+
+    Keys are sorted; what is not finite becomes null, for JSON has no word for it.
+    """
+    if options.json:
+        text = json.dumps(_finite(content), sort_keys=True, indent=1, allow_nan=False)
+    print(text)
+    return 0
 
 
 def even_rows(count: int) -> NDArray[np.intp]:

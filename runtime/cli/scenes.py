@@ -43,15 +43,13 @@ def _scenes(options: argparse.Namespace) -> int:
             draw_scene(load_scene(name), figure.add_subplot(rows, 3, place))
         save_figure(figure, path)
     titles = scene_titles()
-    if options.json:
-        opt.print_json(
-            [{"name": name, "title": t, "source": s} for name, (t, s) in sorted(titles.items())]
-        )
-        return 0
     width = max(map(len, titles))
+    content, lines = [], []
     for name, (title, source) in sorted(titles.items()):
-        print(f"{name.ljust(width)}  {title}" + (f"\n{' ' * width}  {source}" * options.long))
-    return 0
+        content.append({"name": name, "title": title, "source": source})
+        lines.append(f"{name.ljust(width)}  {title}")
+        lines += [f"{' ' * width}  {source}"] * options.long
+    return opt.say(options, content, "\n".join(lines))
 
 
 def _show(options: argparse.Namespace) -> int:
@@ -61,11 +59,7 @@ def _show(options: argparse.Namespace) -> int:
     """
     scene = opt.load(options)
     opt.draw_into(options, lambda ax: draw_scene(scene, ax))
-    if options.json:
-        opt.print_json(scene.to_dict())
-    else:
-        print("\n".join(_lines(scene)))
-    return 0
+    return opt.say(options, scene.to_dict(), "\n".join(_lines(scene)))
 
 
 def _explain(options: argparse.Namespace) -> int:

@@ -286,11 +286,7 @@ def _stored(
     fixed = {} if speed is None else {"speed": speed}
     if options.estimate:
         found = sweeps.estimate_sweep(*what, options=fixed, workers=count)
-        if options.json:
-            opt.print_json(vars(found))
-        else:
-            print(found)
-        return 0
+        return opt.say(options, vars(found), str(found))
     shown = opt.progress(options)
     with _workers(count) as pool:
         chart = sweeps.sweep(

@@ -67,31 +67,16 @@ def not_negative(name: str, meaning: str, dimension: str = "dimensionless", **mo
 
 @dataclass(frozen=True)
 class Table:
-    """One table of a scene.
-
-    Attributes
-    ----------
-    name : str
-        As it stands in the file.
-    meaning : str
-        In one clause.
-    keys : tuple of Key
-        What it may hold.
-    required : bool
-        Whether it must be given.
-    exactly_one, at_most_one : tuple of tuple of str
-        Groups of keys that say the same thing in different ways.
-    named : bool
-        Whether it holds any number of tables of this kind, each under a name of its own:
-        ``[springs.NAME]``.
-    """
+    """One table of a scene."""
 
     name: str
     meaning: str
     keys: tuple[Key, ...]
     required: bool = False
+    # Groups of keys that say the same thing in different ways.
     exactly_one: tuple[tuple[str, ...], ...] = ()
     at_most_one: tuple[tuple[str, ...], ...] = ()
+    # Whether it holds any number of such tables, each under a name of its own: [springs.NAME].
     named: bool = False
 
     def key(self, name: str) -> Key | None:
@@ -106,38 +91,17 @@ class Table:
 
 @dataclass(frozen=True)
 class Layout:
-    """What a scene of one mechanism, in one group of formulations, holds.
-
-    Attributes
-    ----------
-    mechanism : str
-        As in ``[model]``.
-    formulations : tuple of str
-        As in ``[model]``; empty where any is allowed.
-    tables : tuple of Table
-        All but ``[model]``.
-    flexible : tuple of str
-        Links that bend.
-    outputs : tuple of str
-        What may be wanted of the module; empty where anything may.
-    links : tuple of str
-        Links that may be called balanced.
-    parameters : mapping of str to str
-        Names that a chart may vary, with their dimensions.
-    closed_in_modes : bool
-        True where one emitted module serves any number of modes.
-    named_drops : mapping of str to tuple of str
-        Names for sets of terms left out, for ``model.drop``.
-    """
+    """What a scene of one mechanism, in one group of formulations, holds."""
 
     mechanism: str
-    formulations: tuple[str, ...]
-    tables: tuple[Table, ...]
-    flexible: tuple[str, ...] = ()
-    outputs: tuple[str, ...] = ()
-    links: tuple[str, ...] = ()
-    parameters: Mapping[str, str] = field(default_factory=dict)
-    closed_in_modes: bool = False
+    formulations: tuple[str, ...]  # empty where any is allowed
+    tables: tuple[Table, ...]  # all but [model]
+    flexible: tuple[str, ...] = ()  # links that bend
+    outputs: tuple[str, ...] = ()  # what may be wanted of the module; empty where anything may
+    links: tuple[str, ...] = ()  # those that may be called balanced
+    parameters: Mapping[str, str] = field(default_factory=dict)  # what a chart may vary, dimensions
+    closed_in_modes: bool = False  # where one emitted module serves any number of modes
+    # Names for sets of terms left out, for model.drop.
     named_drops: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @property

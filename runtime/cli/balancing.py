@@ -18,12 +18,11 @@ def add(commands: Any) -> None:
     """Add the subcommand."""
     parser = opt.command(commands, "balance", _balance)
     drive_options(parser, "default operation.speed")
-    parser.add_argument(
-        "--case",
-        choices=("b", "c", "d"),
-        help="b: crank and follower about their pivots; c, d: full force balance, with three or"
-        " two counterweights; default: optimise",
+    case = (
+        "b: crank and follower about their pivots; c, d: full force balance, with three or two "
+        "counterweights; default: optimise"
     )
+    opt.add(parser, {"--case": case}, choices=("b", "c", "d"))
     opt.add(
         parser,
         {
@@ -37,9 +36,8 @@ def add(commands: Any) -> None:
             "--links LINK,...": "that may carry one; default those on the frame",
         },
     )
-    parser.add_argument(
-        "--measure", choices=("peak", "rms"), help="of each force, when optimising; default peak"
-    )
+    measure = "of each force, when optimising; default peak"
+    opt.add(parser, {"--measure": measure}, choices=("peak", "rms"))
     curve = "least second peak over the first one, cases (a)-(d) marked"
     opt.add(parser, {"--trade-off FIRST,SECOND": curve})
     opt.add(parser, {"--points N": f"of that curve; default {_POINTS}"}, type=int)

@@ -41,18 +41,15 @@ def add(commands: Any) -> None:
     )
     beside = f"beside the exact ones those by perturbation, order 1 to {_HIGHEST}"
     opt.add(edges, {"--order N": beside}, type=_order)
-    edges.add_argument(
-        "--certified", action="store_true", help="proved enclosures by exact arithmetic"
-    )
+    opt.switches(edges, {"--certified": "proved enclosures by exact arithmetic"})
     series = opt.command(commands, "perturb", _perturb)
     opt.add(series, regions)
     opt.add(series, {"--order N": f"1 to {_HIGHEST}; default %(default)s"}, type=_order, default=2)
-    series.add_argument(
-        "--latex",
-        action="store_true",
-        help="print the formulas instead, as sums, to order 6 at most: for any n, or for the "
-        "--regions given",
+    formulas = (
+        "print the formulas instead, as sums, to order 6 at most: for any n, or for the --regions "
+        "given"
     )
+    opt.switches(series, {"--latex": formulas})
 
 
 def _order(text: str) -> int:

@@ -17,17 +17,13 @@ def add(commands: Any) -> None:
     opt.scene_options(parser, nargs="?")
     lengths = "frame, crank, coupler, follower, instead of a scene"
     opt.add(parser, {"--lengths A,B,C,D": lengths})
-    parser.add_argument(
-        "--input", choices=("crank", "follower"), help="driven link of a four-bar; default crank"
+    driven = {"--input": "driven link of a four-bar; default crank"}
+    opt.add(parser, driven, choices=("crank", "follower"))
+    opt.add(
+        parser, {"--tolerance": "relative, of every length; default 0"}, type=float, default=0.0
     )
-    parser.add_argument(
-        "--tolerance", type=float, default=0.0, help="relative, of every length; default 0"
-    )
-    parser.add_argument(
-        "--base-plane",
-        action="store_true",
-        help="draw Barker's base plane instead of the transmission angle",
-    )
+    plane = "draw Barker's base plane instead of the transmission angle"
+    opt.switches(parser, {"--base-plane": plane})
 
 
 def _classify(options: argparse.Namespace) -> int:

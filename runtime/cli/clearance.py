@@ -24,9 +24,8 @@ def add(commands: Any) -> None:
     parser = opt.command(commands, "clearance", _clearance)
     size = "diametral clearance of one joint, e.g. '0.1 mm'; repeated, one curve each"
     opt.add(parser, {"--clearance SIZE": size}, action="append", default=[])
-    parser.add_argument(
-        "--joint", choices=_JOINTS, help="the joint with --clearance; default 34, at the follower"
-    )
+    joint = "the joint with --clearance; default 34, at the follower"
+    opt.add(parser, {"--joint": joint}, choices=_JOINTS)
     several = "clearance of one of several joints, e.g. 23='0.1 mm'; instead of --clearance"
     opt.add(parser, {"--at JOINT=SIZE": several}, action="append", default=[])
     link = {"--link LINK": "coupler, instead of the link that gives the output"}

@@ -26,11 +26,8 @@ def add(commands: Any) -> None:
     forces = opt.command(commands, "forces", _forces)
     drive_options(forces, "default operation.speed")
     opt.add(forces, opt.angles(f"{WHOLE_TURN}, or the range that the crank reaches"))
-    forces.add_argument(
-        "--joint",
-        choices=_JOINTS,
-        help="what --plot draws: a polar diagram, or the torque or moment over the angle",
-    )
+    drawn = "what --plot draws: a polar diagram, or the torque or moment over the angle"
+    opt.add(forces, {"--joint": drawn}, choices=_JOINTS)
     wheel = "size a flywheel for this coefficient of speed fluctuation, e.g. 0.02"
     opt.add(forces, {"--fluctuation COEFF": wheel}, type=float)
 

@@ -52,7 +52,7 @@ def command(
         formatter_class=HelpFormatter,
     )
     parser.set_defaults(run=run, command=name)
-    parser.add_argument("--json", action="store_true", help="print JSON instead of text")
+    switches(parser, {"--json": "print JSON instead of text"})
     add(parser, {"--plot FILE": "draw it: a .png, .svg or .pdf file"})
     if scene:
         scene_options(parser)
@@ -60,10 +60,16 @@ def command(
 
 
 def add(parser: argparse.ArgumentParser, told: Mapping[str, str], **common: Any) -> None:
-    """Add options that take one value each, as ``{"--mass MASS": "of one counterweight"}``."""
+    """Add options of one kind, by what the help shows: ``{"--mass MASS": "of one of them"}``."""
     for words, meaning in told.items():
-        name, metavar = words.split()
-        parser.add_argument(name, metavar=metavar, help=meaning, **common)
+        name, *shown = words.split()
+        more = {"metavar": shown[0]} if shown else {}
+        parser.add_argument(name, help=meaning, **more, **common)
+
+
+def switches(parser: argparse.ArgumentParser, told: Mapping[str, str]) -> None:
+    """Add options without a value."""
+    add(parser, told, action="store_true")
 
 
 def angles(default: str) -> dict[str, str]:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def add(commands: Any) -> None:
     """Add the three subcommands."""
     listing = opt.command(commands, "scenes", _scenes, scene=False)
-    listing.add_argument("--long", action="store_true", help="with the source of each")
+    opt.switches(listing, {"--long": "with the source of each"})
     opt.command(commands, "show", _show)
     opt.command(commands, "explain", _explain)
 

@@ -36,11 +36,8 @@ def add(commands: Any) -> None:
     chart = opt.command(commands, "chart", _chart)
     order = "order of the perturbation boundaries of one mode, 1 to 8; default 1"
     opt.add(chart, {"--order N": order}, type=int, default=1)
-    chart.add_argument(
-        "--edges",
-        action="store_true",
-        help="trace regions of several modes, combinations among them, at nine rows; takes longer",
-    )
+    edges = "trace regions of several modes, combinations among them, at nine rows; takes longer"
+    opt.switches(chart, {"--edges": edges})
     opt.add(
         chart,
         {
@@ -51,11 +48,8 @@ def add(commands: Any) -> None:
             " by piece; the same command goes on from there after it was stopped",
         },
     )
-    chart.add_argument(
-        "--estimate",
-        action="store_true",
-        help="with --store: tell time and memory, and work nothing out",
-    )
+    estimate = "with --store: tell time and memory, and work nothing out"
+    opt.switches(chart, {"--estimate": estimate})
     for axis in ("x", "y"):
         along = f"parameter along {axis}; default from the scene's [chart] and [operation]"
         opt.add(chart, {f"--{axis} NAME=START:STOP:COUNT[UNIT]": along})

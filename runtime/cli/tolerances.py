@@ -32,13 +32,9 @@ def add(commands: Any) -> None:
     )
     opt.add(parser, {"--tolerance NAME=WIDTH": width}, action="append", default=[])
     opt.add(parser, opt.angles(f"{WHOLE_TURN}, or the range that the crank reaches"))
-    parser.add_argument("--forces", action="store_true", help="forces too; needs a crank speed")
-    parser.add_argument(
-        "--masses",
-        choices=("fixed", "bars"),
-        default="fixed",
-        help="whether masses stay, or grow with the links as those of bars; default %(default)s",
-    )
+    opt.switches(parser, {"--forces": "forces too; needs a crank speed"})
+    masses = "whether masses stay, or grow with the links as those of bars; default %(default)s"
+    opt.add(parser, {"--masses": masses}, choices=("fixed", "bars"), default="fixed")
     without = "without it rates are over the crank's; default with --forces operation.speed"
     drive_options(parser, without, rest="0")
     trial = "check with N random linkages, the tolerances being three standard deviations"

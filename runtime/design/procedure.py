@@ -139,8 +139,9 @@ def running_speed(
         [limits[link] if isinstance(limits, Mapping) else limits for link in quiet.links]
     )
     damping = best = way = chosen = None
-    with bar(progress, len(_DAMPING) + len(tried)) as tick:
-        if "damping_ratio" in system.parameters:
+    first = len(_DAMPING) if "damping_ratio" in system.parameters else 0
+    with bar(progress, first + len(tried)) as tick:
+        if first:
             own = system.parameters["damping_ratio"]
             ratios = own * np.array(_DAMPING)
             damping = effect_of(
@@ -153,7 +154,8 @@ def running_speed(
             )
             best = float(ratios[np.argmin(np.max(_ratios(damping, quiet, allowed), axis=(1, 2)))])
         if band.above is not None:
-            way, chosen = _way_up(system, quiet, band, allowed, length, tried, rtol, tick)
+            later = None if tick is None else lambda done: tick(first + done)
+            way, chosen = _way_up(system, quiet, band, allowed, length, tried, rtol, later)
     return RunningSpeed(
         method="stress curves over speed, damping and length",
         error=float(np.max(quiet.error)),

@@ -63,8 +63,8 @@ def add(parser: argparse.ArgumentParser, told: Mapping[str, str], **common: Any)
     """Add options of one kind, by what the help shows: ``{"--mass MASS": "of one of them"}``."""
     for words, meaning in told.items():
         name, *shown = words.split()
-        more = {"metavar": shown[0]} if shown else {}
-        parser.add_argument(name, help=meaning, **more, **common)
+        kind = {**common, "metavar": shown[0]} if shown else common
+        parser.add_argument(name, help=meaning, **kind)
 
 
 def switches(parser: argparse.ArgumentParser, told: Mapping[str, str]) -> None:

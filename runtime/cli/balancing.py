@@ -62,8 +62,8 @@ def _balance(options: argparse.Namespace) -> int:
     if speed == acceleration == 0.0:
         fix = "give --speed or --acceleration"
         raise bad("--speed", "a crank at rest", "a speed or an acceleration", fix)
-    offset = _size(options, "offset", "length")
-    mass = _size(options, "mass", "mass")
+    offset = opt.positive(options, "offset", "length")
+    mass = opt.positive(options, "mass", "mass")
     given: dict[str, Any] = {"case": options.case, "offsets": offset}
     if options.case is None:
         links = None
@@ -133,14 +133,6 @@ def _lines(found: rigid.Balancing) -> list[str]:
             f"weighted sum: {found.value:.8g}, not below {found.lower_bound:.8g} within bounds"
         )
     return lines
-
-
-def _size(options: argparse.Namespace, name: str, dimension: str) -> float | None:
-    value = opt.given(options, name, dimension)
-    if value is not None and not value > 0.0:
-        text = repr(getattr(options, name))
-        raise bad(f"--{name}", text, "a positive quantity", "correct the sign")
-    return value
 
 
 def _pairs(text: str | None, where: str) -> dict[str, float] | None:

@@ -69,13 +69,6 @@ def _of_beams(options: argparse.Namespace, *, moving: bool = False) -> tuple[Sce
     raise bad(where, found, "beams whose forces can be recovered", fix)
 
 
-def _limit(text: str) -> float:
-    value = opt.quantity(text, "stress", "--limit")
-    if value <= 0:
-        raise bad("--limit", repr(text), "a positive stress", "correct the sign")
-    return value
-
-
 def _frequencies(options: argparse.Namespace) -> int:
     """Natural frequencies over the crank angle: means, ranges, crossings, veerings.
 
@@ -132,7 +125,7 @@ def _stress(options: argparse.Namespace) -> int:
     elastolink stress aannaque_1996_table_4_1 --speed 5:30:1000 --plot stress.png
     """
     scene, system = _of_beams(options)
-    limit = None if options.limit is None else _limit(options.limit)
+    limit = opt.positive(options, "limit", "stress")
     if scene.model["mechanism"] == "frame":
         opt.refuse_unused(options, ("speed",), "a linkage; a frame has no crank")
         standing = recovery.stress(system)
@@ -206,7 +199,7 @@ def _running(options: argparse.Namespace) -> int:
     elastolink running-speed aannaque_1996_table_4_1 --range 5:45 --limit '250 MPa'
     """
     scene, system = _of_beams(options, moving=True)
-    limit = _limit(options.limit)
+    limit: Any = opt.positive(options, "limit", "stress")
     speeds = speed_range(options.range, scene, "--range")
     found = design.running_speed(system, speeds, limit, progress=opt.progress(options))
     lines = [

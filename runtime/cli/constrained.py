@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from math import inf, pi
+from math import pi
 from typing import TYPE_CHECKING
 
 from ..core.errors import bad
@@ -76,13 +76,10 @@ def simulate(options: argparse.Namespace, scene: Scene) -> int:
     if options.method not in (None, "collocation"):
         raise bad("--method", repr(options.method), "collocation alone", "leave it out")
     rod = at_speed(options, scene)
-    revolutions = options.revolutions
-    if not 0 < revolutions < inf:
-        raise bad("--revolutions", revolutions, "a finite number above 0", "correct it")
     result = constrained_motion(
         rod,
-        span=revolutions * (2.0 * pi / abs(rod.speed)),
-        samples=max(1, round(360 * revolutions)),
+        span=options.revolutions * (2.0 * pi / abs(rod.speed)),
+        samples=max(1, round(360 * options.revolutions)),
         progress=opt.progress(options),
     )
     norms = [

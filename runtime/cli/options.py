@@ -123,6 +123,15 @@ def given(options: argparse.Namespace, name: str, dimension: str) -> float | Non
     return None if text is None else quantity(text, dimension, f"--{name}")
 
 
+def positive(options: argparse.Namespace, name: str, dimension: str) -> float | None:
+    """Return the quantity of an option, refused where it is not above 0; None without it."""
+    value = given(options, name, dimension)
+    if value is not None and not value > 0.0:
+        text = repr(getattr(options, name))
+        raise bad(f"--{name}", text, f"a positive {dimension}", "correct the sign")
+    return value
+
+
 def values(text: str, dimension: str, where: str) -> Array:
     """Return evenly spaced values from ``START:STOP:COUNT[UNIT]``.
 

@@ -46,25 +46,19 @@ def geometry_problems(values: Values, layout: Layout) -> list[Problem]:
 
 def _slider_problems(links: Mapping[str, Any]) -> list[Problem]:
     """Check that coupler and crank together reach the line of the slider."""
-    if any(name not in links for name in ("crank", "coupler", "offset")):
-        return []
-    crank, coupler, offset = links["crank"], links["coupler"], abs(links["offset"])
-    if offset < crank + coupler:
+    crank, coupler, offset = (links.get(n, math.nan) for n in ("crank", "coupler", "offset"))
+    if not abs(offset) >= crank + coupler:
         return []
     limit = describe(crank + coupler, "length")
     fix = "the slider's line is out of reach: lower the offset or lengthen a link"
-    found = describe(links["offset"], "length")
+    found = describe(offset, "length")
     return [Problem("links.offset", found, f"less than {limit}, crank and coupler", fix)]
 
 
 def _rod_problems(links: Mapping[str, Any]) -> list[Problem]:
     """Check that the rod reaches the crank pin wherever it is, and never passes its own pivot."""
-    if any(name not in links for name in ("frame", "rod")):
-        return []
-    frame, rod = links["frame"], links["rod"]
+    frame, rod = (links.get(name, math.nan) for name in ("frame", "rod"))
     crank = links.get("crank", links.get("crank_ratio", math.nan) * frame)
-    if math.isnan(crank):
-        return []
     if frame == crank:
         fix = "the crank pin would pass the rod's pivot: change one of the two"
         return [Problem("links.crank", describe(crank, "length"), "another length than frame", fix)]

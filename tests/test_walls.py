@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import ast
 import re
-import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from fresh_process import python
 
 ROOT = Path(__file__).parents[1]
 FOLDERS = ("derive", "generated", "runtime", "templates")
@@ -168,18 +168,6 @@ def test_the_scan_of_imports_sees_what_it_has_to(tmp_path, monkeypatch):
         "elastolink.runtime.cli.options": False,
         "numpy": True,
     }
-
-
-def python(code: str, *arguments: str) -> str:
-    """Run code in a fresh interpreter; its output, once it has succeeded in silence."""
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", code, *arguments],
-        capture_output=True,
-        text=True,
-        timeout=300,
-    )
-    assert (done.returncode, done.stderr) == (0, ""), done.stderr
-    return done.stdout
 
 
 PARTS = ("runtime", "generated")

@@ -17,7 +17,7 @@ _POINTS = 13
 def add(commands: Any) -> None:
     """Add the subcommand."""
     parser = opt.command(commands, "balance", _balance)
-    drive_options(parser, "default operation.speed")
+    opt.add(parser, drive_options("default operation.speed"))
     case = (
         "b: crank and follower about their pivots; c, d: full force balance, with three or two "
         "counterweights; default: optimise"

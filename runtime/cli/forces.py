@@ -24,7 +24,7 @@ _JOINTS = ("12", "23", "34", "41", "frame", "torque", "moment")
 def add(commands: Any) -> None:
     """Add the subcommand."""
     forces = opt.command(commands, "forces", _forces)
-    drive_options(forces, "default operation.speed")
+    opt.add(forces, drive_options("default operation.speed"))
     opt.add(forces, opt.angles(f"{WHOLE_TURN}, or the range that the crank reaches"))
     drawn = "what --plot draws: a polar diagram, or the torque or moment over the angle"
     opt.add(forces, {"--joint": drawn}, choices=_JOINTS)

@@ -25,11 +25,11 @@ def add(commands: Any) -> None:
     """Add the two subcommands."""
     kinematics = opt.command(commands, "kinematics", _kinematics)
     opt.add(kinematics, opt.angles("%(default)s"), default="0:360:361deg")
-    drive_options(kinematics, "without a drive in option or scene, rates are over it")
-    opt.add(kinematics, {"--animate FILE": "draw the moving linkage: a .gif file"})
+    drive = drive_options("without a drive in option or scene, rates are over it")
+    opt.add(kinematics, {**drive, "--animate FILE": "draw the moving linkage: a .gif file"})
 
     simulate = opt.command(commands, "simulate", _simulate)
-    speed_option(simulate, "default operation.speed")
+    opt.add(simulate, speed_option("default operation.speed"))
     opt.add(simulate, {"--revolutions N": "default %(default)s"}, type=float, default=2.0)
     opt.add(
         simulate, {"--method NAME": "auto (default), or SciPy's RK45, DOP853, Radau, BDF, LSODA"}
@@ -115,25 +115,21 @@ def angles_of(options: argparse.Namespace, linkage: Linkage, *, margin: float) -
     return opt.spaced(low + inset, high - inset, 721)
 
 
-def speed_option(parser: argparse.ArgumentParser, default: str) -> None:
-    """Add the crank speed; ``default`` says what holds without it."""
-    told = f"crank speed, e.g. '195 rpm', rad/s without a unit; {default}"
-    opt.add(parser, {"--speed SPEED": told})
+def speed_option(default: str) -> dict[str, str]:
+    """Return the option of the crank speed; ``default`` says what holds without it."""
+    return {"--speed SPEED": f"crank speed, e.g. '195 rpm', rad/s without a unit; {default}"}
 
 
-def speeds_option(parser: argparse.ArgumentParser, default: str) -> None:
-    """Add one crank speed or many."""
+def speeds_option(default: str) -> dict[str, str]:
+    """Return the option of one crank speed or many."""
     told = f"'500 rpm', or START:STOP:COUNT[UNIT], rad/s without a unit; default {default}"
-    opt.add(parser, {"--speed SPEED": told})
+    return {"--speed SPEED": told}
 
 
-def drive_options(
-    parser: argparse.ArgumentParser, default: str, rest: str = "operation.acceleration"
-) -> None:
-    """Add crank speed and acceleration; ``default`` and ``rest`` say what holds without them."""
-    speed_option(parser, default)
+def drive_options(default: str, rest: str = "operation.acceleration") -> dict[str, str]:
+    """Return crank speed and acceleration; ``default`` and ``rest`` hold without them."""
     told = f"crank acceleration, e.g. '25 rad/s**2', the unit of a plain number; default {rest}"
-    opt.add(parser, {"--acceleration ALPHA": told})
+    return {**speed_option(default), "--acceleration ALPHA": told}
 
 
 def drive_of(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:

@@ -21,7 +21,7 @@ _UNITS = {**dict.fromkeys(("x", "y", "along", "across"), "m"), "curvature": "1/m
 def add(commands: Any) -> None:
     """Add the subcommand."""
     steady = opt.command(commands, "steady-state", _steady_state)
-    speeds_option(steady, "operation.speed")
+    opt.add(steady, speeds_option("operation.speed"))
     place = "place on the link, 0 to 1, whose deflection is shown; default where it is largest"
     opt.add(steady, {"--at X": place}, type=float)
     opt.add(steady, {"--method METHOD": "auto (default) or harmonic_balance"}, default="auto")

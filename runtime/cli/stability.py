@@ -30,9 +30,8 @@ _POINTS = 201
 
 def add(commands: Any) -> None:
     """Add the two subcommands."""
-    speeds_option(
-        opt.command(commands, "stability", _stability), "operation.speed, 1 without crank"
-    )
+    multipliers = opt.command(commands, "stability", _stability)
+    opt.add(multipliers, speeds_option("operation.speed, 1 without crank"))
     chart = opt.command(commands, "chart", _chart)
     order = "order of the perturbation boundaries of one mode, 1 to 8; default 1"
     opt.add(chart, {"--order N": order}, type=int, default=1)

@@ -36,7 +36,7 @@ def add(commands: Any) -> None:
     masses = "whether masses stay, or grow with the links as those of bars; default %(default)s"
     opt.add(parser, {"--masses": masses}, choices=("fixed", "bars"), default="fixed")
     without = "without it rates are over the crank's; default with --forces operation.speed"
-    drive_options(parser, without, rest="0")
+    opt.add(parser, drive_options(without, rest="0"))
     trial = "check with N random linkages, the tolerances being three standard deviations"
     opt.add(parser, {"--monte-carlo N": trial}, type=int)
     opt.add(parser, {"--output NAME": "what --plot draws, e.g. theta4"})

@@ -105,14 +105,6 @@ def test_a_chart_in_pieces_is_the_chart(mathieu, chart):
     assert chart.error <= 1e-9
 
 
-def test_any_executor_gives_the_same_bytes(mathieu, chart, pool):
-    with ThreadPoolExecutor(3) as threads:
-        assert same_bytes(
-            el.sweep("stability_chart", mathieu, VALUES, chunk=150, executor=threads), chart
-        )
-    assert same_bytes(el.sweep("stability_chart", mathieu, VALUES, chunk=150, executor=pool), chart)
-
-
 @pytest.mark.parametrize("name", ["whole.npz", "folder"])
 def test_a_store_gives_the_same_bytes_and_is_found_again(tmp_path, mathieu, chart, name):
     store = tmp_path / name

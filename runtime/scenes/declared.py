@@ -49,7 +49,12 @@ def declared_layout(
             problems.append(Problem(f"schema.{name}", repr(entry)[:60], "a table", fix))
         elif name == "parameters":
             parameters = {key: str(value) for key, value in entry.items()}
-            _unknown_dimensions(parameters, problems)
+            known = f"one of {sorted(DIMENSIONS)}"
+            problems += [
+                Problem(f"schema.parameters.{key}", repr(dimension), known, "correct it")
+                for key, dimension in parameters.items()
+                if dimension not in DIMENSIONS
+            ]
         else:
             keys = tuple(_key(name, key, value, problems) for key, value in entry.items())
             tables.append(Table(name, f"declared in [schema.{name}]", keys, required=True))
@@ -57,15 +62,6 @@ def declared_layout(
         tables.append(chart_table(parameters))
     closed = schema.get("closed_in_modes") is True
     return (Layout(mechanism, (), tuple(tables), parameters=parameters, closed_in_modes=closed),)
-
-
-def _unknown_dimensions(parameters: Mapping[str, str], problems: list[Problem]) -> None:
-    for key, dimension in parameters.items():
-        if dimension not in DIMENSIONS:
-            where = f"schema.parameters.{key}"
-            problems.append(
-                Problem(where, repr(dimension), f"one of {sorted(DIMENSIONS)}", "correct it")
-            )
 
 
 def _key(table: str, name: str, entry: object, problems: list[Problem]) -> Key:

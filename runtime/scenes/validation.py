@@ -135,12 +135,12 @@ def _table(
     values: dict[str, Any] = {}
     for key in table.keys:
         where = f"{table.name}.{key.name}"
-        if key.name in given:
-            read = _READERS[key.kind](given[key.name], key, where, problems)
+        if key.name in given or key.default is not None:
+            # Defaults are read, too: those that a scene declares may have units.
+            value = given.get(key.name, key.default)
+            read = _READERS[key.kind](value, key, where, problems)
             if read is not None:
                 values[key.name] = read
-        elif key.default is not None:
-            values[key.name] = key.default
         elif key.required:
             what = f"{key.meaning}: {_expectation(key)}"
             problems.append(Problem(where, "nothing", what, f"add it to [{table.name}]"))

@@ -228,12 +228,11 @@ def explain(
         evaluated = _of_linear(system, 1.0 if speed is None else speed)
     elif system is not None:
         evaluated = {"array_kinds": _filled_entries(serving)}
-    unwanted = [
-        package
+    unwanted = sum(
+        package in _UNWANTED and _BROUGHT.get(package) not in stage.heavy
         for stage in stages.values()
         for package in stage.heavy
-        if package in _UNWANTED and _BROUGHT.get(package) not in stage.heavy
-    ]
+    )
     return Explanation(
         scene=loaded.name,
         model=loaded.model_spec().name(),
@@ -251,7 +250,7 @@ def explain(
         error=0.0,
         error_norm="counts, exact",
         error_kind="bound",
-        checks={"packages that load and solve nothing": Check(float(len(unwanted)), 0.0)},
+        checks={"packages that load and solve nothing": Check(float(unwanted), 0.0)},
         provenance=provenance({"scene": loaded.name, "scene_digest": loaded.digest()}),
     )
 

@@ -155,6 +155,7 @@ def _chart_lines(chart: stability.StabilityChart, scene: Scene) -> list[str]:
         return [*lines, *_edge_lines(chart)]
     other = chart.y_name if curves.along == chart.x_name else chart.x_name
     dimensions = scene.layout.parameters
+    along, across = dimensions[curves.along], dimensions[other]
     values = chart.x if curves.along == chart.x_name else chart.y
     rows = []
     for i, region in enumerate(curves.regions):
@@ -162,8 +163,9 @@ def _chart_lines(chart: stability.StabilityChart, scene: Scene) -> list[str]:
         ends = [end for pair in pairs for end in pair]
         known = [end for end in ends if isfinite(end)]
         if known and min(known) <= values[-1] and max(known) >= values[0]:
-            rows.append((str(region), *(_end(end, dimensions[curves.along]) for end in ends)))
-    low, high = (_brief(curves.at[i], dimensions[other]) for i in (0, -1))
+            told = (_brief(end, along) if isfinite(end) else "-" for end in ends)
+            rows.append((str(region), *told))
+    low, high = (_brief(curves.at[i], across) for i in (0, -1))
     header = ("region", f"from, at {low}", "to", f"from, at {high}", "to")
     table = [*lines, "", f"boundaries along {curves.along}:", *opt.table(header, rows)]
     if curves.left_out:
@@ -191,10 +193,6 @@ def _edge_lines(chart: stability.StabilityChart) -> list[str]:
     other = chart.y_name if chart.x_name == "speed" else chart.x_name
     header = ("combination region, where widest", "harmonic", "from", "to", f"at {other}")
     return ["", *opt.table(header, rows), ""]
-
-
-def _end(value: float, dimension: str) -> str:
-    return _brief(value, dimension) if isfinite(value) else "-"
 
 
 def _brief(value: float, dimension: str) -> str:

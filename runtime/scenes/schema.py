@@ -12,46 +12,19 @@ Range = Literal["any", "positive", "non-negative"]
 
 @dataclass(frozen=True)
 class Key:
-    """One key of a table.
-
-    Attributes
-    ----------
-    name : str
-        As it stands in the file.
-    meaning : str
-        In one clause, for messages and for ``elastolink show``.
-    kind : str
-        ``"quantity"`` (a float), ``"quantities"`` (a list of them), ``"count"`` (a whole number),
-        ``"counts"``, ``"text"`` or ``"texts"``.
-    dimension : str
-        One of :data:`elastolink.runtime.core.units.DIMENSIONS`; matters for quantities alone.
-    required : bool
-        Whether it must be given.
-    default : object
-        Value where it is not given; None leaves it out.
-    limit : {"any", "positive", "non-negative"}
-        Allowed range of a number, or of each number of a list.
-    choices : tuple of str
-        Allowed texts; empty allows all.
-    length : int or None
-        Length of a list, where it is fixed.
-    rising : bool
-        Whether a list must increase.
-    least, most : int or None
-        Smallest and largest count that make sense.
-    """
+    """One key of a table."""
 
     name: str
-    meaning: str
-    kind: Kind = "quantity"
-    dimension: str = "dimensionless"
+    meaning: str  # in one clause, for messages and for `elastolink show`
+    kind: Kind = "quantity"  # a float; "count" is a whole number; the plurals are lists
+    dimension: str = "dimensionless"  # of quantities, one of core.units.DIMENSIONS
     required: bool = False
-    default: object = None
-    limit: Range = "any"
-    choices: tuple[str, ...] = ()
-    length: int | None = None
-    rising: bool = False
-    least: int | None = None
+    default: object = None  # where it is not given; None leaves it out
+    limit: Range = "any"  # of a number, or of each number of a list
+    choices: tuple[str, ...] = ()  # allowed texts; empty allows all
+    length: int | None = None  # of a list, where it is fixed
+    rising: bool = False  # whether a list must increase
+    least: int | None = None  # smallest and largest count that make sense
     most: float | None = None
 
 

@@ -6,8 +6,6 @@ import importlib.util
 import itertools
 import json
 import pickle
-import subprocess
-import sys
 from collections import Counter
 from pathlib import Path
 
@@ -20,6 +18,7 @@ from elastolink.runtime import recovery
 from elastolink.runtime.cli.explanation import read_cost
 from elastolink.runtime.rigid import evaluation, forces
 from elastolink.runtime.systems import assembly
+from fresh_process import python
 
 PACKAGED = Path(elastolink.generated.__path__[0])
 SPECS = {entry.module: entry.spec for entry in read_manifest(PACKAGED).values()}
@@ -60,14 +59,9 @@ print(json.dumps([root, loaded]))
 """
 
 
-def run(code, *arguments):
-    command = [sys.executable, "-W", "error", "-c", code, *arguments]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=True).stdout
-
-
 def test_the_package_loads_itself_alone_and_so_does_each_emitted_module():
-    """Beside NumPy, which all but the recursion need; that it needs no more: test_walls."""
-    root, loaded = json.loads(run(MEASURE, *sorted(SPECS)))
+    """Beside NumPy, which all but the recursion need; that none imports more: test_walls."""
+    root, loaded = json.loads(python(MEASURE, *sorted(SPECS)))
     assert [name for name in root if name.startswith("elastolink")] == ["elastolink"]
     # The standard library's importing machinery and no numerics.
     assert not {name.partition(".")[0] for name in root} & {"numpy", "scipy"}
@@ -257,7 +251,7 @@ LOADS = {
 @pytest.mark.parametrize("what", LOADS)
 def test_what_is_not_used_is_not_loaded(what):
     code, allowed, unused = LOADS[what]
-    loaded = set(run(LOADED.format(code=code)).split())
+    loaded = set(python(LOADED.format(code=code)).split())
     own = {name for name in loaded if name.startswith("generated.")}
     assert own <= allowed
     for part in unused:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import ast
 import re
-import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from fresh_process import python
 
 ROOT = Path(__file__).parents[1]
 FOLDERS = ("derive", "generated", "runtime", "templates")
@@ -170,18 +170,6 @@ def test_the_scan_of_imports_sees_what_it_has_to(tmp_path, monkeypatch):
     }
 
 
-def python(code: str, *arguments: str) -> str:
-    """Run code in a fresh interpreter; its output, once it has succeeded in silence."""
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", code, *arguments],
-        capture_output=True,
-        text=True,
-        timeout=300,
-    )
-    assert (done.returncode, done.stderr) == (0, ""), done.stderr
-    return done.stdout
-
-
 PARTS = ("runtime", "generated")
 BLOCK = "import sys; sys.modules.update(dict.fromkeys({!r}));"
 IMPORT_ALL = """
@@ -225,26 +213,3 @@ def test_derive_loads_and_derives_with_the_numeric_side_blocked():
         "print(job.text())"
     )
     assert "def angle_functions(" in python(code)
-
-
-def test_emitted_modules_load_with_everything_but_numpy_blocked():
-    code = (
-        "import sys, importlib\n"
-        "class Wall:\n"
-        "    def find_spec(self, name, path=None, target=None):\n"
-        "        top, _, rest = name.partition('.')\n"
-        "        mine = top == 'elastolink' and rest.partition('.')[0] in {'', 'generated'}\n"
-        "        if not (mine or top == 'numpy' or top in sys.stdlib_module_names):\n"
-        "            raise ImportError(f'{name} is behind the wall')\n"
-        "sys.meta_path.insert(0, Wall())\n"
-        "for name in sys.argv[1:]:\n"
-        "    importlib.import_module(f'elastolink.generated.{name}')\n"
-        "loaded = {name.partition('.')[0] for name in sys.modules}\n"
-        "print(sorted(loaded & {'numpy', 'scipy', 'sympy'}))\n"
-    )
-    names = [path.stem for path in sources("generated") if path.stem != "__init__"]
-    # Arithmetic of whatever is handed in imports nothing at all.
-    plain = [path for path in sources("generated") if "numpy" not in {n for n, _ in imports(path)}]
-    alone = [path.stem for path in plain if path.stem != "__init__"]
-    assert python(code, *alone) == "[]\n"
-    assert python(code, *names) == "['numpy']\n"

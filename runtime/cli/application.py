@@ -13,6 +13,7 @@ import sys
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
 from typing import NoReturn
 
@@ -20,40 +21,12 @@ from ... import __version__
 from ..core.errors import BadInput, ElastolinkError, ElastolinkWarning, bad
 from ..core.progress import time_taken
 from ..core.threads import environment, use_one_thread
-from . import (
-    balancing,
-    beams,
-    boundaries,
-    classification,
-    clearance,
-    curves,
-    driving,
-    forces,
-    linkages,
-    proofs,
-    response,
-    scenes,
-    stability,
-    tolerances,
-)
 from .options import HelpFormatter, picture
 
-# In the order of the help.
+# Files of subcommands, in the order of the help.
 _GROUPS = (
-    scenes,
-    linkages,
-    classification,
-    curves,
-    clearance,
-    tolerances,
-    forces,
-    driving,
-    balancing,
-    response,
-    beams,
-    stability,
-    boundaries,
-    proofs,
+    *("scenes", "linkages", "classification", "curves", "clearance", "tolerances", "forces"),
+    *("driving", "balancing", "response", "beams", "stability", "boundaries", "proofs"),
 )
 _BAD_INPUT = 2
 _INTERRUPTED = 130
@@ -88,7 +61,7 @@ def build_parser() -> argparse.ArgumentParser:
         title="commands", metavar="COMMAND", required=True, parser_class=_Parser
     )
     for group in _GROUPS:
-        group.add(commands)
+        import_module(f".{group}", __package__).add(commands)
     return parser
 
 

@@ -4,80 +4,55 @@ from __future__ import annotations
 
 import argparse
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from .. import rigid
 from ..core.errors import bad
 from . import options as opt
 from .linkages import drive_of, drive_options
-
-if TYPE_CHECKING:
-    from ..rigid import Balancing, Machine
-
 
 _POINTS = 13
 
 
 def add(commands: Any) -> None:
     """Add the subcommand."""
-    parser = opt.command(
-        commands,
-        "balance",
-        _balance,
-        summary="Counterweights: the classic cases, the best ones within bounds, the trade-off.",
-        example=(
-            "elastolink balance smith_1972_12_6_12_12 --speed 10 --offset '6 in'\n"
-            "  elastolink balance smith_1972_12_6_12_12 --speed 10 --case d --offset '3 in'\n"
-            "  elastolink balance smith_1972_12_6_12_12 --speed 10 --links crank,coupler,follower"
-            " --weights shaking_force=1,torque=1,f23=1\n"
-            "  elastolink balance smith_1972_12_6_12_12 --speed 10"
-            " --trade-off shaking_force,torque --plot curve.png"
-        ),
+    parser = opt.command(commands, "balance", _balance)
+    opt.add(parser, drive_options("default operation.speed"))
+    case = (
+        "b: crank and follower about their pivots; c, d: full force balance, with three or two "
+        "counterweights; default: optimise"
     )
-    drive_options(parser, "default operation.speed")
-    parser.add_argument(
-        "--case",
-        choices=("b", "c", "d"),
-        help="b: crank and follower about their pivots; c, d: full force balance, with three or"
-        " two counterweights; default: optimise",
+    opt.add(parser, {"--case": case}, choices=("b", "c", "d"))
+    opt.add(
+        parser,
+        {
+            "--offset LENGTH": "of the counterweights from the first joints of their links: at most"
+            " this when optimising; default the length of the link",
+            "--mass MASS": "greatest mass of one counterweight; default all links'",
+            "--weights NAME=W,...": "of shaking_force, shaking_moment, torque, f12, f23, f34, f41;"
+            " default f23=1,torque=1,shaking_moment=1: pin of the crank, torque, moment on the"
+            " frame",
+            "--limits NAME=R,...": "relative peaks that must not be passed",
+            "--links LINK,...": "that may carry one; default those on the frame",
+        },
     )
-    parser.add_argument(
-        "--offset",
-        metavar="LENGTH",
-        help="of the counterweights from the first joints of their links: at most this when"
-        " optimising; default the length of the link",
-    )
-    parser.add_argument(
-        "--mass", metavar="MASS", help="greatest mass of one counterweight; default all links'"
-    )
-    _choices(parser)
-
-
-def _choices(parser: argparse.ArgumentParser) -> None:
-    """Add what says which forces count, and how."""
-    parser.add_argument(
-        "--weights",
-        metavar="NAME=W,...",
-        help="of shaking_force, shaking_moment, torque, f12, f23, f34, f41; default"
-        " f23=1,torque=1,shaking_moment=1: pin of the crank, torque, moment on the frame",
-    )
-    parser.add_argument(
-        "--limits", metavar="NAME=R,...", help="relative peaks that must not be passed"
-    )
-    parser.add_argument(
-        "--links", metavar="LINK,...", help="that may carry one; default those on the frame"
-    )
-    parser.add_argument(
-        "--measure", choices=("peak", "rms"), help="of each force, when optimising; default peak"
-    )
-    parser.add_argument(
-        "--trade-off",
-        metavar="FIRST,SECOND",
-        help="least second peak over the first one, cases (a)-(d) marked",
-    )
-    parser.add_argument("--points", type=int, metavar="N", help=f"of that curve; default {_POINTS}")
+    measure = "of each force, when optimising; default peak"
+    opt.add(parser, {"--measure": measure}, choices=("peak", "rms"))
+    curve = "least second peak over the first one, cases (a)-(d) marked"
+    opt.add(parser, {"--trade-off FIRST,SECOND": curve})
+    opt.add(parser, {"--points N": f"of that curve; default {_POINTS}"}, type=int)
 
 
 def _balance(options: argparse.Namespace) -> int:
+    r"""Counterweights: the classic cases, the best ones within bounds, the trade-off.
+
+    elastolink balance smith_1972_12_6_12_12 --speed 10 --offset '6 in'
+    elastolink balance smith_1972_12_6_12_12 --speed 10 --case d --offset '3 in'
+    elastolink balance smith_1972_12_6_12_12 --speed 10 --links crank,coupler,follower \
+        --weights shaking_force=1,torque=1,f23=1
+    elastolink balance smith_1972_12_6_12_12 --speed 10 --trade-off shaking_force,torque \
+        --plot curve.png
+    """
     chosen = [name for name in ("case", "trade_off") if getattr(options, name) is not None]
     if len(chosen) == 2:
         raise bad("--case", "--trade-off beside it", "one of the two", "leave one out")
@@ -87,17 +62,14 @@ def _balance(options: argparse.Namespace) -> int:
     if speed == acceleration == 0.0:
         fix = "give --speed or --acceleration"
         raise bad("--speed", "a crank at rest", "a speed or an acceleration", fix)
-    offset = _size(options, "offset", "length")
-    mass = _size(options, "mass", "mass")
-
-    from ..rigid import Bounds, balance
-
+    offset = opt.positive(options, "offset", "length")
+    mass = opt.positive(options, "mass", "mass")
     given: dict[str, Any] = {"case": options.case, "offsets": offset}
     if options.case is None:
         links = None
         if options.links is not None:
             links = [name.strip() for name in options.links.split(",")]
-        given = {"links": links, "bounds": Bounds(mass=mass, offset=offset)}
+        given = {"links": links, "bounds": rigid.Bounds(mass=mass, offset=offset)}
         if options.trade_off is not None:
             return _trade_off(
                 options, machine, speed, acceleration=acceleration, offsets=offset, **given
@@ -105,7 +77,7 @@ def _balance(options: argparse.Namespace) -> int:
         given["weights"] = _pairs(options.weights, "--weights")
         given["limits"] = _pairs(options.limits, "--limits")
         given["measure"] = options.measure or "peak"
-    found = balance(machine, speed, acceleration=acceleration, **given)
+    found = rigid.balance(machine, speed, acceleration=acceleration, **given)
     return opt.finish(options, found, _lines(found))
 
 
@@ -121,69 +93,58 @@ def _refuse_unused(options: argparse.Namespace) -> None:
         opt.refuse_unused(options, ("points",), "--trade-off beside it")
 
 
-def _trade_off(options: argparse.Namespace, machine: Machine, speed: float, **given: Any) -> int:
+def _trade_off(
+    options: argparse.Namespace, machine: rigid.Machine, speed: float, **given: Any
+) -> int:
     names = [name.strip() for name in options.trade_off.split(",")]
     if len(names) != 2:
         fix = "write --trade-off shaking_force,torque"
         raise bad("--trade-off", repr(options.trade_off), "two forces", fix)
-    from ..rigid import trade_off
-
     first, second = names
     points = _POINTS if options.points is None else options.points
-    curve = trade_off(machine, speed, first, second, points, **given)
+    curve = rigid.trade_off(machine, speed, first, second, points, **given)
     lines = opt.columns((first, ".6f", curve.first_values), (second, ".6f", curve.second_values))
     rows = [(f"({name})", f"{x:.6f}", f"{y:.6f}") for name, (x, y) in curve.cases.items()]
     lines += ["", *opt.table(("case", first, second), rows), ""]
     return opt.finish(options, curve, lines)
 
 
-def _lines(found: Balancing) -> list[str]:
-    moments = ("torque", "shaking_moment")
-    rows = [
-        (
-            f"{name} [{'N m' if name in moments else 'N'}]",
-            f"{found.unbalanced[name]:.6g}",
-            f"{relative * found.unbalanced[name]:.6g}",
-            f"{relative:.6f}",
-            f"{found.weights[name]:g}" if name in found.weights else "",
-        )
-        for name, relative in found.relative.items()
-    ]
-    lines = opt.table((found.measure, "unbalanced", "balanced", "relative", "weight"), rows)
-    weights = found.counterweights.values()
-    placed = opt.columns(
-        ("counterweight", "", [item.link for item in weights]),
-        ("mass [kg]", ".6g", [item.mass for item in weights]),
-        ("along [m]", ".6g", [item.along for item in weights]),
-        ("across [m]", ".6g", [item.across for item in weights]),
-        ("radius [m]", ".6g", [item.disc_radius for item in weights]),
+def _lines(found: rigid.Balancing) -> list[str]:
+    units = dict.fromkeys(("torque", "shaking_moment"), "N m")
+    alone, weights = found.unbalanced, found.weights
+    lines = opt.columns(
+        (found.measure, "", [f"{name} [{units.get(name, 'N')}]" for name in found.relative]),
+        ("unbalanced", ".6g", [alone[name] for name in found.relative]),
+        ("balanced", ".6g", [share * alone[name] for name, share in found.relative.items()]),
+        ("relative", ".6f", found.relative.values()),
+        ("weight", "", [f"{weights[n]:g}" if n in weights else "" for n in found.relative]),
     )
-    lines += ["", *(placed if weights else ["no counterweights"]), ""]
-    if found.weights:
-        text = f"weighted sum: {found.value:.8g}, not below {found.lower_bound:.8g} within bounds"
-        lines.append(text)
+    bodies = found.counterweights.values()
+    placed = opt.columns(
+        ("counterweight", "", [body.link for body in bodies]),
+        ("mass [kg]", ".6g", [body.mass for body in bodies]),
+        ("along [m]", ".6g", [body.along for body in bodies]),
+        ("across [m]", ".6g", [body.across for body in bodies]),
+        ("radius [m]", ".6g", [body.disc_radius for body in bodies]),
+    )
+    lines += ["", *(placed if bodies else ["no counterweights"]), ""]
+    if weights:
+        lines.append(
+            f"weighted sum: {found.value:.8g}, not below {found.lower_bound:.8g} within bounds"
+        )
     return lines
-
-
-def _size(options: argparse.Namespace, name: str, dimension: str) -> float | None:
-    value = opt.given(options, name, dimension)
-    if value is not None and not value > 0.0:
-        text = repr(getattr(options, name))
-        raise bad(f"--{name}", text, "a positive quantity", "correct the sign")
-    return value
 
 
 def _pairs(text: str | None, where: str) -> dict[str, float] | None:
     if text is None:
         return None
     found = {}
-    for pair in text.split(","):
-        name, sign, value = pair.partition("=")
+    for each in text.split(","):
+        name, value = opt.pair(each, where, "NAME=NUMBER", "torque=1,f23=0.5")
         try:
-            number = float(value)
+            found[name] = float(value)
         except ValueError:
-            number = math.nan
-        if not sign or not math.isfinite(number):
-            raise bad(where, repr(pair), "NAME=NUMBER", "write torque=1,f23=0.5")
-        found[name.strip()] = number
+            found[name] = math.nan
+        if not math.isfinite(found[name]):
+            raise bad(where, repr(each), "NAME=NUMBER", f"write {where} torque=1,f23=0.5")
     return found

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from math import degrees
 from typing import TYPE_CHECKING, Any
 
-from ...derive.spec import BEAM_FORMULATIONS
+from .. import design, frequencies, recovery
 from ..core.errors import bad
 from . import options as opt
 from .linkages import refuse_frame, speed_of, speed_range
@@ -18,85 +19,29 @@ if TYPE_CHECKING:
     from ..recovery.stresses import StressResult
     from ..scenes import Scene
 
-_EXAMPLE = "aannaque_1996_table_4_1"
 _METHODS = ("mean_frequency", "running_mean", "response", "multipliers", "meissner")
 
 
 def add(commands: Any) -> None:
     """Add the subcommands."""
-    _add_frequencies(commands)
-    _add_stresses(commands)
-
-
-def _add_frequencies(commands: Any) -> None:
-    frequencies = opt.command(
-        commands,
-        "frequencies",
-        _frequencies,
-        summary="Natural frequencies over the crank angle: means, ranges, crossings, veerings.",
-        example=f"elastolink frequencies {_EXAMPLE} --count 4 --plot frequencies.png",
-    )
-    frequencies.add_argument("--count", type=int, default=None, help="modes; default 6")
-    critical = opt.command(
-        commands,
-        "critical-speeds",
-        _critical,
-        summary="Critical speeds within a range: means over n, multipliers, J_N, the response.",
-        example=f"elastolink critical-speeds {_EXAMPLE} --range 20:70 --method mean_frequency",
-    )
-    _range_option(critical)
-    critical.add_argument("--method", choices=_METHODS, default="mean_frequency")
-    campbell = opt.command(
-        commands,
-        "campbell",
-        _campbell,
-        summary="Campbell diagram: frequencies against the crank speed, and the orders that meet.",
-        example=f"elastolink campbell {_EXAMPLE} --range 5:70 --plot campbell.png",
-    )
-    _range_option(campbell)
-
-
-def _add_stresses(commands: Any) -> None:
-    stress = opt.command(
-        commands,
-        "stress",
-        _stress,
-        summary="Stresses of a linkage of beams: over the cycle at one speed, or over the speed.",
-        example=(
-            f"elastolink stress {_EXAMPLE} --speed '30 rad/s' --limit '250 MPa'\n"
-            f"  elastolink stress {_EXAMPLE} --speed 5:30:1000 --plot stress.png"
-        ),
-    )
-    stress.add_argument("--speed", help="'30 rad/s', or START:STOP:COUNT[UNIT]")
-    stress.add_argument("--limit", help="allowed stress, such as '250 MPa'")
-    running = opt.command(
-        commands,
-        "running-speed",
-        _running,
-        summary="A quiet running speed above limiting critical speeds, and how to get there.",
-        example=f"elastolink running-speed {_EXAMPLE} --range 5:45 --limit '250 MPa'",
-    )
-    _range_option(running)
-    running.add_argument("--limit", required=True, help="allowed stress, such as '250 MPa'")
-    through = opt.command(
-        commands,
-        "run-through",
-        _through,
-        summary="A run-up or coast-down through critical speeds, as a transient.",
-        example=(
-            f"elastolink run-through {_EXAMPLE} --from '25 rad/s' --to '36 rad/s' --time '2 s' \\\n"
-            "      --plot run.png"
-        ),
-    )
-    through.add_argument("--from", dest="start", required=True, help="first crank speed")
-    through.add_argument("--to", dest="stop", required=True, help="last crank speed")
-    through.add_argument("--time", required=True, help="duration of the change, such as '2 s'")
-
-
-def _range_option(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--range", metavar="LOW:HIGH", help="crank speeds, rad/s; default operation.speed_range"
-    )
+    speeds = {"--range LOW:HIGH": "crank speeds, rad/s; default operation.speed_range"}
+    limit = {"--limit LIMIT": "allowed stress, such as '250 MPa'"}
+    parser = opt.command(commands, "frequencies", _frequencies)
+    opt.add(parser, {"--count COUNT": "modes; default 6"}, type=int)
+    parser = opt.command(commands, "critical-speeds", _critical)
+    opt.add(parser, speeds)
+    parser.add_argument("--method", choices=_METHODS, default="mean_frequency")
+    parser = opt.command(commands, "campbell", _campbell)
+    opt.add(parser, speeds)
+    parser = opt.command(commands, "stress", _stress)
+    opt.add(parser, {"--speed SPEED": "'30 rad/s', or START:STOP:COUNT[UNIT]", **limit})
+    parser = opt.command(commands, "running-speed", _running)
+    opt.add(parser, speeds)
+    opt.add(parser, limit, required=True)
+    parser = opt.command(commands, "run-through", _through)
+    ends = {"--from START": "first crank speed", "--to STOP": "last crank speed"}
+    time = {"--time TIME": "duration of the change, such as '2 s'"}
+    opt.add(parser, {**ends, **time}, required=True)
 
 
 def _of_beams(options: argparse.Namespace, *, moving: bool = False) -> tuple[Scene, LinearPeriodic]:
@@ -107,6 +52,8 @@ def _of_beams(options: argparse.Namespace, *, moving: bool = False) -> tuple[Sce
     system = scene.linear_system()
     if system.structure is not None:
         return scene, system
+    from ...derive.spec import BEAM_FORMULATIONS
+
     where = f"scene {scene.name}"
     if scene.model["formulation"] not in BEAM_FORMULATIONS:
         raise bad(
@@ -122,17 +69,12 @@ def _of_beams(options: argparse.Namespace, *, moving: bool = False) -> tuple[Sce
     raise bad(where, found, "beams whose forces can be recovered", fix)
 
 
-def _limit(text: str) -> float:
-    value = opt.quantity(text, "stress", "--limit")
-    if value <= 0:
-        raise bad("--limit", repr(text), "a positive stress", "correct the sign")
-    return value
-
-
 def _frequencies(options: argparse.Namespace) -> int:
-    from ..frequencies import natural_frequencies
+    """Natural frequencies over the crank angle: means, ranges, crossings, veerings.
 
-    found = natural_frequencies(opt.load(options).linear_system(), count=options.count)
+    elastolink frequencies aannaque_1996_table_4_1 --count 4 --plot frequencies.png
+    """
+    found = frequencies.natural_frequencies(opt.load(options).linear_system(), count=options.count)
     lines = opt.columns(
         ("mode", "", range(1, found.frequency.shape[1] + 1)),
         ("mean [rad/s]", ".7g", found.mean),
@@ -144,13 +86,17 @@ def _frequencies(options: argparse.Namespace) -> int:
 
 
 def _critical(options: argparse.Namespace) -> int:
-    from ..frequencies import critical_speeds
+    """Critical speeds within a range: means over n, multipliers, J_N, the response.
 
+    elastolink critical-speeds aannaque_1996_table_4_1 --range 20:70 --method mean_frequency
+    """
     scene = opt.load(options)
     refuse_frame(scene)
     speeds = speed_range(options.range, scene, "--range")
     system = scene.linear_system()
-    found = critical_speeds(system, speeds, method=options.method, progress=opt.progress(options))
+    found = frequencies.critical_speeds(
+        system, speeds, method=options.method, progress=opt.progress(options)
+    )
     lines = opt.columns(
         ("speed [rad/s]", ".6g", found.speed),
         ("mode", "", [mode for mode, _ in found.labels]),
@@ -161,48 +107,48 @@ def _critical(options: argparse.Namespace) -> int:
 
 
 def _campbell(options: argparse.Namespace) -> int:
-    import numpy as np
+    """Campbell diagram: frequencies against the crank speed, and the orders that meet.
 
-    from ..frequencies.campbell_diagram import campbell
-
+    elastolink campbell aannaque_1996_table_4_1 --range 5:70 --plot campbell.png
+    """
     scene = opt.load(options)
     refuse_frame(scene)
-    speeds = np.linspace(*speed_range(options.range, scene, "--range"), 27)
-    found = campbell(scene.linear_system(), speeds, progress=opt.progress(options))
+    speeds = opt.spaced(*speed_range(options.range, scene, "--range"), 27)
+    found = frequencies.campbell(scene.linear_system(), speeds, progress=opt.progress(options))
     return opt.finish(options, found, opt.ranges(found))
 
 
 def _stress(options: argparse.Namespace) -> int:
-    import numpy as np
+    """Stresses of a linkage of beams: over the cycle at one speed, or over the speed.
 
-    from ..recovery import stress, stress_curve
-
+    elastolink stress aannaque_1996_table_4_1 --speed '30 rad/s' --limit '250 MPa'
+    elastolink stress aannaque_1996_table_4_1 --speed 5:30:1000 --plot stress.png
+    """
     scene, system = _of_beams(options)
-    limit = None if options.limit is None else _limit(options.limit)
+    limit = opt.positive(options, "limit", "stress")
     if scene.model["mechanism"] == "frame":
         opt.refuse_unused(options, ("speed",), "a linkage; a frame has no crank")
-        standing = stress(system)
+        standing = recovery.stress(system)
         return opt.finish(options, standing, _peaks(standing, limit))
     if options.speed is None or ":" not in options.speed:
-        result = stress(system, speed_of(options, scene))
+        result = recovery.stress(system, speed_of(options, scene))
         return opt.finish(options, result, _peaks(result, limit))
-    speeds = np.array(opt.values(options.speed, "frequency", "--speed"))
+    speeds = opt.values(options.speed, "frequency", "--speed")
     if limit is None:
-        curve = stress_curve(system, speeds)
+        curve = recovery.stress_curve(system, speeds)
         return opt.finish(
             options, curve, [*_curve_lines(curve), *_unstable_lines(curve.unstable_ranges)]
         )
-    from ..design import quiet_speeds
-
-    found = quiet_speeds(system, speeds, limit)
-    bands = _numbers(found)
-    rows = [
-        (*(f"{value:.5g}" for value in (low, high, best)), f"{ratio:.3g}", _beyond(above))
-        for low, high, best, ratio, above in bands
-    ]
-    header = ("from [rad/s]", "to", "quietest", "stress/limit", "beyond the critical speed")
-    lines = [*opt.table(header, rows), *_unstable_lines(found.unstable)]
-    return opt.finish(options, found, lines, more={"bands": bands})
+    found = design.quiet_speeds(system, speeds, limit)
+    lines = opt.columns(
+        ("from [rad/s]", ".5g", [band.low for band in found.bands]),
+        ("to", ".5g", [band.high for band in found.bands]),
+        ("quietest", ".5g", [band.best for band in found.bands]),
+        ("stress/limit", ".3g", [band.ratio for band in found.bands]),
+        ("beyond the critical speed", "", [_beyond(band.above) for band in found.bands]),
+    )
+    lines += _unstable_lines(found.unstable)
+    return opt.finish(options, found, lines, more={"bands": _numbers(found)})
 
 
 def _numbers(found: QuietSpeeds) -> list[tuple[float, float, float, float, float | None]]:
@@ -221,14 +167,12 @@ def _unstable_lines(ranges: Sequence[tuple[float, float]]) -> list[str]:
 
 def _peaks(found: StressResult, limit: float | None) -> list[str]:
     """Return a row per link: its largest stress, where and when."""
-    import numpy as np
-
     rows = [
         (
             link,
             f"{peak.value / 1e6:.6g}",
             f"{peak.place:.3g}",
-            f"{np.degrees(peak.theta):.4g}",
+            f"{degrees(peak.theta):.4g}",
             peak.fibre,
             "-" if limit is None or not peak.value else f"{limit / abs(peak.value):.4g}",
         )
@@ -239,12 +183,9 @@ def _peaks(found: StressResult, limit: float | None) -> list[str]:
 
 def _curve_lines(curve: StressCurve) -> list[str]:
     """Return a row per local maximum of the largest stress, the highest ones."""
-    import numpy as np
-
-    worst = np.max(curve.maximum, axis=1)
     rows = [
         (f"{curve.speed[i]:.5g}", *(f"{value / 1e6:.5g}" for value in curve.maximum[i]))
-        for i in opt.highest(worst)
+        for i in opt.highest(curve.maximum.max(axis=1))
     ]
     title = f"{len(curve.speed)} speeds; largest stress [MPa] where it is higher than beside:"
     if not rows:
@@ -253,12 +194,14 @@ def _curve_lines(curve: StressCurve) -> list[str]:
 
 
 def _running(options: argparse.Namespace) -> int:
-    from ..design import running_speed
+    """Quiet running speed above limiting critical speeds, and how to get there.
 
+    elastolink running-speed aannaque_1996_table_4_1 --range 5:45 --limit '250 MPa'
+    """
     scene, system = _of_beams(options, moving=True)
-    limit = _limit(options.limit)
+    limit: Any = opt.positive(options, "limit", "stress")
     speeds = speed_range(options.range, scene, "--range")
-    found = running_speed(system, speeds, limit, progress=opt.progress(options))
+    found = design.running_speed(system, speeds, limit, progress=opt.progress(options))
     lines = [
         f"running speed: {found.speed:.5g} rad/s, stress over limit {found.band.ratio:.3g}",
         f"quiet from {found.band.low:.5g} to {found.band.high:.5g} rad/s",
@@ -277,15 +220,18 @@ def _running(options: argparse.Namespace) -> int:
 
 
 def _through(options: argparse.Namespace) -> int:
-    from ..design import SpeedProfile, run_through
+    r"""Run-up or coast-down through critical speeds, as a transient.
 
+    elastolink run-through aannaque_1996_table_4_1 --from '25 rad/s' --to '36 rad/s' --time '2 s' \
+        --plot run.png
+    """
     _, system = _of_beams(options, moving=True)
-    profile = SpeedProfile.ramp(
-        opt.quantity(options.start, "frequency", "--from"),
-        opt.quantity(options.stop, "frequency", "--to"),
+    profile = design.SpeedProfile.ramp(
+        opt.quantity(vars(options)["from"], "frequency", "--from"),
+        opt.quantity(options.to, "frequency", "--to"),
         opt.quantity(options.time, "time", "--time"),
     )
-    found = run_through(system, profile)
+    found = design.run_through(system, profile)
     stresses = [value / 1e6 for value in found.largest.values()]
     lines = opt.columns(("link", "", found.largest), ("largest stress [MPa]", ".5g", stresses))
     return opt.finish(options, found, lines)

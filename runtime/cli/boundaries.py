@@ -8,16 +8,16 @@ from itertools import chain
 from math import pi, sqrt
 from typing import TYPE_CHECKING, Any
 
-from ..core.errors import bad
+from .. import hill, stability
+from ..core.errors import BadInput, bad
 from . import options as opt
 from .linkages import speed_of, speed_range
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..core.families import LinearPeriodic
+    from ..core.families import Array, LinearPeriodic
     from ..core.periodic_function import PeriodicFunction
-    from ..hill import Boundaries, BoundarySeries, HillForm, PerturbationBoundaries
     from ..scenes import Scene
 
 _REGIONS = "1:4"
@@ -27,75 +27,29 @@ _SPAN = re.compile(r"(\d{1,4}):(\d{1,4})")
 
 def add(commands: Any) -> None:
     """Add the two subcommands."""
-    _add_boundaries(commands)
-    _add_perturb(commands)
-
-
-def _add_boundaries(commands: Any) -> None:
-    edges = opt.command(
-        commands,
-        "boundaries",
-        _boundaries,
-        summary="Boundaries of unstable regions: exact, certified, and by perturbation.",
-        example=(
-            "elastolink boundaries mathieu --mu 0:2:41 --order 4 --plot mathieu.png\n"
-            "  elastolink boundaries smith_1972_101104_sixteenth_inch --regions 2:6\n"
-            "  elastolink boundaries smith_1972_5152_sixteenth_inch --set model.modes=2"
-        ),
+    regions = {"--regions N,...": f"numbers of the regions, 1,3,5 or 1:6; default {_REGIONS}"}
+    edges = opt.command(commands, "boundaries", _boundaries)
+    opt.add(
+        edges,
+        {
+            **regions,
+            "--mu VALUES": "of a Hill equation: a number or START:STOP:COUNT (--mu=-1:1:5 where it"
+            " begins with a minus); default parameters.mu",
+            "--speed LOW:HIGH": "crank speeds of a linkage whose modes are several or damped, such"
+            " as 300rpm:900rpm; default operation.speed_range",
+        },
     )
-    _region_option(edges)
-    edges.add_argument(
-        "--mu",
-        metavar="VALUES",
-        help="of a Hill equation: a number or START:STOP:COUNT (--mu=-1:1:5 where it begins with a "
-        "minus); default parameters.mu",
+    beside = f"beside the exact ones those by perturbation, order 1 to {_HIGHEST}"
+    opt.add(edges, {"--order N": beside}, type=_order)
+    opt.switches(edges, {"--certified": "proved enclosures by exact arithmetic"})
+    series = opt.command(commands, "perturb", _perturb)
+    opt.add(series, regions)
+    opt.add(series, {"--order N": f"1 to {_HIGHEST}; default %(default)s"}, type=_order, default=2)
+    formulas = (
+        "print the formulas instead, as sums, to order 6 at most: for any n, or for the --regions "
+        "given"
     )
-    edges.add_argument(
-        "--speed",
-        metavar="LOW:HIGH",
-        help="crank speeds of a linkage whose modes are several or damped, such as 300rpm:900rpm; "
-        "default operation.speed_range",
-    )
-    edges.add_argument(
-        "--order",
-        type=_order,
-        metavar="N",
-        help=f"beside the exact ones those by perturbation, order 1 to {_HIGHEST}",
-    )
-    edges.add_argument(
-        "--certified", action="store_true", help="proved enclosures by exact arithmetic"
-    )
-
-
-def _add_perturb(commands: Any) -> None:
-    series = opt.command(
-        commands,
-        "perturb",
-        _perturb,
-        summary="Coefficients of the boundaries as power series, and their formulas.",
-        example=(
-            "elastolink perturb mathieu --order 8\n"
-            "  elastolink perturb hill_example --order 3 --latex"
-        ),
-    )
-    _region_option(series)
-    series.add_argument(
-        "--order", type=_order, default=2, metavar="N", help=f"1 to {_HIGHEST}; default %(default)s"
-    )
-    series.add_argument(
-        "--latex",
-        action="store_true",
-        help="print the formulas instead, as sums, to order 6 at most: for any n, or for the "
-        "--regions given",
-    )
-
-
-def _region_option(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--regions",
-        metavar="N,...",
-        help=f"numbers of the regions, 1,3,5 or 1:6; default {_REGIONS}",
-    )
+    opt.switches(series, {"--latex": formulas})
 
 
 def _order(text: str) -> int:
@@ -121,17 +75,23 @@ def _regions(given: str | None) -> tuple[int, ...]:
 
 
 def _boundaries(options: argparse.Namespace) -> int:
+    """Boundaries of unstable regions: exact, certified, and by perturbation.
+
+    elastolink boundaries mathieu --mu 0:2:41 --order 4 --plot mathieu.png
+    elastolink boundaries smith_1972_101104_sixteenth_inch --regions 2:6
+    elastolink boundaries smith_1972_5152_sixteenth_inch --set model.modes=2
+    """
+    from ..hill.form import is_hill
+
     regions = _regions(options.regions)
     scene = opt.load(options)
-    from ..hill.form import hill_form, is_hill
-
     if scene.model["mechanism"] == "hill":
         opt.refuse_unused(options, ("speed",), "a scene of a linkage")
-        return _of_hill(options, scene, hill_form(scene.linear_system()), regions)
+        return _of_hill(options, scene, hill.hill_form(scene.linear_system()), regions)
     opt.refuse_unused(options, ("mu",), "a scene of Hill's equation")
     system = scene.linear_system()
     if is_hill(system):
-        form = hill_form(system)
+        form = hill.hill_form(system)
         if not form.elastic and form.damping() == 0.0 and options.speed is None:
             return _of_mode(options, form, regions)
     unused = ("regions", "order", "certified")
@@ -140,51 +100,43 @@ def _boundaries(options: argparse.Namespace) -> int:
 
 
 def _of_hill(
-    options: argparse.Namespace, scene: Scene, form: HillForm, regions: tuple[int, ...]
+    options: argparse.Namespace, scene: Scene, form: hill.HillForm, regions: tuple[int, ...]
 ) -> int:
     """Boundaries in lam2 at the values of mu: a row for each of their ends."""
     mu = _values(options.mu) if options.mu is not None else [float(scene["parameters"]["mu"])]
-    damping = 0.5 * form.damping()
-    exact, others = _solved(options, form.function(1.0, mu=1.0), mu, regions, damping)
-    shown = (0,) if len(mu) == 1 else (0, len(mu) - 1)
+    found = _solved(options, form.function(1.0, mu=1.0), mu, regions, 0.5 * form.damping())
     rows = [
-        (str(n), f"{mu[j]:g}", *map(_number, chain(*_ends(exact, others, i, j))))
+        (str(n), f"{mu[j]:g}", *(_number(e[i, j]) for one in found for e in (one.lower, one.upper)))
         for i, n in enumerate(regions)
-        for j in shown
+        for j in sorted({0, len(mu) - 1})
     ]
-    lines = _table(options, ("region", "mu", "lam2 from", "to"), rows, others)
-    if len(mu) > len(shown):
+    lines = _table(options, ("region", "mu", "lam2 from", "to"), rows, found)
+    if len(mu) > 2:
         lines.append(f"(the ends of {len(mu)} values of mu; --json gives all)")
 
     def draw(ax: Any) -> None:
-        exact.plot(ax)
-        for one in others:
-            for low, high in zip(one.lower, one.upper, strict=True):
-                ax.plot(low, one.mu, "k--", lw=0.9)
-                ax.plot(high, one.mu, "k--", lw=0.9)
+        found[0].plot(ax)
+        for one in found[1:]:
+            for end in chain(*zip(one.lower, one.upper, strict=True)):
+                ax.plot(end, one.mu, "k--", lw=0.9)
 
-    return opt.finish(options, exact, lines, draw, more=_perturbation(others))
+    return opt.finish(options, found[0], lines, draw, more=_perturbation(found))
 
 
-def _of_mode(options: argparse.Namespace, form: HillForm, regions: tuple[int, ...]) -> int:
+def _of_mode(options: argparse.Namespace, form: hill.HillForm, regions: tuple[int, ...]) -> int:
     """Boundaries in crank speed of the only mode, without damping."""
     frequency = sqrt(form.stiffness())
-    exact, others = _solved(options, form.function(1.0), [1.0], regions, 0.0)
+    found = _solved(options, form.function(1.0), [1.0], regions, 0.0)
     # A region without a lower end in lam2 has no upper end in speed.
     rows = [
-        (str(n), *(_speed(frequency, x) for pair in _ends(exact, others, i, 0) for x in pair[::-1]))
+        (str(n), *(_speed(frequency, e[i, 0]) for one in found for e in (one.upper, one.lower)))
         for i, n in enumerate(regions)
     ]
+    lines = [f"natural frequency {_speed(frequency, 1.0)}; crank speeds:", ""]
+    lines += _table(options, ("region", "from", "to"), rows, found)
+    more = {"natural_frequency": frequency, **_perturbation(found)}
     return opt.finish(
-        options,
-        exact,
-        [
-            f"natural frequency {_speed(frequency, 1.0)}; crank speeds:",
-            "",
-            *_table(options, ("region", "from", "to"), rows, others),
-        ],
-        lambda ax: _bars(ax, exact, frequency),
-        more={"natural_frequency": frequency, **_perturbation(others)},
+        options, found[0], lines, lambda ax: _bars(ax, found[0], frequency), more=more
     )
 
 
@@ -192,9 +144,7 @@ def _of_modes(
     options: argparse.Namespace, system: LinearPeriodic, speeds: tuple[float, float]
 ) -> int:
     """Boundaries in crank speed of all modes in a range."""
-    from ..stability import stability_edges
-
-    edges = stability_edges(system, speeds)
+    edges = stability.stability_edges(system, speeds)
     rows = [
         (f"{label} ?" if doubtful else label, _rpm(first), _rpm(last), _rpm(last - first, 3))
         for label, doubtful, first, last, error in zip(
@@ -214,73 +164,66 @@ def _of_modes(
 def _solved(
     options: argparse.Namespace,
     f: PeriodicFunction,
-    mu: Sequence[float],
+    mu: Sequence[float] | Array,
     regions: tuple[int, ...],
     damping: float,
-) -> tuple[Boundaries, list[PerturbationBoundaries]]:
-    """Return the exact boundaries, and those by perturbation where they are wanted."""
-    from ..hill import hill_boundaries, perturbation_boundaries
-
+) -> list[Any]:
+    """Return the exact boundaries, then those by perturbation where they are wanted."""
     more: dict[str, Any] = {"certified": True} if options.certified else {}
-    exact = hill_boundaries(f, mu, regions, damping=damping, **more)
-    if options.order is None:
-        return exact, []
-    return exact, [perturbation_boundaries(f, mu, regions, order=options.order, damping=damping)]
-
-
-def _ends(
-    exact: Boundaries, others: Sequence[PerturbationBoundaries], i: int, j: int
-) -> list[tuple[float, float]]:
-    return [(float(one.lower[i, j]), float(one.upper[i, j])) for one in (exact, *others)]
+    found: list[Any] = [hill.hill_boundaries(f, mu, regions, damping=damping, **more)]
+    if options.order is not None:
+        order = options.order
+        found.append(hill.perturbation_boundaries(f, mu, regions, order=order, damping=damping))
+    return found
 
 
 def _table(
     options: argparse.Namespace,
     header: Sequence[str],
     rows: Sequence[Sequence[str]],
-    others: Sequence[PerturbationBoundaries],
+    found: Sequence[Any],
 ) -> list[str]:
     """Return a table of ends, and why there is no number where the perturbation gives none."""
-    more = (f"order {options.order} from", "to") if others else ()
+    more = (f"order {options.order} from", "to") * len(found[1:])
     lines = opt.table((*header, *more), rows)
-    if any(one.outside.any() for one in others):
+    if any(one.outside.any() for one in found[1:]):
         lines.append(
             "no number of the perturbation: outside the range in which its orders converge"
         )
     return lines
 
 
-def _perturbation(others: Sequence[PerturbationBoundaries]) -> dict[str, Any]:
-    return {"perturbation": [one.to_dict() for one in others]}
+def _perturbation(found: Sequence[Any]) -> dict[str, Any]:
+    return {"perturbation": [one.to_dict() for one in found[1:]]}
 
 
-def _bars(ax: Any, exact: Boundaries, frequency: float) -> None:
+def _bars(ax: Any, exact: hill.Boundaries, frequency: float) -> None:
     """Draw the unstable bands of crank speed, a row per region."""
-    import numpy as np
-
-    rpm = 30.0 / np.pi
+    rpm = 30.0 / pi
     for i, n in enumerate(exact.regions):
         low, high = (float(end[i, 0]) for end in (exact.lower, exact.upper))
         if high > 0.0:
-            right = frequency / np.sqrt(low) if low > 0.0 else 2.0 * frequency / np.sqrt(high)
-            left = frequency / np.sqrt(high)
+            right = frequency / sqrt(low) if low > 0.0 else 2.0 * frequency / sqrt(high)
+            left = frequency / sqrt(high)
             ax.barh(str(n), (right - left) * rpm, left=left * rpm, height=0.6)
     ax.set_xlabel("crank speed [rpm]")
     ax.set_ylabel("region")
 
 
 def _perturb(options: argparse.Namespace) -> int:
+    """Coefficients of the boundaries as power series, and their formulas.
+
+    elastolink perturb mathieu --order 8
+    elastolink perturb hill_example --order 3 --latex
+    """
     regions = _regions(options.regions)
     if options.latex:
         return _formulas(options)
-    from ..core.errors import BadInput
-    from ..hill import boundary_series
-
     f, ratio, remarks = _function(options, opt.load(options))
     found, rows = [], []
     for n in regions:
         try:
-            one = boundary_series(f, n, options.order, ratio)
+            one = hill.boundary_series(f, n, options.order, ratio)
         except BadInput as error:
             # Damping closes this region, and perhaps no other.
             remarks.append(str(error))
@@ -308,9 +251,7 @@ def _function(
     options: argparse.Namespace, scene: Scene
 ) -> tuple[PeriodicFunction, float, list[str]]:
     """Return what mu multiplies in a scene, beta of K = beta mu, and what is to be said of them."""
-    from ..hill import hill_form
-
-    form = hill_form(scene.linear_system())
+    form = hill.hill_form(scene.linear_system())
     if scene.model["mechanism"] == "hill":
         damping, mu = 0.5 * form.damping(), abs(float(scene["parameters"]["mu"]))
         if damping and not mu:
@@ -326,7 +267,7 @@ def _function(
     return form.function(1.0), ratio, said
 
 
-def _series_rows(one: BoundarySeries) -> list[tuple[str, ...]]:
+def _series_rows(one: hill.BoundarySeries) -> list[tuple[str, ...]]:
     import numpy as np
 
     rows = []
@@ -341,20 +282,16 @@ def _series_rows(one: BoundarySeries) -> list[tuple[str, ...]]:
 def _formulas(options: argparse.Namespace) -> int:
     """Print the formulas of the boundaries, of any region or of those that are given."""
     opt.refuse_unused(options, ("plot",), "without --latex")
-    from ..hill import hill_form
     from ..hill.series import boundary_latex
 
-    damped = hill_form(opt.load(options).linear_system()).damping() > 0.0
+    damped = hill.hill_form(opt.load(options).linear_system()).damping() > 0.0
     regions = (None,) if options.regions is None else _regions(options.regions)
     texts = [boundary_latex(options.order, n, damped) for n in regions]
-    if options.json:
-        opt.print_json({"order": options.order, "regions": regions, "latex": texts})
-    else:
-        print("\n\n".join(texts))
-    return 0
+    content = {"order": options.order, "regions": regions, "latex": texts}
+    return opt.say(options, content, "\n\n".join(texts))
 
 
-def _values(text: str) -> list[float]:
+def _values(text: str) -> Array | list[float]:
     """Return one value or evenly spaced ones."""
     if ":" in text:
         return opt.values(text, "dimensionless", "--mu")

@@ -6,54 +6,42 @@ import argparse
 import math
 from typing import Any
 
+from .. import linkages
 from ..core.errors import bad
 from . import options as opt
 
 
 def add(commands: Any) -> None:
     """Add the subcommand."""
-    parser = opt.command(
-        commands,
-        "classify",
-        _classify,
-        summary="Grashof's and Barker's class, change points, transmission angle, dead centres.",
-        example=(
-            "elastolink classify smith_1972_12_6_12_12 --plot transmission.png\n"
-            "  elastolink classify --lengths 12,6,12,12 --base-plane --plot plane.png"
-        ),
-        scene=False,
-    )
+    parser = opt.command(commands, "classify", _classify, scene=False)
     opt.scene_options(parser, nargs="?")
-    parser.add_argument(
-        "--lengths", metavar="A,B,C,D", help="frame, crank, coupler, follower, instead of a scene"
+    lengths = "frame, crank, coupler, follower, instead of a scene"
+    opt.add(parser, {"--lengths A,B,C,D": lengths})
+    driven = {"--input": "driven link of a four-bar; default crank"}
+    opt.add(parser, driven, choices=("crank", "follower"))
+    opt.add(
+        parser, {"--tolerance": "relative, of every length; default 0"}, type=float, default=0.0
     )
-    parser.add_argument(
-        "--input", choices=("crank", "follower"), help="driven link of a four-bar; default crank"
-    )
-    parser.add_argument(
-        "--tolerance", type=float, default=0.0, help="relative, of every length; default 0"
-    )
-    parser.add_argument(
-        "--base-plane",
-        action="store_true",
-        help="draw Barker's base plane instead of the transmission angle",
-    )
+    plane = "draw Barker's base plane instead of the transmission angle"
+    opt.switches(parser, {"--base-plane": plane})
 
 
 def _classify(options: argparse.Namespace) -> int:
-    from ..linkages import FourBar
-    from ..linkages.classification import Classification, classify
-    from ..linkages.transmission import transmission_angle
+    """Grashof's and Barker's class, change points, transmission angle, dead centres.
 
+    elastolink classify smith_1972_12_6_12_12 --plot transmission.png
+    elastolink classify --lengths 12,6,12,12 --base-plane --plot plane.png
+    """
     if options.plot is None:
         opt.refuse_unused(options, ("base_plane",), "--plot FILE beside it")
     linkage: Any = _linkage(options)
-    if not isinstance(linkage, FourBar):
+    four_bar = isinstance(linkage, linkages.FourBar)
+    if not four_bar:
         opt.refuse_unused(options, ("input",), "a four-bar linkage")
     driven: Any = options.input or "crank"
-    found: Any = classify(linkage, input=driven, tolerance=options.tolerance)
-    passed_on = transmission_angle(linkage)
-    if options.base_plane and not isinstance(found, Classification):
+    found: Any = linkages.classify(linkage, input=driven, tolerance=options.tolerance)
+    passed_on = linkages.transmission_angle(linkage)
+    if options.base_plane and not four_bar:
         raise bad("--base-plane", found.mechanism, "a four-bar linkage", "leave it out")
     draw = found.plot if options.base_plane else passed_on.plot
     lines = [*_class_lines(found), "", *_transmission_lines(passed_on)]
@@ -68,17 +56,13 @@ def _linkage(options: argparse.Namespace) -> Any:
         raise bad("classify", "both or neither", expected, "give one of them")
     if options.scene is not None:
         return opt.load(options).mechanism()
-    from ..linkages import FourBar
-    from ..linkages.classification import classify
-
     try:
         lengths = [float(text) for text in options.lengths.split(",")]
     except ValueError as refusal:
-        raise bad(
-            "--lengths", repr(options.lengths), "four numbers", "write --lengths 12,6,12,12"
-        ) from refusal
-    checked = classify(lengths)
-    return FourBar(checked.frame, checked.crank, checked.coupler, checked.follower)
+        fix = "write --lengths 12,6,12,12"
+        raise bad("--lengths", repr(options.lengths), "four numbers", fix) from refusal
+    checked = linkages.classify(lengths)
+    return linkages.FourBar(checked.frame, checked.crank, checked.coupler, checked.follower)
 
 
 def _class_lines(found: Any) -> list[str]:

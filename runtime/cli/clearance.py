@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import math
 from collections.abc import Sequence
+from math import degrees
 from typing import TYPE_CHECKING, Any
 
+from .. import linkages
 from ..core.errors import bad
 from . import options as opt
 
@@ -20,53 +21,30 @@ _JOINTS = ("12", "23", "34", "41")
 
 def add(commands: Any) -> None:
     """Add the subcommand."""
-    parser = opt.command(
-        commands,
-        "clearance",
-        _clearance,
-        summary="Free movement of follower, slider or rod that clearance at the joints leaves.",
-        example=(
-            "elastolink clearance smith_1972_10_8_10_10 --clearance '0.1 in' --plot fig10.png\n"
-            "  elastolink clearance smith_1972_2122 --at 23='0.1 mm' --at 34='0.05 mm'"
-        ),
-    )
-    parser.add_argument(
-        "--clearance",
-        action="append",
-        default=[],
-        metavar="SIZE",
-        help="diametral clearance of one joint, e.g. '0.1 mm'; repeated, one curve each",
-    )
-    parser.add_argument(
-        "--joint", choices=_JOINTS, help="the joint with --clearance; default 34, at the follower"
-    )
-    parser.add_argument(
-        "--at",
-        action="append",
-        default=[],
-        metavar="JOINT=SIZE",
-        help="clearance of one of several joints, e.g. 23='0.1 mm'; instead of --clearance",
-    )
-    parser.add_argument("--link", help="coupler, instead of the link that gives the output")
-    parser.add_argument(
-        "--angles",
-        metavar="START:STOP:COUNT[UNIT]",
-        help="crank angles; default 361 over a turn, or what the crank reaches",
-    )
+    parser = opt.command(commands, "clearance", _clearance)
+    size = "diametral clearance of one joint, e.g. '0.1 mm'; repeated, one curve each"
+    opt.add(parser, {"--clearance SIZE": size}, action="append", default=[])
+    joint = "the joint with --clearance; default 34, at the follower"
+    opt.add(parser, {"--joint": joint}, choices=_JOINTS)
+    several = "clearance of one of several joints, e.g. 23='0.1 mm'; instead of --clearance"
+    opt.add(parser, {"--at JOINT=SIZE": several}, action="append", default=[])
+    link = {"--link LINK": "coupler, instead of the link that gives the output"}
+    opt.add(parser, link | opt.angles("361 over a turn, or what the crank reaches"))
 
 
 def _clearance(options: argparse.Namespace) -> int:
-    import numpy as np
+    """Free movement of follower, slider or rod that clearance at the joints leaves.
 
-    from ..linkages.clearance import clearance_range
-
+    elastolink clearance smith_1972_10_8_10_10 --clearance '0.1 in' --plot fig10.png
+    elastolink clearance smith_1972_2122 --at 23='0.1 mm' --at 34='0.05 mm'
+    """
     cases = _cases(options)
     theta = None
     if options.angles is not None:
-        theta = np.array(opt.values(options.angles, "angle", "--angles"))
+        theta = opt.values(options.angles, "angle", "--angles")
     linkage: Any = opt.load(options).mechanism()
     found = [
-        clearance_range(linkage, size, theta, joint=joint, link=options.link)
+        linkages.clearance_range(linkage, size, theta, joint=joint, link=options.link)
         for _, size, joint in cases
     ]
 
@@ -77,7 +55,10 @@ def _clearance(options: argparse.Namespace) -> int:
 
     if len(found) == 1:
         return opt.finish(options, found[0], _lines(found[0]), draw)
-    return _finish_all(options, found, draw)
+    opt.draw_into(options, draw)
+    content = {"ranges": [result.to_dict() for result in found]}
+    opt.say(options, content, "\n\n".join("\n".join(_lines(result)) for result in found))
+    return opt.exit_status(options, [result.checks for result in found])
 
 
 def _cases(options: argparse.Namespace) -> list[tuple[str, Any, str | None]]:
@@ -97,39 +78,29 @@ def _cases(options: argparse.Namespace) -> list[tuple[str, Any, str | None]]:
 
 def _by_joint(texts: Sequence[str]) -> dict[str, float]:
     found = {}
+    expected = f"JOINT=SIZE, JOINT one of {', '.join(_JOINTS)}"
     for text in texts:
-        joint, sign, size = (part.strip() for part in text.partition("="))
-        if not sign or joint not in _JOINTS:
-            expected = f"JOINT=SIZE, JOINT one of {', '.join(_JOINTS)}"
-            raise bad("--at", repr(text), expected, "write it like --at 23='0.1 mm'")
+        joint, size = opt.pair(text, "--at", expected, "23='0.1 mm'")
+        if joint not in _JOINTS:
+            raise bad("--at", repr(text), expected, "write --at 23='0.1 mm'")
         found[joint] = opt.quantity(size, "length", "--at")
     return found
-
-
-def _finish_all(options: argparse.Namespace, found: Sequence[ClearanceRange], draw: Any) -> int:
-    """Write several results: one table each, or a JSON list, and one picture."""
-    opt.draw_into(options, draw)
-    if options.json:
-        opt.print_json({"ranges": [result.to_dict() for result in found]})
-    else:
-        print("\n\n".join("\n".join(_lines(result)) for result in found))
-    return opt.exit_status(options, [result.checks for result in found])
 
 
 def _lines(found: ClearanceRange) -> list[str]:
     """Return the extremes over the crank's range, and where the linkage can fold."""
     import numpy as np
 
-    scale, unit = (1.0, "m") if found.unit == "m" else (180.0 / math.pi, "deg")
+    scale, unit = (1.0, "m") if found.unit == "m" else (degrees(1.0), "deg")
     sizes = ", ".join(f"{joint}: {size:.6g} m" for joint, size in found.clearances.items())
     rows = [
-        (word, f"{math.degrees(extreme.theta2):.2f}", f"{scale * extreme.width:.6g}")
+        (word, f"{degrees(extreme.theta2):.2f}", f"{scale * extreme.width:.6g}")
         for word, extreme in (("greatest", found.greatest), ("least", found.least))
     ]
     header = (f"free movement of the {found.link}", "crank angle [deg]", f"width [{unit}]")
     lines = [*_table(found), "", f"clearance at {sizes}", *opt.table(header, rows)]
     if np.any(found.folds):
-        first = math.degrees(float(np.ravel(found.theta2)[np.argmax(np.ravel(found.folds))]))
+        first = degrees(float(np.ravel(found.theta2)[np.argmax(np.ravel(found.folds))]))
         lines.append(
             f"at {int(np.sum(found.folds))} of {found.folds.size} angles, the first at"
             f" {first:.4g} deg, the clearance lets the linkage pass into its other assembly"

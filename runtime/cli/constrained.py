@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from math import inf, pi
+from math import pi
 from typing import TYPE_CHECKING
 
 from ..core.errors import bad
@@ -23,7 +23,6 @@ def is_constrained(scene: Scene) -> bool:
 
 def at_speed(options: argparse.Namespace, scene: Scene) -> FreeFreeRod:
     """Return the scene's system at the one crank speed of the option or of the scene."""
-    from ..scenes import load_scene
     from .linkages import speed_of
 
     if options.speed is not None and ":" in options.speed:
@@ -31,10 +30,8 @@ def at_speed(options: argparse.Namespace, scene: Scene) -> FreeFreeRod:
         raise bad(
             "--speed", repr(options.speed), "one speed: each has its own periodic motion", fix
         )
-    speed = speed_of(options, scene)
-    changes = opt.settings(options.set)
-    found = load_scene(options.scene, overrides={**changes, "operation.speed": speed})
-    system: FreeFreeRod = found.system()  # type: ignore[assignment]
+    moved = opt.load(options, **{"operation.speed": speed_of(options, scene)})
+    system: FreeFreeRod = moved.system()  # type: ignore[assignment]
     return system
 
 
@@ -79,13 +76,10 @@ def simulate(options: argparse.Namespace, scene: Scene) -> int:
     if options.method not in (None, "collocation"):
         raise bad("--method", repr(options.method), "collocation alone", "leave it out")
     rod = at_speed(options, scene)
-    revolutions = options.revolutions
-    if not 0 < revolutions < inf:
-        raise bad("--revolutions", revolutions, "a finite number above 0", "correct it")
     result = constrained_motion(
         rod,
-        span=revolutions * (2.0 * pi / abs(rod.speed)),
-        samples=max(1, round(360 * revolutions)),
+        span=options.revolutions * (2.0 * pi / abs(rod.speed)),
+        samples=max(1, round(360 * options.revolutions)),
         progress=opt.progress(options),
     )
     norms = [

@@ -5,109 +5,59 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
+from .. import linkages
 from ..core.errors import bad
 from . import options as opt
-from .linkages import speed_of
+from .linkages import animation, speed_of
 
 if TYPE_CHECKING:
     from ..linkages.curves import CouplerCurve
     from ..linkages.harmonic_analysis import Source
-    from ..linkages.linkage import Linkage
     from ..scenes import Scene
 
 
 def add(commands: Any) -> None:
     """Add the two subcommands."""
-    _add_curve(commands)
-    _add_harmonics(commands)
+    curve = opt.command(commands, "curve", _curve)
+    place = (
+        "place in the link, from its first joint: plain numbers in lengths of the link, or with "
+        "units, '6 in,2 in'; default %(default)s"
+    )
+    opt.add(curve, {"--point ALONG,ACROSS": place}, default="0.5,0")
+    opt.add(curve, {"--link NAME": "moving link; default coupler, or the rod"})
+    opt.add(curve, {"--points N": "positions; default %(default)s"}, type=int, default=720)
+    circuit = "1 for the other assembly of a crank that turns, or its other range; default 0"
+    opt.add(curve, {"--circuit N": circuit}, type=int, default=0)
+    opt.add(curve, {"--animate FILE": "write the motion as a .gif file"})
 
-
-def _add_curve(commands: Any) -> None:
-    curve = opt.command(
-        commands,
-        "curve",
-        _curve,
-        summary="Path of a point of a moving link: length, area, cusps and double points.",
-        example=(
-            "elastolink curve smith_1972_2122 --point 0.5,-0.75 --plot curve.png\n"
-            "  elastolink curve slider_crank_example --point 0.5,0.2 --animate motion.gif"
-        ),
-    )
-    curve.add_argument(
-        "--point",
-        default="0.5,0",
-        metavar="ALONG,ACROSS",
-        help="place in the link, from its first joint: plain numbers in lengths of the link, or "
-        "with units, '6 in,2 in'; default %(default)s",
-    )
-    curve.add_argument("--link", metavar="NAME", help="moving link; default coupler, or the rod")
-    curve.add_argument(
-        "--points", type=int, default=720, metavar="N", help="positions; default %(default)s"
-    )
-    curve.add_argument(
-        "--circuit",
-        type=int,
-        default=0,
-        metavar="N",
-        help="1 for the other assembly of a crank that turns, or its other range; default 0",
-    )
-    curve.add_argument("--animate", metavar="FILE", help="write the motion as a .gif file")
-
-
-def _add_harmonics(commands: Any) -> None:
-    harmonics = opt.command(
-        commands,
-        "harmonics",
-        _harmonics,
-        summary="Harmonics of any place, rate or force over a turn of the crank.",
-        example=(
-            "elastolink harmonics smith_1972_10_8_10_10 --of theta4 --plot fig7.png\n"
-            "  elastolink harmonics smith_1972_12_6_12_12 --of torque --speed '10 rad/s'"
-        ),
-    )
-    harmonics.add_argument(
-        "--of",
-        required=True,
-        metavar="NAME",
-        help="a place or rate (theta4, omega3, position ...) or a force (x34, torque ...)",
-    )
-    harmonics.add_argument(
-        "--order", type=int, default=8, metavar="N", help="highest harmonic; default %(default)s"
-    )
-    harmonics.add_argument(
-        "--accuracy",
-        type=float,
-        metavar="EPS",
-        help="of each coefficient, over the largest value; default 1e-12",
-    )
-    harmonics.add_argument(
-        "--speed",
-        metavar="SPEED",
-        help="constant crank speed for forces, e.g. '195 rpm'; default operation.speed",
-    )
+    series = opt.command(commands, "harmonics", _harmonics)
+    of = "a place or rate (theta4, omega3, position ...) or a force (x34, torque ...)"
+    opt.add(series, {"--of NAME": of}, required=True)
+    opt.add(series, {"--order N": "highest harmonic; default %(default)s"}, type=int, default=8)
+    accuracy = "of each coefficient, over the largest value; default 1e-12"
+    opt.add(series, {"--accuracy EPS": accuracy}, type=float)
+    speed = "constant crank speed for forces, e.g. '195 rpm'; default operation.speed"
+    opt.add(series, {"--speed SPEED": speed})
 
 
 def _curve(options: argparse.Namespace) -> int:
-    if options.animate is not None:
-        from ..linkages.pictures import check_animation_path
+    """Path of a point of a moving link: length, area, cusps and double points.
 
-        check_animation_path(options.animate)
+    elastolink curve smith_1972_2122 --point 0.5,-0.75 --plot curve.png
+    elastolink curve slider_crank_example --point 0.5,0.2 --animate motion.gif
+    """
+    write = animation(options)
     linkage = opt.load(options).mechanism()
     link = options.link or ("coupler" if "coupler" in linkage.links else linkage.links[-1])
     along, across = _point(options.point, linkage, link)
-    from ..linkages.curves import coupler_curve
-
-    curve = coupler_curve(
+    curve = linkages.coupler_curve(
         linkage, along, across, link=link, points=options.points, circuit=options.circuit
     )
-    if options.animate is not None:
-        from ..linkages.pictures import animate
-
-        animate(linkage, options.animate, curves=(curve,), circuit=options.circuit)
+    write(linkage, curves=(curve,), circuit=options.circuit)
     return opt.finish(options, curve, _described(curve))
 
 
-def _point(text: str, linkage: Linkage, link: str) -> tuple[float, float]:
+def _point(text: str, linkage: linkages.Linkage, link: str) -> tuple[float, float]:
     """Return the place of a point in its link [m]."""
     parts = text.split(",")
     if len(parts) != 2:
@@ -117,7 +67,7 @@ def _point(text: str, linkage: Linkage, link: str) -> tuple[float, float]:
     return _coordinate(parts[0], linkage, link), _coordinate(parts[1], linkage, link)
 
 
-def _coordinate(text: str, linkage: Linkage, link: str) -> float:
+def _coordinate(text: str, linkage: linkages.Linkage, link: str) -> float:
     try:
         share = float(text)
     except ValueError:
@@ -154,12 +104,14 @@ def _described(curve: CouplerCurve) -> list[str]:
 
 
 def _harmonics(options: argparse.Namespace) -> int:
-    scene = opt.load(options)
-    source = _source(options, scene)
-    given = {} if options.accuracy is None else {"accuracy": options.accuracy}
-    from ..linkages import harmonics
+    """Harmonics of any place, rate or force over a turn of the crank.
 
-    found = harmonics(source, order=options.order, **given)
+    elastolink harmonics smith_1972_10_8_10_10 --of theta4 --plot fig7.png
+    elastolink harmonics smith_1972_12_6_12_12 --of torque --speed '10 rad/s'
+    """
+    source = _source(options, opt.load(options))
+    given = {} if options.accuracy is None else {"accuracy": options.accuracy}
+    found = linkages.harmonics(source, order=options.order, **given)
     lines = opt.columns(
         ("harmonic", "", range(len(found.a))),
         ("cosine", ".12g", found.a),
@@ -174,11 +126,9 @@ def _harmonics(options: argparse.Namespace) -> int:
 
 def _source(options: argparse.Namespace, scene: Scene) -> Source:
     """Return what is to be analysed: a field of the motion, or else a force."""
-    import numpy as np
-
     linkage = scene.mechanism()
     linkage.require_full_turn()
-    motion = linkage.motion(np.zeros(1))
+    motion = linkage.motion([0.0])
     known = [*motion.places, *motion.rates]
     if options.of in known:
         opt.refuse_unused(options, ("speed",), "a force: places and rates are over the speed")

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import argparse
+from math import pi
 from typing import TYPE_CHECKING, Any
 
+from .. import rigid
 from ..core.errors import bad
 from . import options as opt
 
 if TYPE_CHECKING:
-    from ..rigid import RunUp, TorqueLine
     from ..scenes import Scene
 
 _REVOLUTIONS = 10.0
@@ -17,41 +18,29 @@ _REVOLUTIONS = 10.0
 
 def add(commands: Any) -> None:
     """Add the subcommand."""
-    parser = opt.command(
-        commands,
-        "run-up",
-        _run_up,
-        summary="How a machine of rigid links runs under its motor, from rest or a given speed.",
-        example=(
-            "elastolink run-up slider_crank_example --revolutions 20 --plot run_up.png\n"
-            "  elastolink run-up slider_crank_example --torque '5 N*m' --duration '0.5 s'"
-        ),
+    parser = opt.command(commands, "run-up", _run_up)
+    opt.add(
+        parser,
+        {
+            "--torque TORQUE": "constant motor torque, e.g. '5 N*m'; default: the scene's motor",
+            "--stall-torque TORQUE": "motor torque at rest; default motor.stall_torque",
+            "--no-load-speed SPEED": "speed at which the torque has fallen to zero, e.g. '1500"
+            " rpm', rad/s without a unit; default motor.no_load_speed",
+            "--duration TIME": "where the run ends, e.g. '2 s'",
+            "--start-speed SPEED": "crank speed at the start, e.g. '100 rpm'; default 0",
+            "--start-angle ANGLE": "crank angle at the start, e.g. '30 deg'; default 0",
+        },
     )
-    quantities = {
-        "torque": ("TORQUE", "constant motor torque, e.g. '5 N*m'; default: the scene's motor"),
-        "stall-torque": ("TORQUE", "motor torque at rest; default motor.stall_torque"),
-        "no-load-speed": (
-            "SPEED",
-            "speed at which the torque has fallen to zero, e.g. '1500 rpm', rad/s without a unit;"
-            " default motor.no_load_speed",
-        ),
-        "duration": ("TIME", "where the run ends, e.g. '2 s'"),
-        "start-speed": ("SPEED", "crank speed at the start, e.g. '100 rpm'; default 0"),
-        "start-angle": ("ANGLE", "crank angle at the start, e.g. '30 deg'; default 0"),
-    }
-    for name, (kind, told) in quantities.items():
-        parser.add_argument(f"--{name}", metavar=kind, help=told)
-    parser.add_argument(
-        "--revolutions",
-        type=float,
-        metavar="N",
-        help=f"where the run ends; default {_REVOLUTIONS:g} where there is no --duration",
-    )
+    end = f"where the run ends; default {_REVOLUTIONS:g} where there is no --duration"
+    opt.add(parser, {"--revolutions N": end}, type=float)
 
 
 def _run_up(options: argparse.Namespace) -> int:
-    from ..rigid import run_up
+    """How a machine of rigid links runs under its motor, from rest or a given speed.
 
+    elastolink run-up slider_crank_example --revolutions 20 --plot run_up.png
+    elastolink run-up slider_crank_example --torque '5 N*m' --duration '0.5 s'
+    """
     scene = opt.load(options)
     machine = scene.machine()
     torque = _torque(options, scene)
@@ -59,7 +48,7 @@ def _run_up(options: argparse.Namespace) -> int:
     revolutions = options.revolutions
     if revolutions is None and duration is None:
         revolutions = _REVOLUTIONS
-    found = run_up(
+    found = rigid.run_up(
         machine,
         torque,
         revolutions=revolutions,
@@ -71,10 +60,8 @@ def _run_up(options: argparse.Namespace) -> int:
     return opt.finish(options, found, _lines(found))
 
 
-def _torque(options: argparse.Namespace, scene: Scene) -> TorqueLine | float:
+def _torque(options: argparse.Namespace, scene: Scene) -> rigid.TorqueLine | float:
     """Return what drives: the constant torque, or the torque line of options and scene."""
-    from ..rigid import TorqueLine
-
     constant = opt.given(options, "torque", "moment")
     stall = opt.given(options, "stall-torque", "moment")
     free = opt.given(options, "no-load-speed", "frequency")
@@ -90,13 +77,11 @@ def _torque(options: argparse.Namespace, scene: Scene) -> TorqueLine | float:
         missing = "--stall-torque" if stall is None else "--no-load-speed"
         fix = "give --torque '5 N*m', or --stall-torque with --no-load-speed"
         raise bad(missing, "nothing, and none in the scene's [motor]", "a motor", fix)
-    return TorqueLine(stall, free)
+    return rigid.TorqueLine(stall, free)
 
 
-def _lines(found: RunUp) -> list[str]:
+def _lines(found: rigid.RunUp) -> list[str]:
     """Return the table of a run, and how it ended."""
-    from math import pi
-
     speed, fluctuation = float(found.speed[-1]), found.fluctuation
     balance = found.checks["energy less work, relative"].value
     rows = [

@@ -6,7 +6,7 @@ import pickle
 import re
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
@@ -215,14 +215,12 @@ def explain(
     speed = None if system is None else _speed(loaded, system)
     counted = _counted({**request, "speed": speed})
     known = _known()
-    costs = {
-        entry.module: read_cost(folder / f"{entry.module}.py") for folder, entry in known.values()
-    }
-    entries = {key: entry for key, (_, entry) in known.items()}
-    stages = {
-        name: Stage(**counts, operations=_operations(counts["points"], costs))
-        for name, counts in counted.items()
-    }
+    costs = {entry.module: cost for entry, cost in known.values()}
+    each = {f"{name}.{f}": n for name, cost in costs.items() for f, n in cost.functions.items()}
+    stages = {}
+    for name, counts in counted.items():
+        operations = sum(count * each.get(called, 0) for called, count in counts["points"].items())
+        stages[name] = Stage(**counts, operations=operations)
     called = {name for stage in stages.values() for name in stage.calls}
     serving = sorted({name.rpartition(".")[0] for name in called} & set(costs))
     evaluated: dict[str, Any] = {}
@@ -230,18 +228,17 @@ def explain(
         evaluated = _of_linear(system, 1.0 if speed is None else speed)
     elif system is not None:
         evaluated = {"array_kinds": _filled_entries(serving)}
-    unwanted = [
-        package
+    unwanted = sum(
+        package in _UNWANTED and _BROUGHT.get(package) not in stage.heavy
         for stage in stages.values()
         for package in stage.heavy
-        if package in _UNWANTED and _BROUGHT.get(package) not in stage.heavy
-    ]
+    )
     return Explanation(
         scene=loaded.name,
         model=loaded.model_spec().name(),
         terms=_terms(loaded),
         outputs=_outputs(loaded),
-        emitted={name: _use(name, loaded, entries, costs, called) for name in serving},
+        emitted={name: _use(name, loaded, known, called) for name in serving},
         packaged=(
             len(costs),
             sum(cost.size for cost in costs.values()),
@@ -253,7 +250,7 @@ def explain(
         error=0.0,
         error_norm="counts, exact",
         error_kind="bound",
-        checks={"packages that load and solve nothing": Check(float(len(unwanted)), 0.0)},
+        checks={"packages that load and solve nothing": Check(float(unwanted), 0.0)},
         provenance=provenance({"scene": loaded.name, "scene_digest": loaded.digest()}),
     )
 
@@ -297,13 +294,14 @@ def _counted(request: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     return stages
 
 
-def _known() -> dict[str, tuple[Path, Entry]]:
-    """Return folder and entry of every emitted module that can be found, by spec key."""
-    found: dict[str, tuple[Path, Entry]] = {}
+def _known() -> dict[str, tuple[Entry, EmittedUse]]:
+    """Return entry and cost of every emitted module that can be found, by spec key."""
+    found: dict[str, tuple[Entry, EmittedUse]] = {}
     for folder in search_path():
         for key, entry in read_manifest(folder).items():
-            if key not in found and (folder / f"{entry.module}.py").is_file():
-                found[key] = (folder, entry)
+            file = folder / f"{entry.module}.py"
+            if key not in found and file.is_file():
+                found[key] = entry, read_cost(file)
     return found
 
 
@@ -322,34 +320,20 @@ def read_cost(path: Path) -> EmittedUse:
     return EmittedUse(len(content), sum(counts.values()), counts, terms)
 
 
-def _operations(points: Mapping[str, int], costs: Mapping[str, EmittedUse]) -> int:
-    """Return the arithmetic operations of emitted functions at so many points each."""
-    total = 0
-    for name, count in points.items():
-        module, _, function = name.rpartition(".")
-        total += count * (costs[module].functions.get(function, 0) if module in costs else 0)
-    return total
-
-
 def _use(
-    name: str,
-    scene: Scene,
-    entries: Mapping[str, Entry],
-    costs: Mapping[str, EmittedUse],
-    called: set[str],
+    name: str, scene: Scene, known: Mapping[str, tuple[Entry, EmittedUse]], called: set[str]
 ) -> EmittedUse:
     """Put a module beside the one of the same formulation that leaves nothing out."""
-    spec = next(entry.spec for entry in entries.values() if entry.module == name)
+    spec, cost = next((entry.spec, cost) for entry, cost in known.values() if entry.module == name)
     wanted = scene.model_spec()
     if spec == wanted.with_(drop=(), modes=spec.modes):
         spec = spec.with_(drop=wanted.drop)  # a general module leaves the terms out itself
-    whole = entries.get(spec.with_(drop=(), balanced=(), outputs=()).key())
-    full = costs[whole.module] if whole else None
+    _, full = known.get(spec.with_(drop=(), balanced=(), outputs=()).key(), (None, None))
     return replace(
-        costs[name],
+        cost,
         kept=tuple(term for term in sorted(_choices(spec)) if term not in spec.drop),
         dropped=spec.drop,
-        called=tuple(n for n in costs[name].functions if f"{name}.{n}" in called),
+        called=tuple(n for n in cost.functions if f"{name}.{n}" in called),
         full_size=full.size if full else None,
         full_operations=full.operations if full else None,
     )
@@ -431,23 +415,30 @@ def _filled_entries(serving: list[str]) -> dict[str, str]:
     }
 
 
-def _listed(names: list[str]) -> str:
+def _listed(names: Iterable[str]) -> str:
     return ", ".join(names) or "none"
 
 
-def _emission_lines(found: Explanation) -> Iterator[str]:
-    def of_kind(table: Mapping[str, str], kind: str) -> str:
-        return _listed([name for name, own in table.items() if own == kind])
+def _by_kind(kinds: Mapping[str, str]) -> dict[str, list[str]]:
+    """Return the names of each kind."""
+    found: dict[str, list[str]] = {}
+    for name, kind in kinds.items():
+        found.setdefault(kind, []).append(name)
+    return found
 
-    kept, dropped = (of_kind(found.terms, kind) for kind in ("kept", "dropped"))
+
+def _emission_lines(found: Explanation) -> Iterator[str]:
+    kinds = _by_kind(found.terms) | _by_kind(found.outputs)
+    told = {
+        kind: _listed(kinds.get(kind, ())) for kind in ("kept", "dropped", "wanted", "not wanted")
+    }
     yield "derivation"
-    yield f"  terms kept: {kept}; left out: {dropped}"
+    yield f"  terms kept: {told['kept']}; left out: {told['dropped']}"
     for name, use in found.emitted.items():
         if use.left_out:
             yield f"  left out by the formulation of {name}: {', '.join(use.left_out)}"
     if found.outputs:
-        wanted, rest = (of_kind(found.outputs, kind) for kind in ("wanted", "not wanted"))
-        yield f"  outputs wanted: {wanted}; not wanted: {rest}"
+        yield f"  outputs wanted: {told['wanted']}; not wanted: {told['not wanted']}"
     count, size, operations = found.packaged
     uses = found.emitted.values()
     yield "emission"
@@ -499,9 +490,7 @@ def _evaluation_lines(found: Explanation) -> Iterator[str]:
             text = f"{function} at {points} point{'s' * (points > 1)}{more}"
             calls.setdefault(module, []).append(text)
         yield from (f"    {module}: {', '.join(functions)}" for module, functions in calls.items())
-    kinds: dict[str, list[str]] = {}
-    for name, kind in found.array_kinds.items():
-        kinds.setdefault(kind, []).append(name)
+    kinds = _by_kind(found.array_kinds)
     if kinds:
         yield "  arrays of the system" + ("" if found.powers else ", entries that are evaluated")
     yield from (f"    {kind}: {', '.join(names)}" for kind, names in kinds.items())

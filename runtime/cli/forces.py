@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import math
 from collections.abc import Mapping
 from dataclasses import asdict
+from math import degrees
 from typing import TYPE_CHECKING, Any
 
+from .. import rigid
 from ..core.errors import bad
 from . import options as opt
 from .linkages import WHOLE_TURN, angles_of, drive_of, drive_options
@@ -16,57 +17,38 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ..core.results import Result
-    from ..rigid import ForcePeak, Machine
 
 _JOINTS = ("12", "23", "34", "41", "frame", "torque", "moment")
 
 
 def add(commands: Any) -> None:
     """Add the subcommand."""
-    forces = opt.command(
-        commands,
-        "forces",
-        _forces,
-        summary="Pin forces, driving torque, shaking force and moment of rigid links.",
-        example=(
-            "elastolink forces smith_1972_12_6_12_12 --speed '10 rad/s' --joint 34 --plot f34.png\n"
-            "  elastolink forces slider_crank_example --speed '1500 rpm' --fluctuation 0.02"
-        ),
-    )
-    drive_options(forces, "default operation.speed")
-    forces.add_argument(
-        "--angles",
-        metavar="START:STOP:COUNT[UNIT]",
-        help=f"crank angles; default {WHOLE_TURN}, or the range that the crank reaches",
-    )
-    forces.add_argument(
-        "--joint",
-        choices=_JOINTS,
-        help="what --plot draws: a polar diagram, or the torque or moment over the angle",
-    )
-    forces.add_argument(
-        "--fluctuation",
-        type=float,
-        metavar="COEFF",
-        help="size a flywheel for this coefficient of speed fluctuation, e.g. 0.02",
-    )
+    forces = opt.command(commands, "forces", _forces)
+    opt.add(forces, drive_options("default operation.speed"))
+    opt.add(forces, opt.angles(f"{WHOLE_TURN}, or the range that the crank reaches"))
+    drawn = "what --plot draws: a polar diagram, or the torque or moment over the angle"
+    opt.add(forces, {"--joint": drawn}, choices=_JOINTS)
+    wheel = "size a flywheel for this coefficient of speed fluctuation, e.g. 0.02"
+    opt.add(forces, {"--fluctuation COEFF": wheel}, type=float)
 
 
 def _forces(options: argparse.Namespace) -> int:
-    import numpy as np
+    """Pin forces, driving torque, shaking force and moment of rigid links.
 
-    from ..rigid import force_peaks, rigid_forces
-
+    elastolink forces smith_1972_12_6_12_12 --speed '10 rad/s' --joint 34 --plot f34.png
+    elastolink forces slider_crank_example --speed '1500 rpm' --fluctuation 0.02
+    """
     if options.plot is None:
         opt.refuse_unused(options, ("joint",), "--plot FILE beside it")
     scene = opt.load(options)
     machine = scene.machine()
     speed, acceleration = drive_of(options, scene)
     # At the folds themselves the forces are infinite: stay a hundredth of the range away.
-    theta = np.array(angles_of(options, machine.linkage, margin=0.01))
-    found = rigid_forces(machine, theta, speed, acceleration)
+    theta = angles_of(options, machine.linkage, margin=0.01)
+    found = rigid.rigid_forces(machine, theta, speed, acceleration)
     even, numbers, beside = _evenness(machine, speed, options.fluctuation)
-    peaks = force_peaks(machine, speed, acceleration, span=(float(theta[0]), float(theta[-1])))
+    span = float(theta[0]), float(theta[-1])
+    peaks = rigid.force_peaks(machine, speed, acceleration, span=span)
     lines = [*_table(peaks), "", *even]
     more = {"peaks": {name: asdict(peak) for name, peak in peaks.items()}, **numbers}
 
@@ -85,22 +67,20 @@ _LABELS = {
 }
 
 
-def _table(peaks: Mapping[str, ForcePeak]) -> list[str]:
+def _table(peaks: Mapping[str, rigid.ForcePeak]) -> list[str]:
     """Return the greatest size of each force, and where."""
-    rows = []
-    for name, peak in peaks.items():
-        # No minus before a zero.
-        angle = f"{math.degrees(peak.crank_angle):z.2f}"
-        rows.append((_LABELS[name], f"{peak.value:z.6g}", angle))
-    return opt.table(("quantity", "peak", "crank angle [deg]"), rows)
+    # No minus before a zero.
+    return opt.columns(
+        ("quantity", "", [_LABELS[name] for name in peaks]),
+        ("peak", "z.6g", [peak.value for peak in peaks.values()]),
+        ("crank angle [deg]", "z.2f", [degrees(peak.crank_angle) for peak in peaks.values()]),
+    )
 
 
 def _evenness(
-    machine: Machine, speed: float, wanted: float | None
+    machine: rigid.Machine, speed: float, wanted: float | None
 ) -> tuple[list[str], dict[str, Any], tuple[Result, ...]]:
     """Return mean torque, energy fluctuation and flywheel in lines, in numbers, as results."""
-    from ..rigid import flywheel_inertia, torque_fluctuation
-
     lacking = None
     if not machine.linkage.crank_turns:
         lacking = "a crank that does not turn fully", "one that does", "change a length"
@@ -110,7 +90,7 @@ def _evenness(
         raise bad("--fluctuation", *lacking)
     if lacking:
         return [f"{lacking[0]}: no mean torque over a revolution"], {}, ()
-    steady = torque_fluctuation(machine, speed)
+    steady = rigid.torque_fluctuation(machine, speed)
     size = float(abs(steady.torque).max())
     # Round-off of a mean that is zero reads as zero.
     mean = steady.mean_torque if abs(steady.mean_torque) > 1e-14 * size else 0.0
@@ -125,7 +105,7 @@ def _evenness(
     }
     if wanted is None:
         return lines, numbers, (steady,)
-    wheel = flywheel_inertia(machine, speed, wanted)
+    wheel = rigid.flywheel_inertia(machine, speed, wanted)
     lines.append(
         f"flywheel {wheel.inertia:.6g} kg m^2 for a coefficient of {wheel.fluctuation:.4g}"
         f" (first order {wheel.first_order:.6g})"

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from .. import periodic
 from ..core.errors import BadInput, bad
 from . import constrained
 from . import options as opt
 
 if TYPE_CHECKING:
+    from ..core.families import Array
     from ..linkages import Linkage, Motion
     from ..scenes import Scene
 
@@ -20,52 +23,19 @@ WHOLE_TURN = "0:360:721deg"
 
 def add(commands: Any) -> None:
     """Add the two subcommands."""
-    kinematics = opt.command(
-        commands,
-        "kinematics",
-        _kinematics,
-        summary="Angles and places, speeds and accelerations of all links, in closed form.",
-        example=(
-            "elastolink kinematics smith_1972_2122 --angles 0:360:13deg\n"
-            "  elastolink kinematics smith_1972_2122 --set links.assembly=crossed --plot a.png\n"
-            "  elastolink kinematics slider_crank_example --speed '1500 rpm' --animate engine.gif"
-        ),
+    kinematics = opt.command(commands, "kinematics", _kinematics)
+    opt.add(kinematics, opt.angles("%(default)s"), default="0:360:361deg")
+    drive = drive_options("without a drive in option or scene, rates are over it")
+    opt.add(kinematics, {**drive, "--animate FILE": "draw the moving linkage: a .gif file"})
+
+    simulate = opt.command(commands, "simulate", _simulate)
+    opt.add(simulate, speed_option("default operation.speed"))
+    opt.add(simulate, {"--revolutions N": "default %(default)s"}, type=float, default=2.0)
+    opt.add(
+        simulate, {"--method NAME": "auto (default), or SciPy's RK45, DOP853, Radau, BDF, LSODA"}
     )
-    kinematics.add_argument(
-        "--angles",
-        default="0:360:361deg",
-        metavar="START:STOP:COUNT[UNIT]",
-        help="crank angles; default %(default)s",
-    )
-    drive_options(kinematics, "without a drive in option or scene, rates are over it")
-    kinematics.add_argument(
-        "--animate", metavar="FILE", help="draw the moving linkage: a .gif file"
-    )
-    simulate = opt.command(
-        commands,
-        "simulate",
-        _simulate,
-        summary="Vibration of a flexible link in the time domain.",
-        example=(
-            "elastolink simulate smith_1972_5152_sixteenth_inch --speed '195 rpm'"
-            " --revolutions 3 --method DOP853 --plot wave.png"
-        ),
-    )
-    speed_option(simulate, "default operation.speed")
-    simulate.add_argument(
-        "--revolutions", type=float, default=2.0, metavar="N", help="default %(default)s"
-    )
-    simulate.add_argument(
-        "--method",
-        metavar="NAME",
-        help="auto (default), or SciPy's RK45, DOP853, Radau, BDF, LSODA",
-    )
-    simulate.add_argument(
-        "--initial",
-        type=_pair,
-        metavar="Q,QD",
-        help="coordinates and their rates [1/s] at the start, e.g. 0.001,0; default at rest",
-    )
+    start = "coordinates and their rates [1/s] at the start, e.g. 0.001,0; default at rest"
+    opt.add(simulate, {"--initial Q,QD": start}, type=_pair)
 
 
 def _pair(text: str) -> tuple[float, float]:
@@ -80,23 +50,31 @@ def _pair(text: str) -> tuple[float, float]:
 
 
 def _kinematics(options: argparse.Namespace) -> int:
-    import numpy as np
+    """Angles and places, speeds and accelerations of all links, in closed form.
 
-    if options.animate is not None:
-        from ..linkages.pictures import animate, check_animation_path
-
-        check_animation_path(options.animate)
-    theta = np.array(opt.values(options.angles, "angle", "--angles"))
+    elastolink kinematics smith_1972_2122 --angles 0:360:13deg
+    elastolink kinematics smith_1972_2122 --set links.assembly=crossed --plot a.png
+    elastolink kinematics slider_crank_example --speed '1500 rpm' --animate engine.gif
+    """
+    write = animation(options)
+    theta = opt.values(options.angles, "angle", "--angles")
     scene = opt.load(options)
     linkage = scene.mechanism()
     given = options.speed is not None or options.acceleration is not None
-    if given or scene.get("operation.acceleration", 0.0):
-        motion = linkage.motion(theta, *drive_of(options, scene))
-    else:
-        motion = linkage.motion(theta)
-    if options.animate is not None:
-        animate(linkage, options.animate)
+    driven = given or scene.get("operation.acceleration", 0.0)
+    motion = linkage.motion(theta, *(drive_of(options, scene) if driven else ()))
+    write(linkage)
     return opt.finish(options, motion, _table(motion))
+
+
+def animation(options: argparse.Namespace) -> Callable[..., object]:
+    """Return what writes ``--animate``, if that was given; a wrong file is refused here."""
+    if options.animate is None:
+        return lambda linkage, **_: None
+    from ..linkages.pictures import animate, check_animation_path
+
+    path = check_animation_path(options.animate)
+    return lambda linkage, **more: animate(linkage, path, **more)
 
 
 def _table(motion: Motion) -> list[str]:
@@ -124,7 +102,7 @@ def _table(motion: Motion) -> list[str]:
     return lines
 
 
-def angles_of(options: argparse.Namespace, linkage: Linkage, *, margin: float) -> list[float]:
+def angles_of(options: argparse.Namespace, linkage: Linkage, *, margin: float) -> Array:
     """Return the crank angles [rad] of ``--angles``: by default a turn, or what the crank reaches.
 
     At either end of that range, where the linkage folds, a share of it (``margin``) is left out.
@@ -137,25 +115,21 @@ def angles_of(options: argparse.Namespace, linkage: Linkage, *, margin: float) -
     return opt.spaced(low + inset, high - inset, 721)
 
 
-def speed_option(parser: argparse.ArgumentParser, default: str) -> None:
-    """Add the crank speed; ``default`` says what holds without it."""
-    parser.add_argument(
-        "--speed",
-        metavar="SPEED",
-        help=f"crank speed, e.g. '195 rpm', rad/s without a unit; {default}",
-    )
+def speed_option(default: str) -> dict[str, str]:
+    """Return the option of the crank speed; ``default`` says what holds without it."""
+    return {"--speed SPEED": f"crank speed, e.g. '195 rpm', rad/s without a unit; {default}"}
 
 
-def drive_options(
-    parser: argparse.ArgumentParser, default: str, rest: str = "operation.acceleration"
-) -> None:
-    """Add crank speed and acceleration; ``default`` and ``rest`` say what holds without them."""
-    speed_option(parser, default)
-    parser.add_argument(
-        "--acceleration",
-        metavar="ALPHA",
-        help=f"crank acceleration, e.g. '25 rad/s**2', the unit of a plain number; default {rest}",
-    )
+def speeds_option(default: str) -> dict[str, str]:
+    """Return the option of one crank speed or many."""
+    told = f"'500 rpm', or START:STOP:COUNT[UNIT], rad/s without a unit; default {default}"
+    return {"--speed SPEED": told}
+
+
+def drive_options(default: str, rest: str = "operation.acceleration") -> dict[str, str]:
+    """Return crank speed and acceleration; ``default`` and ``rest`` hold without them."""
+    told = f"crank acceleration, e.g. '25 rad/s**2', the unit of a plain number; default {rest}"
+    return {**speed_option(default), "--acceleration ALPHA": told}
 
 
 def drive_of(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
@@ -177,10 +151,11 @@ def speed_of(options: argparse.Namespace, scene: Scene) -> float:
     return speed
 
 
-def speeds_of(options: argparse.Namespace, scene: Scene) -> list[float]:
+def speeds_of(options: argparse.Namespace, scene: Scene) -> Array:
     """Return the crank speeds [rad/s] of ``--speed``: many, one, or that of the scene."""
     if options.speed is None or ":" not in options.speed:
-        return [speed_of(options, scene)]
+        speed = speed_of(options, scene)
+        return opt.spaced(speed, speed, 1)
     speeds = opt.values(options.speed, "frequency", "--speed")
     if speeds[0] <= 0:
         raise bad("--speed", repr(options.speed), "positive speeds", "raise the lower end")
@@ -217,22 +192,24 @@ def _speed(options: argparse.Namespace, scene: Scene) -> float:
 
 
 def _simulate(options: argparse.Namespace) -> int:
+    r"""Vibration of a flexible link in the time domain.
+
+    elastolink simulate smith_1972_5152_sixteenth_inch --speed '195 rpm' --revolutions 3 \
+        --method DOP853 --plot wave.png
+    """
     if not 0 < options.revolutions <= 1e6:
         found = f"{options.revolutions:g}"
         raise bad("--revolutions", found, "a number above 0, at most 1e6", "correct it")
     scene = opt.load(options)
     if constrained.is_constrained(scene):
         return constrained.simulate(options, scene)
-    speed = 1.0 if _without_crank(scene, options) else speed_of(options, scene)
+    speed = 1.0 if without_crank(options, scene) else speed_of(options, scene)
     system = scene.linear_system()
-    from ..periodic import simulate
-
     chosen = {name: getattr(options, name) for name in ("method", "initial")}
     given = {name: value for name, value in chosen.items() if value is not None}
+    shown = opt.progress(options)
     try:
-        result = simulate(
-            system, speed, options.revolutions, **given, progress=opt.progress(options)
-        )
+        result = periodic.simulate(system, speed, options.revolutions, **given, progress=shown)
     except BadInput as error:
         fix = "give --initial Q,QD, such as --initial 0.001,0"
         told = (replace(p, fix=fix) if p.where == "initial" else p for p in error.problems)
@@ -240,6 +217,6 @@ def _simulate(options: argparse.Namespace) -> int:
     return opt.finish(options, result, [*opt.ranges(result), "", f"status: {result.message}"])
 
 
-def _without_crank(scene: Scene, options: argparse.Namespace) -> bool:
+def without_crank(options: argparse.Namespace, scene: Scene) -> bool:
     """Return True for a plain Hill equation, whose variable is the angle itself."""
     return scene.model["mechanism"] == "hill" and options.speed is None

@@ -7,8 +7,8 @@ import json
 import math
 import re
 import sys
-import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from inspect import cleandoc
 from typing import TYPE_CHECKING, Any
 
 from ..core.errors import bad
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
+    from ..core.families import Array
     from ..core.results import Check, Result
     from ..scenes import Scene
 
@@ -36,52 +37,59 @@ class HelpFormatter(argparse.RawDescriptionHelpFormatter):
 
 
 def command(
-    commands: Any,
-    name: str,
-    run: Callable[[argparse.Namespace], int],
-    *,
-    summary: str,
-    example: str,
-    scene: bool = True,
+    commands: Any, name: str, run: Callable[[argparse.Namespace], int], *, scene: bool = True
 ) -> argparse.ArgumentParser:
-    """Add a subcommand that ``run`` does, on a scene, with worked examples at its help's end."""
+    """Add a subcommand that ``run`` does, on a scene.
+
+    The docstring of ``run`` is its help: a line, and below it worked examples.
+    """
+    summary, _, examples = cleandoc(run.__doc__ or "").partition("\n\n")
     parser: argparse.ArgumentParser = commands.add_parser(
         name,
         help=summary,
         description=summary,
-        epilog=f"example:\n  {example}",
+        epilog="example:\n  " + examples.replace("\n", "\n  "),
         formatter_class=HelpFormatter,
     )
     parser.set_defaults(run=run, command=name)
-    parser.add_argument("--json", action="store_true", help="print JSON instead of text")
-    parser.add_argument("--plot", metavar="FILE", help="draw it: a .png, .svg or .pdf file")
+    switches(parser, {"--json": "print JSON instead of text"})
+    add(parser, {"--plot FILE": "draw it: a .png, .svg or .pdf file"})
     if scene:
         scene_options(parser)
     return parser
 
 
+def add(parser: argparse.ArgumentParser, told: Mapping[str, str], **common: Any) -> None:
+    """Add options of one kind, by what the help shows: ``{"--mass MASS": "of one of them"}``."""
+    for words, meaning in told.items():
+        name, *shown = words.split()
+        kind = {**common, "metavar": shown[0]} if shown else common
+        parser.add_argument(name, help=meaning, **kind)
+
+
+def switches(parser: argparse.ArgumentParser, told: Mapping[str, str]) -> None:
+    """Add options without a value."""
+    add(parser, told, action="store_true")
+
+
+def angles(default: str) -> dict[str, str]:
+    """Return the option of crank angles; ``default`` says which hold without it."""
+    return {"--angles START:STOP:COUNT[UNIT]": f"crank angles; default {default}"}
+
+
 def scene_options(parser: argparse.ArgumentParser, nargs: str | None = None) -> None:
     """Add the scene, overrides of its keys, and the folder of emitted modules."""
-    parser.add_argument(
-        "scene", nargs=nargs, metavar="SCENE", help="a built-in name or a .toml file"
-    )
-    parser.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="KEY=VALUE",
-        help="override a key, e.g. --set links.crank='0.12 m'; may be repeated",
-    )
-    parser.add_argument(
-        "--modules", metavar="DIR", help="look for emitted modules in this folder first"
-    )
+    add(parser, {"scene SCENE": "a built-in name or a .toml file"}, nargs=nargs)
+    override = "override a key, e.g. --set links.crank='0.12 m'; may be repeated"
+    add(parser, {"--set KEY=VALUE": override}, action="append", default=[])
+    add(parser, {"--modules DIR": "look for emitted modules in this folder first"})
 
 
-def load(options: argparse.Namespace) -> Scene:
-    """Return the scene that the options name, with its overrides."""
+def load(options: argparse.Namespace, **more: Any) -> Scene:
+    """Return the scene that the options name, with its overrides and ``more``."""
     from ..scenes import load_scene
 
-    return load_scene(options.scene, overrides=settings(options.set))
+    return load_scene(options.scene, overrides={**settings(options.set), **more})
 
 
 def settings(pairs: Sequence[str]) -> dict[str, Any]:
@@ -90,13 +98,16 @@ def settings(pairs: Sequence[str]) -> dict[str, Any]:
     A value that TOML can read (``3``, ``[1, 2]``, ``"15 in"``) is taken as such, any other one
     (``15 in``) as text.
     """
-    overrides = {}
-    for pair in pairs:
-        key, sign, value = pair.partition("=")
-        if not sign or not key.strip():
-            raise bad("--set", repr(pair), "KEY=VALUE", "write --set links.crank='0.12 m'")
-        overrides[key.strip()] = _value(value.strip())
-    return overrides
+    split = (pair(text, "--set", "KEY=VALUE", "links.crank='0.12 m'") for text in pairs)
+    return {key: _value(value) for key, value in split}
+
+
+def pair(text: str, where: str, form: str, example: str) -> tuple[str, str]:
+    """Return the two sides of ``NAME=VALUE``; ``form`` and ``example`` say what is wanted."""
+    name, sign, value = (part.strip() for part in text.partition("="))
+    if not sign or not name:
+        raise bad(where, repr(text), form, f"write {where} {example}")
+    return name, value
 
 
 def quantity(text: str, dimension: str, where: str) -> float:
@@ -112,7 +123,16 @@ def given(options: argparse.Namespace, name: str, dimension: str) -> float | Non
     return None if text is None else quantity(text, dimension, f"--{name}")
 
 
-def values(text: str, dimension: str, where: str) -> list[float]:
+def positive(options: argparse.Namespace, name: str, dimension: str) -> float | None:
+    """Return the quantity of an option, refused where it is not above 0; None without it."""
+    value = given(options, name, dimension)
+    if value is not None and not value > 0.0:
+        text = repr(getattr(options, name))
+        raise bad(f"--{name}", text, f"a positive {dimension}", "correct the sign")
+    return value
+
+
+def values(text: str, dimension: str, where: str) -> Array:
     """Return evenly spaced values from ``START:STOP:COUNT[UNIT]``.
 
     The unit may also stand with the ends: ``100rpm:900rpm:200``.
@@ -129,11 +149,11 @@ def values(text: str, dimension: str, where: str) -> list[float]:
     return spaced(start, stop, count)
 
 
-def spaced(start: float, stop: float, count: int) -> list[float]:
+def spaced(start: float, stop: float, count: int) -> Array:
     """Return evenly spaced values, both ends included."""
     import numpy as np
 
-    return [float(value) for value in np.linspace(start, stop, count)]
+    return np.linspace(start, stop, count)
 
 
 def picture(options: argparse.Namespace) -> Path | None:
@@ -176,11 +196,9 @@ def finish(
             # Where two have a check of one name, the one that failed is told.
             if name not in checks or (checks[name].passed and not check.passed):
                 checks[name] = check
-    if options.json:
-        passed = all(check.passed for check in checks.values())
-        print_json({**result.to_dict(), **(more or {}), "passed": passed})
-    else:
-        print("\n".join([*lines, *_verdict(result, checks)]))
+    passed = all(check.passed for check in checks.values())
+    content = {**result.to_dict(), **(more or {}), "passed": passed} if options.json else None
+    say(options, content, "\n".join([*lines, *_verdict(result, checks)]))
     return exit_status(options, [checks])
 
 
@@ -204,9 +222,15 @@ def exit_status(options: argparse.Namespace, found: Iterable[Mapping[str, Check]
     return int(bool(failed))
 
 
-def print_json(content: Any) -> None:
-    """Print JSON with sorted keys; what is not finite becomes null, for JSON has no word for it."""
-    print(json.dumps(_finite(content), sort_keys=True, indent=1, allow_nan=False))
+def say(options: argparse.Namespace, content: Any, text: str) -> int:
+    """Print the content as JSON, or else the text, and return the exit status.
+
+    Keys are sorted; what is not finite becomes null, for JSON has no word for it.
+    """
+    if options.json:
+        text = json.dumps(_finite(content), sort_keys=True, indent=1, allow_nan=False)
+    print(text)
+    return 0
 
 
 def even_rows(count: int) -> NDArray[np.intp]:
@@ -216,7 +240,7 @@ def even_rows(count: int) -> NDArray[np.intp]:
     return np.unique(np.linspace(0, count - 1, min(13, count)).round().astype(int))
 
 
-def highest(values: NDArray[np.float64], most: int = MOST_ROWS) -> NDArray[np.intp]:
+def highest(values: Array, most: int = MOST_ROWS) -> NDArray[np.intp]:
     """Return the places of the local maxima inside a row, rising, the highest ``most`` of them."""
     import numpy as np
 
@@ -286,6 +310,8 @@ def _verdict(result: Result, checks: Mapping[str, Check]) -> list[str]:
 
 
 def _value(text: str) -> Any:
+    import tomllib
+
     try:
         parsed = tomllib.loads(f"value = {text}")
     except tomllib.TOMLDecodeError:

@@ -14,26 +14,11 @@ from . import options as opt
 
 def add(commands: Any) -> None:
     """Add the subcommand."""
-    reproduce = opt.command(
-        commands,
-        "reproduce",
-        _reproduce,
-        summary="Redraw the computed figures of a document, and check the numbers that it quotes.",
-        example="elastolink reproduce smith --figure 84 --out gallery",
-        scene=False,
-    )
-    reproduce.add_argument(
-        "document",
-        nargs="?",
-        metavar="DOCUMENT",
-        help="smith, aannaque or beale; all documents by default",
-    )
-    reproduce.add_argument(
-        "--figure", metavar="N", help="one figure or table, e.g. 23, 23d, 3.8, table_coupler"
-    )
-    reproduce.add_argument(
-        "--out", default="gallery", metavar="DIR", help="folder to write; default %(default)s"
-    )
+    reproduce = opt.command(commands, "reproduce", _reproduce, scene=False)
+    document = {"document DOCUMENT": "smith, aannaque or beale; all documents by default"}
+    opt.add(reproduce, document, nargs="?")
+    opt.add(reproduce, {"--figure N": "one figure or table, e.g. 23, 23d, 3.8, table_coupler"})
+    opt.add(reproduce, {"--out DIR": "folder to write; default %(default)s"}, default="gallery")
 
 
 def _writable_folder(name: str) -> Path:
@@ -48,6 +33,10 @@ def _writable_folder(name: str) -> Path:
 
 
 def _reproduce(options: argparse.Namespace) -> int:
+    """Redraw the computed figures of a document, and check the numbers that it quotes.
+
+    elastolink reproduce smith --figure 84 --out gallery
+    """
     folder = _writable_folder(options.out)
     from ..gallery import reproduce
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
+from .. import periodic
 from ..core.errors import bad
 from . import options as opt
-from .linkages import refuse_frame, speeds_of
+from .linkages import refuse_frame, speeds_of, speeds_option
 
 if TYPE_CHECKING:
-    from ..core.families import Array, LinearPeriodic
+    from ..core.families import Array
     from ..periodic import SteadyState
 
 # Of the coordinates of beams, by the end of their names; all others are rotations.
@@ -19,44 +20,37 @@ _UNITS = {**dict.fromkeys(("x", "y", "along", "across"), "m"), "curvature": "1/m
 
 def add(commands: Any) -> None:
     """Add the subcommand."""
-    steady = opt.command(
-        commands,
-        "steady-state",
-        _steady_state,
-        summary="Periodic motion of a flexible link without marching; resonances over the speed.",
-        example=(
-            "elastolink steady-state beale_1992_flexible_rod --speed '100 rad/s'\n"
-            "  elastolink steady-state beale_1992_flexible_rod --set links.crank_ratio=0.1 \\\n"
-            "      --set rod.damping_ratio=0.002 --speed 60:1000:471 --plot resonances.png"
-        ),
-    )
-    steady.add_argument(
-        "--speed",
-        metavar="SPEED",
-        help="'500 rpm', or START:STOP:COUNT[UNIT], rad/s without a unit; default operation.speed",
-    )
-    steady.add_argument(
-        "--at",
-        type=float,
-        metavar="X",
-        help="place on the link, 0 to 1, whose deflection is shown; default where it is largest",
-    )
-
-    steady.add_argument("--method", default=None, help="auto (default) or harmonic_balance")
+    steady = opt.command(commands, "steady-state", _steady_state)
+    opt.add(steady, speeds_option("operation.speed"))
+    place = "place on the link, 0 to 1, whose deflection is shown; default where it is largest"
+    opt.add(steady, {"--at X": place}, type=float)
+    opt.add(steady, {"--method METHOD": "auto (default) or harmonic_balance"}, default="auto")
 
 
 def _steady_state(options: argparse.Namespace) -> int:
+    r"""Periodic motion of a flexible link without marching; resonances over the speed.
+
+    elastolink steady-state beale_1992_flexible_rod --speed '100 rad/s'
+    elastolink steady-state beale_1992_flexible_rod --set links.crank_ratio=0.1 \
+        --set rod.damping_ratio=0.002 --speed 60:1000:471 --plot resonances.png
+    """
     import numpy as np
 
     if options.at is not None and not 0.0 <= options.at <= 1.0:
         raise bad("--at", f"{options.at:g}", "a place from 0 to 1", "divide by the length")
     scene = opt.load(options)
     refuse_frame(scene)
-    speeds = np.array(speeds_of(options, scene))
+    speeds = speeds_of(options, scene)
     system = scene.linear_system()
     if system.structure is not None:
-        return _of_beams(options, system, speeds)
-    result = _solved(options, system, speeds)
+        opt.refuse_unused(options, ("at",), "a link with mode shapes")
+        if len(speeds) > 1:
+            fix = "elastolink stress takes many: --speed START:STOP:COUNT"
+            raise bad("--speed", f"{len(speeds)} speeds", "one for a linkage of beams", fix)
+    shown = opt.progress(options)
+    result = periodic.steady_state(system, speeds, method=options.method, progress=shown)
+    if system.structure is not None:
+        return opt.finish(options, result, _largest(result, system.labels))
     places = np.linspace(0.0, 1.0, 41) if options.at is None else np.array([options.at])
     reached = result.peak(places)
     largest, place = np.max(reached, axis=1), places[np.argmax(reached, axis=1)]
@@ -64,28 +58,12 @@ def _steady_state(options: argparse.Namespace) -> int:
     return opt.finish(options, result, _lines(result, largest, place), more=more)
 
 
-def _solved(options: argparse.Namespace, system: LinearPeriodic, speeds: Array) -> SteadyState:
-    from ..periodic import steady_state
-
-    method = options.method or "auto"
-    return steady_state(system, speeds, method=method, progress=opt.progress(options))
-
-
-def _of_beams(options: argparse.Namespace, system: LinearPeriodic, speeds: Array) -> int:
-    """Show the motion of a linkage of beams: the largest values of its coordinates."""
-    import numpy as np
-
-    opt.refuse_unused(options, ("at",), "a link with mode shapes")
-    if len(speeds) > 1:
-        fix = "elastolink stress takes many: --speed START:STOP:COUNT"
-        raise bad("--speed", f"{len(speeds)} speeds", "one for a linkage of beams", fix)
-    result = _solved(options, system, speeds)
-    peaks = np.max(np.abs(result.q[0]), axis=0)
-    units = [_UNITS.get(label.rpartition(".")[2], "rad") for label in system.labels]
-    lines = opt.columns(
-        ("coordinate", "", system.labels), ("largest", ".6g", peaks), ("", "", units)
+def _largest(found: SteadyState, labels: tuple[str, ...]) -> list[str]:
+    """Return the largest values of the coordinates of a linkage of beams."""
+    units = [_UNITS.get(label.rpartition(".")[2], "rad") for label in labels]
+    return opt.columns(
+        ("coordinate", "", labels), ("largest", ".6g", abs(found.q[0]).max(axis=0)), ("", "", units)
     )
-    return opt.finish(options, result, lines)
 
 
 def _lines(found: SteadyState, peaks: Array, places: Array) -> list[str]:

@@ -18,32 +18,18 @@ if TYPE_CHECKING:
 
 def add(commands: Any) -> None:
     """Add the three subcommands."""
-    listing = opt.command(
-        commands,
-        "scenes",
-        _scenes,
-        summary="List the built-in scenes.",
-        example="elastolink scenes\n  elastolink scenes --plot scenes.pdf   (each one drawn)",
-        scene=False,
-    )
-    listing.add_argument("--long", action="store_true", help="with the source of each")
-    opt.command(
-        commands,
-        "show",
-        _show,
-        summary="Show a scene: every number in SI units, with what follows from the given ones.",
-        example="elastolink show smith_1972_5152_sixteenth_inch --set coupler.damping_ratio=0.01",
-    )
-    opt.command(
-        commands,
-        "explain",
-        _explain,
-        summary="Tell what a scene needs, and what is not derived, emitted, imported or evaluated.",
-        example="elastolink explain smith_1972_5152_sixteenth_inch --set model.modes=2",
-    )
+    listing = opt.command(commands, "scenes", _scenes, scene=False)
+    opt.switches(listing, {"--long": "with the source of each"})
+    opt.command(commands, "show", _show)
+    opt.command(commands, "explain", _explain)
 
 
 def _scenes(options: argparse.Namespace) -> int:
+    """List the built-in scenes.
+
+    elastolink scenes
+    elastolink scenes --plot scenes.pdf   (each one drawn)
+    """
     from ..scenes import list_scenes, load_scene, scene_titles
 
     path = opt.picture(options)
@@ -57,28 +43,30 @@ def _scenes(options: argparse.Namespace) -> int:
             draw_scene(load_scene(name), figure.add_subplot(rows, 3, place))
         save_figure(figure, path)
     titles = scene_titles()
-    if options.json:
-        opt.print_json(
-            [{"name": name, "title": t, "source": s} for name, (t, s) in sorted(titles.items())]
-        )
-        return 0
     width = max(map(len, titles))
+    content, lines = [], []
     for name, (title, source) in sorted(titles.items()):
-        print(f"{name.ljust(width)}  {title}" + (f"\n{' ' * width}  {source}" * options.long))
-    return 0
+        content.append({"name": name, "title": title, "source": source})
+        lines.append(f"{name.ljust(width)}  {title}")
+        lines += [f"{' ' * width}  {source}"] * options.long
+    return opt.say(options, content, "\n".join(lines))
 
 
 def _show(options: argparse.Namespace) -> int:
+    """Show a scene: every number in SI units, with what follows from the given ones.
+
+    elastolink show smith_1972_5152_sixteenth_inch --set coupler.damping_ratio=0.01
+    """
     scene = opt.load(options)
     opt.draw_into(options, lambda ax: draw_scene(scene, ax))
-    if options.json:
-        opt.print_json(scene.to_dict())
-    else:
-        print("\n".join(_lines(scene)))
-    return 0
+    return opt.say(options, scene.to_dict(), "\n".join(_lines(scene)))
 
 
 def _explain(options: argparse.Namespace) -> int:
+    """Tell what a scene needs, and what is not derived, emitted, imported or evaluated.
+
+    elastolink explain smith_1972_5152_sixteenth_inch --set model.modes=2
+    """
     from .explanation import explain
 
     result = explain(options.scene, opt.settings(options.set))
@@ -86,7 +74,7 @@ def _explain(options: argparse.Namespace) -> int:
 
 
 def _lines(scene: Scene) -> list[str]:
-    from ..core.units import describe
+    from ..core.units import DIMENSIONS, describe
 
     lines = [scene.title, f"source: {scene.source}", f"module: {scene.model_spec().name()}"]
     for name, layout, table in _all_tables(scene):
@@ -97,7 +85,8 @@ def _lines(scene: Scene) -> list[str]:
             if isinstance(value, float) and dimension is not None:
                 text = describe(value, dimension)
             elif isinstance(value, tuple) and dimension is not None:
-                text = _several(value, dimension)
+                listed = ", ".join(f"{number:.6g}" for number in value)
+                text = f"[{listed}] {DIMENSIONS[dimension].si}".rstrip()
             else:
                 text = ", ".join(map(str, value)) if isinstance(value, tuple) else str(value)
             meaning = f"  ({known.meaning})" if known else ""
@@ -114,13 +103,6 @@ def _all_tables(scene: Scene) -> Iterator[tuple[str, Table | None, Mapping[str, 
             continue
         for inner, content in table.items():
             yield f"{name}.{inner}", layout, content
-
-
-def _several(numbers: tuple[float, ...], dimension: str) -> str:
-    from ..core.units import DIMENSIONS
-
-    listed = ", ".join(f"{number:.6g}" for number in numbers)
-    return f"[{listed}] {DIMENSIONS[dimension].si}".rstrip()
 
 
 def draw_scene(scene: Scene, ax: Axes) -> Axes:

@@ -6,116 +6,70 @@ Large charts are made by several processes, in pieces that are kept and resumed,
 from __future__ import annotations
 
 import argparse
-import math
 from contextlib import AbstractContextManager, nullcontext
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
+from .. import periodic, stability, sweeps
 from ..core.errors import bad
 from . import constrained
 from . import options as opt
-from .linkages import speed_of, speeds_of
+from .linkages import speed_of, speeds_of, speeds_option, without_crank
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-    from ..core.families import LinearPeriodic
-    from ..periodic import FloquetMultipliers
+    from ..core.families import Array, LinearPeriodic
     from ..scenes import Scene
-    from ..stability import StabilityChart
     from ..sweeps.result import AnyArray
 
-Axis = tuple[str, list[float]]
+    Axis = tuple[str, Array]
+
 _POINTS = 201
 
 
 def add(commands: Any) -> None:
     """Add the two subcommands."""
-    stability = opt.command(
-        commands,
-        "stability",
-        _stability,
-        summary="Floquet multipliers at one crank speed or over a range of them.",
-        example=(
-            "elastolink stability smith_1972_5152_sixteenth_inch --speed '500 rpm'\n"
-            "  elastolink stability smith_1972_5152_sixteenth_inch --speed 300:900:61rpm"
-        ),
+    multipliers = opt.command(commands, "stability", _stability)
+    opt.add(multipliers, speeds_option("operation.speed, 1 without crank"))
+    chart = opt.command(commands, "chart", _chart)
+    order = "order of the perturbation boundaries of one mode, 1 to 8; default 1"
+    opt.add(chart, {"--order N": order}, type=int, default=1)
+    edges = "trace regions of several modes, combinations among them, at nine rows; takes longer"
+    opt.switches(chart, {"--edges": edges})
+    opt.add(
+        chart,
+        {
+            "--speed SPEED": "crank speed where that is no axis, e.g. '500 rpm', rad/s without a"
+            " unit; default operation.speed, 1 without crank",
+            "--workers N": "work in N processes; the answer does not depend on it",
+            "--store PATH": "keep the chart, without boundaries, in this folder or .npz file, piece"
+            " by piece; the same command goes on from there after it was stopped",
+        },
     )
-    stability.add_argument(
-        "--speed",
-        metavar="SPEED",
-        help="'500 rpm', or START:STOP:COUNT[UNIT], rad/s without a unit; default operation.speed, "
-        "1 without crank",
-    )
-    chart = opt.command(
-        commands,
-        "chart",
-        _chart,
-        summary="Stability chart over two parameters, with exact and perturbation boundaries.",
-        example=(
-            "elastolink chart smith_1972_5152_sixteenth_inch --plot chart.png\n"
-            "  elastolink chart mathieu --x lam2=-0.5:10:400 --y mu=0:4:300 --plot mathieu.svg\n"
-            "  elastolink chart mathieu --x lam2=-0.5:30:4000 --y mu=0:4:2500 --store fine.npz"
-        ),
-    )
-    chart.add_argument(
-        "--order",
-        metavar="N",
-        type=int,
-        default=1,
-        help="order of the perturbation boundaries of one mode, 1 to 8; default 1",
-    )
-    chart.add_argument(
-        "--edges",
-        action="store_true",
-        help="trace regions of several modes, combinations among them, at nine rows; takes longer",
-    )
-    chart.add_argument(
-        "--speed",
-        metavar="SPEED",
-        help="crank speed where that is no axis, e.g. '500 rpm', rad/s without a unit; default "
-        "operation.speed, 1 without crank",
-    )
-    _scale_options(chart)
+    estimate = "with --store: tell time and memory, and work nothing out"
+    opt.switches(chart, {"--estimate": estimate})
     for axis in ("x", "y"):
-        chart.add_argument(
-            f"--{axis}",
-            metavar="NAME=START:STOP:COUNT[UNIT]",
-            help=f"parameter along {axis}; default from the scene's [chart] and [operation]",
-        )
-
-
-def _scale_options(chart: argparse.ArgumentParser) -> None:
-    """Add what concerns large charts to the subcommand."""
-    chart.add_argument(
-        "--workers", metavar="N", help="work in N processes; the answer does not depend on it"
-    )
-    chart.add_argument(
-        "--store",
-        metavar="PATH",
-        help="keep the chart, without boundaries, in this folder or .npz file, piece by piece; the "
-        "same command goes on from there after it was stopped",
-    )
-    chart.add_argument(
-        "--estimate",
-        action="store_true",
-        help="with --store: tell time and memory, and work nothing out",
-    )
+        along = f"parameter along {axis}; default from the scene's [chart] and [operation]"
+        opt.add(chart, {f"--{axis} NAME=START:STOP:COUNT[UNIT]": along})
 
 
 def _stability(options: argparse.Namespace) -> int:
+    """Floquet multipliers at one crank speed or over a range of them.
+
+    elastolink stability smith_1972_5152_sixteenth_inch --speed '500 rpm'
+    elastolink stability smith_1972_5152_sixteenth_inch --speed 300:900:61rpm
+    """
     scene = opt.load(options)
     if constrained.is_constrained(scene):
         return constrained.stability(options, scene)
-    plain = scene.model["mechanism"] == "hill" and options.speed is None
-    speeds = [1.0] if plain else speeds_of(options, scene)
+    speeds: Any = [1.0] if without_crank(options, scene) else speeds_of(options, scene)
     system = scene.linear_system()
-    from ..periodic import floquet_multipliers
-
-    result = floquet_multipliers(system, speeds if len(speeds) > 1 else speeds[0])
+    result = periodic.floquet_multipliers(system, speeds if len(speeds) > 1 else speeds[0])
     return opt.finish(options, result, _multiplier_lines(result, scene))
 
 
-def _multiplier_lines(result: FloquetMultipliers, scene: Scene) -> list[str]:
+def _multiplier_lines(result: periodic.FloquetMultipliers, scene: Scene) -> list[str]:
     import numpy as np
 
     speeds = np.atleast_1d(result.speed)
@@ -143,6 +97,12 @@ def _crank(speed: float, scene: Scene) -> str:
 
 
 def _chart(options: argparse.Namespace) -> int:
+    """Stability chart over two parameters, with exact and perturbation boundaries.
+
+    elastolink chart smith_1972_5152_sixteenth_inch --plot chart.png
+    elastolink chart mathieu --x lam2=-0.5:10:400 --y mu=0:4:300 --plot mathieu.svg
+    elastolink chart mathieu --x lam2=-0.5:30:4000 --y mu=0:4:2500 --store fine.npz
+    """
     count = _check_scale(options)
     scene = opt.load(options)
     system = scene.linear_system()
@@ -153,11 +113,10 @@ def _chart(options: argparse.Namespace) -> int:
     if options.store is not None:
         return _stored(options, system, (x, y), speed, count)
     from ..core.workers import in_order
-    from ..stability import stability_chart
 
     name = "coupler frequency" if tuple(scene.get("model.flexible", ())) == ("coupler",) else None
     with _workers(count) as executor:
-        chart = stability_chart(
+        chart = stability.stability_chart(
             system,
             x=x,
             y=y,
@@ -173,22 +132,18 @@ def _chart(options: argparse.Namespace) -> int:
 
 def _fixed_speed(options: argparse.Namespace, scene: Scene, names: tuple[str, str]) -> float | None:
     """Return the crank speed [rad/s] of a chart without one among its axes; None for 1."""
-    if "speed" in names and options.speed is None:
-        return None
-    plain = scene.model["mechanism"] == "hill" or scene.get("operation.speed", None) is None
-    if options.speed is None and plain:
-        return None
-    return speed_of(options, scene)
+    without = "speed" in names or scene.get("operation.speed", None) is None
+    return None if options.speed is None and without else speed_of(options, scene)
 
 
-def _marks(scene: Scene, y: tuple[str, list[float]]) -> dict[str, tuple[float, ...]]:
+def _marks(scene: Scene, y: Axis) -> dict[str, tuple[float, ...]]:
     """Return the measured follower inertias within the chart, where they lie along y."""
     measured = scene.get("measured.follower_inertias", ())
     shown = tuple(value for value in measured if y[1][0] <= value <= y[1][-1])
     return {"measured follower inertias": shown} if y[0] == "follower_inertia" and shown else {}
 
 
-def _chart_lines(chart: StabilityChart, scene: Scene) -> list[str]:
+def _chart_lines(chart: stability.StabilityChart, scene: Scene) -> list[str]:
     """Return the unstable share, and the ends of each region at the ends of the other axis."""
     names = chart.x_name, chart.y_name
     first, *lines = _shares(names, chart.stable, chart.kind)
@@ -200,15 +155,17 @@ def _chart_lines(chart: StabilityChart, scene: Scene) -> list[str]:
         return [*lines, *_edge_lines(chart)]
     other = chart.y_name if curves.along == chart.x_name else chart.x_name
     dimensions = scene.layout.parameters
+    along, across = dimensions[curves.along], dimensions[other]
     values = chart.x if curves.along == chart.x_name else chart.y
     rows = []
     for i, region in enumerate(curves.regions):
         pairs = [sorted((curves.lower[i, j], curves.upper[i, j])) for j in (0, -1)]
         ends = [end for pair in pairs for end in pair]
-        known = [end for end in ends if math.isfinite(end)]
+        known = [end for end in ends if isfinite(end)]
         if known and min(known) <= values[-1] and max(known) >= values[0]:
-            rows.append((str(region), *(_end(end, dimensions[curves.along]) for end in ends)))
-    low, high = (_brief(curves.at[i], dimensions[other]) for i in (0, -1))
+            told = (_brief(end, along) if isfinite(end) else "-" for end in ends)
+            rows.append((str(region), *told))
+    low, high = (_brief(curves.at[i], across) for i in (0, -1))
     header = ("region", f"from, at {low}", "to", f"from, at {high}", "to")
     table = [*lines, "", f"boundaries along {curves.along}:", *opt.table(header, rows)]
     if curves.left_out:
@@ -216,7 +173,7 @@ def _chart_lines(chart: StabilityChart, scene: Scene) -> list[str]:
     return [*table, ""]
 
 
-def _edge_lines(chart: StabilityChart) -> list[str]:
+def _edge_lines(chart: stability.StabilityChart) -> list[str]:
     """Return the widest extent of each traced combination region that can be told from none."""
     edges = chart.edges
     if edges is None:
@@ -238,10 +195,6 @@ def _edge_lines(chart: StabilityChart) -> list[str]:
     return ["", *opt.table(header, rows), ""]
 
 
-def _end(value: float, dimension: str) -> str:
-    return _brief(value, dimension) if math.isfinite(value) else "-"
-
-
 def _brief(value: float, dimension: str) -> str:
     """Return a value with its unit; a crank speed in rpm alone, as in the picture."""
     from ..core.units import describe
@@ -250,7 +203,7 @@ def _brief(value: float, dimension: str) -> str:
     return text.partition("(")[2].rstrip(")") or text
 
 
-def _axis(given: str | None, axis: str, scene: Scene) -> tuple[str, list[float]]:
+def _axis(given: str | None, axis: str, scene: Scene) -> Axis:
     """Return the name and the values of one axis, from the option or from the scene."""
     known = scene.layout.parameters
     if given is None:
@@ -267,7 +220,7 @@ def _axis(given: str | None, axis: str, scene: Scene) -> tuple[str, list[float]]
     return name, opt.values(text, known[name], f"--{axis}")
 
 
-def _default_axis(axis: str, scene: Scene) -> tuple[str, list[float]]:
+def _default_axis(axis: str, scene: Scene) -> Axis:
     """Return the axis of ``[chart]``, or of the speed range and the measured inertias."""
     name = scene.get(f"chart.{axis}", None)
     ends = scene.get(f"chart.{axis}_range", None)
@@ -308,11 +261,7 @@ def _check_scale(options: argparse.Namespace) -> int:
 
 def _workers(count: int) -> AbstractContextManager[Executor | None]:
     """Open as many processes; none for one."""
-    if count == 1:
-        return nullcontext()
-    from ..sweeps import process_pool
-
-    return process_pool(count)
+    return nullcontext() if count == 1 else sweeps.process_pool(count)
 
 
 def _stored(
@@ -323,21 +272,17 @@ def _stored(
     count: int,
 ) -> int:
     """Work out a chart piece by piece, or estimate what that takes."""
-    from ..sweeps import estimate_sweep, sweep
-
     (x, _), (y, _) = axes
     what = "stability_chart", system, dict(reversed(axes))
     fixed = {} if speed is None else {"speed": speed}
     if options.estimate:
-        found = estimate_sweep(*what, options=fixed, workers=count)
-        if options.json:
-            opt.print_json(vars(found))
-        else:
-            print(found)
-        return 0
+        found = sweeps.estimate_sweep(*what, options=fixed, workers=count)
+        return opt.say(options, vars(found), str(found))
     shown = opt.progress(options)
     with _workers(count) as pool:
-        chart = sweep(*what, options=fixed, executor=pool, store=options.store, progress=shown)
+        chart = sweeps.sweep(
+            *what, options=fixed, executor=pool, store=options.store, progress=shown
+        )
     left = 100.0 * float(chart["undecided"].mean())
     lines = [
         *_shares((x, y), chart["stable"], chart["kind"]),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
+from .. import linkages
 from ..core.errors import bad
 from . import options as opt
 from .linkages import WHOLE_TURN, angles_of, drive_options, speed_of
@@ -24,67 +25,41 @@ _DIMENSIONS = {
 
 def add(commands: Any) -> None:
     """Add the subcommand."""
-    parser = opt.command(
-        commands,
-        "tolerances",
-        _tolerances,
-        summary="Worst case and root sum square of tolerances, in motion and forces.",
-        example=(
-            "elastolink tolerances smith_1972_12_6_12_12 --tolerance crank='0.05 mm'"
-            " --tolerance coupler='0.1 mm' --plot band.png\n"
-            "  elastolink tolerances slider_crank_example --tolerance crank='20 um' --forces"
-            " --speed '1500 rpm' --monte-carlo 2000"
-        ),
+    parser = opt.command(commands, "tolerances", _tolerances)
+    width = (
+        "greatest deviation to either side: crank='0.05 mm', theta2='0.1 deg', "
+        "coupler.mass='1 g'; may be repeated"
     )
-    parser.add_argument(
-        "--tolerance",
-        action="append",
-        default=[],
-        metavar="NAME=WIDTH",
-        help="greatest deviation to either side: crank='0.05 mm', theta2='0.1 deg', "
-        "coupler.mass='1 g'; may be repeated",
-    )
-    parser.add_argument(
-        "--angles",
-        metavar="START:STOP:COUNT[UNIT]",
-        help=f"crank angles; default {WHOLE_TURN}, or the range that the crank reaches",
-    )
-    parser.add_argument("--forces", action="store_true", help="forces too; needs a crank speed")
-    parser.add_argument(
-        "--masses",
-        choices=("fixed", "bars"),
-        default="fixed",
-        help="whether masses stay, or grow with the links as those of bars; default %(default)s",
-    )
-    drive_options(
-        parser,
-        "without it rates are over the crank's; default with --forces operation.speed",
-        rest="0",
-    )
-    parser.add_argument(
-        "--monte-carlo",
-        type=int,
-        metavar="N",
-        help="check with N random linkages, the tolerances being three standard deviations",
-    )
-    parser.add_argument("--output", metavar="NAME", help="what --plot draws, e.g. theta4")
+    opt.add(parser, {"--tolerance NAME=WIDTH": width}, action="append", default=[])
+    opt.add(parser, opt.angles(f"{WHOLE_TURN}, or the range that the crank reaches"))
+    opt.switches(parser, {"--forces": "forces too; needs a crank speed"})
+    masses = "whether masses stay, or grow with the links as those of bars; default %(default)s"
+    opt.add(parser, {"--masses": masses}, choices=("fixed", "bars"), default="fixed")
+    without = "without it rates are over the crank's; default with --forces operation.speed"
+    opt.add(parser, drive_options(without, rest="0"))
+    trial = "check with N random linkages, the tolerances being three standard deviations"
+    opt.add(parser, {"--monte-carlo N": trial}, type=int)
+    opt.add(parser, {"--output NAME": "what --plot draws, e.g. theta4"})
 
 
 def _tolerances(options: argparse.Namespace) -> int:
-    import numpy as np
+    r"""Worst case and root sum square of tolerances, in motion and forces.
 
-    from ..linkages.length_tolerances import tolerances
-
+    elastolink tolerances smith_1972_12_6_12_12 --tolerance crank='0.05 mm' \
+        --tolerance coupler='0.1 mm' --plot band.png
+    elastolink tolerances slider_crank_example --tolerance crank='20 um' --forces \
+        --speed '1500 rpm' --monte-carlo 2000
+    """
     scene = opt.load(options)
     subject: Any = scene.machine() if options.forces else scene.mechanism()
     linkage = subject.linkage if options.forces else subject
     # At the folds themselves the sensitivities are infinite: stay a twentieth of the range away.
-    theta = np.array(angles_of(options, linkage, margin=0.05))
+    theta = angles_of(options, linkage, margin=0.05)
     speed, acceleration = _drive(options, scene)
     widths = dict(_width(pair) for pair in options.tolerance)
     if not widths:
         raise bad("--tolerance", "nothing", "NAME=WIDTH", "write --tolerance crank='0.05 mm'")
-    found = tolerances(subject, widths, theta, speed, acceleration, masses=options.masses)
+    found = linkages.tolerances(subject, widths, theta, speed, acceleration, masses=options.masses)
     if options.output is not None:
         found.place(options.output)
     lines = _table(found)
@@ -111,11 +86,9 @@ def _drive(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
 
 def _width(pair: str) -> tuple[str, float]:
     """Return name and width of a tolerance in SI units."""
-    name, sign, width = pair.partition("=")
-    if not sign or not name.strip():
-        raise bad("--tolerance", repr(pair), "NAME=WIDTH", "write --tolerance crank='0.05 mm'")
-    dimension = _DIMENSIONS.get(name.strip().rpartition(".")[2], "length")
-    return name.strip(), opt.quantity(width.strip(), dimension, f"--tolerance {name.strip()}")
+    name, width = opt.pair(pair, "--tolerance", "NAME=WIDTH", "crank='0.05 mm'")
+    dimension = _DIMENSIONS.get(name.rpartition(".")[2], "length")
+    return name, opt.quantity(width, dimension, f"--tolerance {name}")
 
 
 def _table(found: Tolerances) -> list[str]:
@@ -126,16 +99,13 @@ def _table(found: Tolerances) -> list[str]:
     worst, spread, share = found.worst_case, found.root_sum_square, found.contribution
     rows = []
     for row, name in enumerate(found.outputs):
-        top = int(np.argmax(worst[row]))
-        peak = int(np.argmax(spread[row]))
-        angles = (f"{np.degrees(found.theta2[at]):.2f}" for at in (top, peak))
-        at_worst, at_peak = angles
+        top, peak = (int(np.argmax(values[row])) for values in (worst, spread))
+        at_top, at_peak = (f"{np.degrees(found.theta2[at]):.2f}" for at in (top, peak))
+        sizes = f"{worst[row, top]:.5g}", at_top, f"{spread[row, peak]:.5g}", at_peak
         shares = (f"{100.0 * share[row, place, peak]:.1f}" for place in shown)
-        figures = f"{worst[row, top]:.5g}", at_worst, f"{spread[row, peak]:.5g}", at_peak
-        rows.append((f"{name} [{found.unit(name)}]", *figures, *shares))
+        rows.append((f"{name} [{found.unit(name)}]", *sizes, *shares))
     header = ("output", "worst case", "at [deg]", "root sum square", "at [deg]")
-    names = tuple(f"{found.parameters[place]} [%]" for place in shown)
-    return opt.table((*header, *names), rows)
+    return opt.table((*header, *(f"{found.parameters[place]} [%]" for place in shown)), rows)
 
 
 def _trial(trial: ToleranceTrial) -> list[str]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -108,10 +108,7 @@ def damping_effect(
     if "damping_ratio" not in system.parameters:
         fix = "add it with with_modal_damping"
         raise bad("damping_effect", "a system without modal damping", "damping_ratio", fix)
-    values = _values("ratios", ratios)
-    systems = [system.with_parameters(damping_ratio=float(ratio)) for ratio in values]
-    first = stress_curve(systems[0], speeds, rtol=rtol, stability=False)
-    return effect_of("damping_ratio", values, systems, first, rtol)
+    return effect_of(system, "damping_ratio", _values("ratios", ratios), speeds, rtol)
 
 
 def length_effect(
@@ -143,24 +140,7 @@ def length_effect(
         If the system has no such length, or the crank cannot turn at a value.
     """
     required_structure(system)
-    lengths = _values("values", values)
-    systems = [system.with_geometry(**{name: float(value)}) for value in lengths]
-    first = stress_curve(systems[0], speeds, rtol=rtol, stability=False)
-    return with_transmission(effect_of(name, lengths, systems, first, rtol), system)
-
-
-def with_transmission(effect: StressEffect, system: LinearPeriodic) -> StressEffect:
-    """Return the effect of a length with the transmission angles, where there is a four-bar."""
-    if not set(_LENGTHS) <= set(system.geometry):
-        return effect
-    angles = []
-    for value in effect.values:
-        lengths = {name: system.geometry[name] for name in _LENGTHS} | {effect.name: float(value)}
-        frame, crank, coupler, follower = lengths.values()
-        angles.append(transmission_angle(FourBar(frame, crank, coupler, follower)))
-    return replace(
-        effect, transmission=np.array([[angle.least, angle.greatest] for angle in angles])
-    )
+    return effect_of(system, name, _values("values", values), speeds, rtol)
 
 
 def _values(where: str, values: Sequence[float]) -> Array:
@@ -171,42 +151,63 @@ def _values(where: str, values: Sequence[float]) -> Array:
 
 
 def effect_of(
+    system: LinearPeriodic,
     name: str,
     values: Array,
-    systems: Iterable[LinearPeriodic],
-    first: StressCurve,
+    speeds: ArrayLike | StressCurve,
     rtol: float,
     *,
     enough: Callable[[StressCurve], bool] = lambda curve: False,
     tick: Callable[[int], None] | None = None,
 ) -> StressEffect:
-    """Return the curves of systems, the first one known, up to the first that is enough.
+    """Return the curves for values of a damping ratio or length, up to the first that is enough.
 
-    The whole equation was solved for the first value alone: :data:`.ELSEWHERE` times what it
-    changed there is part of the errors of the others.
+    The curve of the first value may be known: it then stands for the speeds.  The whole equation is
+    solved for that value alone: :data:`.ELSEWHERE` times what it changed there is part of the
+    errors of the others.
     """
+    change = system.with_parameters if name == "damping_ratio" else system.with_geometry
+    systems = [change(**{name: float(value)}) for value in values]
+    if isinstance(speeds, StressCurve):
+        first = speeds
+    else:
+        first = stress_curve(systems[0], speeds, rtol=rtol, stability=False)
     curves: list[StressCurve] = []
-    for system in systems:
+    for made in systems:
         curve = first
         if curves:
-            curve = stress_curve(system, first.speed, rtol=rtol, stability=False, whole=False)
+            curve = stress_curve(made, first.speed, rtol=rtol, stability=False, whole=False)
         curves.append(curve)
         if tick is not None:
             tick(len(curves))
         if enough(curve):
             break
-    change = first.checks["equation"]
+    equation = first.checks["equation"]
     errors = np.array([curve.error for curve in curves])
-    errors[1:] += ELSEWHERE * change.value
+    errors[1:] += ELSEWHERE * equation.value
     return StressEffect(
         method=first.method,
         error=errors,
         error_norm="each largest stress, relative",
-        checks={"converged": Check(float(np.max(errors)) / rtol, 1.0), "equation": change},
+        checks={"converged": Check(float(np.max(errors)) / rtol, 1.0), "equation": equation},
         provenance=dict(first.provenance),
         name=name,
         values=values[: len(curves)],
         speed=first.speed,
         links=first.links,
         maximum=np.array([curve.maximum for curve in curves]),
+        transmission=_transmission(system, name, values[: len(curves)]),
     )
+
+
+def _transmission(system: LinearPeriodic, name: str, values: Array) -> Array | None:
+    """Return the extreme transmission angles of a four-bar for values of a length."""
+    if name not in system.geometry or not set(_LENGTHS) <= set(system.geometry):
+        return None
+    angles = []
+    for value in values:
+        lengths = {key: system.geometry[key] for key in _LENGTHS} | {name: float(value)}
+        frame, crank, coupler, follower = (lengths[key] for key in _LENGTHS)
+        angle = transmission_angle(FourBar(frame, crank, coupler, follower))
+        angles.append([angle.least, angle.greatest])
+    return np.array(angles)

@@ -14,8 +14,8 @@ from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.progress import bar
 from ..core.results import Check, Result
-from ..recovery.stress_over_speed import StressCurve, stress_curve
-from .effects import StressEffect, effect_of, with_transmission
+from ..recovery.stress_over_speed import StressCurve
+from .effects import StressEffect, effect_of
 from .quiet import Band, QuietSpeeds, quiet_speeds
 from .speed_profile import Array
 
@@ -139,21 +139,23 @@ def running_speed(
         [limits[link] if isinstance(limits, Mapping) else limits for link in quiet.links]
     )
     damping = best = way = chosen = None
-    with bar(progress, len(_DAMPING) + len(tried)) as tick:
-        if "damping_ratio" in system.parameters:
+    first = len(_DAMPING) if "damping_ratio" in system.parameters else 0
+    with bar(progress, first + len(tried)) as tick:
+        if first:
             own = system.parameters["damping_ratio"]
             ratios = own * np.array(_DAMPING)
             damping = effect_of(
+                system,
                 "damping_ratio",
                 ratios,
-                [system.with_parameters(damping_ratio=float(ratio)) for ratio in ratios],
                 quiet.curve.at(np.array([_place(quiet, band)])),
                 rtol,
                 tick=tick,
             )
             best = float(ratios[np.argmin(np.max(_ratios(damping, quiet, allowed), axis=(1, 2)))])
         if band.above is not None:
-            way, chosen = _way_up(system, quiet, band, allowed, length, tried, rtol, tick)
+            later = None if tick is None else lambda done: tick(first + done)
+            way, chosen = _way_up(system, quiet, band, allowed, length, tried, rtol, later)
     return RunningSpeed(
         method="stress curves over speed, damping and length",
         error=float(np.max(quiet.error)),
@@ -216,19 +218,16 @@ def _way_up(
     own, end = system.geometry[length], _place(quiet, band)
     every = max(1, end // 200)  # some 200 speeds of the way are looked at
     values = np.array(sorted(tried, key=lambda value: abs(value - own)))
-    systems = [system.with_geometry(**{length: float(value)}) for value in values]
     way = quiet.curve.at(np.arange(end % every, end + 1, every))
-    if values[0] != own:
-        way = stress_curve(systems[0], way.speed, rtol=rtol, stability=False)
     chosen = [way.links.index(link) for link in quiet.links]
 
     def passes(curve: StressCurve) -> bool:
         return bool(np.all(curve.maximum[:, chosen] < allowed))
 
-    effect = effect_of(length, values, systems, way, rtol, enough=passes, tick=tick)
-    found = float(effect.values[-1])
+    known = way if values[0] == own else way.speed
+    effect = effect_of(system, length, values, known, rtol, enough=passes, tick=tick)
     passed = bool(np.all(effect.maximum[-1][:, chosen] < allowed))
-    return with_transmission(effect, system), found if passed else None
+    return effect, float(effect.values[-1]) if passed else None
 
 
 def _tried(system: LinearPeriodic, name: str, values: Sequence[float] | None) -> list[float]:

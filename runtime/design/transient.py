@@ -169,7 +169,7 @@ def run_through(
         # Cubics between twice as many levels are better by far more than the half of the change.
         truncation = _difference(more, found) * (1.0 if name is None else 0.5)
         run, found = richer, more
-        if np.max(truncation) <= 0.5 * rtol or run.followed is system:
+        if np.max(truncation) <= 0.5 * rtol or (name is None and run.followed is system):
             break
     error = stepping + truncation + found.between + run.start_error
     return _result(run, found, error, rtol)

@@ -124,21 +124,7 @@ def beam_table(link: str) -> Table:
 
 
 def complete_beams(values: dict[str, dict[str, Any]], links: Iterable[str]) -> None:
-    """Fill in section and material of every link or member.
-
-    Parameters
-    ----------
-    values : dict of dict
-        Validated tables in SI units; completed in place.
-    links : iterable of str
-        Links with a table each; members of a frame are found by themselves.
-
-    Raises
-    ------
-    BadInput
-        If a section or a material is not complete, or a term to leave out is unknown; every
-        problem is listed.
-    """
+    """Fill in section and material of every link, and of every member of a frame."""
     problems = []
     strange = sorted(set(values["model"]["drop"]) - set(DROPPED))
     if strange:

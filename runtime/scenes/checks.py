@@ -23,14 +23,8 @@ def geometry_problems(values: Values, layout: Layout) -> list[Problem]:
 
     The diagonal between the crank pin and the second fixed pivot runs from ``|l1 - l2|`` to
     ``l1 + l2`` as the crank turns, and coupler and follower reach from ``|l3 - l4|`` to
-    ``l3 + l4``; equality is a change point, where the motion is not determined.
-
-    Parameters
-    ----------
-    values : mapping
-        Tables in SI units; a table with problems of its own may lack keys.
-    layout : Layout
-        Says which links bend.
+    ``l3 + l4``; equality is a change point, where the motion is not determined.  A table with
+    problems of its own may lack keys.
     """
     links = values.get("links", {})
     if layout.mechanism == "slider_crank":
@@ -52,25 +46,19 @@ def geometry_problems(values: Values, layout: Layout) -> list[Problem]:
 
 def _slider_problems(links: Mapping[str, Any]) -> list[Problem]:
     """Check that coupler and crank together reach the line of the slider."""
-    if any(name not in links for name in ("crank", "coupler", "offset")):
-        return []
-    crank, coupler, offset = links["crank"], links["coupler"], abs(links["offset"])
-    if offset < crank + coupler:
+    crank, coupler, offset = (links.get(n, math.nan) for n in ("crank", "coupler", "offset"))
+    if not abs(offset) >= crank + coupler:
         return []
     limit = describe(crank + coupler, "length")
     fix = "the slider's line is out of reach: lower the offset or lengthen a link"
-    found = describe(links["offset"], "length")
+    found = describe(offset, "length")
     return [Problem("links.offset", found, f"less than {limit}, crank and coupler", fix)]
 
 
 def _rod_problems(links: Mapping[str, Any]) -> list[Problem]:
     """Check that the rod reaches the crank pin wherever it is, and never passes its own pivot."""
-    if any(name not in links for name in ("frame", "rod")):
-        return []
-    frame, rod = links["frame"], links["rod"]
+    frame, rod = (links.get(name, math.nan) for name in ("frame", "rod"))
     crank = links.get("crank", links.get("crank_ratio", math.nan) * frame)
-    if math.isnan(crank):
-        return []
     if frame == crank:
         fix = "the crank pin would pass the rod's pivot: change one of the two"
         return [Problem("links.crank", describe(crank, "length"), "another length than frame", fix)]
@@ -106,13 +94,6 @@ def body_problems(values: Values, layout: Layout) -> list[Problem]:
 
     About the same joint the inertia is at least the square of the first moment over the mass,
     what the whole mass at its centre would have.
-
-    Parameters
-    ----------
-    values : mapping
-        Tables in SI units, with what follows from the given quantities filled in.
-    layout : Layout
-        Of a linkage; others pass.
     """
     problems: list[Problem] = []
     for link in layout.links:

@@ -24,14 +24,8 @@ def declared_layout(
     of a number (``length = "length"``), or ``"text"`` or ``"count"``, or gives an inline table of
     the fields of :class:`~elastolink.runtime.scenes.schema.Key`.  A key without a default is
     required.  ``closed_in_modes = true`` says that one module serves any number of modes, and
-    ``parameters`` names what a chart may vary, with dimensions.
-
-    Parameters
-    ----------
-    document : mapping
-        The scene as TOML gives it.
-    problems : list of Problem
-        What is wrong with the declaration is added here.
+    ``parameters`` names what a chart may vary, with dimensions.  What is wrong with the declaration
+    is added to ``problems``.
     """
     schema = document.get("schema")
     if schema is None:
@@ -55,7 +49,12 @@ def declared_layout(
             problems.append(Problem(f"schema.{name}", repr(entry)[:60], "a table", fix))
         elif name == "parameters":
             parameters = {key: str(value) for key, value in entry.items()}
-            _unknown_dimensions(parameters, problems)
+            known = f"one of {sorted(DIMENSIONS)}"
+            problems += [
+                Problem(f"schema.parameters.{key}", repr(dimension), known, "correct it")
+                for key, dimension in parameters.items()
+                if dimension not in DIMENSIONS
+            ]
         else:
             keys = tuple(_key(name, key, value, problems) for key, value in entry.items())
             tables.append(Table(name, f"declared in [schema.{name}]", keys, required=True))
@@ -63,15 +62,6 @@ def declared_layout(
         tables.append(chart_table(parameters))
     closed = schema.get("closed_in_modes") is True
     return (Layout(mechanism, (), tuple(tables), parameters=parameters, closed_in_modes=closed),)
-
-
-def _unknown_dimensions(parameters: Mapping[str, str], problems: list[Problem]) -> None:
-    for key, dimension in parameters.items():
-        if dimension not in DIMENSIONS:
-            where = f"schema.parameters.{key}"
-            problems.append(
-                Problem(where, repr(dimension), f"one of {sorted(DIMENSIONS)}", "correct it")
-            )
 
 
 def _key(table: str, name: str, entry: object, problems: list[Problem]) -> Key:

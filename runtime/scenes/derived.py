@@ -16,21 +16,7 @@ Values = dict[str, dict[str, Any]]
 
 
 def complete(values: Values, layout: Layout) -> None:
-    """Fill in what the given quantities determine, so that a solver finds every key.
-
-    Parameters
-    ----------
-    values : dict of dict
-        Validated tables in SI units; completed in place.
-    layout : Layout
-        What the scene's mechanism and formulation call for.
-
-    Raises
-    ------
-    BadInput
-        If a link is said to be balanced and given a first moment, or if no body can have the
-        mass, first moment and inertia of a link.
-    """
+    """Fill in what the given quantities determine; refuse those that contradict each other."""
     if layout.mechanism == "hill":
         _pad_series(values["function"])
     if layout.formulations == tuple(BEAM_FORMULATIONS):

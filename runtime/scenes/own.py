@@ -23,16 +23,6 @@ def own_system(scene: Scene) -> LinearPeriodic:
     numbers, as ``KEY`` or as ``TABLE_KEY``; where two tables share a key, only the latter names
     it.  A module that takes something else needs a builder of its own around
     :func:`elastolink.runtime.systems.assemble`.
-
-    Parameters
-    ----------
-    scene : Scene
-        With a ``[schema]`` table.
-
-    Raises
-    ------
-    BadInput
-        If no module was emitted for the scene's model, or the scene lacks one of its numbers.
     """
     from ..core.modules import find_module
     from ..systems import assemble

@@ -16,18 +16,7 @@ _MASS = ("mass", "first_moment", "transverse_moment", "inertia")
 
 
 def machine(scene: Scene) -> Machine:
-    """Return the machine of a scene; links that bend are taken as rigid.
-
-    Parameters
-    ----------
-    scene : Scene
-        With a ``[links]`` table.
-
-    Raises
-    ------
-    BadInput
-        If the scene has no linkage, or none of its links has a mass.
-    """
+    """Return the machine of a scene; links that bend are taken as rigid."""
     from ..rigid import Machine
 
     linkage = scene.mechanism()

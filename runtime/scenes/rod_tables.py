@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from ..core.errors import BadInput, Problem
+from .linkage_tables import QUICK_RETURN_LENGTHS
 from .schema import Key, Table, not_negative, positive
 
-ROD_LINKS = Table(
-    "links",
-    "lengths between the pins, and of the rod",
-    (
-        positive("frame", "distance between the pivots of crank and rod", "length", required=True),
-        positive("crank", "length of the driven link", "length"),
-        positive("crank_ratio", "crank over frame, eps"),
-        positive(
-            "rod",
-            "length of the rod, which a block on the crank pin slides along",
-            "length",
-            required=True,
-        ),
-    ),
-    required=True,
+_FRAME, _CRANK, _ROD = QUICK_RETURN_LENGTHS.keys
+_RATIO = positive("crank_ratio", "crank over frame, eps")
+ROD_LINKS = replace(
+    QUICK_RETURN_LENGTHS,
+    keys=(_FRAME, replace(_CRANK, required=False), _RATIO, _ROD),
     exactly_one=(("crank", "crank_ratio"),),
 )
 ROD = Table(

@@ -12,46 +12,19 @@ Range = Literal["any", "positive", "non-negative"]
 
 @dataclass(frozen=True)
 class Key:
-    """One key of a table.
-
-    Attributes
-    ----------
-    name : str
-        As it stands in the file.
-    meaning : str
-        In one clause, for messages and for ``elastolink show``.
-    kind : str
-        ``"quantity"`` (a float), ``"quantities"`` (a list of them), ``"count"`` (a whole number),
-        ``"counts"``, ``"text"`` or ``"texts"``.
-    dimension : str
-        One of :data:`elastolink.runtime.core.units.DIMENSIONS`; matters for quantities alone.
-    required : bool
-        Whether it must be given.
-    default : object
-        Value where it is not given; None leaves it out.
-    limit : {"any", "positive", "non-negative"}
-        Allowed range of a number, or of each number of a list.
-    choices : tuple of str
-        Allowed texts; empty allows all.
-    length : int or None
-        Length of a list, where it is fixed.
-    rising : bool
-        Whether a list must increase.
-    least, most : int or None
-        Smallest and largest count that make sense.
-    """
+    """One key of a table."""
 
     name: str
-    meaning: str
-    kind: Kind = "quantity"
-    dimension: str = "dimensionless"
+    meaning: str  # in one clause, for messages and for `elastolink show`
+    kind: Kind = "quantity"  # a float; "count" is a whole number; the plurals are lists
+    dimension: str = "dimensionless"  # of quantities, one of core.units.DIMENSIONS
     required: bool = False
-    default: object = None
-    limit: Range = "any"
-    choices: tuple[str, ...] = ()
-    length: int | None = None
-    rising: bool = False
-    least: int | None = None
+    default: object = None  # where it is not given; None leaves it out
+    limit: Range = "any"  # of a number, or of each number of a list
+    choices: tuple[str, ...] = ()  # allowed texts; empty allows all
+    length: int | None = None  # of a list, where it is fixed
+    rising: bool = False  # whether a list must increase
+    least: int | None = None  # smallest and largest count that make sense
     most: float | None = None
 
 
@@ -67,31 +40,16 @@ def not_negative(name: str, meaning: str, dimension: str = "dimensionless", **mo
 
 @dataclass(frozen=True)
 class Table:
-    """One table of a scene.
-
-    Attributes
-    ----------
-    name : str
-        As it stands in the file.
-    meaning : str
-        In one clause.
-    keys : tuple of Key
-        What it may hold.
-    required : bool
-        Whether it must be given.
-    exactly_one, at_most_one : tuple of tuple of str
-        Groups of keys that say the same thing in different ways.
-    named : bool
-        Whether it holds any number of tables of this kind, each under a name of its own:
-        ``[springs.NAME]``.
-    """
+    """One table of a scene."""
 
     name: str
     meaning: str
     keys: tuple[Key, ...]
     required: bool = False
+    # Groups of keys that say the same thing in different ways.
     exactly_one: tuple[tuple[str, ...], ...] = ()
     at_most_one: tuple[tuple[str, ...], ...] = ()
+    # Whether it holds any number of such tables, each under a name of its own: [springs.NAME].
     named: bool = False
 
     def key(self, name: str) -> Key | None:
@@ -106,38 +64,17 @@ class Table:
 
 @dataclass(frozen=True)
 class Layout:
-    """What a scene of one mechanism, in one group of formulations, holds.
-
-    Attributes
-    ----------
-    mechanism : str
-        As in ``[model]``.
-    formulations : tuple of str
-        As in ``[model]``; empty where any is allowed.
-    tables : tuple of Table
-        All but ``[model]``.
-    flexible : tuple of str
-        Links that bend.
-    outputs : tuple of str
-        What may be wanted of the module; empty where anything may.
-    links : tuple of str
-        Links that may be called balanced.
-    parameters : mapping of str to str
-        Names that a chart may vary, with their dimensions.
-    closed_in_modes : bool
-        True where one emitted module serves any number of modes.
-    named_drops : mapping of str to tuple of str
-        Names for sets of terms left out, for ``model.drop``.
-    """
+    """What a scene of one mechanism, in one group of formulations, holds."""
 
     mechanism: str
-    formulations: tuple[str, ...]
-    tables: tuple[Table, ...]
-    flexible: tuple[str, ...] = ()
-    outputs: tuple[str, ...] = ()
-    links: tuple[str, ...] = ()
-    parameters: Mapping[str, str] = field(default_factory=dict)
-    closed_in_modes: bool = False
+    formulations: tuple[str, ...]  # empty where any is allowed
+    tables: tuple[Table, ...]  # all but [model]
+    flexible: tuple[str, ...] = ()  # links that bend
+    outputs: tuple[str, ...] = ()  # what may be wanted of the module; empty where anything may
+    links: tuple[str, ...] = ()  # those that may be called balanced
+    parameters: Mapping[str, str] = field(default_factory=dict)  # what a chart may vary, dimensions
+    closed_in_modes: bool = False  # where one emitted module serves any number of modes
+    # Names for sets of terms left out, for model.drop.
     named_drops: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @property

@@ -23,24 +23,10 @@ _TOP = ("title", "source", "model")
 
 
 def validate(document: Mapping[str, Any]) -> tuple[Layout, Values]:
-    """Check a whole scene and convert its quantities.
+    """Check a whole scene and convert its quantities, every problem in one error.
 
-    Parameters
-    ----------
-    document : mapping
-        The tables as TOML gives them.
-
-    Returns
-    -------
-    layout : Layout
-        What the scene's mechanism and formulation call for.
-    values : dict of dict
-        By table and key: SI floats, tuples of them, counts and texts, defaults filled in.
-
-    Raises
-    ------
-    BadInput
-        With every problem found, in the order of the file.
+    The values are by table and key: SI floats, tuples of them, counts and texts, defaults filled
+    in.
     """
     problems: list[Problem] = []
     layouts = declared_layout(document, problems) or LAYOUTS
@@ -149,12 +135,12 @@ def _table(
     values: dict[str, Any] = {}
     for key in table.keys:
         where = f"{table.name}.{key.name}"
-        if key.name in given:
-            read = _READERS[key.kind](given[key.name], key, where, problems)
+        if key.name in given or key.default is not None:
+            # Defaults are read, too: those that a scene declares may have units.
+            value = given.get(key.name, key.default)
+            read = _READERS[key.kind](value, key, where, problems)
             if read is not None:
                 values[key.name] = read
-        elif key.default is not None:
-            values[key.name] = key.default
         elif key.required:
             what = f"{key.meaning}: {_expectation(key)}"
             problems.append(Problem(where, "nothing", what, f"add it to [{table.name}]"))
@@ -274,11 +260,8 @@ def _quantities(
     # A chart's own axis decides the dimension of its range; see chart_problems.
     if key.name in {"x_range", "y_range"}:
         return tuple(items)
-    read = [_quantity(item, key, f"{where}[{i}]", problems) for i, item in enumerate(items)]
-    numbers = tuple(number for number in read if number is not None)
-    if len(numbers) < len(items):
-        return None
-    if key.rising and any(b <= a for a, b in pairwise(numbers)):
+    numbers = _each(_quantity, items, key, where, problems)
+    if numbers is not None and key.rising and any(b <= a for a, b in pairwise(numbers)):
         problems.append(Problem(where, show(value), "values that increase", "sort them"))
         return None
     return numbers

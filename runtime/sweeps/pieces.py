@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
+from ..core.inputs import is_whole
 
 Array = NDArray[np.float64]
 _MOST_POINTS = 10**12
@@ -20,15 +21,8 @@ _MOST_POINTS = 10**12
 class Grid:
     """All combinations of values along named axes, the last axis running fastest.
 
-    Attributes
-    ----------
-    names : tuple of str
-        One per axis.
-    axes : tuple of ndarray
-        Values along each, shape ``(n,)``.
-    parts : tuple of int
-        Into how many parts each axis is cut; every axis after the first that is cut is whole, and
-        every one before it cut to single values, so that a piece is a run of the grid.
+    ``parts`` are into how many parts each axis is cut: every axis after the first that is cut is
+    whole, and every one before it cut to single values, so that a piece is a run of the grid.
     """
 
     names: tuple[str, ...]
@@ -107,8 +101,7 @@ def grid_of(values: Mapping[str, ArrayLike], chunk: int, *, rows: bool = False) 
 
 def check_chunk(chunk: Any) -> int:
     """Return the wanted number of points of a piece."""
-    whole = isinstance(chunk, (int, np.integer)) and not isinstance(chunk, bool)
-    if not whole or int(chunk) < 1:
+    if not is_whole(chunk, 1):
         raise bad("chunk", repr(chunk), "a whole number of points, 1 or more", "leave it out")
     return int(chunk)
 

@@ -32,20 +32,8 @@ _BEGUN = re.compile(r"\.(.+)\.[a-z0-9_]{8}")
 class Store:
     """A folder with one array per file, or one ``.npz`` file, and what leads there.
 
-    Parameters
-    ----------
-    path : Path
-        A path that ends in ``.npz`` becomes such a file at the end, its pieces lying in a folder
-        beside it until then; any other one is a folder.
-    request : mapping
-        What the sweep is.
-    grid : Grid
-        Its points and pieces.
-
-    Raises
-    ------
-    BadInput
-        If something else lies there, or the place cannot be written.
+    A path that ends in ``.npz`` becomes such a file at the end, its pieces lying in a folder beside
+    it until then; any other one is a folder.
     """
 
     def __init__(self, path: Path, request: Mapping[str, Any], grid: Grid) -> None:

@@ -109,7 +109,8 @@ def _swept(
     if store is None:
         return _in_memory(plan, executor, progress)
     place = _place(store)
-    kept = Store(place, request_of(*plan.request()), plan.grid)
+    request = request_of(plan.task.name, plan.subject, plan.grid, plan.options, plan.outputs)
+    kept = Store(place, request, plan.grid)
     done = kept.finished()
     if done is not None:
         return _assembled(plan, done, place, plan.grid.pieces)
@@ -119,31 +120,13 @@ def _swept(
 
 @dataclass(frozen=True)
 class Plan:
-    """A sweep whose arguments have been checked.
-
-    Attributes
-    ----------
-    task : Task
-        What is done.
-    subject : object
-        With what.
-    grid : Grid
-        Where, and in which pieces.
-    options : mapping
-        Further arguments.
-    outputs : tuple of str or None
-        Arrays that are kept.
-    """
+    """A sweep whose arguments have been checked: what, with what, where, and what is kept."""
 
     task: Task
     subject: Any
     grid: Grid
     options: Mapping[str, object]
     outputs: Outputs
-
-    def request(self) -> tuple[str, object, Grid, Mapping[str, object], Outputs]:
-        """Return what tells this sweep from another."""
-        return self.task.name, self.subject, self.grid, self.options, self.outputs
 
     def piece(self, number: int) -> Piece:
         """Work out one piece."""
@@ -207,11 +190,6 @@ def prepared(plan: Plan) -> Plan:
     return plan
 
 
-def work_on(plan: Plan, number: int) -> Piece:
-    """Work out one piece."""
-    return plan.piece(number)
-
-
 def _pieces(
     plan: Plan, executor: Executor | None, wanted: list[int], progress: bool
 ) -> Iterator[tuple[int, Piece]]:
@@ -221,7 +199,7 @@ def _pieces(
     sizes = [plan.grid.run(number) for number in wanted]
     done = points - sum(run.stop - run.start for run in sizes)
     with bar(progress, points, begun=done, unit=" points") as tick:
-        for place, piece in workers.run(work_on, wanted):
+        for place, piece in workers.run(Plan.piece, wanted):
             yield wanted[place], piece
             done += sizes[place].stop - sizes[place].start
             if tick is not None:

@@ -26,25 +26,13 @@ AnyArray = NDArray[Any]
 
 @dataclass(frozen=True)
 class Piece:
-    """Arrays at a run of the grid's points, or at all of them, and what a result says of itself.
+    """Arrays at a run of the grid's points, or at all of them, and what a result says of itself."""
 
-    Attributes
-    ----------
-    arrays : mapping of str to ndarray
-        Shape ``(points, ...)`` each.
-    method, error_norm : str
-        As of the result that they are from.
-    error : float
-        Largest error estimate of the points; NaN where there is none.
-    checks : mapping of str to Check
-        The worst of each self-check.
-    """
-
-    arrays: Mapping[str, AnyArray]
+    arrays: Mapping[str, AnyArray]  # (points, ...) each
     method: str
-    error: float
+    error: float  # the largest of the points; NaN where there is none
     error_norm: str
-    checks: Mapping[str, Check]
+    checks: Mapping[str, Check]  # the worst of each
 
     def about(self) -> dict[str, Any]:
         """Return all but the arrays, ready for JSON, which has no word for infinity."""
@@ -85,30 +73,14 @@ Run = Callable[[Any, Mapping[str, Array], Mapping[str, Any], Outputs], Piece]
 
 @dataclass(frozen=True)
 class Task:
-    """A way to work out a piece.
+    """A way to work out a piece."""
 
-    Attributes
-    ----------
-    name : str
-        What it is called in a manifest.
-    run : callable
-        Works out a piece.
-    chunk : int
-        Points of a piece unless told otherwise.
-    of_systems : bool
-        Whether its subject is a linear periodic system, which a scene is turned into.
-    rows : bool
-        Whether a piece wants its last axis whole.
-    outputs : tuple of str or None
-        Arrays that are kept unless told otherwise; None for all.
-    """
-
-    name: str
+    name: str  # in a manifest
     run: Run
-    chunk: int
-    of_systems: bool = True
-    rows: bool = False
-    outputs: Outputs = None
+    chunk: int  # points of a piece unless told otherwise
+    of_systems: bool = True  # whether a scene is turned into its system
+    rows: bool = False  # whether a piece wants its last axis whole
+    outputs: Outputs = None  # arrays that are kept unless told otherwise; None for all
 
 
 def _worst(checks: Iterable[Mapping[str, Check]]) -> dict[str, Check]:

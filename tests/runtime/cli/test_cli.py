@@ -16,6 +16,7 @@ from elastolink.runtime.cli import application, main, options
 from elastolink.runtime.core.errors import LinearRangeWarning, SelfCheckFailed
 from elastolink.runtime.core.results import Check, Result
 from elastolink.runtime.scenes import list_scenes
+from fresh_process import python
 
 RIG = "smith_1972_5152_sixteenth_inch"
 COMMANDS = re.findall(r"^    ([a-z][a-z-]+) ", application.build_parser().format_help(), re.M)
@@ -33,15 +34,13 @@ def test_help_and_scenes_load_nothing_heavy():
     code = (
         "import sys\n"
         "from elastolink.runtime.cli import main\n"
-        "try: main({arguments})\n"
-        "except SystemExit: pass\n"
-        "heavy = {{'pint', 'matplotlib', 'scipy', 'sympy', 'numpy', 'jinja2'}} & set(sys.modules)\n"
+        "for arguments in (['--help'], ['scenes'], ['chart', '--help'], ['scenes', '--json']):\n"
+        "    try: main(arguments)\n"
+        "    except SystemExit: pass\n"
+        "heavy = {'pint', 'matplotlib', 'scipy', 'sympy', 'numpy', 'jinja2'} & set(sys.modules)\n"
         "sys.exit(str(heavy) if heavy else 0)\n"
     )
-    for arguments in (["--help"], ["scenes"], ["chart", "--help"], ["scenes", "--json"]):
-        script = code.format(arguments=arguments)
-        done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
-        assert done.returncode == 0, done.stderr
+    assert "chart mathieu" in python(code)
 
 
 def test_the_version_also_without_the_script(capsys):

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from importlib import import_module
 from pathlib import Path
 
@@ -15,6 +13,7 @@ import pytest
 from elastolink.runtime.cli import main, probe
 from elastolink.runtime.cli.explanation import Explanation, explain, read_cost
 from elastolink.runtime.core.errors import BadInput
+from fresh_process import python
 
 GENERATED = Path(elastolink.generated.__path__[0])
 RIG = "smith_1972_5152_sixteenth_inch"
@@ -215,8 +214,7 @@ def test_what_the_command_loads_is_not_counted_as_the_scene_s():
         "scenes.load_scene('mathieu')\n"
         "print(sum(name.startswith('elastolink') for name in sys.modules))"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert explain("mathieu").stages["scene"].modules == int(done.stdout)
+    assert explain("mathieu").stages["scene"].modules == int(python(code))
 
 
 @pytest.mark.slow

@@ -1,5 +1,6 @@
 """Quiet speeds, damping, lengths, the screen, fatigue: hand cases, and the document's machine."""
 
+from contextlib import nullcontext
 from functools import cache
 
 import numpy as np
@@ -12,6 +13,7 @@ from elastolink.runtime.design import (
     damping_effect,
     fatigue,
     length_effect,
+    procedure,
     quiet_speeds,
     running_speed,
     screen,
@@ -113,10 +115,14 @@ def test_a_longer_frame_lowers_the_stresses_up_to_a_length():
 
 
 @pytest.mark.slow
-def test_the_design_method_finds_a_quiet_speed_and_a_way_up():
+def test_the_design_method_finds_a_quiet_speed_and_a_way_up(monkeypatch):
+    ticks = []
+    monkeypatch.setattr(procedure, "bar", lambda wanted, total: nullcontext(ticks.append))
     found = running_speed(
         system(), np.linspace(28.0, 36.0, 120), 200e6, values=[0.547, 0.632], rtol=5e-3
     )
+    # Five damping ratios, then lengths up to the first that does.
+    assert ticks == list(range(1, len(ticks) + 1)) and 5 < len(ticks) <= 7
     assert found.band.above is not None and found.band.ratio < 1.0
     assert found.quiet.limiting.size and np.min(found.quiet.limiting) < found.speed
     assert found.run_up_length == 0.632

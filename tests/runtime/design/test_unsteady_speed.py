@@ -183,6 +183,16 @@ def test_the_length_at_the_end_is_the_one_that_acts():
     assert np.max(np.abs(found.q[late] - expected) / peak) < 5e-3
 
 
+def test_a_length_is_taken_at_as_many_levels_as_it_needs():
+    # With 17 levels, one doubling of the nine, the error is 3.4 of what is asked.
+    profile = SpeedProfile(times=(0.0, 0.02), speeds=(20.0, 20.0), geometry={"frame": (0.66, 0.5)})
+    found = run_through(system(), profile, modes=None, rtol=1e-3, start="rest")
+    assert found.checks["converged"].passed
+    looser = run_through(system(), profile, modes=None, rtol=2e-2, start="rest")
+    gap = np.abs(np.array(list(looser.largest.values())) / list(found.largest.values()) - 1.0)
+    assert np.all(gap <= looser.error + found.error)
+
+
 def test_a_changing_length_is_that_of_its_time():
     # Between the levels, against the structure made there: arrays, directions and deflections.
     profile = SpeedProfile(times=(0.0, 0.4), speeds=(20.0, 20.0), geometry={"frame": (0.62, 0.547)})

@@ -72,12 +72,13 @@ def test_a_chart_does_not_depend_on_who_works_it_out(rod, coupler, pool, number)
 
 
 @pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.LinearRangeWarning")
-@pytest.mark.parametrize("solver", ["floquet_multipliers", "steady_state"])
+@pytest.mark.parametrize("solver", ["stability_chart", "floquet_multipliers", "steady_state"])
 def test_points_do_not_depend_on_who_works_them_out(coupler, pool, solver):
     values = {"speed": np.linspace(30.0, 50.0, 12), "follower_inertia": [6.5e-4, 7e-4]}
     alone = el.sweep(solver, coupler, values, chunk=5)
     with ThreadPoolExecutor(2) as threads:
         others = [el.sweep(solver, coupler, values, chunk=5, executor=e) for e in (pool, threads)]
+    assert alone.pieces > 2
     for other in others:
         for name, array in alone.outputs.items():
             assert other.outputs[name].tobytes() == array.tobytes(), name

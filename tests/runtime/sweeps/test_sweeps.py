@@ -18,6 +18,7 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.sweeps import Sweep, WorkersLost, estimate_sweep
 from elastolink.runtime.sweeps.pieces import grid_of
 from elastolink.runtime.sweeps.requests import digest
+from fresh_process import python
 
 MU, LAM2 = np.linspace(0.0, 3.0, 23), np.linspace(-0.5, 6.0, 31)
 VALUES = {"mu": MU, "lam2": LAM2}
@@ -102,14 +103,6 @@ def test_a_chart_in_pieces_is_the_chart(mathieu, chart):
     assert np.all(np.abs(chart["largest"] - whole.largest) <= moved)
     assert chart.passed
     assert chart.error <= 1e-9
-
-
-def test_any_executor_gives_the_same_bytes(mathieu, chart, pool):
-    with ThreadPoolExecutor(3) as threads:
-        assert same_bytes(
-            el.sweep("stability_chart", mathieu, VALUES, chunk=150, executor=threads), chart
-        )
-    assert same_bytes(el.sweep("stability_chart", mathieu, VALUES, chunk=150, executor=pool), chart)
 
 
 @pytest.mark.parametrize("name", ["whole.npz", "folder"])
@@ -312,16 +305,7 @@ def test_digests_tell_content_and_nothing_else(mathieu):
     assert digest([1.0]) != digest([1])
     code = "import elastolink as el; from elastolink.runtime.sweeps.requests import digest;"
     code += "print(digest((el.load_scene('mathieu').system(), {'a', 'b', 'c'}, el.load_scene)))"
-    seen = {
-        subprocess.run(
-            [sys.executable, "-c", code],
-            env={**os.environ, "PYTHONHASHSEED": seed},
-            capture_output=True,
-            text=True,
-            check=True,
-        ).stdout
-        for seed in ("1", "2")
-    }
+    seen = {python(code, PYTHONHASHSEED=seed) for seed in ("1", "2")}
     assert seen == {digest((mathieu, {"a", "b", "c"}, el.load_scene)) + "\n"}
 
 

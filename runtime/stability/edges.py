@@ -67,8 +67,8 @@ class StabilityEdges(Result):
         n of ``Omega_i + Omega_j = n`` (sum; 2 Omega_j = n in a principal region) or
         ``Omega_j - Omega_i = n`` (difference), in turns per period.
     detuning : ndarray, shape (k,)
-        How far the frequencies of the averaged equation are from that, in turns; the labels are
-        those that suit best, and a detuning beyond 1/2 makes them a matter of words.
+        How far the turns of these modes, each alone, are from that; the labels are those that suit
+        best, and a detuning beyond 1/2 makes them a matter of words.
     kind : tuple of str
         ``"principal"``, ``"sum"`` or ``"difference"``.
     error : ndarray, shape (k,)

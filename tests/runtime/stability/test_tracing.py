@@ -135,7 +135,7 @@ def test_narrow_regions_within_wide_ones(damping):
     assert found.lower[wide] == pytest.approx(40.328, abs=1e-3)
     assert np.isnan(found.upper[wide])
     nested = found.labels.index("region 17 of mode 2")
-    around = found.labels.index("region 6 of mode 1")
+    around = found.labels.index("region 4 of mode 1")
     assert found.lower[around] < found.lower[nested] < found.upper[nested] < found.upper[around]
     # Of like multiplier as the wider region, told by the number of those off the circle.
     assert "region 15 of mode 2" in found.labels

@@ -224,11 +224,9 @@ def stability_chart(
     sampler = Sampler(system, names, axes, speed, float(rtol))
     series = invariants(sampler, workers, progress=progress)
     found = judged(sampler, series, workers)
-    # The system as the samples see it: at another speed than 1 slowed down.
-    system = sampler.system
     exact, near, rows = None, None, None
     shaped = any(name in system.geometry for name in names)
-    if boundaries and is_hill(system) and not shaped:
+    if boundaries and is_hill(system) and not shaped and sampler.speed == 1.0:
         exact, near = boundary_curves(system, names, axes, int(order))
     checks = {
         "error of samples": Check(series.sample_error, max(1e-8, 1e3 * rtol)),
@@ -258,7 +256,7 @@ def stability_chart(
         frequency_name=frequency_name,
         marks=named,
         nodes=series.nodes,
-        speed=float("nan") if "speed" in names else float(1.0 if speed is None else speed),
+        speed=float("nan") if "speed" in names else sampler.speed,
     )
 
 

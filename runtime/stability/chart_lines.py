@@ -18,12 +18,12 @@ from ..core.families import Array
 from ..core.periodic_function import PeriodicFunction
 from ..core.progress import bar
 from ..hill import HillForm, discriminant
-from ..periodic.equation import Equation, SampledSystem, equation_of, sampled
+from ..periodic.equation import Equation, at_geometry, equation_of, sampled
 from ..periodic.tables import Table, table_of
 from ..periodic.transition import levels_for, method, rung
 from .chart_axes import leaves_function_alone
 from .chart_sampling import Map, Sampler, Series, relative_error
-from .invariants import from_sum, sum_weights_back, weighed_characteristic
+from .invariants import frobenius, from_sum, sum_weights_back, weighed_characteristic
 
 # Wanted error of the matrices, and what mirrored coefficients may differ, over the largest.
 _RTOL, _ALIKE = 1e-12, 1e-13
@@ -45,7 +45,6 @@ class Piece:
     """Transition matrices over values of the variable, of a period or of half of one."""
 
     table: Table
-    segments: int
     half: bool
 
 
@@ -76,7 +75,7 @@ class Line:
             if piece.half:
                 n = plain.shape[-1] // 2
                 sums = 2.0 * mirrored_sums(matrices)
-                change = n + 4.0 * _norm(matrices[:, :n, n:]) * _norm(matrices[:, n:, :n])
+                change = n + 4.0 * frobenius(matrices[:, :n, n:]) * frobenius(matrices[:, n:, :n])
                 found, weight = weighed_characteristic(sums, n, change)
                 found, weight = from_sum(found), weight @ sum_weights_back(n)
             else:
@@ -121,11 +120,6 @@ def is_mirrored(equation: Equation) -> bool:
     return True
 
 
-def _norm(matrices: Array) -> Array:
-    value: Array = np.sqrt(np.sum(matrices * matrices, axis=(-2, -1)))
-    return value
-
-
 def _sign_of_trace(matrices: Array, half: bool) -> Array:
     """Return the sign of the trace of matrices, or of what half a period's are half of."""
     if half:
@@ -147,8 +141,7 @@ class Lines:
         self.inner = self.names.index("speed") if "speed" in self.names else 0
         if self.names[self.inner] in self.system.geometry:
             self.inner = 1
-        # The system of all lines; none where each line has its own.
-        self.known: SampledSystem | None = None
+        self.speed = sampler.speed
 
     @property
     def inner_is_geometry(self) -> bool:
@@ -186,14 +179,6 @@ class Lines:
             return Line(pieces, self.reduced)
         return Line((self._piece(fixed, inner_name, low, high, fineness),), self.reduced)
 
-    def _sampled(self, geometry: dict[str, float]) -> SampledSystem:
-        """Return the system at a geometry with its Fourier series."""
-        if geometry:
-            return sampled(self.system.with_geometry(**geometry))
-        if self.known is None:
-            self.known = sampled(self.system)
-        return self.known
-
     def _piece(
         self,
         fixed: dict[str, float],
@@ -202,15 +187,14 @@ class Lines:
         high: float,
         fineness: float,
     ) -> Piece:
-        geometry = {k: v for k, v in fixed.items() if k in self.system.geometry}
-        known = self._sampled(geometry)
-        rest = {k: v for k, v in fixed.items() if k not in geometry}
+        system, rest = at_geometry(self.system, fixed)
+        known = sampled(system)
 
         def plain(values: Array) -> Equation:
             point: dict[str, Any] = {**rest}
             if inner is not None:
                 point[inner] = self.back(inner, values)
-            speed = np.broadcast_to(point.pop("speed", 1.0), values.shape)
+            speed = np.broadcast_to(point.pop("speed", self.speed), values.shape)
             return equation_of(known, speed, point)
 
         # Places along a line at which the number of segments is judged.
@@ -234,7 +218,7 @@ class Lines:
 
         half = self.reduced and is_mirrored(judged)
         table = table_of(equation_at, (low, high), count, way, _RTOL, half=half, nodes=_NODES)
-        return Piece(table, count, half)
+        return Piece(table, half)
 
 
 class HillLines:
@@ -248,7 +232,7 @@ class HillLines:
     def __init__(self, sampler: Sampler, form: HillForm) -> None:
         self.inner = 0 if leaves_function_alone(form, sampler.names[0]) else 1
         self._shared = leaves_function_alone(form, sampler.names[self.inner])
-        self._form, self._back = form, sampler.back
+        self._form, self._back, self._speed = form, sampler.back, sampler.speed
         self._along, self._outer = sampler.names[self.inner], sampler.names[1 - self.inner]
 
     def line(
@@ -262,7 +246,7 @@ class HillLines:
         form = self._form
         along = self._back(self._along, values)
         points = [{self._outer: outer, self._along: float(v)} for v in along]
-        speeds = np.array([p.pop("speed", 1.0) for p in points])
+        speeds = np.array([p.pop("speed", self._speed) for p in points])
         lam2 = np.array([form.stiffness(**p) for p in points]) / speeds**2
         damping = np.array([form.damping(**p) for p in points]) / (2 * speeds)
         if self._shared:

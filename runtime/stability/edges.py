@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.families import DAMPING, LinearPeriodic
-from ..core.inputs import numbers, speed_span
+from ..core.inputs import is_finite, numbers, speed_span
 from ..core.results import Check, Result, provenance
 from ..periodic import floquet_multipliers
 from ..periodic.decoupled import SlowSystem
@@ -184,10 +184,9 @@ def stability_edges(
         or the range needs too many samples.
     """
     low, high = speed_span(speed_range)
-    rtol, margin = (_number(name, value) for name, value in (("rtol", rtol), ("margin", margin)))
-    if not 1e-13 <= rtol <= 1e-6:
+    if not (is_finite(rtol) and 1e-13 <= rtol <= 1e-6):
         raise bad("rtol", rtol, "a number from 1e-13 to 1e-6", "choose 1e-11")
-    if not 1.0 < margin <= 10.0:
+    if not (is_finite(margin) and 1.0 < margin <= 10.0):
         raise bad("margin", margin, "a factor between 1 and 10", "leave it out")
     span = (low / margin, high * margin)
     slow = None
@@ -274,13 +273,6 @@ def _check_damping(system: LinearPeriodic, parameters: Mapping[str, float]) -> N
             "damping of no direction below zero",
             "use floquet_multipliers or stability_chart",
         )
-
-
-def _number(name: str, value: object) -> float:
-    number = numbers(name, value)
-    if number.ndim:
-        raise bad(name, value, "one number", "leave it out")
-    return float(number)
 
 
 def _undamped(

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import matplotlib
 import numpy as np
 import pytest
-from elastolink import load_scene
+from edge_truth import rig
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.core.periodic_function import PeriodicFunction
@@ -453,11 +453,10 @@ def test_a_series_out_of_its_depth_does_not_pass_a_closed_range():
 # ---------------------------------------------------------------- Smith's 1/16 inch rig
 
 
-@pytest.fixture(scope="module")
-def rig():
+@pytest.fixture(scope="module", name="rig")
+def _rig():
     """Smith, chapter 9, suggestion 1: what his theory of a single mode leaves out."""
-    overrides = {"model.modes": 2}
-    return load_scene("smith_1972_5152_sixteenth_inch", overrides=overrides).system()
+    return rig(**{"model.modes": 2})
 
 
 def _of_rig(rig, label):

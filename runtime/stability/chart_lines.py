@@ -6,7 +6,7 @@ the function of Hill's equation where the inner axis leaves that alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, NamedTuple
@@ -35,24 +35,19 @@ _FIRST, _FEWEST_LINES = 32, 9
 # Share of the values along an axis from which each of them is taken instead of nodes.
 _NEARLY_ALL = 0.8
 
+# Invariants at values of the inner variable, and the weights of their errors.
+Samples = Callable[[Array], tuple[Array, Array]]
 Tick = Callable[[int], None] | None
 # Value of the outer axis, ends and values of the variable of the inner one.
 _Place = tuple[float, float, float, Array]
 
 
 @dataclass(frozen=True)
-class Piece:
-    """Transition matrices over values of the variable, of a period or of half of one."""
+class Line:
+    """A table of transition matrices, of a period or of half of one, over the inner variable."""
 
     table: Table
     half: bool
-
-
-@dataclass(frozen=True)
-class Line:
-    """The system at one value of the outer axis, for all values of the inner one."""
-
-    pieces: tuple[Piece, ...]
     reduced: bool
 
     def __call__(self, values: Array) -> tuple[Array, Array]:
@@ -61,18 +56,10 @@ class Line:
         The weight is by how much an error of relative size 1 in the matrices moves an invariant.
         Where the growth overflows the invariants are infinite, with the sign of the first.
         """
-        if len(self.pieces) == 1:
-            return self._of(self.pieces[0], values)
-        found = [
-            self._of(piece, values[i : i + 1]) for i, piece in enumerate(self.pieces)
-        ]  # one piece per value
-        return np.concatenate([f[0] for f in found]), np.concatenate([f[1] for f in found])
-
-    def _of(self, piece: Piece, values: Array) -> tuple[Array, Array]:
-        plain, power = piece.table.products(values)
+        plain, power = self.table.products(values)
         with np.errstate(over="ignore", invalid="ignore"):
             matrices = np.ldexp(plain, power[:, None, None])
-            if piece.half:
+            if self.half:
                 n = plain.shape[-1] // 2
                 sums = 2.0 * mirrored_sums(matrices)
                 change = n + 4.0 * frobenius(matrices[:, :n, n:]) * frobenius(matrices[:, n:, :n])
@@ -84,10 +71,18 @@ class Line:
         finite = np.all(np.isfinite(found) & np.isfinite(weight), axis=-1)
         if not np.all(finite):
             grown = ~finite & np.all(np.isfinite(plain), axis=(-2, -1))
-            sign = _sign_of_trace(plain, piece.half)
+            sign = _sign_of_trace(plain, self.half)
             found[~finite], weight[~finite] = np.nan, np.inf
             found[grown] = np.where(sign[grown] > 0, -np.inf, np.inf)[:, None]
         return found, weight
+
+
+def _each(lines: Sequence[Line], values: Array) -> tuple[Array, Array]:
+    """Return the same from lines that hold for one value each."""
+    found, weight = zip(
+        *(line(value) for line, value in zip(lines, values[:, None], strict=True)), strict=True
+    )
+    return np.concatenate(found), np.concatenate(weight)
 
 
 def mirrored_sums(halves: Array) -> Array:
@@ -148,9 +143,23 @@ class Lines:
         """Whether the system is made anew at each point."""
         return self.names[self.inner] in self.system.geometry
 
-    def line(self, outer: float, low: float, high: float, values: Array | None = None) -> Line:
+    def line(
+        self,
+        outer: float,
+        low: float,
+        high: float,
+        values: Array | None = None,
+        fineness: float = 1.0,
+    ) -> Samples:
         """Return the line at a value of the outer axis; of two geometries at given values alone."""
-        return self._line(outer, low, high, values, 1.0)
+        inner_name, outer_name = self.names[self.inner], self.names[1 - self.inner]
+        fixed = {outer_name: float(outer)}
+        if not self.inner_is_geometry:
+            return self._table(fixed, inner_name, low, high, fineness)
+        if values is None:
+            raise ValueError("a line along geometry wants its values beforehand")
+        points = [({**fixed, inner_name: float(v)}, float(v)) for v in values]
+        return partial(_each, [self._table(at, None, v, v, fineness) for at, v in points])
 
     def error(self, outer: float, low: float, high: float, values: Array, found: Array) -> Array:
         """Return by how much another solution differs from invariants, over the weight of errors.
@@ -158,35 +167,21 @@ class Lines:
         One number per value; 0 where either overflows, infinite where either is NaN.
         """
         # Another number of segments gives another solution; four times the difference is the error.
-        again, weight = self._line(outer, low, high, values, 1.37)(values)
+        again, weight = self.line(outer, low, high, values, 1.37)(values)
         grown = np.isinf(again) | np.isinf(found)
         with np.errstate(invalid="ignore"):
             gap = np.where(grown, 0.0, np.abs(again - found) / weight)
         worst: Array = np.max(np.where(np.isnan(gap), np.inf, gap), axis=-1)
         return 4.0 * worst
 
-    def _line(
-        self, outer: float, low: float, high: float, values: Array | None, fineness: float
-    ) -> Line:
-        inner_name, outer_name = self.names[self.inner], self.names[1 - self.inner]
-        fixed = {outer_name: float(outer)}
-        if inner_name in self.system.geometry:
-            if values is None:
-                raise ValueError("a line along geometry wants its values beforehand")
-            pieces = tuple(
-                self._piece({**fixed, inner_name: float(v)}, None, v, v, fineness) for v in values
-            )
-            return Line(pieces, self.reduced)
-        return Line((self._piece(fixed, inner_name, low, high, fineness),), self.reduced)
-
-    def _piece(
+    def _table(
         self,
         fixed: dict[str, float],
         inner: str | None,
         low: float,
         high: float,
         fineness: float,
-    ) -> Piece:
+    ) -> Line:
         system, rest = at_geometry(self.system, fixed)
         known = sampled(system)
 
@@ -218,7 +213,7 @@ class Lines:
 
         half = self.reduced and is_mirrored(judged)
         table = table_of(equation_at, (low, high), count, way, _RTOL, half=half, nodes=_NODES)
-        return Piece(table, half)
+        return Line(table, half, self.reduced)
 
 
 class HillLines:
@@ -235,9 +230,7 @@ class HillLines:
         self._form, self._back, self._speed = form, sampler.back, sampler.speed
         self._along, self._outer = sampler.names[self.inner], sampler.names[1 - self.inner]
 
-    def line(
-        self, outer: float, low: float, high: float, values: Array | None = None
-    ) -> Callable[[Array], tuple[Array, Array]]:
+    def line(self, outer: float, low: float, high: float, values: Array | None = None) -> Samples:
         """Return the line at a value of the outer axis."""
         return partial(self._half_traces, float(self._back(self._outer, np.asarray(outer))))
 
@@ -331,7 +324,7 @@ class _Surface:
         self.across = sampler.transform(sampler.names[1 - which], sampler.axes[1 - which])
         self.low, self.high = float(self.wanted.min()), float(self.wanted.max())
         self.count = 0
-        self.ends: dict[float, Callable[[Array], tuple[Array, Array]]] = {}
+        self.ends: dict[float, Samples] = {}
         # Tails before the last refinement: round-off, where it has not halved them.
         self.before = (np.inf, np.inf)
         self.kept: dict[float, tuple[Array, Array]] = {}

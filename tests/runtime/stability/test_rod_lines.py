@@ -27,8 +27,8 @@ def line(system, reduced):
     lines = Lines(sampler)
     lines.reduced = reduced
     values = sampler.transform("speed", SPEEDS)
-    made = lines._line(0.0, float(values.min()), float(values.max()), None, 1.0)
-    return made.pieces[0], made(values)[0][:, : system.size]
+    made = lines.line(0.0, float(values.min()), float(values.max()), None, 1.0)
+    return made, made(values)[0][:, : system.size]
 
 
 @pytest.mark.parametrize("reduced", [True, False])

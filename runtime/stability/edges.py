@@ -44,6 +44,7 @@ _WIDE = 1e-6
 _REAL = 1e-4
 _GAP = "multiplier +-1, and gap of multipliers of opposite Krein signature"
 _RPM = 30.0 / np.pi
+_TOLD = ("lower", "upper", "multiplier", "modes", "harmonic", "detuning", "kind")
 _CLOSED = "closed: too narrow to be told from none"
 _COLOURS = {"principal": "#c05a1f", "sum": "#6b3d8f", "difference": "#2b7a78"}
 
@@ -228,13 +229,7 @@ def stability_edges(
         error_norm="absolute, of either end [rad/s]",
         checks=checks,
         provenance=provenance(system.changed_provenance(**parameters)),
-        lower=regions.lower,
-        upper=regions.upper,
-        multiplier=regions.multiplier,
-        modes=regions.modes,
-        harmonic=regions.harmonic,
-        detuning=regions.detuning,
-        kind=regions.kind,
+        **{name: getattr(regions, name) for name in _TOLD},
         least_width=least,
         speed_range=(low, high),
     )

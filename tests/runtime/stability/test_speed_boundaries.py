@@ -53,17 +53,6 @@ def test_mathieu_characteristic_values():
         assert gap < 1e-11 * a
 
 
-def test_inertial_pull_gives_the_hill_boundaries():
-    # Divided by w^2 the pull stands free of the speed: y'' + (lam2 + mu cos) y, lam2 = k/w^2.
-    function = PeriodicFunction(a=[0.0, 1.0], b=[0.0, 0.0])
-    regions = (1, 2, 3, 4)
-    bounds = hill_boundaries(function, np.array([0.2]), regions=regions)
-    found = speed_boundaries(_beam(pull=0.2), speed_range=(0.9, 20.0))
-    lam2 = np.sort(np.concatenate([bounds.lower[:, 0], bounds.upper[:, 0]]))
-    got = np.sort(4.0 / found.speed**2)
-    np.testing.assert_allclose(got[: len(lam2)], lam2, rtol=1e-11)
-
-
 def test_damped_boundaries_against_hill_and_against_bisection():
     function = PeriodicFunction(a=[0.0, 1.0], b=[0.0, 0.0])
     damping = 0.05

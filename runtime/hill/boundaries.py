@@ -400,13 +400,13 @@ def _from_matrix(
                 ends.lower[i, whole], ends.error[i, whole] = -np.inf, local[whole]
                 continue
             ends.lower[i, whole] = first + shift[whole]
-            ends.error[i, whole] = _near_tip(
+            ends.error[i, whole] = near_tip(
                 local[whole], 0.5 * (last - first), 0.5 * (high[i] - low[i])[whole]
             )
     return ends
 
 
-def _near_tip(local: Array, half: Array, sharp_half: Array) -> Array:
+def near_tip(local: Array | float, half: Array | float, sharp_half: Array | float) -> Array:
     """Return the error of ends ``+-half`` that damping drew in from ``+-sharp_half``.
 
     The ends follow ``sqrt(sharp_half^2 - const)``: an error of the data is magnified by

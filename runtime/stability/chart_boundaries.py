@@ -10,6 +10,7 @@ import numpy as np
 from ..core.families import Array, LinearPeriodic
 from ..core.periodic_function import PeriodicFunction
 from ..hill import HillForm, hill_boundaries, hill_form, perturbation_boundaries
+from ..hill.boundaries import near_tip
 from ..hill.fourier_matrix import layout, stacked, truncation
 from .chart_axes import is_damped, is_stiffness, leaves_function_alone
 
@@ -146,7 +147,7 @@ def _damped_speeds(
 
     With lam2 = s^2 and K = r s, r = c / (2 sqrt(k)), Hill's matrix gives
     ``(k^2 - f) v - 2 r s D v = s^2 v``, D = d/d theta.  A region lies within the undamped one
-    moved by K^2 (see :func:`~.damped.damped`), which is how real s get its number.
+    moved by K^2 (see :mod:`..hill.boundaries`), which is how real s get its number.
     """
     ratio = damping / (2.0 * np.sqrt(stiffness))
     sharp = hill_boundaries(f, 1.0, regions)
@@ -171,37 +172,19 @@ def _damped_speeds(
             if low < 0.0 or len(own) < 2:
                 continue
             ends = own[[0, -1]]
-            width = 0.5 * float(ends[1] ** 2 - ends[0] ** 2)
             speeds = np.sqrt(stiffness) / ends
-            error = _drawn_in(local, width, 0.5 * (high - low))
-            out[:, i] = *speeds, error * float(np.max(speeds / (2.0 * ends**2)))
+            error = near_tip(local, 0.5 * (ends[1] ** 2 - ends[0] ** 2), 0.5 * (high - low))
+            out[:, i] = *speeds, error * np.max(speeds / (2.0 * ends**2))
     return out
 
 
 def _inverse_speeds(f: PeriodicFunction, odd: int, harmonic: int, ratio: float) -> Array:
     """Return all real s > 0 with a solution of one parity."""
-    number = np.sqrt(layout(odd, harmonic).squares)
-    size = number.size
-    whole = stacked(f, odd, harmonic, np.ones(1))[0] - float(f.a[0]) * np.eye(size)
-    drag = np.zeros((size, size))
-    # d/d theta takes cos k to -k sin k and sin k to k cos k, which stand side by side.
-    cos = np.arange(1 - odd, size, 2)
-    drag[cos + 1, cos] = 2.0 * ratio * number[cos]
-    drag[cos, cos + 1] = -drag[cos + 1, cos]
-    companion = np.block([[np.zeros((size, size)), np.eye(size)], [whole, drag]])
-    values = np.linalg.eigvals(companion)
+    unit = np.eye(layout(odd, harmonic).squares.size)
+    whole = stacked(f, odd, harmonic, np.ones(1))[0] - float(f.a[0]) * unit
+    drag = -ratio * layout(odd, harmonic).slope
+    values = np.linalg.eigvals(np.block([[np.zeros_like(unit), unit], [whole, drag]]))
     return np.asarray(values.real[(values.imag == 0.0) & (values.real > 0.0)])
-
-
-def _drawn_in(local: float, half: float, sharp_half: float) -> float:
-    """Return the error of ends ``+-half`` that damping drew in from ``+-sharp_half``.
-
-    An error of the data is magnified by ``sharp_half / half``, and at the tip by the square root.
-    """
-    square = 2.0 * max(half, sharp_half) * local
-    inner = half * half - square
-    moved = half - np.sqrt(inner) if inner > 0.0 else np.sqrt(half * half + square)
-    return float(moved) + local
 
 
 def _overlay(

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic
-from ..core.inputs import numbers
+from ..core.inputs import numbers_in_a_row
 from ..core.results import Check, Result
 from ..hill.form import is_hill
 from ..hill.perturbation import check_order
@@ -283,16 +283,10 @@ def _axes(system: LinearPeriodic, x: Axis, y: Axis) -> tuple[tuple[str, str], tu
     for label, (name, given) in (("x", x), ("y", y)):
         if name not in known:
             raise bad(f"axis {label}", repr(name), f"one of {known}", "correct the name")
-        values = numbers(f"axis {label}", given)
-        if values.ndim != 1 or len(values) < 2 or not np.all(np.isfinite(values)):
-            raise bad(
-                f"axis {label}",
-                f"shape {values.shape}",
-                "at least two finite values in a line",
-                "give a range",
-            )
-        if np.any(np.diff(values) <= 0):
-            raise bad(f"axis {label}", "values that do not rise", "rising values", "sort them")
+        values = numbers_in_a_row(f"axis {label}", given)
+        if len(values) < 2 or np.any(np.diff(values) <= 0):
+            what = "values that do not rise" if len(values) > 1 else "one value"
+            raise bad(f"axis {label}", what, "at least two rising values", "give a range")
         if name == "speed" and values[0] <= 0:
             raise bad(f"axis {label}", f"speed {values[0]:g}", "positive speeds", "raise the range")
         found.append(values)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families import DAMPING, LinearPeriodic
-from ..core.inputs import numbers, speed_span
+from ..core.inputs import numbers_in_a_row, speed_span
 from ..core.results import Check, Result, provenance
 from ..periodic import floquet_multipliers
 from .edges import StabilityEdges, stability_edges
@@ -255,7 +255,7 @@ def _checked_values(system: LinearPeriodic, name: str, values: ArrayLike) -> Arr
     names = sorted({*system.parameters, *system.geometry})
     if name not in names:
         raise bad("name", repr(name), f"one of {names}", "correct it")
-    at = np.atleast_1d(numbers("values", values))
-    if at.ndim != 1 or not np.all(np.isfinite(at)) or np.any(np.diff(at) <= 0) or not at[0] > 0:
-        raise bad("values", f"shape {at.shape}", "positive rising values", "correct them")
+    at = numbers_in_a_row("values", values)
+    if np.any(np.diff(at) <= 0) or not at[0] > 0:
+        raise bad("values", repr(values), "positive rising values", "correct them")
     return at

@@ -102,7 +102,8 @@ def _own_turns(equation: Equation, vectors: ComplexArray, duals: ComplexArray) -
             slope = 1j * a[..., None] * images + b[..., None] * images.conj()
             moved = even[..., None] * images + odd[..., None] * slope
             turned += np.angle(moved[..., 0] / images[..., 0])
-            images = moved
+            # Their size tells nothing, and may overflow.
+            images = moved / np.max(np.abs(moved), axis=-1, keepdims=True)
     # One motion turns as the multiplier does, to half a turn.
     (a, b), (c, d) = np.moveaxis(np.stack([images.real, images.imag]), -1, 1)
     sine = np.sqrt(np.maximum(-0.25 * (a - d) ** 2 - b * c, 0.0))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core.families import LinearPeriodic
-from ..hill import critical_damping, hill_boundaries, perturbation_boundaries
+from ..hill import critical_damping, perturbation_boundaries
 from ..hill.bloch import effective_operator
 from ..periodic import floquet_multipliers
 from ..stability import stability_edges
@@ -205,36 +205,15 @@ def regions(chart: str, inertia: float) -> tuple[list[_Region], int]:
     width = bare.width
     kept = np.flatnonzero(width > 2.0 * bare.error)
     left = _left_by_damping(chart, inertia, bare.lower[kept], width[kept])
-    beginnings = _first_mode(chart, inertia)
-    # Regions of the first mode begin within half a per cent of where they do alone.
-    first = {
-        i: next((n for n, end in beginnings.items() if abs(low - end) < 0.005 * end), 0)
-        for i, low in zip(kept.tolist(), (bare.lower[kept] / RPM).tolist(), strict=True)
-        if bare.kind[i] == "principal"
-    }
-    second = [i for i, n in first.items() if not n]
-    # Names that are not all of mode 2, counting down with the speed, are guesses.
-    certain = bool(np.all(bare.modes[second] == 2) and np.all(np.diff(bare.harmonic[second]) == -1))
     opened = []
     for i, share in zip(kept.tolist(), left.tolist(), strict=True):
         low, high = float(bare.lower[i]) / RPM, float(bare.upper[i]) / RPM
-        kind, label = bare.kind[i], bare.labels[i]
-        if first.get(i):
-            kind, label = "principal 1", f"region {first[i]} of mode 1"
-        elif kind == "principal":
-            kind, label = "principal 2", label if certain else "region of mode 2"
-        opened.append(_Region(kind, label, low, high, share * (high - low)))
+        kind = bare.kind[i]
+        if kind == "principal":
+            kind = f"principal {bare.modes[i, 0]}"
+        opened.append(_Region(kind, bare.labels[i], low, high, share * (high - low)))
     opened.sort(key=lambda one: -one.width)
     return opened, int(np.count_nonzero(width <= 2.0 * bare.error))
-
-
-def _first_mode(chart: str, inertia: float) -> Mapping[int, float]:
-    """Return the speeds [rpm] at which regions of the first mode alone begin, by number."""
-    rig, numbers = RIG[chart], range(2, 7)
-    f = rig.function("complete", inertia * LBF_IN_S2)
-    upper = hill_boundaries(f, 1.0, numbers).upper.tolist()
-    begins = zip(numbers, upper, strict=True)
-    return {n: float(rig.frequency / np.sqrt(end) / RPM) for n, end in begins if end > 0.0}
 
 
 def _left_by_damping(chart: str, inertia: float, lower: Array, width: Array) -> Array:

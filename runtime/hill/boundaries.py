@@ -389,7 +389,7 @@ def _from_matrix(
     return ends
 
 
-def near_tip(local: Array | float, half: Array, sharp_half: Array | float) -> Array:
+def near_tip(local: Array | float, half: Array | float, sharp_half: Array | float) -> Array:
     """Return the error of ends ``+-half`` that damping drew in from ``+-sharp_half``.
 
     The ends follow ``sqrt(sharp_half^2 - const)``: an error of the data is magnified by

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic
-from ..core.inputs import numbers
+from ..core.inputs import numbers_in_a_row
 from ..core.results import Check, Result
 from ..hill.form import is_hill
 from ..hill.perturbation import check_order
@@ -224,11 +224,9 @@ def stability_chart(
     sampler = Sampler(system, names, axes, speed, float(rtol))
     series = invariants(sampler, workers, progress=progress)
     found = judged(sampler, series, workers)
-    # The system as the samples see it: at another speed than 1 slowed down.
-    system = sampler.system
     exact, near, rows = None, None, None
     shaped = any(name in system.geometry for name in names)
-    if boundaries and is_hill(system) and not shaped:
+    if boundaries and is_hill(system) and not shaped and sampler.speed == 1.0:
         exact, near = boundary_curves(system, names, axes, int(order))
     checks = {
         "error of samples": Check(series.sample_error, max(1e-8, 1e3 * rtol)),
@@ -258,7 +256,7 @@ def stability_chart(
         frequency_name=frequency_name,
         marks=named,
         nodes=series.nodes,
-        speed=float("nan") if "speed" in names else float(1.0 if speed is None else speed),
+        speed=float("nan") if "speed" in names else sampler.speed,
     )
 
 
@@ -285,16 +283,10 @@ def _axes(system: LinearPeriodic, x: Axis, y: Axis) -> tuple[tuple[str, str], tu
     for label, (name, given) in (("x", x), ("y", y)):
         if name not in known:
             raise bad(f"axis {label}", repr(name), f"one of {known}", "correct the name")
-        values = numbers(f"axis {label}", given)
-        if values.ndim != 1 or len(values) < 2 or not np.all(np.isfinite(values)):
-            raise bad(
-                f"axis {label}",
-                f"shape {values.shape}",
-                "at least two finite values in a line",
-                "give a range",
-            )
-        if np.any(np.diff(values) <= 0):
-            raise bad(f"axis {label}", "values that do not rise", "rising values", "sort them")
+        values = numbers_in_a_row(f"axis {label}", given)
+        if len(values) < 2 or np.any(np.diff(values) <= 0):
+            what = "values that do not rise" if len(values) > 1 else "one value"
+            raise bad(f"axis {label}", what, "at least two rising values", "give a range")
         if name == "speed" and values[0] <= 0:
             raise bad(f"axis {label}", f"speed {values[0]:g}", "positive speeds", "raise the range")
         found.append(values)

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ..core.errors import bad
-from ..core.families import Array, LinearPeriodic, Term
+from ..core.families import Array, LinearPeriodic
 from ..core.periodic_function import PeriodicFunction
 from ..hill import HillForm
 from ..hill.form import is_hill
-from ..periodic.equation import SPEED_POWER
+from ..periodic.equation import SPEED_POWER, at_geometry
 
 Names = tuple[str, str]
 Axes = tuple[Array, Array]
@@ -26,14 +25,14 @@ _ANGLES = np.linspace(0.0, 2.0 * np.pi, 17)
 PlainAxes = tuple[int, PeriodicFunction, Callable[[Array], Array], Callable[[Array], Array]]
 
 
-def on_grid(names: Names, axes: Axes) -> tuple[Array, dict[str, Array]]:
-    """Return speeds (1 where speed is no axis) and parameters, broadcasting to ``(ny, nx)``."""
+def on_grid(names: Names, axes: Axes, fixed: float = 1.0) -> tuple[Array, dict[str, Array]]:
+    """Return speeds (one, where it is no axis) and parameters, broadcasting to ``(ny, nx)``."""
     grid = {names[0]: axes[0][None, :], names[1]: axes[1][:, None]}
-    return grid.pop("speed", np.ones((1, 1))), grid
+    return grid.pop("speed", np.full((1, 1), fixed)), grid
 
 
-def at_speed(system: LinearPeriodic, names: Names, speed: float | None) -> LinearPeriodic:
-    """Return the system of a chart: as it is, or such that a speed of 1 does what ``speed`` did.
+def fixed_speed(system: LinearPeriodic, names: Names, speed: float | None) -> float:
+    """Return the speed of all points of a chart; 1 where it is left out, or an axis.
 
     Raises
     ------
@@ -44,7 +43,7 @@ def at_speed(system: LinearPeriodic, names: Names, speed: float | None) -> Linea
     if "speed" in names:
         if speed is not None:
             raise bad("speed", speed, "none where the speed is an axis", "leave it out")
-        return system
+        return 1.0
     if speed is None:
         if _turned(system, names):
             raise bad(
@@ -53,14 +52,14 @@ def at_speed(system: LinearPeriodic, names: Names, speed: float | None) -> Linea
                 "a crank speed, which decides between inertia and stiffness here",
                 "give speed=..., in rad/s, or make the speed an axis",
             )
-        return system
+        return 1.0
     try:
         value = float(speed)
     except (TypeError, ValueError):
         value = float("nan")
     if not (np.isfinite(value) and value > 0.0):
         raise bad("speed", repr(speed), "a positive number [rad/s]", "correct it")
-    return system if value == 1.0 else _slowed(system, value)
+    return value
 
 
 def _turned(system: LinearPeriodic, names: Names) -> bool:
@@ -70,34 +69,6 @@ def _turned(system: LinearPeriodic, names: Names) -> bool:
     resisting = any(SPEED_POWER.get(term.array, 0) + term.power != 0 for term in system.terms)
     moving = any(system.has(name) for name in ("A", "B", "D")) or not system.is_constant("M")
     return resisting and moving
-
-
-def _slowed(system: LinearPeriodic, speed: float) -> LinearPeriodic:
-    """Return the system with each term times the power of the speed that it carries."""
-    rebuild = system.rebuild
-    return replace(
-        system,
-        terms=tuple(_times(term, speed) for term in system.terms),
-        rebuild=None if rebuild is None else partial(_rebuilt, rebuild, speed),
-    )
-
-
-def _rebuilt(rebuild: Callable[[Any], LinearPeriodic], speed: float, shape: Any) -> LinearPeriodic:
-    return _slowed(rebuild(shape), speed)
-
-
-def _times(term: Term, speed: float) -> Term:
-    power = SPEED_POWER.get(term.array, 0) + term.power
-    if not power:
-        return term
-    given, factor = term.function, float(speed**power)
-    if callable(given):
-        return replace(term, function=partial(_product, given, factor))
-    return replace(term, function=given * factor)
-
-
-def _product(function: Callable[[Array], Array], factor: float, theta: Array) -> Array:
-    return function(theta) * factor
 
 
 def is_damped(system: LinearPeriodic, names: Names, axes: Axes) -> bool:
@@ -138,16 +109,11 @@ def natural_frequency(system: LinearPeriodic, names: Names, axes: Axes) -> float
     other = 1 - names.index("speed")
     name = names[other]
     pair = float(axes[other][0]), float(axes[other][-1])
-    ends = [
-        _at_rest(system.with_geometry(**{name: value}), {})
-        if name in system.geometry
-        else _at_rest(system, {name: value})
-        for value in pair
-    ]
+    ends = [_at_rest(*at_geometry(system, {name: value})) for value in pair]
     return ends[0] if abs(ends[1] - ends[0]) <= 1e-12 * abs(ends[0]) else float("nan")
 
 
-def _at_rest(system: LinearPeriodic, changes: dict[str, float]) -> float:
+def _at_rest(system: LinearPeriodic, changes: Mapping[str, Any]) -> float:
     mass = system.array("M", 0.0, **changes)[0]
     stiffness = system.array("K", 0.0, **changes)[0]
     squares = np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real
@@ -157,18 +123,18 @@ def _at_rest(system: LinearPeriodic, changes: dict[str, float]) -> float:
 # ---------------------------------------------------------------- one mode
 
 
-def plain_axes(form: HillForm, names: tuple[str, str]) -> PlainAxes | None:
-    """Return how two axes amount to ``y'' + (lam2 + mu f) y = 0``, where they do."""
+def plain_axes(form: HillForm, names: tuple[str, str], fixed: float) -> PlainAxes | None:
+    """Return how two axes amount to ``y'' + (lam2 + mu f) y = 0`` at a speed, where they do."""
     for which in (0, 1):
         along, other = names[which], names[1 - which]
         if other == "speed" or (along == "speed" and form.elastic):
             continue
         if not leaves_function_alone(form, along):
             continue
-        unit = form.function(1.0, **{other: 1.0})
+        unit = form.function(fixed, **{other: 1.0})
         at = unit(_ANGLES)
         if not all(
-            np.allclose(form.function(1.0, **{other: v})(_ANGLES), v * at, rtol=1e-14, atol=0.0)
+            np.allclose(form.function(fixed, **{other: v})(_ANGLES), v * at, rtol=1e-14, atol=0.0)
             for v in _PROBES
         ):
             continue
@@ -178,7 +144,7 @@ def plain_axes(form: HillForm, names: tuple[str, str]) -> PlainAxes | None:
         if along == "speed":
             return which, unit, partial(_over_square, stiffness), np.asarray
         if is_stiffness(form, along):
-            return which, unit, np.asarray, np.asarray
+            return which, unit, partial(np.multiply, fixed**-2), np.asarray
     return None
 
 

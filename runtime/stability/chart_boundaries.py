@@ -71,7 +71,7 @@ def boundary_curves(
     exact = np.full((3, len(regions), len(rows)), np.nan)
     for j, point in enumerate(points):
         exact[:, :, j] = point.ends(regions)
-    near = _overlay(form, along, other, rows, regions, order)
+    near = _overlay(form, other, rows, points, regions, order)
     tables = (
         BoundaryCurves(along, regions, rows, ends[0], ends[1], ends[2], left_out)
         for ends in (exact, near)
@@ -168,10 +168,9 @@ def _damped_speeds(
             if low < 0.0 or len(own) < 2:
                 continue
             ends = own[[0, -1]]
-            width = 0.5 * float(ends[1] ** 2 - ends[0] ** 2)
             speeds = np.sqrt(stiffness) / ends
-            error = near_tip(local, np.array(width), 0.5 * (high - low))
-            out[:, i] = *speeds, float(error * np.max(speeds / (2.0 * ends**2)))
+            error = near_tip(local, 0.5 * (ends[1] ** 2 - ends[0] ** 2), 0.5 * (high - low))
+            out[:, i] = *speeds, error * np.max(speeds / (2.0 * ends**2))
     return out
 
 
@@ -186,17 +185,22 @@ def _inverse_speeds(f: PeriodicFunction, odd: int, harmonic: int, ratio: float) 
 
 
 def _overlay(
-    form: HillForm, along: str, other: str, rows: Array, regions: tuple[int, ...], order: int
+    form: HillForm,
+    other: str,
+    rows: Array,
+    points: Sequence[_Point],
+    regions: tuple[int, ...],
+    order: int,
 ) -> Array:
     """Return lower ends, upper ends and errors in the units of the axis."""
-    points = [{} if other == "speed" else {other: float(v)} for v in rows]
-    speed = rows if other == "speed" else np.ones_like(rows)
-    stiffness = np.array([form.stiffness(**p) for p in points])
-    damping = np.array([form.damping(**p) for p in points])
-    solve = _solver(form, other, rows, order)
+    speed, stiffness, damping = (
+        np.array([getattr(point, name) for point in points])
+        for name in ("speed", "stiffness", "damping")
+    )
+    solve = _solver(form, other, rows, points, order)
     out = np.full((3, len(regions), len(rows)), np.nan)
     for i, n in enumerate(regions):
-        if along != "speed":
+        if points[0].along != "speed":
             found = np.stack(solve(n, damping / (2 * speed))) * speed**2
             out[:, i] = np.where(np.isfinite(found), found, np.nan)
             continue
@@ -246,7 +250,7 @@ def _settled(solve: Solve, n: int, ratio: Array, start: Array, side: int) -> End
     return np.where(settled, lam2, np.nan), np.where(settled, error, np.nan), slow
 
 
-def _solver(form: HillForm, other: str, rows: Array, order: int) -> Solve:
+def _solver(form: HillForm, other: str, rows: Array, points: Sequence[_Point], order: int) -> Solve:
     """Return lower and upper ends in lam2 and their error, of all rows for one region and K."""
     functions, factors = _functions(form, other, rows)
     # More functions than this cost more together than row by row.
@@ -257,12 +261,11 @@ def _solver(form: HillForm, other: str, rows: Array, order: int) -> Solve:
             return found.lower[0], found.upper[0], found.error[0]
 
         return together
-    single = [_total(functions, [f[j] for f in factors]) for j in range(len(rows))]
 
     def apart(n: int, damping: Array) -> Ends:
         found = [
-            perturbation_boundaries(f, 1.0, (n,), order, float(k))
-            for f, k in zip(single, damping, strict=True)
+            perturbation_boundaries(point.function, 1.0, (n,), order, float(k))
+            for point, k in zip(points, damping, strict=True)
         ]
         ends = np.array([[r.lower[0], r.upper[0], r.error[0]] for r in found], dtype=float)
         return ends[:, 0], ends[:, 1], ends[:, 2]
@@ -301,10 +304,3 @@ def _functions(
     if not functions:
         return [PeriodicFunction()], [np.zeros_like(rows)]
     return functions, factors
-
-
-def _total(functions: Sequence[PeriodicFunction], factors: Sequence[float]) -> PeriodicFunction:
-    total = PeriodicFunction()
-    for function, factor in zip(functions, factors, strict=True):
-        total = total + function * float(factor)
-    return total

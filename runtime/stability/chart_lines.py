@@ -6,7 +6,7 @@ the function of Hill's equation where the inner axis leaves that alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, NamedTuple
@@ -18,12 +18,12 @@ from ..core.families import Array
 from ..core.periodic_function import PeriodicFunction
 from ..core.progress import bar
 from ..hill import HillForm, discriminant
-from ..periodic.equation import Equation, SampledSystem, equation_of, sampled
+from ..periodic.equation import Equation, at_geometry, equation_of, sampled
 from ..periodic.tables import Table, table_of
 from ..periodic.transition import levels_for, method, rung
 from .chart_axes import leaves_function_alone
 from .chart_sampling import Map, Sampler, Series, relative_error
-from .invariants import from_sum, sum_weights_back, weighed_characteristic
+from .invariants import frobenius, from_sum, sum_weights_back, weighed_characteristic
 
 # Wanted error of the matrices, and what mirrored coefficients may differ, over the largest.
 _RTOL, _ALIKE = 1e-12, 1e-13
@@ -35,25 +35,19 @@ _FIRST, _FEWEST_LINES = 32, 9
 # Share of the values along an axis from which each of them is taken instead of nodes.
 _NEARLY_ALL = 0.8
 
+# Invariants at values of the inner variable, and the weights of their errors.
+Samples = Callable[[Array], tuple[Array, Array]]
 Tick = Callable[[int], None] | None
 # Value of the outer axis, ends and values of the variable of the inner one.
 _Place = tuple[float, float, float, Array]
 
 
 @dataclass(frozen=True)
-class Piece:
-    """Transition matrices over values of the variable, of a period or of half of one."""
+class Line:
+    """A table of transition matrices, of a period or of half of one, over the inner variable."""
 
     table: Table
-    segments: int
     half: bool
-
-
-@dataclass(frozen=True)
-class Line:
-    """The system at one value of the outer axis, for all values of the inner one."""
-
-    pieces: tuple[Piece, ...]
     reduced: bool
 
     def __call__(self, values: Array) -> tuple[Array, Array]:
@@ -62,21 +56,13 @@ class Line:
         The weight is by how much an error of relative size 1 in the matrices moves an invariant.
         Where the growth overflows the invariants are infinite, with the sign of the first.
         """
-        if len(self.pieces) == 1:
-            return self._of(self.pieces[0], values)
-        found = [
-            self._of(piece, values[i : i + 1]) for i, piece in enumerate(self.pieces)
-        ]  # one piece per value
-        return np.concatenate([f[0] for f in found]), np.concatenate([f[1] for f in found])
-
-    def _of(self, piece: Piece, values: Array) -> tuple[Array, Array]:
-        plain, power = piece.table.products(values)
+        plain, power = self.table.products(values)
         with np.errstate(over="ignore", invalid="ignore"):
             matrices = np.ldexp(plain, power[:, None, None])
-            if piece.half:
+            if self.half:
                 n = plain.shape[-1] // 2
                 sums = 2.0 * mirrored_sums(matrices)
-                change = n + 4.0 * _norm(matrices[:, :n, n:]) * _norm(matrices[:, n:, :n])
+                change = n + 4.0 * frobenius(matrices[:, :n, n:]) * frobenius(matrices[:, n:, :n])
                 found, weight = weighed_characteristic(sums, n, change)
                 found, weight = from_sum(found), weight @ sum_weights_back(n)
             else:
@@ -85,10 +71,18 @@ class Line:
         finite = np.all(np.isfinite(found) & np.isfinite(weight), axis=-1)
         if not np.all(finite):
             grown = ~finite & np.all(np.isfinite(plain), axis=(-2, -1))
-            sign = _sign_of_trace(plain, piece.half)
+            sign = _sign_of_trace(plain, self.half)
             found[~finite], weight[~finite] = np.nan, np.inf
             found[grown] = np.where(sign[grown] > 0, -np.inf, np.inf)[:, None]
         return found, weight
+
+
+def _each(lines: Sequence[Line], values: Array) -> tuple[Array, Array]:
+    """Return the same from lines that hold for one value each."""
+    found, weight = zip(
+        *(line(value) for line, value in zip(lines, values[:, None], strict=True)), strict=True
+    )
+    return np.concatenate(found), np.concatenate(weight)
 
 
 def mirrored_sums(halves: Array) -> Array:
@@ -121,11 +115,6 @@ def is_mirrored(equation: Equation) -> bool:
     return True
 
 
-def _norm(matrices: Array) -> Array:
-    value: Array = np.sqrt(np.sum(matrices * matrices, axis=(-2, -1)))
-    return value
-
-
 def _sign_of_trace(matrices: Array, half: bool) -> Array:
     """Return the sign of the trace of matrices, or of what half a period's are half of."""
     if half:
@@ -147,17 +136,30 @@ class Lines:
         self.inner = self.names.index("speed") if "speed" in self.names else 0
         if self.names[self.inner] in self.system.geometry:
             self.inner = 1
-        # The system of all lines; none where each line has its own.
-        self.known: SampledSystem | None = None
+        self.speed = sampler.speed
 
     @property
     def inner_is_geometry(self) -> bool:
         """Whether the system is made anew at each point."""
         return self.names[self.inner] in self.system.geometry
 
-    def line(self, outer: float, low: float, high: float, values: Array | None = None) -> Line:
+    def line(
+        self,
+        outer: float,
+        low: float,
+        high: float,
+        values: Array | None = None,
+        fineness: float = 1.0,
+    ) -> Samples:
         """Return the line at a value of the outer axis; of two geometries at given values alone."""
-        return self._line(outer, low, high, values, 1.0)
+        inner_name, outer_name = self.names[self.inner], self.names[1 - self.inner]
+        fixed = {outer_name: float(outer)}
+        if not self.inner_is_geometry:
+            return self._table(fixed, inner_name, low, high, fineness)
+        if values is None:
+            raise ValueError("a line along geometry wants its values beforehand")
+        points = [({**fixed, inner_name: float(v)}, float(v)) for v in values]
+        return partial(_each, [self._table(at, None, v, v, fineness) for at, v in points])
 
     def error(self, outer: float, low: float, high: float, values: Array, found: Array) -> Array:
         """Return by how much another solution differs from invariants, over the weight of errors.
@@ -165,52 +167,29 @@ class Lines:
         One number per value; 0 where either overflows, infinite where either is NaN.
         """
         # Another number of segments gives another solution; four times the difference is the error.
-        again, weight = self._line(outer, low, high, values, 1.37)(values)
+        again, weight = self.line(outer, low, high, values, 1.37)(values)
         grown = np.isinf(again) | np.isinf(found)
         with np.errstate(invalid="ignore"):
             gap = np.where(grown, 0.0, np.abs(again - found) / weight)
         worst: Array = np.max(np.where(np.isnan(gap), np.inf, gap), axis=-1)
         return 4.0 * worst
 
-    def _line(
-        self, outer: float, low: float, high: float, values: Array | None, fineness: float
-    ) -> Line:
-        inner_name, outer_name = self.names[self.inner], self.names[1 - self.inner]
-        fixed = {outer_name: float(outer)}
-        if inner_name in self.system.geometry:
-            if values is None:
-                raise ValueError("a line along geometry wants its values beforehand")
-            pieces = tuple(
-                self._piece({**fixed, inner_name: float(v)}, None, v, v, fineness) for v in values
-            )
-            return Line(pieces, self.reduced)
-        return Line((self._piece(fixed, inner_name, low, high, fineness),), self.reduced)
-
-    def _sampled(self, geometry: dict[str, float]) -> SampledSystem:
-        """Return the system at a geometry with its Fourier series."""
-        if geometry:
-            return sampled(self.system.with_geometry(**geometry))
-        if self.known is None:
-            self.known = sampled(self.system)
-        return self.known
-
-    def _piece(
+    def _table(
         self,
         fixed: dict[str, float],
         inner: str | None,
         low: float,
         high: float,
         fineness: float,
-    ) -> Piece:
-        geometry = {k: v for k, v in fixed.items() if k in self.system.geometry}
-        known = self._sampled(geometry)
-        rest = {k: v for k, v in fixed.items() if k not in geometry}
+    ) -> Line:
+        system, rest = at_geometry(self.system, fixed)
+        known = sampled(system)
 
         def plain(values: Array) -> Equation:
             point: dict[str, Any] = {**rest}
             if inner is not None:
                 point[inner] = self.back(inner, values)
-            speed = np.broadcast_to(point.pop("speed", 1.0), values.shape)
+            speed = np.broadcast_to(point.pop("speed", self.speed), values.shape)
             return equation_of(known, speed, point)
 
         # Places along a line at which the number of segments is judged.
@@ -234,7 +213,7 @@ class Lines:
 
         half = self.reduced and is_mirrored(judged)
         table = table_of(equation_at, (low, high), count, way, _RTOL, half=half, nodes=_NODES)
-        return Piece(table, count, half)
+        return Line(table, half, self.reduced)
 
 
 class HillLines:
@@ -248,12 +227,10 @@ class HillLines:
     def __init__(self, sampler: Sampler, form: HillForm) -> None:
         self.inner = 0 if leaves_function_alone(form, sampler.names[0]) else 1
         self._shared = leaves_function_alone(form, sampler.names[self.inner])
-        self._form, self._back = form, sampler.back
+        self._form, self._back, self._speed = form, sampler.back, sampler.speed
         self._along, self._outer = sampler.names[self.inner], sampler.names[1 - self.inner]
 
-    def line(
-        self, outer: float, low: float, high: float, values: Array | None = None
-    ) -> Callable[[Array], tuple[Array, Array]]:
+    def line(self, outer: float, low: float, high: float, values: Array | None = None) -> Samples:
         """Return the line at a value of the outer axis."""
         return partial(self._half_traces, float(self._back(self._outer, np.asarray(outer))))
 
@@ -262,7 +239,7 @@ class HillLines:
         form = self._form
         along = self._back(self._along, values)
         points = [{self._outer: outer, self._along: float(v)} for v in along]
-        speeds = np.array([p.pop("speed", 1.0) for p in points])
+        speeds = np.array([p.pop("speed", self._speed) for p in points])
         lam2 = np.array([form.stiffness(**p) for p in points]) / speeds**2
         damping = np.array([form.damping(**p) for p in points]) / (2 * speeds)
         if self._shared:
@@ -347,7 +324,7 @@ class _Surface:
         self.across = sampler.transform(sampler.names[1 - which], sampler.axes[1 - which])
         self.low, self.high = float(self.wanted.min()), float(self.wanted.max())
         self.count = 0
-        self.ends: dict[float, Callable[[Array], tuple[Array, Array]]] = {}
+        self.ends: dict[float, Samples] = {}
         # Tails before the last refinement: round-off, where it has not halved them.
         self.before = (np.inf, np.inf)
         self.kept: dict[float, tuple[Array, Array]] = {}

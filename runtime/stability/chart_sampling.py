@@ -17,7 +17,7 @@ from ..periodic.equation import equation_of
 from .chart_axes import (
     Axes,
     Names,
-    at_speed,
+    fixed_speed,
     is_damped,
     is_symplectic,
     plain_axes,
@@ -57,14 +57,16 @@ class Sampler:
     def __init__(
         self, system: LinearPeriodic, names: Names, axes: Axes, speed: float | None, rtol: float
     ) -> None:
-        system = at_speed(system, names, speed)
+        self.speed = fixed_speed(system, names, speed)
         self.system, self.names, self.axes, self.rtol = system, names, axes, rtol
         self.damped = is_damped(system, names, axes)
         self.reduced = is_symplectic(system, self.damped)
         shaped = any(name in system.geometry for name in names)
         self.hill = is_hill(system) and not shaped and not (system.has("Kg") and "speed" in names)
         self.form = hill_form(system) if self.hill else None
-        self.plain = None if self.form is None or self.damped else plain_axes(self.form, names)
+        self.plain = (
+            None if self.form is None or self.damped else plain_axes(self.form, names, self.speed)
+        )
 
     def rows(self, part: slice) -> Sampler:
         """Return the sampler of some rows of the chart."""
@@ -101,7 +103,7 @@ class Sampler:
             )
             if name not in self.system.geometry
         }
-        speed = corner.pop("speed", np.ones(4))
+        speed = corner.pop("speed", np.full(4, self.speed))
         rate = float(np.max(equation_of(self.system, speed, corner).rate()))
         # A segment has a phase of 4 rad; its series cost as much as 3000 products of matrices.
         segments = max(8.0, rate * self.system.period / 4.0)

@@ -196,27 +196,26 @@ class Crossings:
 
     def _spans(self, found: list[_Crossing]) -> list[Span]:
         """Join crossings outwards with the next ones of their kind inwards."""
-        begun: list[_Crossing | complex] = list(_kinds(self._levels, 0))
+        begun = [_Crossing(np.nan, 0.0, True, turn) for turn in _kinds(self._levels, 0)]
         made: list[Span] = []
         for crossing in found:
             if crossing.rising:
                 begun.append(crossing)
                 continue
             kind = _kind(crossing.multiplier)
-            same = [i for i, other in enumerate(begun) if _kind(_turn(other)) == kind]
+            same = [i for i, other in enumerate(begun) if _kind(other.multiplier) == kind]
             made.append(self._span(begun.pop(same[-1]) if same else None, crossing))
         made.extend(self._span(other, None) for other in begun)
         return made
 
-    def _span(self, first: _Crossing | complex | None, last: _Crossing | None) -> Span:
-        turn = _turn(first) if first is not None else last.multiplier if last else 1.0 + 0j
-        turn = turn / abs(turn)
-        lower = first.speed if isinstance(first, _Crossing) else np.nan
+    def _span(self, first: _Crossing | None, last: _Crossing | None) -> Span:
+        known = [crossing for crossing in (first, last) if crossing is not None]
+        turn = known[0].multiplier / abs(known[0].multiplier)
+        lower = first.speed if first is not None else np.nan
         upper = last.speed if last is not None else np.nan
-        errors = [c.error for c in (first, last) if isinstance(c, _Crossing)]
         begin = lower if np.isfinite(lower) else self._seen(upper, _kind(turn), -1)
         end = upper if np.isfinite(upper) else self._seen(begin, _kind(turn), 1)
-        return Span(lower, upper, max(errors, default=0.0), begin, end, turn)
+        return Span(lower, upper, max(c.error for c in known), begin, end, turn)
 
     def _seen(self, start: float, kind: int, step: int) -> float:
         """Return the last sample from a speed on at which a kind is outside the circle."""
@@ -239,10 +238,6 @@ class Crossings:
 def _kind(turn: complex) -> int:
     """Return 1, -1 or 2: real positive, real negative, complex."""
     return 2 if turn.imag != 0.0 else (1 if turn.real > 0 else -1)
-
-
-def _turn(item: _Crossing | complex) -> complex:
-    return item.multiplier if isinstance(item, _Crossing) else item
 
 
 def _kinds(levels: Levels, row: int) -> list[complex]:

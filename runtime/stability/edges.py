@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.families import DAMPING, LinearPeriodic
-from ..core.inputs import numbers, speed_span
+from ..core.inputs import is_finite, numbers, speed_span
 from ..core.results import Check, Result, provenance
 from ..periodic import floquet_multipliers
 from ..periodic.decoupled import SlowSystem
@@ -44,6 +44,7 @@ _WIDE = 1e-6
 _REAL = 1e-4
 _GAP = "multiplier +-1, and gap of multipliers of opposite Krein signature"
 _RPM = 30.0 / np.pi
+_TOLD = ("lower", "upper", "multiplier", "modes", "harmonic", "detuning", "kind")
 _CLOSED = "closed: too narrow to be told from none"
 _COLOURS = {"principal": "#c05a1f", "sum": "#6b3d8f", "difference": "#2b7a78"}
 
@@ -67,8 +68,8 @@ class StabilityEdges(Result):
         n of ``Omega_i + Omega_j = n`` (sum; 2 Omega_j = n in a principal region) or
         ``Omega_j - Omega_i = n`` (difference), in turns per period.
     detuning : ndarray, shape (k,)
-        How far the frequencies of the averaged equation are from that, in turns; the labels are
-        those that suit best, and a detuning beyond 1/2 makes them a matter of words.
+        How far the turns of these modes, each alone, are from that; the labels are those that suit
+        best, and a detuning beyond 1/2 makes them a matter of words.
     kind : tuple of str
         ``"principal"``, ``"sum"`` or ``"difference"``.
     error : ndarray, shape (k,)
@@ -184,10 +185,9 @@ def stability_edges(
         or the range needs too many samples.
     """
     low, high = speed_span(speed_range)
-    rtol, margin = (_number(name, value) for name, value in (("rtol", rtol), ("margin", margin)))
-    if not 1e-13 <= rtol <= 1e-6:
+    if not (is_finite(rtol) and 1e-13 <= rtol <= 1e-6):
         raise bad("rtol", rtol, "a number from 1e-13 to 1e-6", "choose 1e-11")
-    if not 1.0 < margin <= 10.0:
+    if not (is_finite(margin) and 1.0 < margin <= 10.0):
         raise bad("margin", margin, "a factor between 1 and 10", "leave it out")
     span = (low / margin, high * margin)
     slow = None
@@ -229,13 +229,7 @@ def stability_edges(
         error_norm="absolute, of either end [rad/s]",
         checks=checks,
         provenance=provenance(system.changed_provenance(**parameters)),
-        lower=regions.lower,
-        upper=regions.upper,
-        multiplier=regions.multiplier,
-        modes=regions.modes,
-        harmonic=regions.harmonic,
-        detuning=regions.detuning,
-        kind=regions.kind,
+        **{name: getattr(regions, name) for name in _TOLD},
         least_width=least,
         speed_range=(low, high),
     )
@@ -274,13 +268,6 @@ def _check_damping(system: LinearPeriodic, parameters: Mapping[str, float]) -> N
             "damping of no direction below zero",
             "use floquet_multipliers or stability_chart",
         )
-
-
-def _number(name: str, value: object) -> float:
-    number = numbers(name, value)
-    if number.ndim:
-        raise bad(name, value, "one number", "leave it out")
-    return float(number)
 
 
 def _undamped(

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families import DAMPING, LinearPeriodic
-from ..core.inputs import numbers, speed_span
+from ..core.inputs import numbers_in_a_row, speed_span
 from ..core.results import Check, Result, provenance
 from ..periodic import floquet_multipliers
 from .edges import StabilityEdges, stability_edges
@@ -166,17 +166,17 @@ def tongue_curves(
     sharp = system.without(*DAMPING)
     low, high = speed_span(speed_range)
     span = (low / _BEYOND, high * _BEYOND)
-    feet = resonances(_changed(sharp, name, _FOOT * float(at[0])), span, highest=highest)
+    start: dict[str, Any] = {name: _FOOT * float(at[0])}
+    feet = resonances(sharp, span, highest=highest, **start)
     most = modes or system.size
     feet = [foot for foot in feet if foot.opens and max(foot.modes) <= most]
     feet.sort(key=lambda foot: foot.speed)
     row = {(str(foot.kind), *sorted(foot.modes), foot.harmonic): k for k, foot in enumerate(feet)}
     ends, failed = np.full((4, len(feet), len(at)), np.nan), 0
     for column, value in enumerate(at.tolist()):
-        here = _changed(sharp, name, value)
-        edges = stability_edges(here, (low, high), rtol=rtol, margin=_BEYOND)
+        edges = stability_edges(sharp, (low, high), rtol=rtol, margin=_BEYOND, **{name: value})
         failed += sum(not check.passed for check in edges.checks.values())
-        growth = _growth(here, edges)
+        growth = _growth(sharp, {name: value}, edges)
         places = [row.get((kind, *label)) for kind, *label in edges.names]
         if column:
             places = _carried_on(feet, ends[:2, :, column - 1], edges, places)
@@ -237,7 +237,7 @@ def _carried_on(
     return carried
 
 
-def _growth(system: LinearPeriodic, edges: StabilityEdges) -> Array:
+def _growth(system: LinearPeriodic, at: Mapping[str, float], edges: StabilityEdges) -> Array:
     """Return the largest growth rate of nine places inside each region [1/s]; 0 where closed.
 
     NaN of one without two ends.
@@ -246,7 +246,7 @@ def _growth(system: LinearPeriodic, edges: StabilityEdges) -> Array:
     wide = np.flatnonzero(edges.width > 2 * edges.error)
     if len(wide):
         speed = edges.lower[wide] + np.multiply.outer(_ACROSS, edges.width[wide])
-        growth[wide] = np.max(floquet_multipliers(system, speed).growth, axis=0)
+        growth[wide] = np.max(floquet_multipliers(system, speed, **at).growth, axis=0)
     return growth
 
 
@@ -255,13 +255,7 @@ def _checked_values(system: LinearPeriodic, name: str, values: ArrayLike) -> Arr
     names = sorted({*system.parameters, *system.geometry})
     if name not in names:
         raise bad("name", repr(name), f"one of {names}", "correct it")
-    at = np.atleast_1d(numbers("values", values))
-    if at.ndim != 1 or not np.all(np.isfinite(at)) or np.any(np.diff(at) <= 0) or not at[0] > 0:
-        raise bad("values", f"shape {at.shape}", "positive rising values", "correct them")
+    at = numbers_in_a_row("values", values)
+    if np.any(np.diff(at) <= 0) or not at[0] > 0:
+        raise bad("values", repr(values), "positive rising values", "correct them")
     return at
-
-
-def _changed(system: LinearPeriodic, name: str, value: float) -> LinearPeriodic:
-    if name in system.geometry:
-        return system.with_geometry(**{name: value})
-    return system.with_parameters(**{name: value})

@@ -237,12 +237,12 @@ def weighed_characteristic(
     m = matrices.shape[-1]
     found, weight = [], []
     with np.errstate(over="ignore", invalid="ignore"):
-        size = _norm(matrices)
+        size = frobenius(matrices)
         change = size if change is None else change
         power = np.broadcast_to(np.eye(m), matrices.shape)
         rough, worst = np.zeros_like(size), np.zeros_like(size)
         for k in range(1, wanted + 1):
-            norm = _norm(power)
+            norm = frobenius(power)
             rough = size * (rough + _EPS * norm)
             worst = np.maximum(worst, rough / k)
             product = matrices @ power
@@ -260,7 +260,8 @@ def weighed_characteristic(
     return coefficients, np.stack(weight, axis=-1)
 
 
-def _norm(matrices: Array) -> Array:
+def frobenius(matrices: Array) -> Array:
+    """Return the Frobenius norms of matrices."""
     value: Array = np.sqrt(np.einsum("...ij,...ij->...", matrices, matrices))
     return value
 

@@ -1,8 +1,8 @@
 """Which modes and which harmonic a boundary of instability belongs to.
 
 The modes are those of the averaged equation (mean coefficients) at the speed in question, numbered
-by the size of their frequencies; where the periodic part is large, a label says which mode and
-harmonic are nearest.
+by the size of their frequencies.  A mode's turns in a period are those of its own Hill equation,
+all other modes at rest: where the periodic part is large its mean frequency is off by whole turns.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..core.trigonometric import even_angles
 from ..periodic import floquet_multipliers
-from ..periodic.equation import equation_of
+from ..periodic.equation import Equation, equation_of
 from ..periodic.signatures import form_matrix
 from .boundary_speeds import SpeedBoundaries
 from .meetings import generator
@@ -38,7 +38,7 @@ _LACK = 4.0
 
 @dataclass(frozen=True)
 class Modes:
-    """Modes of the averaged equation at k speeds.
+    """Modes at k speeds.
 
     ``turns`` ``(k, n)`` are those in a period of each multiplier of positive signature, negative
     where the mode has negative energy, NaN where the averaged equation is not stable; ``shapes``
@@ -57,24 +57,60 @@ def averaged_modes(matrices: MatricesOverSpeed, speed: Array) -> Modes:
         return Modes(np.zeros((0, n)), np.zeros((0, n, n), dtype=complex), np.zeros((0, n, n)))
     equation = equation_of(matrices.known, speed, matrices.parameters)
     mass, gyro, push = (equation.mean(name) for name in ("mass", "gyroscopic", "stiffness"))
-    rate = generator(mass, gyro, push)
-    values, vectors = np.linalg.eig(rate)
-    values, vectors = values.astype(complex), vectors.astype(complex)
+    values, vectors = (part.astype(complex) for part in np.linalg.eig(generator(mass, gyro, push)))
     sign = np.real(np.diagonal(form_matrix(vectors), axis1=-2, axis2=-1))
-    turns = np.full((len(rate), n), np.nan)
-    shapes = np.zeros((len(rate), n, n), dtype=complex)
-    for row in range(len(rate)):
-        steady = np.abs(values[row].real) <= 1e-7 * np.max(np.abs(values[row]))
-        chosen = np.flatnonzero((sign[row] > 0) & steady)
-        if len(chosen) != n:
-            continue
-        chosen = chosen[np.argsort(np.abs(values[row, chosen].imag), kind="stable")]
-        turns[row] = values[row, chosen].imag * equation.period / (2 * np.pi)
-        own = vectors[row][:n, chosen].T
-        norm = np.sqrt(np.real(np.einsum("ji,ik,jk->j", own.conj(), mass[row], own)))
-        shapes[row] = own / norm[:, None] * equation.scale[row]
+    size = np.abs(values)
+    own = (sign > 0) & (np.abs(values.real) <= 1e-7 * np.max(size, axis=1, keepdims=True))
+    chosen = np.argsort(np.where(own, size, np.inf), axis=1, kind="stable")[:, :n]
+    stable = np.flatnonzero(np.count_nonzero(own, axis=1) == n)
+    turns, shapes = np.full((len(speed), n), np.nan), np.zeros((len(speed), n, n), dtype=complex)
+    vectors, chosen = vectors[stable], chosen[stable]
+    duals = np.take_along_axis(np.linalg.inv(vectors), chosen[:, :, None], axis=1)
+    vectors = np.take_along_axis(vectors, chosen[:, None], axis=2)
+    turns[stable] = _own_turns(equation.take(stable), vectors, duals)
+    rows = np.swapaxes(vectors[:, :n], 1, 2)
+    norm = np.sqrt(np.real(np.einsum("kji,kil,kjl->kj", rows.conj(), mass[stable], rows)))
     unit = equation.scale
+    shapes[stable] = rows / norm[:, :, None] * unit[stable, None]
     return Modes(turns, shapes, mass / unit[:, :, None] / unit[:, None, :])
+
+
+def _own_turns(equation: Equation, vectors: ComplexArray, duals: ComplexArray) -> Array:
+    """Return the turns of each mode in a period, all others at rest, ``(k, n)``.
+
+    With the motion v of a mode, and its row of the inverse as dual, ``y = c v + conj(c v)`` leaves
+    ``c' = i a c + b conj c`` of ``y' = L y``.  In region n of this equation c makes n/2 turns.
+    """
+    turned = np.zeros(vectors.shape[::2])
+    if not len(turned):
+        return turned
+    fastest = max(float(np.max(part)) for part in (equation.frequency, equation.rate()))
+    # Steps of constant coefficients, in which no mode turns by half a turn.
+    count = max(len(equation.even_angles()), int(fastest * equation.period))
+    step = equation.period / count
+    # Images of c = 1 and of c = i.
+    images = np.broadcast_to(np.array([1.0, 1.0j]), (*turned.shape, 2))
+    for angles in np.array_split(step * (np.arange(count) + 0.5), count // 16):
+        rates = equation.generator(angles)
+        both = [
+            np.einsum("kji,ktil,klj->tkj", duals, rates, part, optimize=True)
+            for part in (vectors, vectors.conj())
+        ]
+        for a, b in zip(both[0].imag, both[1], strict=True):
+            root = np.sqrt(np.abs(b) ** 2 - a**2 + 0j)
+            even, odd = np.cosh(step * root).real, step * np.sinc(1j * step / np.pi * root).real
+            slope = 1j * a[..., None] * images + b[..., None] * images.conj()
+            moved = even[..., None] * images + odd[..., None] * slope
+            turned += np.angle(moved[..., 0] / images[..., 0])
+            # Their size tells nothing, and may overflow.
+            images = moved / np.max(np.abs(moved), axis=-1, keepdims=True)
+    # One motion turns as the multiplier does, to half a turn.
+    (a, b), (c, d) = np.moveaxis(np.stack([images.real, images.imag]), -1, 1)
+    sine = np.sqrt(np.maximum(-0.25 * (a - d) ** 2 - b * c, 0.0))
+    phase = np.arctan2(sine, 0.5 * (a + d))
+    near = [p + 2 * np.pi * np.round((turned - p) / (2 * np.pi)) for p in (phase, -phase)]
+    first = np.abs(near[0] - turned) <= np.abs(near[1] - turned)
+    return np.asarray(np.where(first, *near) / (2 * np.pi))
 
 
 def meeting_labels(

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families import DAMPING, LinearPeriodic
 from ..core.inputs import is_whole, speed_span
 from ..core.trigonometric import even_angles
-from ..periodic.equation import SPEED_POWER, equation_of
+from ..periodic.equation import SPEED_POWER, at_geometry, equation_of
 from ..periodic.signatures import form_matrix
 from .pairs import bracketed_roots
 
@@ -75,7 +75,7 @@ class MeanSystem:
     ``parameters`` replace the system's own values.
     """
 
-    def __init__(self, system: LinearPeriodic, parameters: Mapping[str, float]) -> None:
+    def __init__(self, system: LinearPeriodic, parameters: Mapping[str, ArrayLike]) -> None:
         self.system = system
         count = 1024 if any(not term.constant for term in system.terms) else 1
         theta = even_angles(system.period, count)
@@ -205,7 +205,7 @@ def resonances(
     highest : int
         Highest harmonic n.
     **parameters : float
-        Parameter values that replace the system's own.
+        Parameter values that replace the system's own; geometry too.
 
     Returns
     -------
@@ -229,8 +229,9 @@ def resonances(
     wrong = sorted(str(kind) for kind in kinds if kind not in get_args(Kind))
     if wrong:
         raise bad("kinds", wrong, "principal, sum or difference", "correct the name")
-    mean = MeanSystem(system, parameters)
-    undamped = conservative(system, span[0], parameters)
+    system, values = at_geometry(system, parameters)
+    mean = MeanSystem(system, values)
+    undamped = conservative(system, span[0], values)
     conditions: list[Condition] = [
         (kind, (i, j) if kind == "difference" else (j, i), n)
         for i in range(1, system.size + 1)
@@ -249,6 +250,6 @@ def resonances(
     return out
 
 
-def conservative(system: LinearPeriodic, speed: float, parameters: Mapping[str, float]) -> bool:
+def conservative(system: LinearPeriodic, speed: float, parameters: Mapping[str, ArrayLike]) -> bool:
     """Return True where the system without its damping terms has a symplectic flow."""
     return not equation_of(system.without(*DAMPING), speed, parameters).damped

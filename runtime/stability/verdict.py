@@ -67,7 +67,7 @@ def _level(sampler: Sampler, half: Array) -> Array:
     """Return the determinant of the monodromy matrices of one mode."""
     if not sampler.damped:
         return np.ones_like(half)
-    speed, _ = on_grid(sampler.names, sampler.axes)
+    speed, _ = on_grid(sampler.names, sampler.axes, sampler.speed)
     rate = damping_rate(sampler.system, sampler.names, sampler.axes)
     return np.asarray(np.exp(-2 * np.pi * rate / speed) * np.ones_like(half))
 
@@ -94,8 +94,8 @@ def spot_check(sampler: Sampler, series: Series, found: Judged) -> Check:
     largest, stable = found.largest, found.stable
     i = rng.integers(0, largest.shape[0], _SPOTS)
     j = rng.integers(0, largest.shape[1], _SPOTS)
-    point: dict[str, Any] = {sampler.names[0]: sampler.axes[0][j]}
-    point[sampler.names[1]] = sampler.axes[1][i]
+    point = {"speed": np.full(_SPOTS, sampler.speed)}
+    point |= {sampler.names[0]: sampler.axes[0][j], sampler.names[1]: sampler.axes[1][i]}
     with np.errstate(over="ignore", invalid="ignore"):
         multipliers, known = _direct(sampler.system, point)
     modulus = np.abs(multipliers)
@@ -132,16 +132,10 @@ def _direct(
     system: LinearPeriodic, point: dict[str, Array]
 ) -> tuple[NDArray[np.complex128], Array]:
     """Return multipliers and their errors at points, ``(points, 2n)`` each."""
-    shapes = {k: point[k] for k in point if k in system.geometry}
-    rest = {k: v for k, v in point.items() if k not in shapes}
-    speed = rest.pop("speed", np.ones(_SPOTS))
-    if not shapes:
-        values: dict[str, Any] = {**rest}
-        found = floquet_multipliers(system, speed, **values)
-        return found.multipliers, found.error
-    each = []
-    for i in range(_SPOTS):
-        here = system.with_geometry(**{k: float(v[i]) for k, v in shapes.items()})
-        numbers: dict[str, Any] = {k: float(v[i]) for k, v in rest.items()}
-        each.append(floquet_multipliers(here, speed[i], **numbers))
-    return np.stack([e.multipliers for e in each]), np.stack([e.error for e in each])
+    if any(name in system.geometry for name in point):
+        members = [{name: float(v[i]) for name, v in point.items()} for i in range(_SPOTS)]
+        each = [floquet_multipliers(system, **member) for member in members]
+        return np.stack([e.multipliers for e in each]), np.stack([e.error for e in each])
+    values: dict[str, Any] = {**point}
+    found = floquet_multipliers(system, **values)
+    return found.multipliers, found.error

@@ -5,6 +5,7 @@ from __future__ import annotations
 import elastolink as el
 import numpy as np
 import pytest
+from edge_truth import RIG, rig
 from elastolink.runtime.cli.application import main
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.core.periodic_function import PeriodicFunction
@@ -13,13 +14,8 @@ from elastolink.runtime.hill.form import hill_form
 from elastolink.runtime.hill.perturbation import perturbation_boundaries
 from elastolink.runtime.stability.invariants import instability_kind, weighed_characteristic
 
-RIG = "smith_1972_5152_sixteenth_inch"
 SPEEDS = ("speed", np.linspace(40.0, 99.0, 31))
 INERTIAS = ("follower_inertia", np.linspace(1e-4, 9e-4, 9))
-
-
-def rig(**overrides):
-    return el.load_scene(RIG, overrides=overrides).system()
 
 
 def mathieu():

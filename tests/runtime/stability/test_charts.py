@@ -5,14 +5,10 @@ from __future__ import annotations
 import elastolink as el
 import numpy as np
 import pytest
+from edge_truth import rig
 
-RIG = "smith_1972_5152_sixteenth_inch"
 SPEEDS = np.linspace(40.0, 99.0, 61)
 INERTIAS = np.linspace(6e-4, 2.2e-3, 31)
-
-
-def rig(**overrides):
-    return el.load_scene(RIG, overrides=overrides).system()
 
 
 @pytest.fixture(scope="module")

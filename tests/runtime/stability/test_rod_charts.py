@@ -5,25 +5,13 @@ from __future__ import annotations
 import elastolink as el
 import numpy as np
 import pytest
+from edge_truth import flexible_rod as rod
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.stability.invariants import from_sum, largest_modulus, surely_stable
-from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis, rod_system
+from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis
 
 SPEEDS = np.linspace(500.0, 4000.0, 160)
 RATIOS = np.linspace(0.01, 0.2, 60)
-
-
-def rod(basis, **changes):
-    """Beale & Scott's very flexible rod."""
-    return rod_system(
-        basis,
-        crank_ratio=0.1,
-        frame=0.59997,
-        length=1.0,
-        bending_stiffness=0.7e11 * 0.5208e-6,
-        mass_per_length=7.15,
-        **changes,
-    )
 
 
 @pytest.fixture(scope="module", params=["polynomial", "overhang"])

@@ -8,6 +8,7 @@ import pytest
 import scipy.integrate
 import scipy.optimize
 from edge_truth import discriminant, region_of
+from elastolink.runtime.hill import hill_boundaries, hill_form
 from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.stability import stability_edges
 from elastolink.runtime.stability.boundary_speeds import speed_boundaries
@@ -101,6 +102,24 @@ def test_nested_narrow_region_is_told_from_the_wide_one(rig):
     assert 2.0 < found.width[wide] < 2.5
     assert 1e-7 < found.width[narrow] < 1e-6
     assert found.lower[wide] < found.lower[narrow] < found.upper[narrow] < found.upper[wide]
+
+
+def test_regions_bear_the_numbers_that_each_mode_has_alone(rig):
+    """The first mode's by its own Hill equation, where the mean one is off by whole turns."""
+    inertia = 2.1467117515247174e-3
+    found = stability_edges(rig, (68.0, 162.0), follower_inertia=inertia)
+    assert found.passed, found.checks
+    assert not np.any(found.doubtful)
+    first = {n: found.lower[found.names.index(("principal", 1, 1, n))] for n in (2, 3, 4)}
+    alone = el.load_scene(RIG, overrides={"model.modes": 1}).system()
+    form = hill_form(alone)
+    pull = form.function(1.0, follower_inertia=inertia)
+    ends = hill_boundaries(pull, 1.0, tuple(first)).upper
+    expected = np.sqrt(form.stiffness(follower_inertia=inertia) / ends)
+    np.testing.assert_allclose(list(first.values()), expected.ravel(), rtol=5e-3)
+    # None is left out, from 17 at 77 rad/s, where the mean frequency is right to 0.2 turns.
+    second = found.harmonic[np.all(found.modes == 2, axis=1)]
+    assert second.tolist() == list(range(19, 6, -1))
 
 
 def test_widths_of_hair_thin_principal_regions(rig):

@@ -25,6 +25,7 @@ from seed_truth import (
     fourier,
     motion,
     named,
+    rates,
 )
 
 row = Ledger("Smith", __file__)
@@ -46,7 +47,7 @@ def turn(lengths, reversed_follower=False):
     names |= {"e": (b**2 - c**2) / (a**2 + c**2), "pi": np.pi, "omega2": 1.0, "theta": m.theta2}
     for k, angle in ((3, m.theta3), (4, th4)):
         names |= {f"csth{k}": np.cos(angle), f"snth{k}": np.sin(angle), f"theta{k}": angle}
-    return {**named(lengths), **vars(m), **names, "omega2": m.omega2, "theta4": th4}
+    return {**named(lengths), **rates(m), **names, "omega2": m.omega2, "theta4": th4}
 
 
 def scaled(lengths):

@@ -349,7 +349,7 @@ INERTIA4, SPEED = 0.4, 3.0
 
 def pin_force(lengths, coupler, inertia4, m, speed=1.0, assembly="open"):
     """Return the force of the follower on the coupler in fixed axes and in the coupler's."""
-    links = (Link(1.0, 0.0, 1.0), coupler, Link(1.0, 0.0, inertia4))
+    links = (Link(), coupler, Link(inertia=inertia4))
     force = -forces(lengths, links, speed, assembly).f34
     return force, force * np.exp(-1j * m.theta3)
 
@@ -360,7 +360,7 @@ def newton():
     points = []
     for lengths in CRANK_ROCKERS.values():
         for assembly in ("open", "crossed"):
-            coupler = Link(1.0, 0.65 * lengths[2], 0.6 * lengths[2] ** 2)
+            coupler = Link(1.0, 0.65 * lengths[2], inertia=0.6 * lengths[2] ** 2)
             m = motion(lengths, assembly)
             force, turned = pin_force(lengths, coupler, INERTIA4, m, SPEED, assembly)
             point = {"X43": force.real, "Y43": force.imag, "F_x": turned.real, "F_y": turned.imag}
@@ -390,7 +390,7 @@ def rig_points(m=2):
     points = []
     for name, rig in RIGS.items():
         mu, length = rig.mass_per_length, rig.lengths[2]
-        coupler, turn = Link.bar(mu * length, length), motion(rig.lengths)
+        coupler, turn = Link.uniform_bar(mu * length, length), motion(rig.lengths)
         for inertia4 in rig.inertias:
             along = pin_force(rig.lengths, coupler, inertia4, turn)[1].real
             functions = coupler_functions(turn)[1:]

@@ -296,13 +296,11 @@ def gap(form: Formula, point: Mapping[str, object]) -> float:
 
 
 def holds(*points: Points, tol: float = 1e-9) -> Callable[[Entry], None]:
-    """Return the check that a formula, its other form and the machine's own hold at all points."""
+    """Return the check that a formula and its other form hold at all points."""
 
     def check(entry: Entry) -> None:
         for form in filter(None, (entry.printed, entry.corrected)):
             hold(form, *points, tol=tol)
-        if callable(entry.derived) and not isinstance(entry.derived(), str):
-            hold_derived(entry, *points, tol=tol)
 
     return check
 
@@ -329,33 +327,6 @@ def hold(form: Formula, *points: object, tol: float = 1e-9) -> None:
     for point in _all(points):
         worst = gap(form, point)
         assert worst <= tol, f"{form}: {worst:.3g} of its greatest addend"
-
-
-def hold_derived(entry: Entry, *points: object, tol: float = 1e-9) -> None:
-    """Assert the same of the machine's own forms, their symbols being names of the points."""
-    names, symbols, function = _compiled(entry.derived)
-    for point in _all(points):
-        values = {plain(name): value for name, value in point.items()}
-        derived = function(*(values[symbol] for symbol in symbols))
-        for name, value in zip(names, derived, strict=True):
-            if name is None:
-                assert greatest(value) <= tol * max(greatest(values[s]) for s in symbols)
-            elif isinstance(name, Formula):
-                same(value, name.value(**point), tol)
-            else:
-                same(value, values[name], tol)
-
-
-@cache
-def _compiled(derived: Callable[[], object]) -> tuple[list[object], list[str], Callable]:
-    """Return what derived forms equal, None where they vanish, their symbols and a function."""
-    forms = derived()
-    names: list[object] = [None] * len(forms)
-    if isinstance(forms, Mapping):
-        names = [Formula(n) if isinstance(n, str) else plain(str(n)) for n in forms]
-        forms = forms.values()
-    symbols = sorted(set().union(*(form.free_symbols for form in forms)), key=str)
-    return names, [plain(str(s)) for s in symbols], sp.lambdify(symbols, list(forms))
 
 
 def plain(name: str) -> str:

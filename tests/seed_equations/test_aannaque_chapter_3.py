@@ -6,13 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 from elastolink.runtime.linkages import classify
-from seed_derivations import (
-    closure_rows,
-    freudenstein,
-    half_angle_quadratic,
-)
-from seed_derivations import rates as derived_rates
-from seed_ledger import Ledger, hold, hold_derived, holds, quoted, truths
+from seed_ledger import Ledger, hold, holds, quoted, truths
 from seed_rigid import TABLE_3_2, Link, forces, plane
 from seed_truth import (
     CRANK_ROCKERS,
@@ -21,7 +15,6 @@ from seed_truth import (
     TURN,
     closure,
     motion,
-    rates,
 )
 
 row = Ledger("Aannaque", __file__)
@@ -352,19 +345,17 @@ def places():
     return [placed(lengths, assembly) for lengths in KINDS for assembly in ("open", "crossed")]
 
 
-row("3.3", "3.9", check=holds(places))
-row("3.4", derived=lambda: closure_rows(0), check=holds(places))
-row("3.5", derived=lambda: freudenstein()[:1], check=holds(places))
+row("3.3", "3.4", "3.5", "3.9", check=holds(places))
 
 
-@row("3.7", derived=lambda: freudenstein()[1:])
+@row("3.7")
 def freudenstein_of_the_coupler(entry):
-    hold_derived(entry, places)
+    """The sign of K1 in front of the cosine is the slip."""
+    hold(entry.corrected, places)
     for point in places():
-        # The sign of K1 in front of the cosine is the slip: with t2 + pi under it, it is right.
         left, right = entry.printed.sides(**point)[0]
         slip = 2 * point["L4"] / point["L1"] * np.cos(point["t2"])
-        assert np.abs(left - right + slip).max() < 1e-10 and np.abs(slip).max() > 0.5
+        assert np.abs(left - right + slip).max() < 1e-10
     point = letters(TABLE_3_2) | {"t1": 1.0, "t2": closure(TABLE_3_2, 1.0)[0][0]}
     quoted([np.subtract(*entry.printed.sides(**point)[0])], "-3.06")
 
@@ -399,13 +390,12 @@ def half_tangent(name):
                 point = constants(lengths, assembly)
                 given = {k: v for k, v in point.items() if k != name}
                 assert turned(entry.printed.values(**given)[name], point[name]) < 1e-7
-        hold_derived(entry, places, tol=1e-8)
 
     return check
 
 
-row("3.6", derived=lambda: [half_angle_quadratic(0)], check=half_tangent("t3"))
-row("3.8", derived=lambda: [half_angle_quadratic(1)], check=half_tangent("t2"))
+row("3.6", check=half_tangent("t3"))
+row("3.8", check=half_tangent("t2"))
 
 
 @row("3.5 two assemblies")
@@ -447,18 +437,15 @@ def motions():
     points = []
     for lengths in KINDS:
         for assembly in ("open", "crossed"):
-            m = motion(lengths, assembly, 1024)
+            m = motion(lengths, assembly)
             names = {f"t{k}": getattr(m, f"theta{k + 1}") for k in (1, 2, 3)}
             names |= {f"omega{k}": 2 * getattr(m, f"omega{k + 1}") for k in (1, 2, 3)}
             names |= {f"alpha{k}": 4 * getattr(m, f"alpha{k + 1}") for k in (1, 2, 3)}
-            points.append({**letters(lengths), **names, "smith": {**letters(lengths), **rates(m)}})
+            points.append({**letters(lengths), **names})
     return points
 
 
-@row("3.11", derived=derived_rates)
-def rates_hold(entry):
-    hold(entry.printed, motions, tol=1e-7)
-    hold_derived(entry, *(point["smith"] for point in motions()), tol=1e-7)
+row("3.11", check=holds(motions))
 
 
 @cache

@@ -76,8 +76,8 @@ L, M, h, rho = sp.symbols("L M h rho", positive=True)
 
 
 @cache
-def balanced_bar_inertia():
-    """Return the moment of inertia of the balanced bar about its pivot by integration.
+def balanced_bar():
+    """Return extension, mass and radius of the cylinder and the inertia about the pivot.
 
     Bar and extension have one mass per length; the cylinder's axis stands across the plane.
     """
@@ -88,8 +88,9 @@ def balanced_bar_inertia():
     needed = sp.solve(sp.integrate(M / L * x, (x, -place, L)) - weight * place, weight)[0]
     squared = sp.solve(volume * rho - weight, radius**2)[0]
     spin = sp.expand(spin.subs(radius**4, squared**2))
-    parts = [part.subs(weight, needed).subs(place, delta * L) for part in (spin, weight * place**2)]
-    return sp.expand(bar.subs(place, delta * L)) + sum(map(sp.factor, parts))
+    found = {"m": M / L * place, "m_c": weight, "r_c": sp.sqrt(squared)}
+    found["I_G"] = sp.expand(bar + spin + weight * place**2)
+    return {k: form.subs(weight, needed).subs(place, delta * L) for k, form in found.items()}
 
 
 # What the package itself derives, in the same symbols: coupler, end load, modes.

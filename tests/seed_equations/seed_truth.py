@@ -1,4 +1,4 @@
-"""Numeric truth that no printed formula enters: motions of the package, Hill's Fourier matrix."""
+"""Numeric truth that no printed formula enters: the package's motions and boundaries."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from collections.abc import Callable
 from functools import cache
 
 import numpy as np
+from elastolink.runtime.core.periodic_function import PeriodicFunction
+from elastolink.runtime.hill import hill_boundaries
 from elastolink.runtime.linkages import FourBar
 from scipy.integrate import solve_ivp
 
@@ -71,21 +73,10 @@ def fourier(samples):
     return np.fft.fft(samples) / samples.size
 
 
-def fourier_matrix(samples, region, damping=0.0, harmonics=40):
-    """Return the matrix of -y'' - 2 damping y' - f y by even samples of f over 2 pi.
-
-    Over the periodic exponentials for an even region, the antiperiodic ones for an odd region.
-    """
-    number = np.arange(-harmonics, harmonics + 1) + 0.5 * (region % 2)
-    index = np.arange(number.size)
-    difference = (index[:, None] - index[None, :]) % samples.size
-    return np.diag(number**2 - 2j * damping * number) - fourier(samples)[difference]
-
-
-def boundaries(samples, region, harmonics=40):
-    """Return both values of lambda^2 that bound a region of y'' + (lambda^2 + f) y = 0."""
-    values = np.sort(np.linalg.eigvalsh(fourier_matrix(samples, region, 0.0, harmonics)))
-    return values[region - 1], values[region]
+def boundaries(samples, region, damping=0.0):
+    """Return the ends of a region of y'' + 2 damping y' + (lambda^2 + f) y = 0, f by samples."""
+    found = hill_boundaries(PeriodicFunction.from_samples(samples), 1.0, (region,), damping)
+    return np.array([found.lower.item(), found.upper.item()])
 
 
 def normalised_solutions(coefficient: Callable[[float], float], end, damping=0.0):

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from seed_formula import Formula
 from seed_ledger import Ledger, hold, holds, is_difference, order_of, quoted, same
 from seed_rigs import RIGS, critical, linkage_function
-from seed_truth import TURN, boundaries, fourier, fourier_matrix, normalised_solutions
+from seed_truth import TURN, boundaries, fourier, normalised_solutions
 from seed_waves import (
     HARMONICS,
     THETA,
@@ -529,17 +529,6 @@ def damped_cases():
 row("7.43", "7.44", "7.45", "7.46", "7.47", check=holds(damped_cases))
 
 
-def damped_ends(samples, region, damping):
-    """Return the ends of a damped region: real eigenvalues of the Fourier matrix, or None."""
-    values = np.linalg.eigvals(fourier_matrix(samples, region, damping))
-    low, high = boundaries(samples, region)
-    real = values.real[np.abs(values.imag) < 1e-7]
-    slack = 1e-9
-    inside = (real > low + damping**2 - slack) & (real < high + damping**2 + slack)
-    assert inside.sum() == 2
-    return np.array([real[inside].min(), real[inside].max()])
-
-
 def damped_letters(samples, n, mu, damping):
     """Return the letters of (7.48), (7.49) for a function given by samples."""
     (a, b), beta = harmonics(samples), damping / mu
@@ -562,7 +551,7 @@ def damped_first_order_boundaries(entry):
         return np.array([entry.printed.sides(**point, **rest, pm=-1)[0][2], upper])
 
     def gap(samples, region, share, mu):
-        exact = damped_ends(mu * samples, region, share * mu)
+        exact = boundaries(mu * samples, region, share * mu)
         return np.abs(ends(samples, region, mu, share * mu) - exact).max()
 
     errors = []

@@ -65,10 +65,6 @@ def definition(entry):
     assert zero == 0
 
 
-def limits(samples):
-    return np.array(boundaries(samples, 2))
-
-
 @row("8.1")
 def equation_of_one_mode(entry):
     definition(entry)
@@ -93,9 +89,9 @@ def parameters(entry):
 def two_parameters(entry):
     definition(entry)
     p = rig()
-    kept = limits(coefficient(entry))
-    with_phi = limits(coefficient(entry) - p["phi"])
-    whole = limits(coefficient(entry) - p["phi"] + p["eps2"] * p["f2"])
+    kept = boundaries(coefficient(entry), 2)
+    with_phi = boundaries(coefficient(entry) - p["phi"], 2)
+    whole = boundaries(coefficient(entry) - p["phi"] + p["eps2"] * p["f2"], 2)
     assert with_phi - kept == pytest.approx([0.016, 0.023], abs=5e-4)
     assert whole - with_phi == pytest.approx([-0.088, -0.099], abs=5e-4)
     rpm = [26 * 60 / np.sqrt(x) for x in (kept, with_phi)]
@@ -112,8 +108,7 @@ def reduced_equation(entry):
 
 def half_width(x, y):
     """Return half the width of region 2 per unit along a direction."""
-    low, high = boundaries(1e-4 * (x * rig()["f1"] + y * rig()["f3"]), 2)
-    return (high - low) / 2e-4
+    return np.ptp(exact(2, 1e-4 * x, 1e-4 * y)) / 2e-4
 
 
 @row("8.4")
@@ -490,7 +485,7 @@ def both(entry, region, **more):
 
 
 def exact(region, x, y):
-    return np.array(boundaries(x * rig()["f1"] + y * rig()["f3"], region))
+    return boundaries(x * rig()["f1"] + y * rig()["f3"], region)
 
 
 @row("8.29", "8.43", "8.41")

@@ -26,10 +26,12 @@ WHOLE_NUMBERS = [
 ]
 
 
-@cache
+kind = cache(classify)
+
+
 def turning(lengths):
     """Return C or R for input, coupler and output: which of them turns fully about the frame."""
-    return "".join("C" if full else "R" for full in classify(lengths).turns.values())
+    return "".join("C" if full else "R" for full in kind(lengths).turns.values())
 
 
 def excess(lengths):
@@ -72,7 +74,7 @@ def flat_positions(lengths):
     "Table 3.1 double and triple change points",
 )  # fmt: skip
 def classes(_):
-    symbols = {lengths: classify(lengths).symbol for lengths in WHOLE_NUMBERS}
+    symbols = {lengths: kind(lengths).symbol for lengths in WHOLE_NUMBERS}
     assert set(symbols.values()) == {*PRINTED_NAMES, "CP2X", "CP3X"}
     for lengths, symbol in symbols.items():
         flat = {"CP2X": 2, "CP3X": 3}.get(symbol, int(symbol.startswith("CP")))
@@ -221,7 +223,7 @@ def toggle(_):
 def extremes_of_the_transmission_angle(entry):
     for lengths in (TABLE_3_2, CRANK_ROCKERS["5,1,5,2"], LONG_CRANK, DRAG_LINK):
         m = motion(lengths)
-        gamma = np.abs(np.angle(np.exp(1j * (m.theta4 - m.theta3))))
+        gamma = m.transmission_angle
         assert {int(gamma.argmin()), int(gamma.argmax())} == {0, gamma.size // 2}
         slope = np.sign(np.sin(m.theta4 - m.theta3)) * (m.omega4 - m.omega3)
         names = dict(zip(("L4", "L1", "L2", "L3"), lengths, strict=True))
@@ -323,7 +325,7 @@ def two_assemblies(_):
 def extremes(lengths):
     """Return the least and the greatest transmission angle by a turn, and where they are."""
     m = motion(lengths)
-    gamma = np.arccos(np.cos(m.theta4 - m.theta3))
+    gamma = m.transmission_angle
     assert int(gamma.argmin()) == 0 and int(gamma.argmax()) == gamma.size // 2
     return {**letters(lengths), "gamma_min": gamma.min(), "gamma_max": gamma.max()}
 

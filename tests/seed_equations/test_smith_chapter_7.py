@@ -578,7 +578,7 @@ def real_roots(entry):
             assert bool(size >= limit) is real
 
 
-@row("7.51", slow=True)
+@row("7.51")
 def least_parameter(entry):
     wrong = {
         "5,1,5,2": ("0.73", "3.3", "1.3", "14.6", "2.4"),

@@ -190,7 +190,7 @@ def decrements(entry):
     quoted(np.array([0.15, 0.30]) / TURN * 2.5, "0.06", "0.12")
 
 
-@row("9.5.5 damping, Fig. 82", "9.5.5 damping, Fig. 85", slow=True)
+@row("9.5.5 damping, Fig. 82", "9.5.5 damping, Fig. 85")
 def damping(entry):
     """Against (7.51), which it is taken from, and the exact damping that closes the region."""
     name = "5,1,5,2" if entry.label.endswith("82") else "10,1,10,4"

@@ -190,36 +190,3 @@ def coupling_coefficient(m, n):
 def mode_forcing():
     """Return the right-hand side of mode m over omega2^2, for the deflection over l3."""
     return _named(_modes()["f"].entry, m=mode)
-
-
-@cache
-def _moment(power, trig, number):
-    """Return the integral of u^power trig(number pi u) over u from 0 to 1."""
-    u = sp.Symbol("u", positive=True)
-    if number < 0:
-        return _moment(power, trig, -number) * (1 if trig is sp.cos else -1)
-    return sp.integrate(u**power * trig(number * sp.pi * u), (u, 0, 1))
-
-
-@cache
-def projected(m, n):
-    """Project the linear beam on sin(m pi x/l3) with deflection Y_n sin(n pi x/l3).
-
-    Returns the coefficients of Y_n'' and Y_n and the right-hand side, divided by mu l3 / 2.
-    """
-    Y, Y_tt, sine, cosine = sp.symbols("Y Y_tt s c", real=True)
-    k = n * sp.pi / l3
-    values = {y_tt: Y_tt * sine, y_t: 0, y: Y * sine, y_x: Y * k * cosine}
-    values |= {y_xx: -Y * k**2 * sine, y_xxxx: Y * k**4 * sine}
-    total = sp.S.Zero
-    for (power, s, c), factor in sp.Poly(equation().subs(values), x, sine, cosine).terms():
-        if s:  # sin(m) sin(n) = (cos(m - n) - cos(m + n))/2
-            integral = (_moment(power, sp.cos, m - n) - _moment(power, sp.cos, m + n)) / 2
-        elif c:
-            integral = (_moment(power, sp.sin, m - n) + _moment(power, sp.sin, m + n)) / 2
-        else:
-            integral = _moment(power, sp.sin, m)
-        total += factor * integral * l3 ** (power + 1)
-    total = sp.expand(total * 2 / (mu * l3))
-    rest = sp.collect(total.coeff(Y), (force_x, omega3))
-    return total.coeff(Y_tt), rest, sp.expand(-total.subs({Y: 0, Y_tt: 0}))

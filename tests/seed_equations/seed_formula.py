@@ -76,7 +76,13 @@ _FUNCTIONS = {name: _function(name) for name in (*_ELEMENTARY, "atan")} | {
     "det": lambda m: m.det() if isinstance(m, sp.MatrixBase) else np.linalg.det(m),
     "tr": lambda m: m.trace() if isinstance(m, sp.MatrixBase) else np.trace(m),
 }
-_FUNCTIONS |= {"max": np.max, "min": np.min, "re": np.real, "im": np.imag}
+_FUNCTIONS |= {
+    "odd": lambda k: k % 2 == 1,
+    "max": np.max,
+    "min": np.min,
+    "re": np.real,
+    "im": np.imag,
+}
 _CONSTANTS = {"dots": 0, "pi": np.pi, "deg": np.pi / 180.0, "I": 1j}
 
 

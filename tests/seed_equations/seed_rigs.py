@@ -9,7 +9,7 @@ import numpy as np
 import sympy as sp
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import critical_damping
-from seed_derivations import l2, l3, omega2, omega3, projected, theta2, theta3
+from seed_derivations import EI, l2, l3, mode, mode_coefficient, theta2, theta3
 from seed_truth import (
     CRANK_ROCKERS,
     TURN,
@@ -59,11 +59,12 @@ def parts(rig, inertia4):
     m = motion(rig.lengths)
     phi, *functions = coupler_functions(m)
     eps = rig.epsilon(inertia4)
-    frame_free = projected(1, 1)[1].subs({sp.Symbol(n, real=True): 0 for n in ("EI", "F_x")})
-    whole = sp.lambdify([l2, l3, omega2, omega3, theta2, theta3], frame_free)
-    rigid = whole(*rig.lengths[1:3], 1.0, m.omega3, m.theta2, m.theta3)
+    coefficient, speed2 = mode_coefficient()
+    frame_free = coefficient.subs({EI: 0, mode: 1})
+    whole = sp.lambdify([l2, l3, speed2, theta2, theta3], frame_free)
+    rigid = whole(*rig.lengths[1:3], phi, m.theta2, m.theta3)
     point = {f"eps{k}": e for k, e in enumerate(eps, 1)} | {"phi": phi, "alpha3": m.alpha3}
-    point |= {f"f{k}": f for k, f in enumerate(functions, 1)} | {"odd": lambda k: k % 2 == 1}
+    point |= {f"f{k}": f for k, f in enumerate(functions, 1)}
     point |= {"omega2": 1.0, "theta2": m.theta2, "theta3": m.theta3} | named(rig.lengths)
     return point, sum(e * f for e, f in zip(eps, functions, strict=True)) + rigid
 

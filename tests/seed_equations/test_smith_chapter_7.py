@@ -145,17 +145,14 @@ def period(edge, function, shortest):
 
 @row("7.1.3.1 periods")
 def periods(entry):
-    odd = {"odd": lambda k: k % 2 == 1}
     samples = 0.05 * q(TURN * np.arange(256) / 256)
     for n in (1, 2, 3):
         for edge in boundaries(samples, 2 * n):
             lam2, right = entry.corrected[0].sides(n=n, lam=np.sqrt(edge))[0]
             assert lam2 == pytest.approx(right, abs=0.05)
             true = period(edge, lambda x: 0.05 * q(x), np.pi)
-            hold(entry.corrected[1], {**odd, "n": n, "period": true})
-            assert true == pytest.approx(
-                3 * np.pi - entry.printed.values(n=n, lam=1, **odd)["period"]
-            )
+            hold(entry.corrected[1], {"n": n, "period": true})
+            assert true == pytest.approx(3 * np.pi - entry.printed.values(n=n, lam=1)["period"])
     left, start = entry.printed[0].sides(n=1, lam=0.5)[0]
     assert left == start == 0.25
     roots = np.linalg.eigvals(normalised_solutions(lambda x: start + 0.05 * q(x), np.pi))
@@ -168,7 +165,7 @@ def first_solution(entry):
         return 0.05 * (np.cos(x) + 0.5 * np.sin(2 * x) + 0.3 * np.cos(3 * x))
 
     for n in (1, 2, 3):
-        point = {**case(n, 1), "odd": lambda k: k % 2 == 1}
+        point = case(n, 1)
         for edge in boundaries(f(TURN * np.arange(64) / 64), n):
             hold(entry.corrected, {**point, "period": period(edge, f, TURN)})
         slip = {**point, "A1": point["A0"], "A0": 0.0, "period": TURN * (1 + n % 2)}

@@ -5,6 +5,8 @@ from functools import cache
 import numpy as np
 import pytest
 import sympy as sp
+from elastolink.runtime.core.periodic_function import PeriodicFunction
+from elastolink.runtime.hill import boundary_series
 from seed_ledger import Ledger, derivative, hold, holds, is_difference, order_of, quoted, same
 from seed_rigs import RIGS
 from seed_truth import CRANK_ROCKERS, boundaries, coupler_functions, fourier, motion, turning
@@ -22,7 +24,6 @@ from seed_waves import (
     resonance,
     rows,
     second_order,
-    series,
     solved,
 )
 from seed_waves import derivative as wave_derivative
@@ -232,10 +233,9 @@ def one_zero_order_solution(entry):
     cosines, sines = ((0.8, 0.4, 0.5), (-0.5, 0.6, 0.0)), ((0.3, 0.2, -1 / 3), (0.7, 0.3, 0.0))
     third = []
     for off in (0.01, 0.001):
-        x = Coefficients(enumerate([0, *np.dot((0.6 + off, -0.4), cosines)]))
-        y = Coefficients(enumerate([0, *np.dot((0.6 + off, -0.4), sines)]))
-        upper, lower = (series(x, y, 2, sign, 3)[0][2] for sign in (1, -1))
-        third.append(abs(upper - lower) / 2)
+        x, y = ([0, *np.dot((0.6 + off, -0.4), rows_)] for rows_ in (cosines, sines))
+        found = boundary_series(PeriodicFunction(x, y), 2, 3)
+        third.append(abs(found.upper - found.lower)[2] / 2)
     quoted(third, "0.52", "5.25")
 
 
@@ -568,12 +568,11 @@ row("8.36", "8.37", check=holds(first_solutions))
 
 @row("8.3.3 order of the approximation")
 def order_of_the_approximation(_):
-    """The recursion takes alpha_k from y_0 .. y_(k-1); Rayleigh's quotient does better."""
-    a, b = ONE
-    f = function(a, b)
-    for sign in (1, -1):
-        alphas, ys = series(a, b, 2, sign, 4)
-        assert len(ys) == len(alphas) == 4
+    """Two solutions give Rayleigh's quotient three orders; the series takes one for each."""
+    f = function(*ONE)
+    found = boundary_series(PeriodicFunction.from_samples(f[TURN]), 2, 4)
+    for sign, alphas in ((1, found.upper), (-1, found.lower)):
+        point = second_order(hill_region(*ONE, 2, sign))
 
         def limit(mu, sign=sign):
             return boundaries(mu * f[TURN], 2)[(1 + sign) // 2]
@@ -581,8 +580,8 @@ def order_of_the_approximation(_):
         def of_series(mu, alphas=alphas, limit=limit):
             return abs(limit(mu) - 1 - np.polyval([*alphas[::-1], 0], mu))
 
-        def of_quotient(mu, ys=ys, limit=limit):
-            whole = ys[0] + mu * ys[1]
+        def of_quotient(mu, y0=point["y0"], y1=point["y1"], limit=limit):
+            whole = y0 + mu * y1
             slope = wave_derivative(whole)
             return abs((slope @ slope - (mu * f * whole) @ whole) / (whole @ whole) - limit(mu))
 

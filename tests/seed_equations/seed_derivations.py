@@ -57,18 +57,13 @@ def cosine_change(sign):
 @cache
 def clearance_series():
     """Return the coefficients of c, c^2, c^3 in phi' - phi, phi being the nominal angle BDC."""
-    change = sp.Function("delta")(c)
-    rule = sp.cos(phi + change) - sp.cos(phi) - cosine_change(1)
-    found = {change: sp.Integer(0)}
-    coefficients = []
+    shift = sp.Symbol("shift", real=True)
+    slope = -sp.diff(cosine_change(1), c) / sp.sin(phi + shift)
+    derivative, coefficients = slope, []
     for order in (1, 2, 3):
-        row = sp.diff(rule, c, order)
-        slope = sp.diff(change, c, order)
-        value = sp.solve(row, slope)[0]
-        for lower in range(order - 1, 0, -1):
-            value = value.subs(sp.diff(change, c, lower), found[sp.diff(change, c, lower)])
-        found[slope] = sp.simplify(value.subs(change, 0).subs(c, 0).doit())
-        coefficients.append(found[slope] / sp.factorial(order))
+        value = sp.simplify(derivative.subs({shift: 0, c: 0}))
+        coefficients.append(value / sp.factorial(order))
+        derivative = derivative.diff(c) + slope * derivative.diff(shift)
     return tuple(coefficients)
 
 

@@ -316,17 +316,12 @@ def is_difference(form_and_letters: Callable[[], tuple]) -> Callable[[Entry], No
     return check
 
 
-def _all(sources: Iterable[object]) -> Iterable[Mapping[str, object]]:
-    """Yield points, given one by one or by functions that return many."""
-    for source in sources:
-        yield from source() if callable(source) else [source]
-
-
 def hold(form: Formula, *points: object, tol: float = 1e-9) -> None:
     """Assert that a formula holds at all points, to a part of its greatest addend."""
-    for point in _all(points):
-        worst = gap(form, point)
-        assert worst <= tol, f"{form}: {worst:.3g} of its greatest addend"
+    for source in points:
+        for point in source() if callable(source) else [source]:
+            worst = gap(form, point)
+            assert worst <= tol, f"{form}: {worst:.3g} of its greatest addend"
 
 
 def plain(name: str) -> str:

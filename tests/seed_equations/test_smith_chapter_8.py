@@ -337,7 +337,7 @@ def substituted(entry):
     assert zero == 0
 
 
-ONE, TWO = TWO_FUNCTIONS
+ONE = TWO_FUNCTIONS[0]
 THREE = ((*eps, delta), ("f1_bar", "f2_bar", "wave"))
 TURN = slice(0, 128)  # of the grid over two turns
 

@@ -488,16 +488,13 @@ def shared_displacements(entry):
 
 @row("4.30")
 def assembly(entry):
-    """Energies add up; and the tip under a load moves by F L/(2 EA cos^2 45)."""
+    """Energies add up."""
     names, _, energies = two_bars()
     gyroscopic = {"M_ce": names["K_e"], "M_ae": names["M_e"]}
     found = entry.printed.values(**names, **gyroscopic)
     q = names["q"]
     same([found["M_c"], found["M_a"]], [found["K"], found["M"]])
     np.testing.assert_allclose([q @ found[k] @ q for k in ("M", "K")], energies, rtol=1e-12)
-    tip = np.linalg.solve(found["K"], [0.0, 1.0, 0, 0, 0, 0])
-    assert tip[1] == pytest.approx(LENGTH / (2 * 2e5 * 0.5), rel=1e-9)
-    assert abs(tip[0]) < 1e-12 * tip[1] + 1e-20
 
 
 def whole():
@@ -559,10 +556,6 @@ def terms_on_the_right_side_are_not_known(entry):
     assert [frequency, speed, rate] == pytest.approx([168.4, 28.07, 2360.0], rel=0.01)
     # M_a = wd W - w^2 M: in a mode, w^2 M over K is (w/omega)^2.
     assert (speed / frequency) ** 2 == pytest.approx(0.0278, rel=0.02)
-    mass, stiffness = pinned(4, "mass", "stiffness")
-    values = scipy.linalg.eigvalsh(stiffness, mass)
-    shifted = scipy.linalg.eigvalsh(stiffness - speed**2 / frequency**2 * values[0] * mass, mass)
-    assert 1 - shifted[0] / values[0] == pytest.approx(0.0278, rel=0.02)
 
 
 SPIN = 0.2

@@ -270,12 +270,7 @@ row("3.3", "3.4", "3.5", "3.9", check=holds(places))
 
 @row("3.7")
 def freudenstein_of_the_coupler(entry):
-    """The sign of K1 in front of the cosine is the slip."""
     hold(entry.corrected, places)
-    for point in places():
-        left, right = entry.printed.sides(**point)[0]
-        slip = 2 * point["L4"] / point["L1"] * np.cos(point["t2"])
-        assert np.abs(left - right + slip).max() < 1e-10
     point = letters(TABLE_3_2) | {"t1": 1.0, "t2": closure(TABLE_3_2, 1.0)[0][0]}
     quoted([np.subtract(*entry.printed.sides(**point)[0])], "-3.06")
 
@@ -441,8 +436,7 @@ def accelerations_of_the_joints(entry):
     size = np.hypot(p["q_Bx_ddot"], p["q_By_ddot"]).max()
     for (true, printed), slip in zip(entry.printed.sides(**p), slips, strict=True):
         assert np.abs(true - printed - slip).max() < 1e-8 * size
-    worst = [np.abs(slip).max() / size for slip in slips[4:6]]
-    assert worst == pytest.approx([1.31, 0.53], abs=0.006)
+    quoted([np.abs(slip).max() / size for slip in slips[4:6]], "1.31", "0.53")
 
 
 test_row, test_falsified_row = row.tests()

@@ -418,7 +418,7 @@ form, the derived or corrected form, and what is wrong or dropped, with its size
 are transcribed once and typeset from the very text that the test evaluates; where a scan may be at
 fault and not the author, the row says what the scan has.
 
-- **agrees**: equal to an independent derivation, or to numeric truth.
+- **agrees**: equal to an independent derivation or computation.
 - **slip**: wrong as printed; the derived cell holds the correction, the remark a counterexample.
 - **approximation**: terms are dropped; the remark gives their size in the document's own examples.
 - **not legible**: the scan has lost it.

@@ -144,9 +144,8 @@ def torque_on_the_frame(entry):
     true = {f"M_{case}": peak(f.moment) for case, f in cases.items()}
     rises, quotes = zip(*entry.printed.sides(**printed), strict=True)
     assert rises == pytest.approx([0.51, 0.59, 1.09], abs=0.006)
-    assert rises == pytest.approx(quotes, abs=0.45) and rises[0] == pytest.approx(
-        quotes[0], abs=0.02
-    )
+    assert rises == pytest.approx(quotes, abs=0.45)
+    assert rises[0] == pytest.approx(quotes[0], abs=0.02)
     for one, other in entry.corrected.sides(**true):
         assert one == pytest.approx(other, abs=0.006)
     positive = [cases[case].f41.imag.max() for case in "ac"]

@@ -168,10 +168,8 @@ def coupler_terms(entry):
         for sixty_fourths in (4, 2):
             point, _ = parts(thinner(name, sixty_fourths), 0.0058)
             sides = entry.printed.sides(**point)
-            same(
-                [limit for _, limit in sides],
-                [np.max(np.abs(point["eps3"] * point["f3"])) / 10] * 2,
-            )
+            tenth = np.max(np.abs(point["eps3"] * point["f3"])) / 10
+            same([limit for _, limit in sides], [tenth, tenth])
             quotients += [10 * limit / term for term, limit in sides]
     quoted(quotients, "6.1", "5.8", "12.2", "11.7", "8.0", "6.2", "16.0", "12.4")
 

@@ -7,7 +7,6 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.rigid import Bounds, MassDistribution, balance
 from elastolink.runtime.rigid.machine import Machine
-from seed_rigid import joint_forces
 
 INCH = 0.0254
 # The weights of Smith's example become masses with g = 384 in/s^2, the value with which a uniform
@@ -63,25 +62,31 @@ def with_crank_counterweight(machine, speed):
 
 
 def nine_equations(machine, theta, speed, acceleration=0.0):
-    """Return the forces of a machine by name, the three links' equations solved at once."""
-    motion, bodies = machine.linkage.motion(theta, speed, acceleration), []
+    """Return the forces of a machine by name, the three links' equations solved at once.
 
-    def plane(pairs):
-        return pairs[..., 0] + 1j * pairs[..., 1]
-
-    for link in machine.linkage.links:
-        body = machine.mass(link)
-        at, spin = motion.point(link, *body.centre), motion.link(link).angular_acceleration
-        places = plane(at.position), plane(at.acceleration)
-        bodies.append((body.mass, body.inertia_about_centre, *places, spin))
-    joints = [plane(motion.joints[letter]) for letter in "ABCD"]
-    *pins, torque = joint_forces(joints, bodies)
-    found = dict(zip(("f12", "f23", "f34", "f41"), pins, strict=True))
+    Moments are taken about the centres of mass.
+    """
+    motion = machine.linkage.motion(theta, speed, acceleration)
+    count = np.broadcast(theta, speed, acceleration).size
+    matrix, right = np.zeros((count, 9, 9)), np.zeros((count, 9))
+    for i, link in enumerate(machine.linkage.links):
+        body, spin = machine.mass(link), motion.link(link).angular_acceleration
+        centre = motion.point(link, *body.centre)
+        for sign, joint in ((1.0, i), (-1.0, i + 1)):
+            arm = motion.joints["ABCD"[joint]] - centre.position
+            matrix[:, 3 * i, 2 * joint] = matrix[:, 3 * i + 1, 2 * joint + 1] = sign
+            matrix[:, 3 * i + 2, 2 * joint] = -sign * arm[..., 1]
+            matrix[:, 3 * i + 2, 2 * joint + 1] = sign * arm[..., 0]
+        right[:, 3 * i : 3 * i + 2] = body.mass * centre.acceleration
+        right[:, 3 * i + 2] = body.inertia_about_centre * spin
+    matrix[:, 2, 8] = 1.0
+    solution = np.linalg.solve(matrix, right[..., None])[..., 0]
+    torque = solution[:, 8]
+    found = {f"f{pin}": solution[:, 2 * i : 2 * i + 2] for i, pin in enumerate((12, 23, 34, 41))}
     found["shaking_force"] = found["f41"] - found["f12"]
     # Frame: -f12 at A, f41 at D, and the drive's reaction -T.
-    moment = machine.linkage.frame * found["f41"].imag - torque
-    vectors = {name: np.stack([v.real, v.imag], axis=-1) for name, v in found.items()}
-    return {**vectors, "torque": torque, "shaking_moment": moment}
+    moment = machine.linkage.frame * found["f41"][:, 1] - torque
+    return {**found, "torque": torque, "shaking_moment": moment}
 
 
 def sampled_peaks(machine, theta, speed, acceleration=0.0):

@@ -34,18 +34,12 @@ _OPERATIONS = {
     ast.Pow: operator.pow,
     ast.MatMult: operator.matmul,
 }
-_COMPARISONS = {
-    ast.Lt: (np.less, "<"),
-    ast.LtE: (np.less_equal, r"\le"),
-    ast.Gt: (np.greater, ">"),
-    ast.GtE: (np.greater_equal, r"\ge"),
-    ast.Eq: (np.equal, "="),
-}
+_COMPARISONS = {ast.Lt: (np.less, "<"), ast.Gt: (np.greater, ">"), ast.Eq: (np.equal, "=")}
 
 
 def _function(name: str):
     """Return an elementary function for numbers of any kind."""
-    plain = {"asin": "arcsin", "acos": "arccos", "atan": "arctan"}.get(name, name)
+    plain = {"asin": "arcsin", "atan": "arctan"}.get(name, name)
 
     def apply(value):
         if isinstance(value, sp.Basic):
@@ -67,16 +61,16 @@ def _integral(body, low, high, symbolic):
     return half * np.sum(_WEIGHTS * body(low + half * (1 + _NODES)))
 
 
-_ELEMENTARY = ("sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh", "asin", "acos")
-_FUNCTIONS = {name: _function(name) for name in (*_ELEMENTARY, "atan")} | {
+_ELEMENTARY = ("sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "asin", "atan")
+_FUNCTIONS = {name: _function(name) for name in _ELEMENTARY} | {
     "abs": abs,
     "cot": lambda value: 1 / _FUNCTIONS["tan"](value),
     "inv": lambda m: m.inv() if isinstance(m, sp.MatrixBase) else np.linalg.inv(m),
     "diag": linalg.block_diag,
     "det": lambda m: m.det() if isinstance(m, sp.MatrixBase) else np.linalg.det(m),
-    "tr": lambda m: m.trace() if isinstance(m, sp.MatrixBase) else np.trace(m),
+    "max": np.max,
+    "odd": lambda k: k % 2 == 1,
 }
-_FUNCTIONS |= {"max": np.max, "min": np.min, "re": np.real, "im": np.imag}
 _CONSTANTS = {"dots": 0, "pi": np.pi, "deg": np.pi / 180.0, "I": 1j}
 
 
@@ -128,17 +122,16 @@ def _evaluate(node: ast.expr, names: _Names):
             return -_evaluate(inside, names)
         case ast.BinOp(left=left, op=op, right=right):
             return _OPERATIONS[type(op)](_evaluate(left, names), _evaluate(right, names))
-        case ast.Call(func=ast.Name(id="Sum"), args=[body, ast.Name(id=index), low, high]):
-            ends = (int(_evaluate(end, names)) for end in (low, high))
-            first, last = ends
-            terms = [_evaluate(body, names.with_index(index, k)) for k in range(first, last + 1)]
-            return sum(terms[1:], terms[0]) if terms else 0
+        case ast.Call(
+            func=ast.Name(id="Sum" | "Prod" as kind), args=[body, ast.Name(id=index), low, high]
+        ):
+            first, last = (int(_evaluate(end, names)) for end in (low, high))
+            down = kind == "Prod" and first > last
+            order = range(first, last - 1, -1) if down else range(first, last + 1)
+            terms = [_evaluate(body, names.with_index(index, k)) for k in order]
+            return reduce(operator.add if kind == "Sum" else _times, terms) if terms else 0
         case ast.Call(func=ast.Name(id="Sum"), args=[body, ast.Name(id=index)]):
             return sum(_evaluate(body, names.with_index(index, k)) for k in names[index])
-        case ast.Call(func=ast.Name(id="Prod"), args=[body, ast.Name(id=index), low, high]):
-            first, last = (int(_evaluate(end, names)) for end in (low, high))
-            order = range(first, last + 1) if first <= last else range(first, last - 1, -1)
-            return reduce(_times, (_evaluate(body, names.with_index(index, k)) for k in order))
         case ast.Call(func=ast.Name(id="Int"), args=[body, ast.Name(id=index), low, high]):
             ends = [_evaluate(end, names) for end in (low, high)]
             integral = names.get("Int", _integral)
@@ -201,21 +194,17 @@ def _list(item, names):
     return _evaluate(item, names)
 
 
-_GREEK = [
-    "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "kappa", "lambda",
-    "mu", "nu", "xi", "rho", "sigma", "tau", "phi", "chi", "psi", "omega", "Gamma", "Delta",
-    "Theta", "Lambda", "Xi", "Pi", "Sigma", "Phi", "Psi", "Omega",
-]  # fmt: skip
-_WORDS = {"lam": r"\lambda", "eps": r"\epsilon", "pi": r"\pi", "pm": r"\pm", "mp": r"\mp"}
+_GREEK = "alpha beta gamma delta epsilon zeta eta theta mu nu xi rho sigma tau phi psi omega"
+_GREEK += " lambda Gamma Delta Lambda Sigma Phi Omega"
+_WORDS = {"lam": r"\lambda", "eps": r"\epsilon", "pi": r"\pi", "pm": r"\pm"}
 _WORDS |= {"dots": r"\cdots", "deg": r"{}^\circ", "oo": r"\infty", "l": r"\ell"}
-_WORDS |= {name: "\\" + name for name in _GREEK}
+_WORDS |= {name: "\\" + name for name in _GREEK.split()}
 _ACCENTS = {"dot": r"\dot{%s}", "ddot": r"\ddot{%s}", "bar": r"\bar{%s}", "hat": r"\hat{%s}"}
-_ACCENTS |= {"tilde": r"\tilde{%s}", "vec": r"\vec{%s}", "ang": r"\widehat{%s}"}
+_ACCENTS["vec"] = r"\vec{%s}"
 _PRIMES = {"p": "'", "pp": "''", "ppp": "'''", "p4": "''''"}
-_NAMED = {"asin": r"\arcsin", "acos": r"\arccos", "atan": r"\arctan", "det": r"\det"}
-_NAMED |= {"tr": r"\operatorname{tr}", "re": r"\operatorname{Re}", "im": r"\operatorname{Im}"}
-_NAMED |= {name: "\\" + name for name in ("sin", "cos", "tan", "cot", "exp", "log", "max", "min")}
-_NAMED |= {name: "\\" + name for name in ("sinh", "cosh", "tanh")}
+_NAMED = {"asin": r"\arcsin", "atan": r"\arctan"}
+_NAMED |= {name: "\\" + name for name in ("sin", "cos", "tan", "cot", "sinh", "cosh")}
+_NAMED |= {name: "\\" + name for name in ("exp", "log", "max", "det")}
 
 
 @cache
@@ -315,16 +304,13 @@ class _Printer:
     def _call(self, name, args):
         texts = [self.text(a) for a in args]
         match name, texts:
-            case "Sum", [_, index, low, high]:
-                return rf"\sum_{{{index}={low}}}^{{{high}}} {self.text(args[0], _PRODUCT)}", _FACTOR
             case "Sum", [_, _]:
                 return self.text(args[0], _PRODUCT), _FACTOR
-            case "Prod", [_, index, low, high]:
+            case "Sum" | "Prod" | "Int", [_, index, low, high]:
                 body = self.text(args[0], _PRODUCT)
-                return rf"\prod_{{{index}={low}}}^{{{high}}} {body}", _FACTOR
-            case "Int", [_, index, low, high]:
-                body = self.text(args[0], _PRODUCT)
-                return rf"\int_{{{low}}}^{{{high}}} {body}\, d{index}", _FACTOR
+                if name == "Int":
+                    return rf"\int_{{{low}}}^{{{high}}} {body}\, d{index}", _FACTOR
+                return rf"\{name.lower()}_{{{index}={low}}}^{{{high}}} {body}", _FACTOR
             case "D", [_, index, *order]:
                 power = f"^{{{order[0]}}}" if order else ""
                 nested = isinstance(args[0], ast.Call) and _called(args[0]) == "D"
@@ -375,7 +361,7 @@ def _leading_sign(node):
     """Return whether a term begins with a sign that is a name."""
     while isinstance(node, ast.BinOp) and isinstance(node.op, _BELOW):
         node = node.left
-    return isinstance(node, ast.Name) and node.id in ("pm", "mp")
+    return isinstance(node, ast.Name) and node.id == "pm"
 
 
 @dataclass(frozen=True)

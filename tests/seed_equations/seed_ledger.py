@@ -296,13 +296,11 @@ def gap(form: Formula, point: Mapping[str, object]) -> float:
 
 
 def holds(*points: Points, tol: float = 1e-9) -> Callable[[Entry], None]:
-    """Return the check that a formula, its other form and the machine's own hold at all points."""
+    """Return the check that a formula and its other form hold at all points."""
 
     def check(entry: Entry) -> None:
         for form in filter(None, (entry.printed, entry.corrected)):
             hold(form, *points, tol=tol)
-        if callable(entry.derived) and not isinstance(entry.derived(), str):
-            hold_derived(entry, *points, tol=tol)
 
     return check
 
@@ -318,44 +316,12 @@ def is_difference(form_and_letters: Callable[[], tuple]) -> Callable[[Entry], No
     return check
 
 
-def _all(sources: Iterable[object]) -> Iterable[Mapping[str, object]]:
-    """Yield points, given one by one or by functions that return many."""
-    for source in sources:
-        yield from source() if callable(source) else [source]
-
-
 def hold(form: Formula, *points: object, tol: float = 1e-9) -> None:
     """Assert that a formula holds at all points, to a part of its greatest addend."""
-    for point in _all(points):
-        worst = gap(form, point)
-        assert worst <= tol, f"{form}: {worst:.3g} of its greatest addend"
-
-
-def hold_derived(entry: Entry, *points: object, tol: float = 1e-9) -> None:
-    """Assert the same of the machine's own forms, their symbols being names of the points."""
-    names, symbols, function = _compiled(entry.derived)
-    for point in _all(points):
-        values = {plain(name): value for name, value in point.items()}
-        derived = function(*(values[symbol] for symbol in symbols))
-        for name, value in zip(names, derived, strict=True):
-            if name is None:
-                assert greatest(value) <= tol * max(greatest(values[s]) for s in symbols)
-            elif isinstance(name, Formula):
-                same(value, name.value(**point), tol)
-            else:
-                same(value, values[name], tol)
-
-
-@cache
-def _compiled(derived: Callable[[], object]) -> tuple[list[object], list[str], Callable]:
-    """Return what derived forms equal, None where they vanish, their symbols and a function."""
-    forms = derived()
-    names: list[object] = [None] * len(forms)
-    if isinstance(forms, Mapping):
-        names = [Formula(n) if isinstance(n, str) else plain(str(n)) for n in forms]
-        forms = forms.values()
-    symbols = sorted(set().union(*(form.free_symbols for form in forms)), key=str)
-    return names, [plain(str(s)) for s in symbols], sp.lambdify(symbols, list(forms))
+    for source in points:
+        for point in source() if callable(source) else [source]:
+            worst = gap(form, point)
+            assert worst <= tol, f"{form}: {worst:.3g} of its greatest addend"
 
 
 def plain(name: str) -> str:
@@ -452,7 +418,7 @@ form, the derived or corrected form, and what is wrong or dropped, with its size
 are transcribed once and typeset from the very text that the test evaluates; where a scan may be at
 fault and not the author, the row says what the scan has.
 
-- **agrees**: equal to an independent derivation, or to numeric truth.
+- **agrees**: equal to an independent derivation or computation.
 - **slip**: wrong as printed; the derived cell holds the correction, the remark a counterexample.
 - **approximation**: terms are dropped; the remark gives their size in the document's own examples.
 - **not legible**: the scan has lost it.

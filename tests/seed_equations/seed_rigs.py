@@ -7,16 +7,16 @@ from functools import cache
 
 import numpy as np
 import sympy as sp
-from seed_derivations import l2, l3, omega2, omega3, projected, theta2, theta3
+from elastolink.runtime.core.periodic_function import PeriodicFunction
+from elastolink.runtime.hill import critical_damping
+from seed_derivations import EI, l2, l3, mode, mode_coefficient, theta2, theta3
 from seed_truth import (
     CRANK_ROCKERS,
     TURN,
     boundaries,
     coupler_functions,
-    fourier,
     motion,
     named,
-    normalised_solutions,
 )
 
 
@@ -59,19 +59,19 @@ def parts(rig, inertia4):
     m = motion(rig.lengths)
     phi, *functions = coupler_functions(m)
     eps = rig.epsilon(inertia4)
-    frame_free = projected(1, 1)[1].subs({sp.Symbol(n, real=True): 0 for n in ("EI", "F_x")})
-    whole = sp.lambdify([l2, l3, omega2, omega3, theta2, theta3], frame_free)
-    rigid = whole(*rig.lengths[1:3], 1.0, m.omega3, m.theta2, m.theta3)
+    coefficient, speed2 = mode_coefficient()
+    frame_free = coefficient.subs({EI: 0, mode: 1})
+    whole = sp.lambdify([l2, l3, speed2, theta2, theta3], frame_free)
+    rigid = whole(*rig.lengths[1:3], phi, m.theta2, m.theta3)
     point = {f"eps{k}": e for k, e in enumerate(eps, 1)} | {"phi": phi, "alpha3": m.alpha3}
-    point |= {f"f{k}": f for k, f in enumerate(functions, 1)} | {"odd": lambda k: k % 2 == 1}
+    point |= {f"f{k}": f for k, f in enumerate(functions, 1)}
     point |= {"omega2": 1.0, "theta2": m.theta2, "theta3": m.theta3} | named(rig.lengths)
     return point, sum(e * f for e, f in zip(eps, functions, strict=True)) + rigid
 
 
 def speeds(rig, coefficient, region):
     """Return the crank speeds [rpm] that bound a region."""
-    values = np.asarray(boundaries(coefficient, region))
-    return rig.frequency / np.sqrt(values) * 60 / TURN
+    return rig.frequency / np.sqrt(boundaries(coefficient, region)) * 60 / TURN
 
 
 @cache
@@ -79,27 +79,7 @@ def linkage_function(name):
     return coupler_functions(motion(CRANK_ROCKERS[name]))[3]
 
 
-@cache
 def critical(name, mu, region):
-    """Return the damping that closes a region: its largest Floquet exponent without damping.
-
-    The half traces within the region come from integration, on a grid and at the top of a parabola
-    through its three largest exponents.
-    """
-    samples = mu * linkage_function(name)
-    low, high = boundaries(samples, region)
-    harmonics = fourier(samples)[:30]
-
-    def value(x):
-        waves = np.exp(1j * np.arange(30) * x)
-        return 2 * (harmonics @ waves).real - harmonics[0].real
-
-    def exponent(lam):
-        half = 0.5 * np.trace(normalised_solutions(lambda x: lam + value(x), TURN))
-        return np.arccosh(max(abs(half), 1.0)) / TURN
-
-    grid = low + (high - low) * np.linspace(0.05, 0.95, 10)
-    sizes = [exponent(lam) for lam in grid]
-    k = int(np.clip(np.argmax(sizes), 1, 8))
-    fit = np.polyfit(grid[k - 1 : k + 2], sizes[k - 1 : k + 2], 2)
-    return exponent(-fit[1] / (2 * fit[0]))
+    """Return the damping that closes a region."""
+    function = PeriodicFunction.from_samples(linkage_function(name))
+    return critical_damping(function, mu, (region,)).damping.item()

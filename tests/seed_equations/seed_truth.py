@@ -1,16 +1,14 @@
-"""Numeric truth that no printed formula enters: loop closure by search, derivatives by FFT.
-
-Angles and derivatives come from the closure of the four bars alone, boundaries from the Fourier
-matrix of Hill's equation.
-"""
+"""Numeric truth that no printed formula enters: the package's motions and boundaries."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
+from elastolink.runtime.core.periodic_function import PeriodicFunction
+from elastolink.runtime.hill import hill_boundaries
+from elastolink.runtime.linkages import FourBar
 from scipy.integrate import solve_ivp
 
 TURN = 2.0 * np.pi
@@ -25,80 +23,25 @@ LONG_CRANK = (10.0, 8.0, 10.0, 10.0)
 DRAG_LINK = (2.0, 4.0, 5.0, 4.5)
 
 
-@dataclass(frozen=True)
-class Motion:
-    """Angles [rad] and their first and second derivatives, one value per sample of one turn."""
-
-    theta2: np.ndarray
-    theta3: np.ndarray
-    theta4: np.ndarray
-    omega2: np.ndarray
-    omega3: np.ndarray
-    omega4: np.ndarray
-    alpha2: np.ndarray
-    alpha3: np.ndarray
-    alpha4: np.ndarray
-
-
 def closure(lengths, theta2, assembly="open"):
-    """Solve the loop closure for coupler and follower angle at each crank angle by bisection.
-
-    The coupler angle is searched on a fine grid for the two places where C is one follower length
-    away from D; the open assembly is the one with sin(theta4 - theta3) > 0.
-    """
-    l1, l2, l3, l4 = lengths
-    theta2 = np.atleast_1d(np.asarray(theta2, dtype=float))
-    grid = np.linspace(0.0, TURN, 721)
-
-    def residual(angle):
-        pin = l2 * np.exp(1j * theta2[:, None]) + l3 * np.exp(1j * angle) - l1
-        return np.abs(pin) - l4
-
-    values = residual(grid[None, :])
-    change = np.signbit(values[:, :-1]) != np.signbit(values[:, 1:])
-    assert np.all(change.sum(axis=1) == 2), "the grid must see both assemblies at every angle"
-    places = np.argwhere(change)[:, 1].reshape(-1, 2)
-    low, high = grid[places], grid[places + 1]
-    sign = np.signbit(residual(low))
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        same = np.signbit(residual(middle)) == sign
-        low, high = np.where(same, middle, low), np.where(same, high, middle)
-    coupler = 0.5 * (low + high)
-    pin = l2 * np.exp(1j * theta2[:, None]) + l3 * np.exp(1j * coupler) - l1
-    follower = np.angle(pin)
-    is_open = np.sin(follower - coupler) > 0
-    assert np.all(is_open.sum(axis=1) == 1)
-    pick = is_open if assembly == "open" else ~is_open
-    return coupler[pick], follower[pick]
-
-
-def spectral_derivative(samples, order=1, growth=0.0):
-    """Differentiate ``growth * t + periodic`` sampled evenly over one period 2 pi of t."""
-    count = samples.size
-    time = TURN * np.arange(count) / count
-    number = np.fft.fftfreq(count, 1.0 / count)
-    if order % 2:
-        number[count // 2] = 0.0
-    periodic = np.fft.fft(samples - growth * time)
-    result = np.fft.ifft((1j * number) ** order * periodic)
-    result = result if np.iscomplexobj(samples) else result.real
-    return result + growth if order == 1 else result
+    """Return coupler and follower angle at each crank angle, between -pi and pi."""
+    m = FourBar(*lengths, assembly).motion(np.atleast_1d(theta2))
+    return [np.angle(np.exp(1j * angle)) for angle in (m.theta3, m.theta4)]
 
 
 @cache
 def motion(lengths, assembly="open", count=512, unsteady=0.0):
     """Return one turn of the linkage; theta2 = t + unsteady * sin(t), t sampled evenly."""
     time = TURN * np.arange(count) / count
-    theta2 = time + unsteady * np.sin(time)
-    theta3, theta4 = (np.unwrap(angle) for angle in closure(lengths, theta2, assembly))
-    rates = [theta2, theta3, theta4]
-    for order in (1, 2):
-        for angle in (theta2, theta3, theta4):
-            last_step = np.angle(np.exp(1j * (angle[0] - angle[-1])))
-            growth = np.round((angle[-1] + last_step - angle[0]) / TURN)
-            rates.append(spectral_derivative(angle, order, growth))
-    return Motion(*rates)
+    wave = unsteady * np.exp(1j * time)
+    return FourBar(*lengths, assembly).motion(time + wave.imag, 1 + wave.real, -wave.imag)
+
+
+def rates(m):
+    """Return angles, speeds and accelerations of a motion by name."""
+    return {
+        f"{x}{k}": getattr(m, f"{x}{k}") for x in ("theta", "omega", "alpha") for k in (2, 3, 4)
+    }
 
 
 def named(lengths):
@@ -109,7 +52,7 @@ def named(lengths):
 def turning(lengths, m, speed=1.0):
     """Return lengths and angles, speeds and accelerations of a motion at a crank speed, by name."""
     powers = {"theta": 0, "omega": 1, "alpha": 2}
-    return named(lengths) | {name: speed ** powers[name[:5]] * v for name, v in vars(m).items()}
+    return named(lengths) | {name: speed ** powers[name[:5]] * v for name, v in rates(m).items()}
 
 
 def vectors(lengths, angles):
@@ -130,21 +73,10 @@ def fourier(samples):
     return np.fft.fft(samples) / samples.size
 
 
-def fourier_matrix(samples, region, damping=0.0, harmonics=40):
-    """Return the matrix of -y'' - 2 damping y' - f y by even samples of f over 2 pi.
-
-    Over the periodic exponentials for an even region, the antiperiodic ones for an odd region.
-    """
-    number = np.arange(-harmonics, harmonics + 1) + 0.5 * (region % 2)
-    index = np.arange(number.size)
-    difference = (index[:, None] - index[None, :]) % samples.size
-    return np.diag(number**2 - 2j * damping * number) - fourier(samples)[difference]
-
-
-def boundaries(samples, region, harmonics=40):
-    """Return both values of lambda^2 that bound a region of y'' + (lambda^2 + f) y = 0."""
-    values = np.sort(np.linalg.eigvalsh(fourier_matrix(samples, region, 0.0, harmonics)))
-    return values[region - 1], values[region]
+def boundaries(samples, region, damping=0.0):
+    """Return the ends of a region of y'' + 2 damping y' + (lambda^2 + f) y = 0, f by samples."""
+    found = hill_boundaries(PeriodicFunction.from_samples(samples), 1.0, (region,), damping)
+    return np.array([found.lower.item(), found.upper.item()])
 
 
 def normalised_solutions(coefficient: Callable[[float], float], end, damping=0.0):

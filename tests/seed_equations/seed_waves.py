@@ -131,29 +131,6 @@ def second_order(point):
     return {**point, **tables, **primed, **rest}
 
 
-def series(a, b, n, sign, order):
-    """Return alpha_1.. and y_0.. of (7.12), (7.14) where the first order parts the boundaries."""
-    f = function(a, b)
-    alpha1, (A0, B0) = resonance(f, n)[(1 - sign) // 2]
-    c, s = np.cos(n / 2 * THETA), np.sin(n / 2 * THETA)
-    alphas, ys = [alpha1], [A0 * c + B0 * s]
-    across = -B0 * c + A0 * s
-    for _ in range(order - 1):
-        newest = solved(-sum(x * y for x, y in zip(alphas, ys[::-1], strict=True)) - f * ys[-1], n)
-
-        def rest(alpha, constant, newest=newest):
-            column = [*ys, newest + constant * across]
-            right = alpha * ys[0] + sum(x * y for x, y in zip(alphas, column[:0:-1], strict=True))
-            return np.array(parts(-right - f * column[-1], n))
-
-        base = rest(0.0, 0.0)
-        columns = [rest(1.0, 0.0) - base, rest(0.0, 1.0) - base]
-        alpha, constant = np.linalg.solve(np.transpose(columns), -base)
-        ys.append(newest + constant * across)
-        alphas.append(alpha)
-    return alphas, ys
-
-
 # Several small parameters, by SymPy.
 
 theta = sp.Symbol("theta", real=True)

@@ -5,14 +5,9 @@ from functools import cache
 
 import numpy as np
 import pytest
-from seed_derivations import (
-    closure_rows,
-    freudenstein,
-    half_angle_quadratic,
-    rates,
-)
-from seed_ledger import Ledger, hold, hold_derived, holds, quoted, truths
-from seed_rigid import TABLE_3_2, Link, centres, forces, sweeps, turning_letters
+from elastolink.runtime.linkages import classify, mobility
+from seed_ledger import Ledger, hold, holds, quoted, truths
+from seed_rigid import TABLE_3_2, Link, forces, plane
 from seed_truth import (
     CRANK_ROCKERS,
     DRAG_LINK,
@@ -20,7 +15,6 @@ from seed_truth import (
     TURN,
     closure,
     motion,
-    spectral_derivative,
 )
 
 row = Ledger("Aannaque", __file__)
@@ -32,53 +26,40 @@ WHOLE_NUMBERS = [
 ]
 
 
+kind = cache(classify)
+
+
+def turning(lengths):
+    """Return C or R for input, coupler and output: which of them turns fully about the frame."""
+    return "".join("C" if full else "R" for full in kind(lengths).turns.values())
+
+
 def excess(lengths):
     """Return s + l - p - q."""
     s, p, q, longest = sorted(lengths)
     return s + longest - p - q
 
 
-def named(lengths):
-    """Return the lengths in the letters of 3.1."""
-    s, p, q, longest = sorted(lengths)
-    return {"s": s, "p": p, "q": q, "l": longest}
-
-
 @row("3.1 condition of the crank-rocker", "3.4 Grashof's theorem")
 def which_links_revolve(entry):
-    """Every linkage by brute force: the coupler counts."""
-    rng = np.random.default_rng(7)
-    random = [tuple(k) for k in rng.uniform(1.0, 4.0, (300, 4)) if 2 * k.max() < k.sum()]
-    every = turning() | {k: turning_letters(k) for k in random}
-    for lengths, letters in every.items():
-        held = truths(entry.printed, **named(lengths))
+    """The coupler counts."""
+    assert len(WHOLE_NUMBERS) == 2121
+    for lengths in WHOLE_NUMBERS:
+        letters = turning(lengths)
+        held = truths(entry.printed, **dict(zip("spql", sorted(lengths), strict=True)))
         if entry.label.startswith("3.1"):
             change_point = excess(lengths) == 0
             assert letters != "CRR" or change_point or (held[0] and lengths[1] == min(lengths))
             assert held[0] == (excess(lengths) < 0)
         else:
             assert held == ["C" in letters, "C" not in letters], lengths
-    assert excess(DRAG_LINK) < 0 and turning_letters(DRAG_LINK) == "CCC"
+    assert excess(DRAG_LINK) < 0 and turning(DRAG_LINK) == "CCC"
 
 
-@cache
-def turning():
-    """Return which links of each whole-number linkage turn fully."""
-    assert len(WHOLE_NUMBERS) == 2121
-    return {lengths: turning_letters(lengths) for lengths in WHOLE_NUMBERS}
-
-
-PRINTED_ROWS = {
-    ("<", "s", 0): ("crank-crank-crank", "CCC"),
-    ("<", "s", 1): ("crank-rocker-crank", "CRR"),
-    ("<", "s", 2): ("rocker-crank-rocker", "RCR"),
-    ("<", "s", 3): ("rocker-rocker-crank", "RRC"),
-    **{(">", "l", k): ("rocker-rocker-rocker", "RRR") for k in range(4)},
-    ("=", "s", 0): ("crank-crank-crank", "CCC"),
-    ("=", "s", 1): ("crank-rocker-rocker", "CRR"),
-    ("=", "s", 2): ("rocker-crank-rocker", "RCR"),
-    ("=", "s", 3): ("rocker-rocker-crank", "RRC"),
-}
+# Symbols of Table 3.1 with the initials of the printed names.
+PRINTED_NAMES = {"GCCC": "CCC", "GCRR": "CRC", "GRCR": "RCR", "GRRC": "RRC"}
+PRINTED_NAMES |= {f"RRR{k}": "RRR" for k in (1, 2, 3, 4)}
+PRINTED_NAMES |= {"CPCCC": "CCC", "CPCRR": "CRR", "CPRCR": "RCR", "CPRRC": "RRC"}
 
 
 def flat_positions(lengths):
@@ -88,60 +69,30 @@ def flat_positions(lengths):
     return sum(frame == sum(a * b for a, b in zip(choice, others, strict=True)) for choice in signs)
 
 
-def row_of(lengths):
-    """Return the key of Table 3.1 for lengths with at most one flat position."""
-    relation = "<=>"[int(np.sign(excess(lengths))) + 1]
-    end = max(lengths) if relation == ">" else min(lengths)
-    assert lengths.count(end) == 1, "the mark of the class is never shared"
-    return relation, "l" if relation == ">" else "s", lengths.index(end)
-
-
-@cache
-def table_3_1():
-    """Return each whole-number linkage with its row of the table; None for two equal pairs."""
-    found = {}
-    for lengths in WHOLE_NUMBERS:
-        pairs = sorted(lengths)
-        equal = pairs[0] == pairs[1] and pairs[2] == pairs[3]
-        assert equal or flat_positions(lengths) == (excess(lengths) == 0)
-        found[lengths] = None if equal else row_of(lengths)
-    return found
-
-
-@row("Table 3.1 classes", "Table 3.1 names", "Table 3.1 relations of the lengths")
+@row(
+    "Table 3.1 classes", "Table 3.1 names", "Table 3.1 relations of the lengths",
+    "Table 3.1 double and triple change points",
+)  # fmt: skip
 def classes(_):
-    rows = {lengths: kind for lengths, kind in table_3_1().items() if kind}
-    assert set(rows.values()) == set(PRINTED_ROWS)
-    for lengths, kind in rows.items():
-        name, letters = PRINTED_ROWS[kind]
-        assert turning()[lengths] == letters
-        spelled = "".join(word[0].upper() for word in name.split("-"))
-        assert (spelled == letters) == (kind != ("<", "s", 1))
-    assert list(rows.values()).count(("<", "s", 0)) == 231
-    assert turning_letters(CRANK_ROCKERS["5,1,5,2"]) == "CRR"
+    symbols = {lengths: kind(lengths).symbol for lengths in WHOLE_NUMBERS}
+    assert set(symbols.values()) == {*PRINTED_NAMES, "CP2X", "CP3X"}
+    for lengths, symbol in symbols.items():
+        flat = {"CP2X": 2, "CP3X": 3}.get(symbol, int(symbol.startswith("CP")))
+        assert flat_positions(lengths) == flat
+        if symbol in PRINTED_NAMES:
+            assert (PRINTED_NAMES[symbol] == turning(lengths)) == (symbol != "GCRR")
+    double_cranks = [lengths for lengths, symbol in symbols.items() if symbol == "GCCC"]
+    assert len(double_cranks) == 231 and max(map(excess, double_cranks)) < 0
+    assert turning(CRANK_ROCKERS["5,1,5,2"]) == "CRR"
     swing = np.degrees(np.ptp(motion(CRANK_ROCKERS["5,1,5,2"]).theta4))
     assert swing == pytest.approx(61.0, abs=0.1)
 
 
-@row("Table 3.1 double and triple change points")
-def change_points(_):
-    for lengths in (k for k, kind in table_3_1().items() if kind is None):
-        assert flat_positions(lengths) == (3 if len(set(lengths)) == 1 else 2)
-
-
 @row("3.2")
 def planes_of_the_solution_space(entry):
-    """On a plane the loop closes in one flat position only; beyond it, in none."""
     rng = np.random.default_rng(8)
-    angles = np.linspace(0.0, 2 * np.pi, 1441)
     for others in rng.uniform(0.5, 2.0, (12, 3)):
         for place in range(4):
-            for factor, closes in ((0.995, True), (1.005, False)):
-                lengths = np.insert(others, place, factor * others.sum())
-                frame, first, second, third = lengths
-                distance = np.abs(frame - first * np.exp(1j * angles))
-                found = (abs(second - third) <= distance) & (distance <= second + third)
-                assert bool(found.any()) is closes
             frame, first, second, third = np.insert(others, place, others.sum())
             ratios = {f"lam{k}": v / first for k, v in ((2, second), (3, third), (4, frame))}
             on = [abs(a - b) < 1e-12 for a, b in entry.printed.sides(**ratios)]
@@ -158,83 +109,58 @@ def distance_of_a_base_plane(entry):
         hold(entry.printed, {**ratios, "lam": np.linalg.norm(foot)})
 
 
-def mobility(links, pins, slots=(), places=None, seed=9):
-    """Return the dimension of the velocities that the pairs allow, ground being link 0.
-
-    A pair is (i, j).  Places of the pins are arbitrary unless given; a slot keeps one direction.
-    """
-    rng = np.random.default_rng(seed)
-    places = rng.uniform(-1.0, 1.0, (len(pins), 2)) if places is None else np.asarray(places)
-    rows = []
-    for (i, j), (x, y) in zip(pins, places, strict=True):
-        rows += [pair_row(links, i, j, row) for row in ((1.0, 0.0, -y), (0.0, 1.0, x))]
-    for i, j in slots:
-        angle, x, y = rng.uniform(-1.0, 1.0, 3)
-        normal = np.cos(angle), np.sin(angle), x * np.sin(angle) - y * np.cos(angle)
-        rows.append(pair_row(links, i, j, normal))
-    return 3 * (links - 1) - np.linalg.matrix_rank(np.array(rows), tol=1e-9)
-
-
-def pair_row(links, i, j, values):
-    """Return one condition on the relative velocity of two links."""
-    row = np.zeros((links, 3))
-    row[i], row[j] = values, -np.array(values)
-    return row[1:].ravel()
-
-
+# Links and pins of chains; the mobility that they have.
 CHAINS = {
-    "three bars": (3, ((0, 1), (1, 2), (2, 0)), ()),
-    "four bars": (4, ((0, 1), (1, 2), (2, 3), (3, 0)), ()),
-    "five bars": (5, ((0, 1), (1, 2), (2, 3), (3, 4), (4, 0)), ()),
-    "Watt": (6, ((0, 1), (1, 2), (2, 3), (3, 0), (2, 4), (4, 5), (5, 3)), ()),
-    "quick return": (3, ((0, 1), (2, 0)), ((1, 2),)),
-    "braced": (5, ((0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (4, 2)), ()),
+    "three bars": (3, ("01", "12", "20"), 0),
+    "four bars": (4, ("01", "12", "23", "30"), 1),
+    "five bars": (5, ("01", "12", "23", "34", "40"), 2),
+    "Watt": (6, ("01", "12", "23", "30", "24", "45", "53"), 1),
+    "braced": (5, ("01", "12", "23", "30", "04", "42"), 0),
 }
-PARALLEL = (5, ((0, 1), (0, 2), (0, 3), (4, 1), (4, 2), (4, 3)))
+PARALLEL = ("01", "02", "03", "41", "42", "43")
+
+
+def rank_of(pins, places=None):
+    """Return Kutzbach's count and the mobility by rank; the pins lie anywhere unless given."""
+    places = np.random.default_rng(9).uniform(-1, 1, (len(pins), 2)) if places is None else places
+    found = mobility(pins, coordinates=places)
+    return found.kutzbach, found.instantaneous
+
+
+def cranks(pivots, angle=0.7):
+    """Return the places of the pins of parallel cranks, pivots first."""
+    tips = pivots + 0.8 * np.exp(1j * angle)
+    return np.column_stack([np.r_[pivots, tips.real], np.r_[0 * pivots, tips.imag]])
 
 
 @row("3.2 Kutzbach's criterion", "3.2 Gruebler's criterion", "3.2 mobility of the four-bar")
 def mobilities(entry):
-    for name, (links, pins, slots) in CHAINS.items():
-        count = mobility(links, pins, slots)
-        assert count == {"three bars": 0, "five bars": 2, "braced": 0}.get(name, 1)
-        given = {"k": links, "j1": len(pins), "j2": len(slots)}
+    for name, (links, pins, count) in CHAINS.items():
+        assert rank_of(pins)[1] == count
+        given = {"k": links, "j1": len(pins), "j2": 0}
         if "four-bar" in entry.label:
             assert name != "four bars" or entry.printed.values()["m"] == count
         elif "Kutzbach" in entry.label:
             assert entry.printed.values(**given)["m"] == count
-        elif not slots:
-            assert all((a == b) == (count == 1) for a, b in entry.printed.sides(**given))
+            # A quick return: crank, and a rod that slides on its pin.
+            assert entry.printed.values(k=3, j1=2, j2=1)["m"] == 1
+        else:
             (one, many), (rest, zero) = entry.printed.sides(**given)
             assert many - one == rest - zero == count - 1
 
 
-def count(links, pins):
-    """Return what the criterion counts."""
-    return 3 * (links - 1) - 2 * len(pins)
-
-
 @row("3.2 redundant constraints at m < 0")
 def redundant_constraints(_):
-    both_diagonals = ((0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (4, 2), (1, 5), (5, 3))
-    assert count(6, both_diagonals) == -1 and mobility(6, both_diagonals) == 0
-    pins = tuple((end, crank) for end in (0, 5) for crank in (1, 2, 3, 4))
-    pivots = np.array([0.0, 1.3, 2.0, 2.4])
-    tips = pivots + 0.8 * np.exp(0.7j)
-    places = np.column_stack([np.r_[pivots, tips.real], np.r_[0 * pivots, tips.imag]])
-    assert count(6, pins) == -1 and mobility(6, pins, places=places) == 1
+    assert rank_of(("01", "12", "23", "30", "04", "42", "15", "53")) == (-1, 0)
+    pins = [end + crank for end in "05" for crank in "1234"]
+    assert rank_of(pins, cranks(np.array([0.0, 1.3, 2.0, 2.4]))) == (-1, 1)
 
 
 @row("3.2 no motion at m = 0", "3.2 odd number of links")
 def parallel_cranks(_):
-    pivots = np.array([0.0, 1.3, 2.0])
     for angle in np.linspace(0.3, 6.0, 7):
-        tips = pivots + 0.8 * np.exp(1j * angle)
-        # Equal distances of the tips at each angle: one bar joins them through the whole turn.
-        assert np.abs(np.diff(tips)) == pytest.approx(np.diff(pivots))
-        places = np.column_stack([np.r_[pivots, tips.real], np.r_[0 * pivots, tips.imag]])
-        assert mobility(*PARALLEL, places=places) == 1
-    assert mobility(*PARALLEL) == count(*PARALLEL) == 0
+        assert rank_of(PARALLEL, cranks(np.array([0.0, 1.3, 2.0]), angle)) == (0, 1)
+    assert rank_of(PARALLEL) == (0, 0)
     assert 1 not in [3 * (k - 1) - 2 * j for k in (3, 5, 7, 9) for j in range(k, 3 * k)]
 
 
@@ -276,8 +202,6 @@ def mechanical_advantage(entry):
 def factor_of_the_transmission_angle(entry):
     for point in advantages():
         hold(entry.corrected, {**point, "F": 1.0, "T3": np.abs(point["T3"])})
-        bounded = point["T3"] / point["T1"] * np.sin(point["beta"])
-        assert np.all(np.abs(bounded) <= point["L3"] / point["L1"] * (1 + 1e-12))
 
 
 @row("3.3 toggle at beta = 0 or 180 deg")
@@ -297,28 +221,23 @@ def toggle(_):
 def extremes_of_the_transmission_angle(entry):
     for lengths in (TABLE_3_2, CRANK_ROCKERS["5,1,5,2"], LONG_CRANK, DRAG_LINK):
         m = motion(lengths)
-        gamma = np.abs(np.angle(np.exp(1j * (m.theta4 - m.theta3))))
+        gamma = m.transmission_angle
         assert {int(gamma.argmin()), int(gamma.argmax())} == {0, gamma.size // 2}
         slope = np.sign(np.sin(m.theta4 - m.theta3)) * (m.omega4 - m.omega3)
         names = dict(zip(("L4", "L1", "L2", "L3"), lengths, strict=True))
         point = {**names, "t1": m.theta2, "gamma": gamma, "D": lambda *_, s=slope: s}
         hold(entry.corrected, point, tol=1e-7)
     frame, crank, coupler, follower = 4.0, 3.0, 2.0, 2.0
-    assert not sweeps(crank, frame, (coupler, follower))
+    assert turning((frame, crank, coupler, follower))[0] == "R"
     stop = np.arccos((frame**2 + crank**2 - (coupler + follower) ** 2) / (2 * frame * crank))
     assert np.degrees(stop) == pytest.approx(68.0, abs=0.05)
-    near = stop - np.array([1e-2, 1e-4, 1e-6])
-    pins = np.abs(crank * np.exp(1j * near) - frame)
-    cosine = (coupler**2 + follower**2 - pins**2) / (2 * coupler * follower)
-    assert np.all(np.diff(np.arccos(cosine)) > 0)
-    assert np.degrees(np.arccos(cosine[-1])) == pytest.approx(180.0, abs=0.2)
 
 
 KINDS = (TABLE_3_2, CRANK_ROCKERS["5,1,5,2"], CRANK_ROCKERS["2,1,2,2"], LONG_CRANK, DRAG_LINK)
 CRANK_ANGLES = np.linspace(0.03, TURN - 0.02, 61)
 SECTIONS = ((24.8e-3, 6.35e-3), (25e-3, 3.42e-3), (25e-3, 3.15e-3))
 BARS = tuple(
-    Link.bar(7850.0 * width * thick * length, length)
+    Link.uniform_bar(7850.0 * width * thick * length, length)
     for (width, thick), length in zip(SECTIONS, TABLE_3_2[1:], strict=True)
 )
 
@@ -346,19 +265,12 @@ def places():
     return [placed(lengths, assembly) for lengths in KINDS for assembly in ("open", "crossed")]
 
 
-row("3.3", "3.9", check=holds(places))
-row("3.4", derived=lambda: closure_rows(0), check=holds(places))
-row("3.5", derived=lambda: freudenstein()[:1], check=holds(places))
+row("3.3", "3.4", "3.5", "3.9", check=holds(places))
 
 
-@row("3.7", derived=lambda: freudenstein()[1:])
+@row("3.7")
 def freudenstein_of_the_coupler(entry):
-    hold_derived(entry, places)
-    for point in places():
-        # The sign of K1 in front of the cosine is the slip: with t2 + pi under it, it is right.
-        left, right = entry.printed.sides(**point)[0]
-        slip = 2 * point["L4"] / point["L1"] * np.cos(point["t2"])
-        assert np.abs(left - right + slip).max() < 1e-10 and np.abs(slip).max() > 0.5
+    hold(entry.corrected, places)
     point = letters(TABLE_3_2) | {"t1": 1.0, "t2": closure(TABLE_3_2, 1.0)[0][0]}
     quoted([np.subtract(*entry.printed.sides(**point)[0])], "-3.06")
 
@@ -378,28 +290,21 @@ def constants(lengths, assembly):
     return point
 
 
-def random_linkages():
-    """Return crank-rockers whose K2 and K4 differ."""
-    sizes = np.random.default_rng(10).uniform((2.0, 0.9, 0.9), (4.0, 1.3, 1.3), (20, 3))
-    return [(frame, 0.5, frame * first, frame * second) for frame, first, second in sizes]
-
-
 def half_tangent(name):
     """Return the check of one of the two roots, in both assemblies."""
 
     def check(entry):
-        for lengths in (*KINDS, *random_linkages()):
+        for lengths in KINDS:
             for assembly in ("open", "crossed"):
                 point = constants(lengths, assembly)
                 given = {k: v for k, v in point.items() if k != name}
                 assert turned(entry.printed.values(**given)[name], point[name]) < 1e-7
-        hold_derived(entry, places, tol=1e-8)
 
     return check
 
 
-row("3.6", derived=lambda: [half_angle_quadratic(0)], check=half_tangent("t3"))
-row("3.8", derived=lambda: [half_angle_quadratic(1)], check=half_tangent("t2"))
+row("3.6", check=half_tangent("t3"))
+row("3.8", check=half_tangent("t2"))
 
 
 @row("3.5 two assemblies")
@@ -413,7 +318,7 @@ def two_assemblies(_):
 def extremes(lengths):
     """Return the least and the greatest transmission angle by a turn, and where they are."""
     m = motion(lengths)
-    gamma = np.arccos(np.cos(m.theta4 - m.theta3))
+    gamma = m.transmission_angle
     assert int(gamma.argmin()) == 0 and int(gamma.argmax()) == gamma.size // 2
     return {**letters(lengths), "gamma_min": gamma.min(), "gamma_max": gamma.max()}
 
@@ -441,29 +346,25 @@ def motions():
     points = []
     for lengths in KINDS:
         for assembly in ("open", "crossed"):
-            m = motion(lengths, assembly, 1024)
+            m = motion(lengths, assembly)
             names = {f"t{k}": getattr(m, f"theta{k + 1}") for k in (1, 2, 3)}
             names |= {f"omega{k}": 2 * getattr(m, f"omega{k + 1}") for k in (1, 2, 3)}
             names |= {f"alpha{k}": 4 * getattr(m, f"alpha{k + 1}") for k in (1, 2, 3)}
-            points.append({**letters(lengths), **names, "smith": {**letters(lengths), **vars(m)}})
+            points.append({**letters(lengths), **names})
     return points
 
 
-@row("3.11", derived=rates)
-def rates_hold(entry):
-    hold(entry.printed, motions, tol=1e-7)
-    hold_derived(entry, *(point["smith"] for point in motions()), tol=1e-7)
+row("3.11", check=holds(motions))
 
 
 @cache
 def table_forces(unsteady=0.0):
     """Return the true forces of Table 3.2's uniform bars near 1 rad/s in the letters of 3.7."""
     f, m = forces(TABLE_3_2, BARS, unsteady=unsteady), motion(TABLE_3_2, unsteady=unsteady)
-    pairs = zip(BARS, centres(TABLE_3_2, BARS, m), strict=True)
-    inertia = [-bar.mass * spectral_derivative(place, 2) for bar, place in pairs]
+    inertia = [-bar.mass * a for bar, a in zip(BARS, (f.a2, f.a3, f.a4), strict=True)]
     pins = {"F_01": f.f12, "F_12": f.f23, "F_23": f.f34, "F_03": -f.f41, "F_21": -f.f23}
     pins |= {f"F_{k}": v for k, v in enumerate(inertia, 1)} | {"F_32": -f.f34}
-    point = letters(TABLE_3_2) | {"C": f.torque, "omega1": m.omega2, "dE": f.energy_rate}
+    point = letters(TABLE_3_2) | {"C": f.torque, "omega1": m.omega2}
     for k, bar in enumerate(BARS, 1):
         point |= {f"t{k}": getattr(m, f"theta{k + 1}"), f"J{k}": bar.inertia_about_centre}
         point |= {f"alpha{k}": getattr(m, f"alpha{k + 1}")}
@@ -507,19 +408,17 @@ def nine_equations(entry):
 
 @row("3.7 torque of the motor")
 def torque_fluctuates(_):
-    torque, speed, rate_ = (table_forces()[name] for name in ("C", "omega1", "dE"))
+    torque = table_forces()["C"]
     assert abs(torque.mean()) < 1e-10 * np.abs(torque).max()
-    assert np.abs(torque * speed - rate_).max() < 1e-9 * np.abs(torque).max()
     quoted([torque.min(), torque.max()], "-0.0105", "0.0071")
 
 
 @cache
 def joint_accelerations():
-    """Return Table 3.2 at 2 rad/s with the accelerations of the joints by differentiation."""
+    """Return Table 3.2 at 2 rad/s with the accelerations of the joints."""
     m = motion(TABLE_3_2)
-    pin_a = TABLE_3_2[1] * np.exp(1j * m.theta2)
-    pin_b = pin_a + TABLE_3_2[2] * np.exp(1j * m.theta3)
-    a, b = spectral_derivative(pin_a, 2), spectral_derivative(pin_b, 2)
+    ends = (("crank", TABLE_3_2[1]), ("follower", TABLE_3_2[3]))
+    a, b = (plane(m.point(*end).acceleration) for end in ends)
     found = {"q_Ax": a.real, "q_Ay": a.imag, "q_Bx": b.real, "q_By": b.imag, "q_t1": m.alpha2}
     found |= {"q_t2": m.alpha3, "q_t3": m.alpha4}
     speeds = {"omega1": 2 * m.omega2, "omega2": 2 * m.omega3, "t1": m.theta2, "t2": m.theta3}
@@ -537,8 +436,7 @@ def accelerations_of_the_joints(entry):
     size = np.hypot(p["q_Bx_ddot"], p["q_By_ddot"]).max()
     for (true, printed), slip in zip(entry.printed.sides(**p), slips, strict=True):
         assert np.abs(true - printed - slip).max() < 1e-8 * size
-    worst = [np.abs(slip).max() / size for slip in slips[4:6]]
-    assert worst == pytest.approx([1.31, 0.53], abs=0.006)
+    quoted([np.abs(slip).max() / size for slip in slips[4:6]], "1.31", "0.53")
 
 
 test_row, test_falsified_row = row.tests()

@@ -110,12 +110,6 @@ def floquet():
 row("7.3", "7.4", "7.5", check=holds(floquet, tol=1e-7))
 
 
-def test_the_transition_matrix_of_a_period():
-    R = transition(PERIOD)
-    drag = [np.trace(state_matrix(t)) for t in PERIOD * np.arange(64) / 64]
-    assert np.linalg.det(R) == pytest.approx(np.exp(np.mean(drag) * PERIOD), abs=1e-9)
-
-
 @row("7.6")
 def transition_matrices_form_a_group(entry):
     hold(entry.printed, {"psi": transition, "t1": 0.2, "t2": 1.7, "t3": 0.9}, tol=1e-8)

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from seed_formula import Formula
 from seed_ledger import Ledger, hold, holds, is_difference, order_of, quoted, same
 from seed_rigs import RIGS, critical, linkage_function
-from seed_truth import TURN, boundaries, fourier, fourier_matrix, normalised_solutions
+from seed_truth import TURN, boundaries, fourier, normalised_solutions
 from seed_waves import (
     HARMONICS,
     THETA,
@@ -116,11 +116,7 @@ row(
 )  # fmt: skip
 
 
-@row("7.3")
-def normalised(entry):
-    """The solutions as they come from their first values."""
-    for one, other in entry.printed.sides(**integrated(1.7, 0.5)):
-        assert one == pytest.approx(other, abs=1e-12)
+row("7.3", check=holds(lambda: [integrated(1.7, 0.5)]))
 
 
 @row("7.1.2 stability from the roots")
@@ -145,17 +141,14 @@ def period(edge, function, shortest):
 
 @row("7.1.3.1 periods")
 def periods(entry):
-    odd = {"odd": lambda k: k % 2 == 1}
     samples = 0.05 * q(TURN * np.arange(256) / 256)
     for n in (1, 2, 3):
         for edge in boundaries(samples, 2 * n):
             lam2, right = entry.corrected[0].sides(n=n, lam=np.sqrt(edge))[0]
             assert lam2 == pytest.approx(right, abs=0.05)
             true = period(edge, lambda x: 0.05 * q(x), np.pi)
-            hold(entry.corrected[1], {**odd, "n": n, "period": true})
-            assert true == pytest.approx(
-                3 * np.pi - entry.printed.values(n=n, lam=1, **odd)["period"]
-            )
+            hold(entry.corrected[1], {"n": n, "period": true})
+            assert true == pytest.approx(3 * np.pi - entry.printed.values(n=n, lam=1)["period"])
     left, start = entry.printed[0].sides(n=1, lam=0.5)[0]
     assert left == start == 0.25
     roots = np.linalg.eigvals(normalised_solutions(lambda x: start + 0.05 * q(x), np.pi))
@@ -168,7 +161,7 @@ def first_solution(entry):
         return 0.05 * (np.cos(x) + 0.5 * np.sin(2 * x) + 0.3 * np.cos(3 * x))
 
     for n in (1, 2, 3):
-        point = {**case(n, 1), "odd": lambda k: k % 2 == 1}
+        point = case(n, 1)
         for edge in boundaries(f(TURN * np.arange(64) / 64), n):
             hold(entry.corrected, {**point, "period": period(edge, f, TURN)})
         slip = {**point, "A1": point["A0"], "A0": 0.0, "period": TURN * (1 + n % 2)}
@@ -191,19 +184,7 @@ def expansion(drag=0):
     return [found[k,] for k in range(3)], letters | more
 
 
-row("7.12", "7.14", check=lambda entry: series(entry))
-
-
-def series(entry):
-    """The printed terms are those of the expansion, to the second power."""
-    letters = expansion()[1]
-    one, other = entry.printed.sides(**letters)[0]
-    same(one, other)
-    f3 = linkage_function("5,1,5,2")
-    values = [boundaries(mu * f3, 2)[1] for mu in (1e-4, 2e-4, 4e-4)]
-    slopes = np.diff(values) / [1e-4, 2e-4]
-    assert 2 * values[0] - values[1] == pytest.approx(1.0, abs=1e-6)
-    assert slopes[0] == pytest.approx(slopes[1], rel=1e-3)
+row("7.12", "7.14", check=holds(lambda: [expansion()[1]]))
 
 
 @row("7.15")
@@ -361,15 +342,10 @@ def wrong_simplification(entry):
         (B1, printed_B1), (alpha2, printed) = entry.printed.sides(**sums(point))
         assert point["pm"] * printed_B1 == pytest.approx(B1)
         assert abs(printed - alpha2) > 1e-3
-    samples = example(1)["f"][:128]
     for sign, true, wrong in ((1, "-0.456", "-0.816"), (-1, "-1.127", "-0.361")):
         point = example(sign)
         _, (alpha2, printed) = entry.printed.sides(**point)
         quoted([alpha2, printed], true, wrong)
-        # The exact boundary decides: its second difference at small mu.
-        mu = 1e-3
-        exact = boundaries(mu * samples, 1)[(1 + sign) // 2]
-        assert (exact - 0.25 - point["alpha1"] * mu) / mu**2 == pytest.approx(alpha2, abs=3e-3)
 
 
 def orders(samples, n):
@@ -459,10 +435,8 @@ def damped_equation(entry):
 row("7.39", check=holds(lambda: [symbols()]))
 
 
-@row("7.40", derived=lambda: [transformed()])
-def undamped_equation(entry):
-    left, zero = entry.printed.sides(**symbols())[0]
-    same(left - zero, transformed())
+check = is_difference(lambda: (transformed(), symbols()))
+row("7.40", check=check, derived=lambda: [transformed()])
 
 
 @row("7.1.4.1 Floquet form of u")
@@ -529,17 +503,6 @@ def damped_cases():
 row("7.43", "7.44", "7.45", "7.46", "7.47", check=holds(damped_cases))
 
 
-def damped_ends(samples, region, damping):
-    """Return the ends of a damped region: real eigenvalues of the Fourier matrix, or None."""
-    values = np.linalg.eigvals(fourier_matrix(samples, region, damping))
-    low, high = boundaries(samples, region)
-    real = values.real[np.abs(values.imag) < 1e-7]
-    slack = 1e-9
-    inside = (real > low + damping**2 - slack) & (real < high + damping**2 + slack)
-    assert inside.sum() == 2
-    return np.array([real[inside].min(), real[inside].max()])
-
-
 def damped_letters(samples, n, mu, damping):
     """Return the letters of (7.48), (7.49) for a function given by samples."""
     (a, b), beta = harmonics(samples), damping / mu
@@ -562,7 +525,7 @@ def damped_first_order_boundaries(entry):
         return np.array([entry.printed.sides(**point, **rest, pm=-1)[0][2], upper])
 
     def gap(samples, region, share, mu):
-        exact = damped_ends(mu * samples, region, share * mu)
+        exact = boundaries(mu * samples, region, share * mu)
         return np.abs(ends(samples, region, mu, share * mu) - exact).max()
 
     errors = []
@@ -589,7 +552,7 @@ def real_roots(entry):
             assert bool(size >= limit) is real
 
 
-@row("7.51", slow=True)
+@row("7.51")
 def least_parameter(entry):
     wrong = {
         "5,1,5,2": ("0.73", "3.3", "1.3", "14.6", "2.4"),

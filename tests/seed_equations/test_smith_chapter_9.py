@@ -168,10 +168,8 @@ def coupler_terms(entry):
         for sixty_fourths in (4, 2):
             point, _ = parts(thinner(name, sixty_fourths), 0.0058)
             sides = entry.printed.sides(**point)
-            same(
-                [limit for _, limit in sides],
-                [np.max(np.abs(point["eps3"] * point["f3"])) / 10] * 2,
-            )
+            tenth = np.max(np.abs(point["eps3"] * point["f3"])) / 10
+            same([limit for _, limit in sides], [tenth, tenth])
             quotients += [10 * limit / term for term, limit in sides]
     quoted(quotients, "6.1", "5.8", "12.2", "11.7", "8.0", "6.2", "16.0", "12.4")
 
@@ -190,7 +188,7 @@ def decrements(entry):
     quoted(np.array([0.15, 0.30]) / TURN * 2.5, "0.06", "0.12")
 
 
-@row("9.5.5 damping, Fig. 82", "9.5.5 damping, Fig. 85", slow=True)
+@row("9.5.5 damping, Fig. 82", "9.5.5 damping, Fig. 85")
 def damping(entry):
     """Against (7.51), which it is taken from, and the exact damping that closes the region."""
     name = "5,1,5,2" if entry.label.endswith("82") else "10,1,10,4"

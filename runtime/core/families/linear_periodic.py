@@ -426,16 +426,37 @@ class LinearPeriodic:
             for name, make in makers.items()
         }
 
-    @cached_property
-    def _rebuilds_itself(self) -> bool:
-        """Whether made anew for its own geometry it has its own terms, and not replaced ones."""
-        made = self.rebuild(self.geometry) if self.rebuild else self
+    def has_terms_of(self, made: LinearPeriodic) -> bool:
+        """Return whether its terms are those of a system made anew, and not replaced ones."""
         theta = self.period * np.array([0.1, 0.45, 0.8])
         return len(made.terms) == len(self.terms) and all(
-            (new.array, new.scale, new.power) == (own.array, own.scale, own.power)
-            and (new.function is own.function or np.allclose(new(theta), own(theta), rtol=1e-6))
-            for new, own in zip(made.terms, self.terms, strict=True)
+            (new.array, new.scale, new.power) == (term.array, term.scale, term.power)
+            and np.allclose(new(theta), term(theta), rtol=1e-6, atol=0.0)
+            for new, term in zip(made.terms, self.terms, strict=True)
         )
+
+    @cached_property
+    def _rebuilds_itself(self) -> bool:
+        return self.rebuild is None or self.has_terms_of(self.rebuild(self.geometry))
+
+    def remeshed(self, change: Callable[[Structure], Structure]) -> LinearPeriodic:
+        """Return the system of a changed structure, its further terms and parameters kept.
+
+        Parameters
+        ----------
+        change : callable
+            From the structure to the changed one.
+
+        Raises
+        ------
+        BadInput
+            If the system tells no other structure.
+        """
+        if self.remesh is None:
+            raise bad(
+                "system", "one made for its own beams alone", "a linkage", "use linkage_system"
+            )
+        return replace(self.remesh(change), parameters=dict(self.parameters))
 
     def with_geometry(self, **changes: float) -> LinearPeriodic:
         """Return the same system with other lengths or ratios, its functions of angle made anew.

@@ -363,14 +363,6 @@ def _deflections(
     """Return the largest r.m.s. deflection over the length, and the motions' relative error."""
     from ..periodic import steady_state
 
-    relative = system.relative_deflection
-    if relative is None and system.shape is None and system.moving_shape is None:
-        raise bad(
-            "system",
-            "deflections that are not known",
-            "mode shapes or relative_deflection",
-            "choose another method",
-        )
     rtol = _FINE if system.structure is None else _RTOL
     out, error = np.empty((2, len(speeds)))
     with warnings.catch_warnings(), bar(progress, len(speeds)) as tick:
@@ -379,11 +371,14 @@ def _deflections(
         for begin in range(0, len(speeds), _TOGETHER):
             part = slice(begin, min(begin + _TOGETHER, len(speeds)))
             state = steady_state(system, speeds[part], rtol=rtol)
-            if relative is not None:
-                rows = relative(state.theta)
-            else:
-                shapes = system.shapes(np.linspace(0.0, 1.0, 21), state.theta)
-                rows = np.zeros((len(state.theta), 1, system.size)) if shapes is None else shapes
+            rows = system.deflection_rows(state.theta, np.linspace(0.0, 1.0, 21))
+            if rows is None:
+                raise bad(
+                    "system",
+                    "deflections that are not known",
+                    "mode shapes or relative_deflection",
+                    "choose another method",
+                )
             # One speed at a time: deflections of all would fill the memory.
             squares = [np.mean(np.einsum("tkn,tn->tk", rows, q) ** 2, axis=0) for q in state.q]
             out[part] = np.sqrt(np.max(squares, axis=1))

@@ -182,6 +182,25 @@ class LinearPeriodic:
         fixed = np.asarray(self.shape(x), dtype=float)
         return np.broadcast_to(fixed, (len(theta), *fixed.shape))
 
+    def deflection_rows(self, theta: Array, places: Array = _PLACES) -> Array | None:
+        """Return what turns coordinates into deflections over the length of their link.
+
+        Parameters
+        ----------
+        theta : ndarray
+            Crank angles [rad], shape ``(nt,)``.
+        places : ndarray
+            Places x/length of a system that is known by its shapes, ``(nx,)``.
+
+        Returns
+        -------
+        ndarray or None
+            Shape ``(nt, k, n)``; None where none is known.
+        """
+        if self.relative_deflection is not None:
+            return np.asarray(self.relative_deflection(theta), dtype=float)
+        return self.shapes(places, theta)
+
     def largest_deflection(self, theta: Array, q: Array) -> float | None:
         """Return the largest deflection over the length of its link; None where none is known.
 
@@ -192,14 +211,11 @@ class LinearPeriodic:
         q : ndarray
             Motions, shape ``(nb, nt, n)``; one that is not finite counts for nothing.
         """
-        if self.relative_deflection is not None:
-            shapes: Array | None = np.asarray(self.relative_deflection(theta), dtype=float)
-        else:
-            shapes = self.shapes(_PLACES, theta)
-        if shapes is None:
+        rows = self.deflection_rows(theta)
+        if rows is None:
             return None
         sizes = [
-            float(np.max(np.abs(np.einsum("txn,tn->tx", shapes, one)), initial=0.0))
+            float(np.max(np.abs(np.einsum("txn,tn->tx", rows, one)), initial=0.0))
             for one in q
             if np.all(np.isfinite(one))
         ]

@@ -11,7 +11,6 @@ import numpy as np
 
 from ..beams.assembly import Array
 from ..beams.element_forms import ElementForms, required_structure
-from ..core.deferred import DeferredGroup
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.results import Check
@@ -152,7 +151,7 @@ def pin_reactions(system: LinearPeriodic, motion: Motion | float | None = None) 
     gap = float(np.max(np.abs(total + drag - rate)))
     # Round-off of the balance, over the largest end force of an element.
     checks = {"balance": Check(gap / largest if largest else gap, 1e-9)}
-    doubt = DeferredGroup(partial(_doubt, system, moving, on_beams))
+    doubt = partial(_doubt, system, moving, on_beams)
     return PinReactions(
         method="end forces of the elements",
         on_beams=on_beams,

@@ -12,7 +12,6 @@ import numpy as np
 from ..beams.assembly import Array
 from ..beams.element_forms import ElementForms, required_structure
 from ..beams.recovery_forms import LinearForm
-from ..core.deferred import DeferredGroup
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.results import Check
@@ -324,7 +323,7 @@ def beam_energies(system: LinearPeriodic, motion: Motion | float | None = None) 
     moving = beam_motion(system, motion)
     structure = required_structure(system)
     joined = _energies(system, moving)
-    doubt = DeferredGroup(partial(_doubt, system, moving, joined["strain"]))
+    doubt = partial(_doubt, system, moving, joined["strain"])
     shared = in_motion(system, moving, doubt)
     made = BeamEnergies(
         method="element matrices",

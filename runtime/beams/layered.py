@@ -47,7 +47,6 @@ class ElasticLayer:
     density: float
 
     def __post_init__(self) -> None:
-        """Check every number."""
         _refuse(sign_problems("ElasticLayer", self, _names(self), positive=True, fix=_SI))
 
 
@@ -78,7 +77,6 @@ class ViscoelasticLayer:
     density: float
 
     def __post_init__(self) -> None:
-        """Check every number."""
         names = [name for name in _names(self) if name != "loss_factor"]
         problems = sign_problems("ViscoelasticLayer", self, names, positive=True, fix=_SI)
         problems += sign_problems(

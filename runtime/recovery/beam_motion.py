@@ -61,7 +61,6 @@ class BeamMotion:
     checks: Mapping[str, Check] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Check shapes and values."""
         problems = []
         if (
             self.q.ndim != 2

@@ -146,7 +146,6 @@ class LinearPeriodic:
     remesh: Callable[[Callable[[Structure], Structure]], LinearPeriodic] | None = None
 
     def __post_init__(self) -> None:
-        """Check that every term names a known array and has the system's size."""
         for term in self.terms:
             if term.array not in MATRICES + VECTORS:
                 raise bad(

@@ -144,7 +144,7 @@ class AngleArrays:
         return self._made[name]
 
     def sum(self, name: str, theta: Array) -> Array:
-        """Return an array of ``TURNING``, summed over the elements, at crank angles: ``(nt, n, n)``.
+        """Return an array of ``TURNING``, summed over the elements, at angles: ``(nt, n, n)``.
 
         Rows and columns are those of the free coordinates.
         """

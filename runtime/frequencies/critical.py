@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import BadInput, LinearRangeWarning, bad
 from ..core.families import DAMPING, LinearPeriodic
@@ -19,7 +19,7 @@ from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
 from .held import buckling_speed, held_frequencies, require_system
 from .multiplier_maxima import Maxima, meissner_maxima, multiplier_maxima
-from .natural import natural_frequencies
+from .natural import NaturalFrequencies, natural_frequencies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -125,56 +125,58 @@ class CriticalSpeeds(Result):
 
 @dataclass(frozen=True)
 class Request:
-    """Range [rad/s], number of modes, number of speeds scanned."""
+    """A range of speeds [rad/s], and how many of them are scanned."""
 
     system: LinearPeriodic
     low: float
     high: float
-    count: int
+    still: NaturalFrequencies  # crank held, at rest
     speeds: int
     progress: bool
 
+    @property
+    def count(self) -> int:
+        """Number of modes."""
+        return len(self.still.mean)
 
-def _result(
-    request: Request,
-    mean: Array,
-    columns: tuple[Array, Indices, Indices, Array],
-    method: str,
-    height: Array | None = None,
-    scan: tuple[Array, Array] | None = None,
-    quantity: str = "none",
-    checks: Mapping[str, Check] | None = None,
-) -> CriticalSpeeds:
-    """Return the result from columns of speed, mode, order and error."""
-    by_speed = np.argsort(columns[0], kind="stable")
-    speed, error = columns[0][by_speed], columns[3][by_speed]
-    mode, order = columns[1][by_speed], columns[2][by_speed]
-    return CriticalSpeeds(
-        method=method,
-        error=error,
-        error_norm="absolute, of each speed [rad/s], as this method defines it",
-        checks=checks or {},
-        provenance=provenance(request.system.provenance),
-        speed=speed,
-        mode=mode,
-        order=order,
-        ratio=mean[mode - 1] / (order * speed),
-        height=np.ones(len(speed)) if height is None else height[by_speed],
-        mean_frequency=mean,
-        scan_speed=np.zeros(0) if scan is None else scan[0],
-        scan=np.zeros(0) if scan is None else scan[1],
-        quantity=quantity,
-    )
+    def answered(
+        self,
+        method: str,
+        speed: ArrayLike,
+        mode: ArrayLike,
+        order: ArrayLike,
+        error: ArrayLike,
+        *,
+        height: Array | None = None,
+        scan: tuple[Array, Array] = (np.zeros(0), np.zeros(0)),
+        quantity: str = "none",
+        checks: Mapping[str, Check] | None = None,
+    ) -> CriticalSpeeds:
+        """Return the result, by rising speed."""
+        rising = np.argsort(speed, kind="stable")
+        speed, error = np.asarray(speed)[rising], np.asarray(error)[rising]
+        mode, order = (np.asarray(column, dtype=np.int64)[rising] for column in (mode, order))
+        return CriticalSpeeds(
+            method=method,
+            error=error,
+            error_norm="absolute, of each speed [rad/s], as this method defines it",
+            checks=checks or {},
+            provenance=provenance(self.system.provenance),
+            speed=speed,
+            mode=mode,
+            order=order,
+            ratio=self.still.mean[mode - 1] / (order * speed),
+            height=np.ones(len(rising)) if height is None else height[rising],
+            mean_frequency=self.still.mean,
+            scan_speed=scan[0],
+            scan=scan[1],
+            quantity=quantity,
+        )
 
-
-def _listed(
-    request: Request, mean: Array, rows: Sequence[tuple[float, int, int, float]], method: str
-) -> CriticalSpeeds:
-    """Return the result of a method that names mode and order itself."""
-    kept = [row for row in sorted(rows) if request.low <= row[0] <= request.high]
-    speed, error = (np.array([row[k] for row in kept], dtype=float) for k in (0, 3))
-    mode, order = (np.array([row[k] for row in kept], dtype=np.int64) for k in (1, 2))
-    return _result(request, mean, (speed, mode, order, error), method)
+    def listed(self, method: str, rows: Sequence[tuple[float, int, int, float]]) -> CriticalSpeeds:
+        """Return the result of speed, mode, order and error in rows, of those within the range."""
+        kept = [row for row in sorted(rows) if self.low <= row[0] <= self.high]
+        return self.answered(method, *np.array(kept, dtype=float).reshape(-1, 4).T)
 
 
 def label_speeds(mean: Array, speed: Array) -> tuple[Indices, Indices]:
@@ -209,13 +211,13 @@ _SHORT = 0.98
 
 def by_mean_frequency(request: Request) -> CriticalSpeeds:
     """Return the means of the natural frequencies over n = 1, 2, ..., crank held."""
-    still = natural_frequencies(request.system, 0.0, request.count)
+    means = zip(request.still.mean, request.still.mean_error, strict=True)
     rows = [
         (float(mean / n), mode, n, float(error / n))
-        for mode, (mean, error) in enumerate(zip(still.mean, still.mean_error, strict=True), 1)
+        for mode, (mean, error) in enumerate(means, 1)
         for n in range(1, int(np.floor(mean / request.low)) + 1)
     ]
-    return _listed(request, still.mean, rows, "mean natural frequencies over n")
+    return request.listed("mean natural frequencies over n", rows)
 
 
 def by_running_mean(request: Request) -> CriticalSpeeds:
@@ -223,7 +225,6 @@ def by_running_mean(request: Request) -> CriticalSpeeds:
 
     They end where those forces buckle the held mechanism at some angle.
     """
-    still = natural_frequencies(request.system, 0.0, request.count)
     limit = _SHORT * buckling_speed(request.system).speed
     if limit <= request.low:
         raise bad(
@@ -251,7 +252,7 @@ def by_running_mean(request: Request) -> CriticalSpeeds:
             roots = (curve - line).roots()
             real = roots[(np.abs(roots.imag) < 1e-9) & (np.abs(roots.real) <= 1.0)].real
             rows += [(float(middle + half * x), mode, n, doubt / n) for x in real]
-    return _listed(request, still.mean, rows, "mean natural frequencies at the speed over n")
+    return request.listed("mean natural frequencies at the speed over n", rows)
 
 
 def by_multipliers(request: Request) -> CriticalSpeeds:
@@ -271,13 +272,13 @@ def by_meissner(request: Request) -> CriticalSpeeds:
 
 def _marked(request: Request, maxima: Maxima, quantity: str) -> CriticalSpeeds:
     """Return maxima that know their mode; its mean frequency gives the order."""
-    mean = natural_frequencies(request.system, 0.0, request.count).mean
-    order = np.maximum(1, np.round(mean[maxima.mode - 1] / maxima.speed)).astype(np.int64)
-    return _result(
-        request,
-        mean,
-        (maxima.speed, maxima.mode, order, maxima.error),
+    mean = request.still.mean[maxima.mode - 1]
+    return request.answered(
         maxima.method,
+        maxima.speed,
+        maxima.mode,
+        np.maximum(1, np.round(mean / maxima.speed)),
+        maxima.error,
         height=maxima.value,
         quantity=quantity,
         checks=maxima.checks,
@@ -311,7 +312,6 @@ def by_response(request: Request) -> CriticalSpeeds:
             "add some with with_modal_damping",
         )
     speeds = np.linspace(request.low, request.high, request.speeds)
-    mean = natural_frequencies(system, 0.0, request.count).mean
     values = _scanned(system, speeds)
     if values is None:
         values, _ = _deflections(system, speeds, request.progress)
@@ -319,11 +319,11 @@ def by_response(request: Request) -> CriticalSpeeds:
     speed = height = error = np.zeros(0)
     if len(top):
         speed, height, error = _maxima(system, speeds[top - 1], speeds[top + 1])
-    return _result(
-        request,
-        mean,
-        (speed, *label_speeds(mean, speed), error),
+    return request.answered(
         f"local maxima of the steady state, {len(speeds)} speeds scanned",
+        speed,
+        *label_speeds(request.still.mean, speed),
+        error,
         height=height,
         scan=(speeds, values),
         quantity="r.m.s. deflection over length",
@@ -503,8 +503,8 @@ def critical_speeds(
     count = require_whole("modes", wanted, 1, system.size)
     if not (isinstance(speeds, int) and speeds >= 3):
         raise bad("speeds", repr(speeds), "a whole number, 3 or more", "choose 240")
-    request = Request(system, low, high, count, speeds, progress)
-    return METHODS[method](request)
+    still = natural_frequencies(system, 0.0, count)
+    return METHODS[method](Request(system, low, high, still, speeds, progress))
 
 
 def _require_moving(system: LinearPeriodic) -> None:

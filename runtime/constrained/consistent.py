@@ -147,7 +147,7 @@ def _given(
         if not np.isfinite(array).all():
             raise bad(name, "a number that is not finite", "finite numbers", "correct it")
         if name != "t" and array.shape[-1:] != (n,):
-            fix = f"one for each of {', '.join(system.labels) or n}"
+            fix = f"one for each of {', '.join(system.labels)}"
             raise bad(name, f"shape {array.shape}", f"shape (..., {n})", fix)
     shapes = [arrays["q"].shape[:-1], arrays["qd"].shape[:-1], arrays["t"].shape]
     try:

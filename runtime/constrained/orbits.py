@@ -22,7 +22,6 @@ from .equations import (
     Linearised,
     NoConvergence,
     constraint_norms,
-    require_variations,
     solved,
 )
 from .motion import linear_range, march
@@ -429,8 +428,7 @@ class PeriodicOrbit(Result):
         ax = axes_or_new(ax)
         t = np.linspace(0.0, self.period, 1001)
         q = self.at(t)[0] - np.multiply.outer(t / self.period, self.advance)
-        names = self.labels or tuple(f"q{i + 1}" for i in range(q.shape[1]))
-        for values, name in zip((q - q.mean(axis=0)).T, names, strict=True):
+        for values, name in zip((q - q.mean(axis=0)).T, self.labels, strict=True):
             ax.plot(t / self.period, values, linewidth=1.0, label=name)
         ax.set_xlabel("time over period")
         ax.set_ylabel("coordinates less their means")
@@ -593,7 +591,9 @@ def _checked(
     advance: ArrayLike | None,
 ) -> _Guess:
     """Return the guess as arrays, having checked numbers, shapes and the system's period."""
-    require_variations(system)
+    if system.variations is None:
+        expected, fix = "one with variations", "emit the model with the output 'variations'"
+        raise bad("system", "no variational equations", expected, fix)
     period = system.period if period is None else period
     if not (isinstance(period, Real) and np.isfinite(float(period)) and period > 0):
         raise bad("period", repr(period), "a finite number above 0 [s]", "correct it")

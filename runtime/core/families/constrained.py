@@ -85,6 +85,10 @@ class Constrained:
     watch: Callable[[Array, Array], ArrayLike] | None = None
     guards: tuple[Guard, ...] = ()
 
+    def __post_init__(self) -> None:
+        if not self.labels:
+            object.__setattr__(self, "labels", tuple(f"q{i + 1}" for i in range(self.size)))
+
     @classmethod
     def from_module(
         cls,

@@ -14,6 +14,7 @@ from ..core.families import Constrained
 from ..core.families.multipliers import check_rank, scaling
 from ..core.inputs import numbers
 from ..core.results import Check, Result, provenance
+from ..periodic.ring import solve_ring
 from .collocation import Nodes, integrals, nodes, stage_matrix
 from .equations import (
     EPS,
@@ -309,26 +310,13 @@ class Shooting:
 def closed_chain(maps: Array, wrong: Array) -> Array | None:
     """Solve ``e_{j+1} - G_j e_j = r_j`` round a ring; None where it is singular.
 
-    G are the ``maps (m, p, p)``, r what is ``wrong (m, p, k)``.  The equations stand together
-    (sparse), not multiplied up, so that growth does no harm.
+    G are the ``maps (m, p, p)``, r what is ``wrong (m, p, k)``.
     """
-    from scipy import sparse
-    from scipy.sparse.linalg import splu
-
-    m, p, _ = maps.shape
-    if p == 0:
-        return np.zeros_like(wrong)
-    each = np.arange(m)
-    blocks = np.stack([-maps, np.broadcast_to(np.eye(p), maps.shape)], axis=1)
-    columns = np.stack([each, np.roll(each, -1)], axis=1)
-    rows = 2 * np.arange(m + 1)
-    matrix = sparse.bsr_matrix((blocks.reshape(-1, p, p), columns.ravel(), rows)).tocsc()
-    matrix.eliminate_zeros()
-    try:
-        solution: Array = splu(matrix).solve(np.ascontiguousarray(wrong.reshape(m * p, -1)))
-    except RuntimeError:
-        return None
-    return solution.reshape(wrong.shape) if np.all(np.isfinite(solution)) else None
+    if not wrong.size:  # constraints that leave nothing free
+        return wrong
+    loads = np.moveaxis(wrong, -1, 0)
+    solution, _ = solve_ring(np.broadcast_to(maps, (len(loads), *maps.shape)), loads)
+    return np.moveaxis(solution, 0, -1) if np.all(np.isfinite(solution)) else None
 
 
 @dataclass(frozen=True)

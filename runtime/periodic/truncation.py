@@ -90,31 +90,12 @@ class TruncatedSystem(LinearPeriodic):
         q = self.modes @ reduced
         change = np.zeros(q.shape[1:])
         for _ in range(_CORRECTIONS):
-            correction = self.flexibility @ self._rest(q, speeds)
+            correction = self.flexibility @ unmet_forces(self.arrays, self.period, q, speeds)
             q = q + correction
             change = np.max(np.abs(correction), axis=0)
         size = np.max(np.abs(q), axis=0)
         relative = np.max(change / np.where(size > 0.0, size, 1.0), axis=0)
         return np.moveaxis(q, -1, 0), relative
-
-    def _rest(self, q: Array, speeds: Array) -> Array:
-        """Return forces less what motions ``(nt, n, ns)`` need, of the same shape."""
-        slope = differentiated(q, self.period)
-        momentum, total = np.zeros_like(q), np.zeros_like(q)
-        for (array, power), values in self.arrays.items():
-            factor = speeds**power
-            if values.ndim == 2:
-                total += values[..., None] * factor
-            elif array == "M":
-                momentum += factor * (values @ slope)
-            elif array == "A":
-                momentum += factor * (values @ q)
-                total += factor * (np.swapaxes(values, -1, -2) @ slope)
-            elif array == "C":
-                total -= factor * (values @ slope)
-            else:
-                total += (1.0 if array == "B" else -1.0) * factor * (values @ q)
-        return np.asarray(total - differentiated(momentum, self.period))
 
 
 def modal_truncation(
@@ -258,6 +239,31 @@ def arrays_at(system: LinearPeriodic, theta: Array) -> dict[tuple[str, int], Arr
         if np.any(part):
             sums[key] = sums[key] + part if key in sums else part
     return sums
+
+
+def unmet_forces(
+    arrays: Mapping[tuple[str, int], Array], period: float, q: Array, speeds: Array
+) -> Array:
+    """Return forces less what motions ``(nt, n, ns)`` need, of the same shape.
+
+    The arrays are those of :func:`arrays_at`, at the even angles of the motions.
+    """
+    slope = differentiated(q, period)
+    momentum, total = np.zeros_like(q), np.zeros_like(q)
+    for (array, power), values in arrays.items():
+        factor = speeds**power
+        if values.ndim == 2:
+            total += values[..., None] * factor
+        elif array == "M":
+            momentum += factor * (values @ slope)
+        elif array == "A":
+            momentum += factor * (values @ q)
+            total += factor * (np.swapaxes(values, -1, -2) @ slope)
+        elif array == "C":
+            total -= factor * (values @ slope)
+        else:
+            total += (1.0 if array == "B" else -1.0) * factor * (values @ q)
+    return np.asarray(total - differentiated(momentum, period))
 
 
 def _projections(

@@ -220,7 +220,9 @@ def highest(values: NDArray[np.float64], most: int = MOST_ROWS) -> NDArray[np.in
     """Return the places of the local maxima inside a row, rising, the highest ``most`` of them."""
     import numpy as np
 
-    inner = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
+    from ..core.maxima import local_maxima
+
+    inner = local_maxima(values)
     return np.sort(inner[np.argsort(-values[inner], kind="stable")[:most]])
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -11,9 +10,10 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.errors import BadInput, LinearRangeWarning, bad
+from ..core.errors import BadInput, bad
 from ..core.families import DAMPING, LinearPeriodic
 from ..core.inputs import require_whole, speed_span
+from ..core.maxima import local_maxima
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
@@ -315,7 +315,7 @@ def by_response(request: Request) -> CriticalSpeeds:
     values = _scanned(system, speeds)
     if values is None:
         values, _ = _deflections(system, speeds, request.progress)
-    top = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
+    top = local_maxima(values)
     speed = height = error = np.zeros(0)
     if len(top):
         speed, height, error = _maxima(system, speeds[top - 1], speeds[top + 1])
@@ -361,16 +361,14 @@ def _deflections(
     system: LinearPeriodic, speeds: Array, progress: bool = False
 ) -> tuple[Array, Array]:
     """Return the largest r.m.s. deflection over the length, and the motions' relative error."""
-    from ..periodic import steady_state
+    from ..periodic.peaks import quiet_state
 
     rtol = _FINE if system.structure is None else _RTOL
     out, error = np.empty((2, len(speeds)))
-    with warnings.catch_warnings(), bar(progress, len(speeds)) as tick:
-        # At a critical speed the linear range is left as a matter of course.
-        warnings.simplefilter("ignore", LinearRangeWarning)
+    with bar(progress, len(speeds)) as tick:
         for begin in range(0, len(speeds), _TOGETHER):
             part = slice(begin, min(begin + _TOGETHER, len(speeds)))
-            state = steady_state(system, speeds[part], rtol=rtol)
+            state = quiet_state(system, speeds[part], rtol)
             rows = system.deflection_rows(state.theta, np.linspace(0.0, 1.0, 21))
             if rows is None:
                 raise bad(

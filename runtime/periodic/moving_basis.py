@@ -6,7 +6,10 @@ the subspace that they span does neither where the next frequency keeps its dist
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -63,10 +66,29 @@ class MovingBasis:
         """Return dPhi/dtheta at angles ``(nt,)`` [rad], shape ``(nt, n, m)``."""
         return self.series.derivative(np.asarray(theta, dtype=float))
 
+    def deflections_of(self, system: LinearPeriodic) -> dict[str, Any]:
+        """Return how a system deflects by coordinates on the basis, as a LinearPeriodic has it."""
+        found: dict[str, Any] = {}
+        if system.shape is not None or system.moving_shape is not None:
+            found["moving_shape"] = partial(_shapes, system, self)
+        if system.relative_deflection is not None:
+            found["relative_deflection"] = partial(_deflections, system.relative_deflection, self)
+        return found
+
     @property
     def fixed(self) -> bool:
         """True where the basis does not depend on the angle."""
         return len(self.theta) == 1
+
+
+def _shapes(system: LinearPeriodic, basis: MovingBasis, x: Array, theta: Array) -> Array:
+    shapes = system.shapes(x, theta)
+    assert shapes is not None
+    return np.asarray(shapes @ basis(theta))
+
+
+def _deflections(full: Callable[[Array], Array], basis: MovingBasis, theta: Array) -> Array:
+    return np.asarray(full(theta) @ basis(theta))
 
 
 @dataclass(frozen=True)

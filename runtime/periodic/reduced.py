@@ -120,11 +120,6 @@ def reduced_system(
     """
     phi = moving_basis(system, modes) if basis is None else basis
     terms = _fixed_terms(system, phi) if phi.fixed else _moving_terms(system, phi)
-    more: dict[str, object] = {}
-    if system.shape is not None or system.moving_shape is not None:
-        more["moving_shape"] = partial(_shapes, system, phi)
-    if system.relative_deflection is not None:
-        more["relative_deflection"] = partial(_deflections, system.relative_deflection, phi)
     rebuild = None
     if system.rebuild is not None:
         rebuild = partial(_reduced_anew, system.rebuild, dict(system.parameters), modes)
@@ -142,7 +137,7 @@ def reduced_system(
         limits=system.limits,
         full=system,
         basis=phi,
-        **more,  # type: ignore[arg-type]
+        **phi.deflections_of(system),
     )
 
 
@@ -154,16 +149,6 @@ def _reduced_anew(
 ) -> LinearPeriodic:
     """Return another geometry's system on its own modes."""
     return reduced_system(replace(rebuild(geometry), parameters=dict(parameters)), modes)
-
-
-def _shapes(system: LinearPeriodic, phi: MovingBasis, x: Array, theta: Array) -> Array:
-    shapes = system.shapes(x, theta)
-    assert shapes is not None
-    return np.asarray(shapes @ phi(theta))
-
-
-def _deflections(full: Callable[[Array], Array], phi: MovingBasis, theta: Array) -> Array:
-    return np.asarray(full(theta) @ phi(theta))
 
 
 def projections(array: str, values: Array, phi: Array, slope: Array) -> Iterator[tuple[str, Array]]:

@@ -25,6 +25,7 @@ from ..core.inputs import require_whole
 from ..core.trigonometric import differentiated, interpolated, resampled
 from .equation import SPEED_POWER
 from .moving_basis import MovingBasis, StillModes, carried_basis, still_modes
+from .reduced import projections
 
 Array = NDArray[np.float64]
 
@@ -185,18 +186,12 @@ def truncated_on(
     flexibility = _symmetric(np.asarray(rest, dtype=np.float64))
     sums: dict[tuple[str, int], Array] = {}
     for (array, power), values in arrays.items():
-        for name, part in _projections(array, values, phi, slope):
+        for name, part in projections(array, values, phi, slope):
             key = (name, power - 2 - SPEED_POWER[name])
             sums[key] = sums[key] + part if key in sums else part
     for name, power, part in _followed(arrays, phi, slope, flexibility, period):
         sums[name, power] = sums[name, power] + part if (name, power) in sums else part
     size = phi.shape[-1]
-    shape: Callable[[Array, Array], Array] | None = None
-    if system.shape is not None or system.moving_shape is not None:
-        shape = partial(_shapes, system, basis)
-    deflection: Callable[[Array], Array] | None = None
-    if system.relative_deflection is not None:
-        deflection = partial(_deflections, system.relative_deflection, basis)
     return TruncatedSystem(
         size=size,
         terms=tuple(
@@ -204,13 +199,10 @@ def truncated_on(
             for (name, power), values in sums.items()
             if np.any(values)
         ),
-        parameters={},
-        scales=_no_scales,
         period=period,
         labels=tuple(f"mode {k + 1}" for k in range(size)),
         reference_length=system.reference_length,
-        moving_shape=shape,
-        relative_deflection=deflection,
+        **basis.deflections_of(system),
         provenance={**system.provenance, "modes kept": str(size)},
         full=system,
         theta=basis.theta,
@@ -264,26 +256,6 @@ def unmet_forces(
         else:
             total += (1.0 if array == "B" else -1.0) * factor * (values @ q)
     return np.asarray(total - differentiated(momentum, period))
-
-
-def _projections(
-    array: str, values: Array, phi: Array, slope: Array
-) -> Iterator[tuple[str, Array]]:
-    """Yield the arrays that one array of a system gives on a basis and its derivative."""
-    across, turning = np.swapaxes(phi, -1, -2), np.swapaxes(slope, -1, -2)
-    if values.ndim == 2:
-        yield array, (across @ values[..., None])[..., 0]
-        return
-    carried = values @ phi
-    yield array, across @ carried
-    if array == "M":
-        yield "A", across @ (values @ slope)
-        yield "B", turning @ (values @ slope)
-    elif array == "A":
-        both = turning @ carried
-        yield "B", both + np.swapaxes(both, -1, -2)
-    elif array == "C":
-        yield "D", across @ (values @ slope)
 
 
 @dataclass
@@ -382,16 +354,3 @@ def _followed(
 
 def _symmetric(matrices: Array) -> Array:
     return np.asarray(0.5 * (matrices + np.swapaxes(matrices, -1, -2)))
-
-
-def _shapes(system: LinearPeriodic, basis: MovingBasis, x: Array, theta: Array) -> Array:
-    shapes = system.shapes(x, theta)
-    return np.zeros(0) if shapes is None else np.asarray(shapes @ basis(theta))
-
-
-def _deflections(full: Callable[[Array], Array], basis: MovingBasis, theta: Array) -> Array:
-    return np.asarray(full(theta) @ basis(theta))
-
-
-def _no_scales(values: Mapping[str, ArrayLike]) -> Mapping[str, Array]:
-    return {}

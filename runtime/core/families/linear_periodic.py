@@ -68,6 +68,10 @@ class Term:
         return np.broadcast_to(self.function, (*theta.shape, *self.function.shape))
 
 
+def _no_scales(values: Mapping[str, ArrayLike]) -> Mapping[str, Array]:
+    return {}
+
+
 @dataclass(frozen=True)
 class LinearPeriodic:
     """A linear system with periodic coefficients, from a quadratic Lagrangian.
@@ -98,7 +102,7 @@ class LinearPeriodic:
         Values of the named parameters, in SI units.
     scales : callable
         From parameter values (floats or arrays that broadcast) to the values of the monomials
-        that the terms name.
+        that the terms name; by default there are none.
     period : float
         Period of the coefficients in theta [rad].
     labels : tuple of str
@@ -130,8 +134,8 @@ class LinearPeriodic:
 
     size: int
     terms: tuple[Term, ...]
-    parameters: Mapping[str, float]
-    scales: Callable[[Mapping[str, ArrayLike]], Mapping[str, Array]]
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    scales: Callable[[Mapping[str, ArrayLike]], Mapping[str, Array]] = _no_scales
     period: float = 2.0 * np.pi
     labels: tuple[str, ...] = ()
     reference_length: float = 1.0

@@ -120,17 +120,11 @@ def slow_system(
     reduced = LinearPeriodic(
         chosen.frames.modes,
         tuple(terms),
-        {},
-        _no_scales,
         period=system.period,
         labels=tuple(f"slow {i + 1}" for i in range(chosen.frames.modes)),
         provenance=system.changed_provenance(**changed),
     )
     return SlowSystem(reduced, chosen.frames.modes, (low, high), fit, chosen.change, degree)
-
-
-def _no_scales(values: object) -> dict[str, Array]:
-    return {}
 
 
 @dataclass(frozen=True)

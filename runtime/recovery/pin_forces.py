@@ -224,9 +224,7 @@ def _outside_forces(forms: ElementForms, values: MotionValues) -> Array:
         force = values(forms.outside.turned(back @ (share * own.mass) @ at.own))
         total += force[:, [0, 1]] + force[:, [3, 4]]
     lumped = forms.factor["lumped_mass"] * forms.lumped
-    pick = np.zeros((forms.arrays.count, len(forms.arrays.free)))
-    pick[forms.arrays.free, np.arange(len(forms.arrays.free))] = 1.0
-    nodes = values(forms.outside.turned(lumped[:, None] * pick))
+    nodes = values(forms.outside.turned(lumped[:, None] * forms.spread))
     for node in forms.structure.nodes:
         places = [forms.structure.freedoms.at(node.name, part) for part in ("x", "y")]
         total += nodes[:, places]

@@ -123,7 +123,7 @@ class Energies:
         passive = self._rayleigh(e) @ own.stiffness
         work += _dot(turned, forces - passive)
         work += self._stiffening(e, local, turned, rate, sums)
-        weight = self._weight(e)
+        weight = forms.weight(e)
         carried = weight @ mass
         power = w * _dot(first + rate, carried) + w * _dot(spun, weight @ across)
         sums["loads"] += power
@@ -141,11 +141,6 @@ class Energies:
             return np.zeros((len(forms.theta), at.own.shape[1]))
         share = forms.factor["rayleigh_stiffness"] * forms.factor["elasticity"]
         return np.asarray(share * self.speed * _times(at.own, self.slope))
-
-    def _weight(self, e: int) -> Array:
-        forms, at = self.forms, self.forms.turning[e]
-        field = forms.axial.weight_field(forms.theta)[:, forms.elements[e][0].indices]
-        return np.asarray(np.einsum("tij,tj->ti", at.back, field))
 
     def _stiffening(
         self, e: int, local: Array, turned: Array, rate: Array, sums: dict[str, Array]

@@ -5,22 +5,21 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.stability import resonances, tongue
-from periodic_systems import named
+from periodic_systems import system_of, wave
 
 
 def _beam(**changes):
     """Return two modes of 3 and 7 rad/s, softened by w^2 pull, with a small periodic load."""
     values = {"pull": 0.0, "load": 0.0, **changes}
-    terms = (
-        Term("M", None, np.eye(2)),
-        Term("B", "pull", np.eye(2)),
-        Term("K", None, np.diag([9.0, 49.0])),
-        Term("Kg", "load", lambda theta: np.cos(theta)[:, None, None] * np.ones((2, 2))),
+    return system_of(
+        values,
+        M=np.eye(2),
+        B=("pull", np.eye(2)),
+        K=np.diag([9.0, 49.0]),
+        Kg=("load", wave(np.ones((2, 2)))),
     )
-    return LinearPeriodic(2, terms, values, named(values))
 
 
 def test_speeds_of_a_constant_system():
@@ -87,12 +86,8 @@ def test_bad_input(span, changes, words):
 
 def test_a_mean_system_at_divergence_is_refused():
     # A mode without stiffness has an exponent of zero twice, with one eigenvector.
-    terms = (
-        Term("M", None, np.eye(2)),
-        Term("K", None, np.diag([0.0, 49.0])),
-        Term("Kg", "load", lambda theta: np.cos(theta)[:, None, None] * np.ones((2, 2))),
-    )
-    system = LinearPeriodic(2, terms, {"load": 0.0}, named(["load"]))
+    load = ("load", wave(np.ones((2, 2))))
+    system = system_of({"load": 0.0}, M=np.eye(2), K=np.diag([0.0, 49.0]), Kg=load)
     resonance = resonances(system, (10.0, 20.0), highest=1)[0]
     assert resonance.label == "2 w2 = w"
     with pytest.raises(BadInput, match="multiple exponent"):

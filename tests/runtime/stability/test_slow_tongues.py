@@ -5,8 +5,8 @@ from __future__ import annotations
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.stability import tongue_curves
+from periodic_systems import system_of, wave
 
 
 def _rod(ratio, **more):
@@ -18,16 +18,8 @@ def _rod(ratio, **more):
 
 def _mathieu():
     """One oscillator of 1 rad/s, its stiffness pulled by a share cos theta."""
-    return LinearPeriodic(
-        1,
-        (
-            Term("M", None, np.eye(1)),
-            Term("K", None, np.eye(1)),
-            Term("K", "share", lambda theta: np.cos(theta)[:, None, None] * np.eye(1)),
-        ),
-        {"share": 0.3},
-        lambda values: {"share": np.asarray(values["share"], dtype=float)},
-    )
+    unit = np.eye(1)
+    return system_of({"share": 0.3}, M=unit, K=[unit, ("share", wave(unit))])
 
 
 def relative_widths(system, name, value, orders, frequency):

@@ -10,7 +10,7 @@ from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.boundaries import hill_boundaries
 from elastolink.runtime.periodic import floquet_multipliers, monodromy
 from elastolink.runtime.stability.boundary_speeds import parity, speed_boundaries
-from periodic_systems import named, wave
+from periodic_systems import system_of, wave
 from scipy.optimize import brentq
 from scipy.special import mathieu_a, mathieu_b
 
@@ -18,35 +18,24 @@ from scipy.special import mathieu_a, mathieu_b
 def _beam(**changes) -> LinearPeriodic:
     """Return qdd + C qd + (k + depth cos theta + w^2 pull cos theta) q = 0."""
     values = {"k": 4.0, "depth": 0.0, "pull": 0.0, "C": 0.0, **changes}
-
-    def cosine(theta):
-        return np.cos(theta)[:, None, None]
-
-    terms = (
-        Term("M", None, np.eye(1)),
-        Term("K", "k", np.eye(1)),
-        Term("Kg", "depth", cosine),
-        Term("Kg", "pull", cosine, power=2),
-        Term("C", "C", np.eye(1)),
+    unit, cosine = np.eye(1), wave(np.eye(1))
+    return system_of(
+        values, M=unit, K=("k", unit), Kg=[("depth", cosine), ("pull", cosine, 2)], C=("C", unit)
     )
-    return LinearPeriodic(1, terms, values, named(values))
 
 
 def _coupled(**changes) -> LinearPeriodic:
     """Two modes, periodic mass, Coriolis, centrifugal and axial terms."""
     values = {"C": 0.0, "load": 1.0, **changes}
-
-    terms = (
-        Term("M", None, np.array([[2.0, 0.3], [0.3, 1.0]])),
-        Term("M", None, wave([[0.3, 0.1], [0.1, 0.2]], 1, 0.3)),
-        Term("A", None, np.array([[0.1, -0.2], [0.3, 0.0]])),
-        Term("A", None, wave([[0.1, 0.2], [-0.1, 0.1]], 2, 1.0)),
-        Term("B", None, wave([[0.2, 0.1], [0.1, -0.3]], 1, 0.0)),
-        Term("K", None, np.array([[20.0, 3.0], [3.0, 9.0]])),
-        Term("Kg", "load", wave([[2.0, 1.0], [1.0, 3.0]], 1, -0.4)),
-        Term("C", "C", np.array([[0.4, 0.1], [0.1, 0.3]])),
+    return system_of(
+        values,
+        M=[np.array([[2.0, 0.3], [0.3, 1.0]]), wave([[0.3, 0.1], [0.1, 0.2]], 1, 0.3)],
+        A=[np.array([[0.1, -0.2], [0.3, 0.0]]), wave([[0.1, 0.2], [-0.1, 0.1]], 2, 1.0)],
+        B=wave([[0.2, 0.1], [0.1, -0.3]]),
+        K=np.array([[20.0, 3.0], [3.0, 9.0]]),
+        Kg=("load", wave([[2.0, 1.0], [1.0, 3.0]], 1, -0.4)),
+        C=("C", np.array([[0.4, 0.1], [0.1, 0.3]])),
     )
-    return LinearPeriodic(2, terms, values, named(values))
 
 
 def test_mathieu_characteristic_values():
@@ -100,12 +89,7 @@ def test_constant_coefficients_have_closed_regions():
 
 def test_divergence_of_a_whirling_shaft():
     # qdd + (k - w^2) q: multiplier +1 at w = sqrt k by a constant motion, as B = 1.
-    terms = (
-        Term("M", None, np.eye(1)),
-        Term("B", None, np.eye(1)),
-        Term("K", None, 9.0 * np.eye(1)),
-    )
-    system = LinearPeriodic(1, terms, {}, lambda values: {})
+    system = system_of(M=np.eye(1), B=np.eye(1), K=9.0 * np.eye(1))
     found = speed_boundaries(system, 1, speed_range=(2.5, 10.0))
     np.testing.assert_allclose(found.speed, [3.0], rtol=1e-13)
     np.testing.assert_allclose(found.motion(0, [0.0, 1.0, 2.0])[:, 0] ** 2, 1.0, rtol=1e-12)
@@ -150,13 +134,8 @@ def test_motion_solves_the_equation():
 
 
 def test_another_period_and_another_parameter():
-    values = {"k": 4.0}
-    terms = (
-        Term("M", None, np.eye(1)),
-        Term("K", "k", np.eye(1)),
-        Term("Kg", None, lambda theta: np.cos(2 * theta)[:, None, None]),
-    )
-    double = LinearPeriodic(1, terms, values, named(values), period=np.pi)
+    unit = np.eye(1)
+    double = system_of({"k": 4.0}, np.pi, M=unit, K=("k", unit), Kg=wave(unit, 2))
     single = _beam(depth=1.0)
     found = speed_boundaries(double, speed_range=(0.5, 4.0), k=3.0)
     # cos 2 theta at speed w is cos theta at speed 2 w.

@@ -14,7 +14,7 @@ from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.boundaries import hill_boundaries
 from elastolink.runtime.stability import resonances, speed_boundaries, tongue
-from periodic_systems import is_growing, named, wave
+from periodic_systems import is_growing, system_of, wave
 
 matplotlib.use("Agg")
 
@@ -24,15 +24,12 @@ W2 = np.sqrt(5.3)
 def _pair(first=((0.0, 1.0), (1.0, 0.0)), second=((0.0, 0.0), (0.0, 0.0)), **changes):
     """Return y'' + C y' + (diag(1, 5.3) + eps (first cos theta + second cos(2 theta + .4))) y."""
     values = {"eps": 0.0, "d1": 0.0, "d2": 0.0, **changes}
-    terms = (
-        Term("M", None, np.eye(2)),
-        Term("K", None, np.diag([1.0, 5.3])),
-        Term("K", "eps", wave(first)),
-        Term("K", "eps", wave(second, 2, 0.4)),
-        Term("C", "d1", np.diag([1.0, 0.0])),
-        Term("C", "d2", np.diag([0.0, 1.0])),
+    return system_of(
+        values,
+        M=np.eye(2),
+        K=[np.diag([1.0, 5.3]), ("eps", wave(first)), ("eps", wave(second, 2, 0.4))],
+        C=[("d1", np.diag([1.0, 0.0])), ("d2", np.diag([0.0, 1.0]))],
     )
-    return LinearPeriodic(2, terms, values, named(values))
 
 
 FULL = _pair(((0.4, 1.0), (1.0, -0.3)), ((0.2, 0.3), (0.3, 0.1)))
@@ -41,18 +38,15 @@ FULL = _pair(((0.4, 1.0), (1.0, -0.3)), ((0.2, 0.3), (0.3, 0.1)))
 def _whole(**changes):
     """Two modes with periodic mass, Coriolis, centrifugal and axial terms, all times eps."""
     values = {"eps": 0.0, "c": 0.0, **changes}
-    terms = (
-        Term("M", None, np.array([[2.0, 0.3], [0.3, 1.0]])),
-        Term("M", "eps", wave([[0.3, 0.1], [0.1, 0.2]], 1, 0.3)),
-        Term("A", None, np.array([[0.1, -0.2], [0.3, 0.0]])),
-        Term("A", "eps", wave([[0.1, 0.2], [-0.1, 0.1]], 2, 1.0)),
-        Term("B", None, np.array([[0.1, 0.05], [0.05, -0.2]])),
-        Term("B", "eps", wave([[0.2, 0.1], [0.1, -0.3]])),
-        Term("K", None, np.array([[20.0, 3.0], [3.0, 9.0]])),
-        Term("Kg", "eps", wave([[2.0, 1.0], [1.0, 3.0]], 1, -0.4)),
-        Term("C", "c", np.array([[0.4, 0.1], [0.1, 0.3]])),
+    return system_of(
+        values,
+        M=[np.array([[2.0, 0.3], [0.3, 1.0]]), ("eps", wave([[0.3, 0.1], [0.1, 0.2]], 1, 0.3))],
+        A=[np.array([[0.1, -0.2], [0.3, 0.0]]), ("eps", wave([[0.1, 0.2], [-0.1, 0.1]], 2, 1.0))],
+        B=[np.array([[0.1, 0.05], [0.05, -0.2]]), ("eps", wave([[0.2, 0.1], [0.1, -0.3]]))],
+        K=np.array([[20.0, 3.0], [3.0, 9.0]]),
+        Kg=("eps", wave([[2.0, 1.0], [1.0, 3.0]], 1, -0.4)),
+        C=("c", np.array([[0.4, 0.1], [0.1, 0.3]])),
     )
-    return LinearPeriodic(2, terms, values, named(values))
 
 
 def _resonance(system, label, span=(0.3, 12.0), **options):
@@ -215,13 +209,12 @@ def test_equal_signatures_do_not_open():
 @pytest.mark.slow
 def test_opposite_signatures_open_a_difference_tongue():
     # A gyroscopically stabilised pair: its slow mode has negative energy.
-    terms = (
-        Term("M", None, np.eye(2)),
-        Term("A", None, np.array([[0.0, -1.5], [1.5, 0.0]]), power=-1),
-        Term("K", None, np.diag([-0.5, -0.8])),
-        Term("K", "eps", wave([[0.4, 0.9], [0.9, -0.3]], 1, 0.2)),
+    system = system_of(
+        {"eps": 0.0},
+        M=np.eye(2),
+        A=(None, np.array([[0.0, -1.5], [1.5, 0.0]]), -1),
+        K=[np.diag([-0.5, -0.8]), ("eps", wave([[0.4, 0.9], [0.9, -0.3]], 1, 0.2))],
     )
-    system = LinearPeriodic(2, terms, {"eps": 0.0}, named(["eps"]))
     sums = _resonance(system, "w1 + w2 = w")
     assert sums.signatures == (-1, -1)
     assert not tongue(system, sums, parameter=("eps", 0.05), order=3).open
@@ -245,14 +238,13 @@ def test_neither_conservative_nor_reversible_without_damping_has_no_end():
 @pytest.mark.parametrize("damping", [0.0, 0.05])
 def test_a_single_mode_gives_the_boundaries_of_hill_s_equation(n, damping):
     f = PeriodicFunction(a=[0.2, 1.0, 0.3], b=[0.0, 0.4, -0.2])
-    terms = (
-        Term("M", None, np.eye(1)),
-        Term("K", "lam2", np.eye(1)),
-        Term("B", "mu", lambda theta: -f(theta)[:, None, None]),
-        Term("C", "drag", 2 * np.eye(1), power=1),
+    system = system_of(
+        {"lam2": 1.0, "mu": 0.0, "drag": 0.0},
+        M=np.eye(1),
+        K=("lam2", np.eye(1)),
+        B=("mu", lambda theta: -f(theta)[:, None, None]),
+        C=("drag", 2 * np.eye(1), 1),
     )
-    values = {"lam2": 1.0, "mu": 0.0, "drag": 0.0}
-    system = LinearPeriodic(1, terms, values, named(values))
     label = f"2 w1 = {n} w" if n > 1 else "2 w1 = w"
     resonance = _resonance(system, label, (0.3, 4.0))
     assert resonance.speed == pytest.approx(2 / n, rel=1e-13)
@@ -360,23 +352,14 @@ def test_a_resonance_that_does_not_fit_is_refused():
 @pytest.mark.slow
 def test_four_exponents_that_meet_exactly():
     # Two like oscillators, coupled: y1 + y2 and y1 - y2 are Mathieu's equation with +-eps.
-    terms = (
-        Term("M", None, np.eye(2)),
-        Term("K", None, np.eye(2)),
-        Term("K", "eps", wave([[0.0, 1.0], [1.0, 0.0]])),
-        Term("C", "d", np.eye(2)),
-    )
-    both = LinearPeriodic(2, terms, {"eps": 0.0, "d": 0.0}, named(["eps", "d"]))
-    one = LinearPeriodic(
-        1,
-        (
-            Term("M", None, np.eye(1)),
-            Term("K", None, np.eye(1)),
-            Term("K", "eps", wave([[1.0]])),
-            Term("C", "d", np.eye(1)),
-        ),
-        {"eps": 0.0, "d": 0.0},
-        named(["eps", "d"]),
+    both, one = (
+        system_of(
+            {"eps": 0.0, "d": 0.0},
+            M=np.eye(len(pull)),
+            K=[np.eye(len(pull)), ("eps", wave(pull))],
+            C=("d", np.eye(len(pull))),
+        )
+        for pull in ([[0.0, 1.0], [1.0, 0.0]], [[1.0]])
     )
     for drag in (0.0, 0.02):
         given = {"parameter": ("eps", 0.1), "order": 2, "d": drag}
@@ -411,13 +394,9 @@ def test_units_of_mass_and_coordinates_do_not_matter(units):
 
 def _system(squares, pull, damping):
     """Return y'' + C y' + (diag(squares) + eps pull cos theta) y = 0."""
-    terms = (
-        Term("M", None, np.eye(2)),
-        Term("K", None, np.diag(squares)),
-        Term("K", "eps", wave(pull)),
-        Term("C", "c", np.diag(damping)),
-    )
-    return LinearPeriodic(2, terms, {"eps": 0.0, "c": 1.0}, named(["eps", "c"]))
+    stiffness = [np.diag(squares), ("eps", wave(pull))]
+    given = {"eps": 0.0, "c": 1.0}
+    return system_of(given, M=np.eye(2), K=stiffness, C=("c", np.diag(damping)))
 
 
 def _near(second, damping):

@@ -10,7 +10,7 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.stability import speed_boundaries, stability_edges
-from periodic_systems import named, wave
+from periodic_systems import system_of, wave
 
 LOW, HIGH = 1.0, 2.3
 
@@ -18,15 +18,13 @@ LOW, HIGH = 1.0, 2.3
 def _pair(pull=0.02, own=0.0, damping=(0.0, 0.0)) -> LinearPeriodic:
     """Two oscillators, 1 and 2.3 rad/s, coupled (and each pulled, by ``own``) by pull cos."""
     matrix = np.array([[own, 1.0], [1.0, own]])
-    terms = (
-        Term("M", None, np.eye(2)),
-        Term("K", None, np.diag([LOW**2, HIGH**2])),
-        Term("Kg", "pull", wave(matrix)),
-        Term("C", "c1", np.diag([1.0, 0.0])),
-        Term("C", "c2", np.diag([0.0, 1.0])),
+    return system_of(
+        {"pull": pull, "c1": damping[0], "c2": damping[1]},
+        M=np.eye(2),
+        K=np.diag([LOW**2, HIGH**2]),
+        Kg=("pull", wave(matrix)),
+        C=[("c1", np.diag([1.0, 0.0])), ("c2", np.diag([0.0, 1.0]))],
     )
-    values = {"pull": pull, "c1": damping[0], "c2": damping[1]}
-    return LinearPeriodic(2, terms, values, named(values))
 
 
 # First order ---------------------------------------------------------------------------------
@@ -168,29 +166,20 @@ def _random(seed, strength) -> LinearPeriodic:
         return (base + base.T) * size / 2
 
     bulge, skew = symmetric(1.0), rng.normal(size=(2, 2)) * 0.3
-    terms = (
-        Term("M", None, np.eye(2) + 0.1 * bulge @ bulge),
-        Term("M", None, wave(symmetric(0.05 * strength), 1, 0.3)),
-        Term("A", None, skew - skew.T),
-        Term("B", None, wave(symmetric(0.1 * strength), 1, rng.uniform(0, 6))),
-        Term("K", None, np.diag(rng.uniform(1, 20, 2)) + symmetric(0.5)),
-        Term("Kg", None, wave(symmetric(strength), 1, rng.uniform(0, 6))),
-        Term("Kg", None, wave(symmetric(strength), 2, rng.uniform(0, 6))),
+    return system_of(
+        M=[np.eye(2) + 0.1 * bulge @ bulge, wave(symmetric(0.05 * strength), 1, 0.3)],
+        A=skew - skew.T,
+        B=wave(symmetric(0.1 * strength), 1, rng.uniform(0, 6)),
+        K=np.diag(rng.uniform(1, 20, 2)) + symmetric(0.5),
+        Kg=[wave(symmetric(strength), harmonic, rng.uniform(0, 6)) for harmonic in (1, 2)],
     )
-    return LinearPeriodic(2, terms, {}, lambda values: {})
 
 
 def _whirl(pull) -> LinearPeriodic:
     """Return a mass on a spring seen from the crank, of negative energy above sqrt(2) rad/s."""
     matrix = pull * np.array([[1.0, 0.3], [0.3, -0.5]])
-    terms = (
-        Term("M", None, np.eye(2)),
-        Term("A", None, np.array([[0.0, -1.0], [1.0, 0.0]])),
-        Term("B", None, np.eye(2)),
-        Term("K", None, 2.0 * np.eye(2)),
-        Term("Kg", None, wave(matrix, 1, 0.2)),
-    )
-    return LinearPeriodic(2, terms, {}, lambda values: {})
+    gyro, unit = np.array([[0.0, -1.0], [1.0, 0.0]]), np.eye(2)
+    return system_of(M=unit, A=gyro, B=unit, K=2.0 * unit, Kg=wave(matrix, 1, 0.2))
 
 
 @pytest.mark.parametrize(
@@ -224,14 +213,7 @@ def test_a_mode_of_negative_energy_makes_a_difference_region():
     cross[0, 2] = cross[2, 0] = pull
     gyro, whirl = np.zeros((3, 3)), np.diag([1.0, 1.0, 0.0])
     gyro[0, 1], gyro[1, 0] = -1.0, 1.0
-    terms = (
-        Term("M", None, np.eye(3)),
-        Term("A", None, gyro),
-        Term("B", None, whirl),
-        Term("K", None, stiff),
-        Term("Kg", None, wave(cross, 1, 0.0)),
-    )
-    system = LinearPeriodic(3, terms, {}, lambda values: {})
+    system = system_of(M=np.eye(3), A=gyro, B=whirl, K=stiff, Kg=wave(cross))
     found = stability_edges(system, (2.6, 2.8))
     assert found.passed, found.checks
     at = region_of(found, "difference", 1)

@@ -6,9 +6,10 @@ import elastolink as el
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.core.families import LinearPeriodic
 from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.stability import stability_edges
+from periodic_systems import system_of
 
 SWAP = np.array([[0.0, 1.0], [1.0, 0.0]])
 NONE = np.zeros((2, 2))
@@ -25,11 +26,8 @@ def _system(stiffness, waves, damping=None) -> LinearPeriodic:
             out += np.sin(harmonic * theta)[:, None, None] * sine
         return out
 
-    terms = [Term("M", None, np.eye(n)), Term("K", None, np.diag(stiffness))]
-    terms.append(Term("Kg", None, pull))
-    if damping is not None:
-        terms.append(Term("C", None, damping))
-    return LinearPeriodic(n, tuple(terms), {}, lambda values: {})
+    lost = {} if damping is None else {"C": damping}
+    return system_of(M=np.eye(n), K=np.diag(stiffness), Kg=pull, **lost)
 
 
 def _contradictions(system, found, low, high, count=600):

@@ -17,9 +17,8 @@ from ..core.maxima import local_maxima
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
-from .held import buckling_speed, held_frequencies, require_system
+from .held import buckling_speed, held_frequencies, mean_frequencies, require_system
 from .multiplier_maxima import Maxima, meissner_maxima, multiplier_maxima
-from .natural import NaturalFrequencies, natural_frequencies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -130,14 +129,15 @@ class Request:
     system: LinearPeriodic
     low: float
     high: float
-    still: NaturalFrequencies  # crank held, at rest
+    mean: Array  # natural frequencies, crank held, at rest, and their errors [rad/s], (modes,)
+    mean_error: Array
     speeds: int
     progress: bool
 
     @property
     def count(self) -> int:
         """Number of modes."""
-        return len(self.still.mean)
+        return len(self.mean)
 
     def answered(
         self,
@@ -165,9 +165,9 @@ class Request:
             speed=speed,
             mode=mode,
             order=order,
-            ratio=self.still.mean[mode - 1] / (order * speed),
+            ratio=self.mean[mode - 1] / (order * speed),
             height=np.ones(len(rising)) if height is None else height[rising],
-            mean_frequency=self.still.mean,
+            mean_frequency=self.mean,
             scan_speed=scan[0],
             scan=scan[1],
             quantity=quantity,
@@ -203,6 +203,8 @@ def label_speeds(mean: Array, speed: Array) -> tuple[Indices, Indices]:
     return mode, order
 
 
+# Relative error of the means.
+_ENOUGH = 1e-12
 # Speeds at which the means are taken; between them they are interpolated.
 _NODES = 12
 # The means end this far before the held mechanism buckles: there they lose their smoothness.
@@ -211,7 +213,7 @@ _SHORT = 0.98
 
 def by_mean_frequency(request: Request) -> CriticalSpeeds:
     """Return the means of the natural frequencies over n = 1, 2, ..., crank held."""
-    means = zip(request.still.mean, request.still.mean_error, strict=True)
+    means = zip(request.mean, request.mean_error, strict=True)
     rows = [
         (float(mean / n), mode, n, float(error / n))
         for mode, (mean, error) in enumerate(means, 1)
@@ -237,16 +239,16 @@ def by_running_mean(request: Request) -> CriticalSpeeds:
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     place = np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
     runs = [
-        natural_frequencies(request.system, 0.0, request.count, speed=float(middle + half * x))
+        mean_frequencies(request.system, request.count, _ENOUGH, float(middle + half * x))
         for x in place
     ]
     rows = []
     for mode in range(1, request.count + 1):
-        values = np.array([run.mean[mode - 1] for run in runs])
+        values = np.array([mean[mode - 1] for mean, _ in runs])
         curve = np.polynomial.Chebyshev.fit(place, values, _NODES - 1, domain=[-1, 1])
         # The mean is smooth in the square of the speed: its last terms tell what is left out.
         doubt = float(np.sum(np.abs(curve.coef[-2:])))
-        doubt += max(float(run.mean_error[mode - 1]) for run in runs)
+        doubt += max(float(error[mode - 1]) for _, error in runs)
         for n in range(1, int(np.floor(np.max(values) / low)) + 1):
             line = np.polynomial.Chebyshev([n * middle, n * half], domain=[-1, 1])
             roots = (curve - line).roots()
@@ -272,7 +274,7 @@ def by_meissner(request: Request) -> CriticalSpeeds:
 
 def _marked(request: Request, maxima: Maxima, quantity: str) -> CriticalSpeeds:
     """Return maxima that know their mode; its mean frequency gives the order."""
-    mean = request.still.mean[maxima.mode - 1]
+    mean = request.mean[maxima.mode - 1]
     return request.answered(
         maxima.method,
         maxima.speed,
@@ -322,7 +324,7 @@ def by_response(request: Request) -> CriticalSpeeds:
     return request.answered(
         f"local maxima of the steady state, {len(speeds)} speeds scanned",
         speed,
-        *label_speeds(request.still.mean, speed),
+        *label_speeds(request.mean, speed),
         error,
         height=height,
         scan=(speeds, values),
@@ -501,8 +503,8 @@ def critical_speeds(
     count = require_whole("modes", wanted, 1, system.size)
     if not (isinstance(speeds, int) and speeds >= 3):
         raise bad("speeds", repr(speeds), "a whole number, 3 or more", "choose 240")
-    still = natural_frequencies(system, 0.0, count)
-    return METHODS[method](Request(system, low, high, still, speeds, progress))
+    means = mean_frequencies(system, count, _ENOUGH)
+    return METHODS[method](Request(system, low, high, *means, speeds, progress))
 
 
 def _require_moving(system: LinearPeriodic) -> None:

@@ -17,7 +17,7 @@ from ..core.maxima import local_maxima, narrowed
 from ..core.results import Result, provenance
 from ..periodic.peaks import peak_error, quiet_state, require_shapes
 from .critical import label_speeds
-from .natural import natural_frequencies
+from .held import mean_frequencies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -160,7 +160,7 @@ def resonance_curve(
     if speeds.ndim != 1 or len(speeds) < 3 or not np.all(np.diff(speeds) > 0):
         raise bad("speed", speed, "at least three rising speeds [rad/s]", "use numpy.linspace")
     require_shapes("resonance_curve", system)
-    mean = natural_frequencies(system, 0.0, **parameters).mean
+    mean, _ = mean_frequencies(system.with_parameters(**parameters), min(6, system.size), 1e-12)
     state = quiet_state(system, speeds, rtol, parameters)
     peak = state.peak(x)
     tops = local_maxima(peak)

@@ -347,7 +347,8 @@ def _spectra(way: Method, equation: Equation, segments: int) -> tuple[Array, ...
     matrix, exponent, rounding = _matrices(way, equation, segments)
     _, extra = np.frexp(np.max(np.abs(matrix), axis=(-2, -1)))
     matrix, exponent = np.ldexp(matrix, -extra[:, None, None]), exponent + extra
-    return matrix, exponent, *eigenvalues(matrix, rounding)
+    found: tuple[Any, ...] = (matrix, exponent, *eigenvalues(matrix, rounding))
+    return found
 
 
 def eigenvalues(matrices: Array, shift: Array) -> tuple[ComplexArray, Array, ComplexArray]:

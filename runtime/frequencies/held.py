@@ -14,7 +14,7 @@ from ..core.families import LinearPeriodic
 from ..core.inputs import numbers_in_a_row, require_kind
 from ..core.maxima import narrowed
 from ..core.trigonometric import even_angles
-from ..periodic.moving_basis import natural_modes
+from ..periodic.moving_basis import flexible_modes
 
 Array = NDArray[np.float64]
 
@@ -59,7 +59,7 @@ def held_modes(
     """
     mass, stiffness = held_arrays(system, theta, parameters, speed)
     try:
-        _, shape = natural_modes(mass, stiffness)
+        _, shape = flexible_modes(mass, stiffness)
     except np.linalg.LinAlgError:
         raise _indefinite(mass, stiffness, theta) from None
     square, error = _quotients(mass, stiffness, shape)

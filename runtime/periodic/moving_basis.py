@@ -225,14 +225,26 @@ def natural_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
     LinAlgError
         If a matrix is not positive definite.
     """
+    values, shapes = flexible_modes(mass, stiffness)
+    return 1.0 / values, shapes / np.sqrt(values)[:, None, :]
+
+
+def flexible_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
+    """Return one over squared natural frequencies, falling, and K-orthonormal modes at angles.
+
+    Where the matrices are ill-conditioned the last values are round-off, of either sign.
+
+    Raises
+    ------
+    LinAlgError
+        If a matrix is not positive definite.
+    """
     np.linalg.cholesky(mass)
     root = np.linalg.inv(np.linalg.cholesky(stiffness))
     # The flexible modes are the large eigenvalues of the inverse problem, the accurate ones.
     flexible = root @ mass @ np.swapaxes(root, -1, -2)
     values, vectors = np.linalg.eigh(0.5 * (flexible + np.swapaxes(flexible, -1, -2)))
-    values, vectors = values[:, ::-1], vectors[:, :, ::-1]
-    shapes = np.swapaxes(root, -1, -2) @ vectors / np.sqrt(values)[:, None, :]
-    return 1.0 / values, shapes
+    return values[:, ::-1], np.swapaxes(root, -1, -2) @ vectors[:, :, ::-1]
 
 
 def _border(squares: Array, modes: int) -> tuple[Array, Array]:

@@ -73,6 +73,17 @@ def turned(left: Mapping[str, Array], matrix: Array, right: Mapping[str, Array])
     return total
 
 
+# The arrays of the distributed mass and stiffness (4.28): M, half of dM/dtheta, A and B; K, C and D
+# of Kelvin and Voigt's material.  Each with its power of the beams' turning.
+TURNING = {
+    "mass": 0,
+    "mass slope": 1,
+    "coupling": 1,
+    "centripetal": 2,
+    "stiffness": 0,
+    "retarded": 0,
+    "retarded slope": 1,
+}
 Kernel = tuple[PlacedElement, Array]
 
 
@@ -111,35 +122,6 @@ class AngleArrays:
             (placed, beam_element(placed.beam, placed.length)) for placed in self.structure.elements
         )
 
-    def mass(self, theta: Array) -> Array:
-        """Return M of the distributed mass, ``(nt, n, n)``."""
-        return self._sum("mass", theta)
-
-    def coupling(self, theta: Array) -> Array:
-        """Return A: what the turning of the beams couples, ``(nt, n, n)`` (4.28)."""
-        return self._sum("coupling", theta, turning=1)
-
-    def centripetal(self, theta: Array) -> Array:
-        """Return B: the square of the turning, ``(nt, n, n)``."""
-        return self._sum("centripetal", theta, turning=2)
-
-    def stiffness(self, theta: Array) -> Array:
-        """Return K of the beams, ``(nt, n, n)``."""
-        return self._sum("stiffness", theta)
-
-    def mass_slope(self, theta: Array) -> Array:
-        """Return dM/dtheta of the distributed mass, ``(nt, n, n)``."""
-        half = self._sum("mass slope", theta, turning=1)
-        return half + np.swapaxes(half, -1, -2)
-
-    def retarded(self, theta: Array) -> Array:
-        """Return the damping C of Kelvin and Voigt's material, ``(nt, n, n)``."""
-        return self._sum("retarded", theta)
-
-    def retarded_turning(self, theta: Array) -> Array:
-        """Return its D: strain rates that come from turning, ``(nt, n, n)``."""
-        return self._sum("retarded slope", theta, turning=1)
-
     def inertia_force(self, theta: Array, derivative: int = 2) -> Array:
         """Return the forces ``-M r_r''`` of the distributed mass, or ``-M r_r'``: ``(nt, n)``."""
         motion = self.motion(theta)
@@ -161,9 +143,12 @@ class AngleArrays:
             self._made[name] = tuple((p, _kernel(name, p, own)) for p, own in self.local)
         return self._made[name]
 
-    def _sum(self, name: str, theta: Array, turning: int = 0) -> Array:
-        """Return the sum of an array over the elements, of the free coordinates, ``(nt, n, n)``."""
-        motion = self.motion(theta)
+    def sum(self, name: str, theta: Array) -> Array:
+        """Return an array of ``TURNING``, summed over the elements, at angles: ``(nt, n, n)``.
+
+        Rows and columns are those of the free coordinates.
+        """
+        motion, turning = self.motion(theta), TURNING[name]
         total = np.zeros((len(theta), self.count, self.count))
         for placed, kernel in self._kernels(name):
             weights = motion.products[placed.beam.name]

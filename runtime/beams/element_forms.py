@@ -90,6 +90,11 @@ class ElementForms:
         return self.arrays.local
 
     @cached_property
+    def spread(self) -> Array:
+        """What makes all coordinates of the free ones, ``(N, n)``."""
+        return np.eye(self.arrays.count)[:, self.arrays.free]
+
+    @cached_property
     def turning(self) -> tuple[Turning, ...]:
         """Every element's axes and rigid motion."""
         motion = self.arrays.motion(self.theta)
@@ -99,9 +104,7 @@ class ElementForms:
             size = len(own.mass)
             c, s = motion.products[placed.beam.name][:, 1:3].T
             parts, slopes = rotation(size), rotation_slope(size)
-            pick = np.zeros((size, self.arrays.count))
-            pick[np.arange(size), placed.indices] = 1.0
-            pick = pick[:, self.arrays.free]
+            pick = self.spread[placed.indices]
             turned = c[:, None, None] * parts["c"] + s[:, None, None] * parts["s"]
             slope = c[:, None, None] * slopes["c"] + s[:, None, None] * slopes["s"]
             back = parts["1"] + turned
@@ -214,9 +217,13 @@ class ElementForms:
         if self.structure.moving:
             found = found + LinearForm({("1", 2): at.rigid})
         if any(self.gravity):
-            field = self.axial.weight_field(self.theta)[:, self.elements[e][0].indices]
-            found = found + LinearForm({("1", 0): -np.einsum("tij,tj->ti", at.back, field)})
+            found = found + LinearForm({("1", 0): -self.weight(e)})
         return found + self.outside.turned(at.own)
+
+    def weight(self, e: int) -> Array:
+        """Return gravity as local nodal values of an element, ``(nt, n_local)`` [m/s^2]."""
+        field = self.axial.weight_field(self.theta)[:, self.elements[e][0].indices]
+        return np.asarray(np.einsum("tij,tj->ti", self.turning[e].back, field))
 
     def across(self, e: int) -> LinearForm:
         """Return nodal values of what acts at a right angle: Coriolis' and Euler's parts."""
@@ -266,24 +273,19 @@ class ElementForms:
     def node_inertia(self) -> LinearForm:
         """Return lumped mass times acceleration less gravity, of every coordinate."""
         lumped = self.factor["lumped_mass"] * self.lumped
-        pick = np.zeros((self.arrays.count, len(self.arrays.free)))
-        pick[self.arrays.free, np.arange(len(self.arrays.free))] = 1.0
-        spread = np.broadcast_to(pick, (len(self.theta), *pick.shape))
-        parts = {("ddq", 2): np.asarray(spread)}
+        parts = {("ddq", 2): np.tile(self.spread, (len(self.theta), 1, 1))}
         if self.structure.moving:
             parts["1", 2] = self.arrays.motion(self.theta).second
         if any(self.gravity):
             parts["1", 0] = -self.axial.weight_field(self.theta)
-        total = LinearForm(parts) + self.outside.turned(pick)
+        total = LinearForm(parts) + self.outside.turned(self.spread)
         return total.turned(np.diag(lumped))
 
     def node_holds(self) -> LinearForm:
         """Return the forces of springs and dampers at the nodes, of every coordinate."""
-        free, count = self.arrays.free, self.arrays.count
-        pick = np.zeros((len(self.theta), count, len(free)))
-        pick[:, free, np.arange(len(free))] = 1.0
+        pick = np.tile(self.spread, (len(self.theta), 1, 1))
         parts = {("q", 0): self.springs[:, None] * pick}
-        drag = self.dampers if self._has_dampers else np.zeros(count)
+        drag = self.dampers if self._has_dampers else np.zeros(len(self.dampers))
         if self.has_damping("rayleigh springs"):
             drag = drag + self.factor["rayleigh_stiffness"] * self.springs
         if np.any(drag):
@@ -305,9 +307,8 @@ class ElementForms:
     def resisted(self) -> LinearForm:
         """The forces that the motion needs at every coordinate ``(nt, N)``; of free ones none."""
         total = self.node_inertia() + self.node_holds() - self.node_loads()
-        for e, (placed, own) in enumerate(self.elements):
-            scatter = np.zeros((self.arrays.count, len(own.mass)))
-            scatter[placed.indices, np.arange(len(own.mass))] = 1.0
+        for e, (placed, _) in enumerate(self.elements):
+            scatter = np.eye(self.arrays.count)[:, placed.indices]
             turned = scatter @ np.swapaxes(self.turning[e].back, -1, -2)
             total = total + self.end_forces(e).turned(turned)
         return total

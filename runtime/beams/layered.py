@@ -47,8 +47,7 @@ class ElasticLayer:
     density: float
 
     def __post_init__(self) -> None:
-        """Check every number."""
-        _refuse(sign_problems("ElasticLayer", self, _names(self), positive=True, fix=_SI))
+        _refuse(sign_problems("ElasticLayer", self, vars(self), positive=True, fix=_SI))
 
 
 @dataclass(frozen=True)
@@ -78,8 +77,7 @@ class ViscoelasticLayer:
     density: float
 
     def __post_init__(self) -> None:
-        """Check every number."""
-        names = [name for name in _names(self) if name != "loss_factor"]
+        names = [name for name in vars(self) if name != "loss_factor"]
         problems = sign_problems("ViscoelasticLayer", self, names, positive=True, fix=_SI)
         problems += sign_problems(
             "ViscoelasticLayer", self, ["loss_factor"], positive=False, fix="correct it"
@@ -178,7 +176,9 @@ def sandwich_section(
     Aannaque 9.2.  The outer layers do not shear and the core is not stretched: the model holds for
     a core that is soft beside the outer layers, and wave lengths long beside the thickness.
     """
-    _require_layers(base, core, cover)
+    for where, layer in (("base", base), ("cover", cover)):
+        require_kind(where, layer, ElasticLayer, "make one with ElasticLayer")
+    require_kind("core", core, ViscoelasticLayer, "make one with ViscoelasticLayer")
     given = {"width": width, "wave_number": wave_number, "frequency": frequency}
     numbers = {name: value for name, value in given.items() if value is not None or name == "width"}
     _refuse(
@@ -219,19 +219,9 @@ def sandwich_section(
 _SI = "give SI units"
 
 
-def _names(record: ElasticLayer | ViscoelasticLayer) -> list[str]:
-    return list(record.__dataclass_fields__)
-
-
 def _refuse(problems: list[Problem]) -> None:
     if problems:
         raise BadInput(*problems)
-
-
-def _require_layers(base: ElasticLayer, core: ViscoelasticLayer, cover: ElasticLayer) -> None:
-    for where, layer in (("base", base), ("cover", cover)):
-        require_kind(where, layer, ElasticLayer, "make one with ElasticLayer")
-    require_kind("core", core, ViscoelasticLayer, "make one with ViscoelasticLayer")
 
 
 def _stiffness(

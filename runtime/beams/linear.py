@@ -114,7 +114,7 @@ class AxialForces:
 
     def _at_rest(self, source: str, theta: Array) -> tuple[Array, Array]:
         """Return displacements under the loads, and what is left of elastic forces less loads."""
-        stiffness = self.arrays.stiffness(theta) + self.springs
+        stiffness = self.arrays.sum("stiffness", theta) + self.springs
         loads = self.force(source, theta)[..., None]
         if self.slide is None:
             solved: Array = np.asarray(np.linalg.solve(stiffness, loads), dtype=float)
@@ -176,7 +176,7 @@ def require_held(arrays: AngleArrays, springs: Array, slide: Slide | None) -> No
     """
     structure = arrays.structure
     theta = structure.period * np.array([0.0, 0.37, 0.61]) if structure.moving else np.zeros(1)
-    matrices = arrays.stiffness(theta) + np.diag(springs)
+    matrices = arrays.sum("stiffness", theta) + np.diag(springs)
     strains = _strains(arrays, springs, theta)
     if slide is not None:
         basis = slide.basis(theta)
@@ -320,8 +320,8 @@ def linear_system(
     axial = AxialForces(arrays, np.diag(springs[free]), lumped, gravity, slide)
     acting = _sources(structure, lumped, gravity)
     terms = [
-        Term("M", "distributed_mass", arrays.mass),
-        Term("K", "elasticity", arrays.stiffness),
+        Term("M", "distributed_mass", partial(arrays.sum, "mass")),
+        Term("K", "elasticity", partial(arrays.sum, "stiffness")),
         Term("f", "distributed_mass", arrays.inertia_force),
         Term("g", "distributed_mass", partial(arrays.inertia_force, derivative=1)),
     ]
@@ -450,15 +450,16 @@ def _sources(structure: Structure, lumped: Array, gravity: tuple[float, float]) 
 def _form_terms(arrays: AngleArrays, form: str) -> list[Term]:
     if form == "full":
         return [
-            Term("A", "distributed_mass", arrays.coupling),
-            Term("B", "distributed_mass", arrays.centripetal),
+            Term("A", "distributed_mass", partial(arrays.sum, "coupling")),
+            Term("B", "distributed_mass", partial(arrays.sum, "centripetal")),
         ]
     # The family's equation holds M' qd, which this form lacks: the damping takes it out again.
     return [Term("C", "distributed_mass", partial(_minus_mass_slope, arrays), power=1)]
 
 
 def _minus_mass_slope(arrays: AngleArrays, theta: Array) -> Array:
-    return -arrays.mass_slope(theta)
+    half = arrays.sum("mass slope", theta)
+    return -half - np.swapaxes(half, -1, -2)
 
 
 def _constant_terms(mass: Array, springs: Array, dampers: Array) -> list[Term]:
@@ -472,15 +473,15 @@ def _damping_terms(
     found: list[Term] = []
     if rayleigh[0] or rayleigh[1]:
         found += [
-            Term("C", "rayleigh distributed", arrays.mass),
+            Term("C", "rayleigh distributed", partial(arrays.sum, "mass")),
             Term("C", "rayleigh lumped", mass),
-            Term("C", "rayleigh elastic", arrays.stiffness),
+            Term("C", "rayleigh elastic", partial(arrays.sum, "stiffness")),
             Term("C", "rayleigh springs", springs),
         ]
     if any(beam.section.retardation for beam in arrays.structure.beams):
         found += [
-            Term("C", "viscous", arrays.retarded),
-            Term("D", "viscous", arrays.retarded_turning),
+            Term("C", "viscous", partial(arrays.sum, "retarded")),
+            Term("D", "viscous", partial(arrays.sum, "retarded slope")),
         ]
     return found
 

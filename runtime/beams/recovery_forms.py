@@ -33,14 +33,12 @@ class LinearForm:
     parts: Mapping[Key, Array] = field(default_factory=dict)
 
     def __add__(self, other: LinearForm) -> LinearForm:
-        """Return the sum."""
         total = dict(self.parts)
         for key, value in other.parts.items():
             total[key] = total[key] + value if key in total else value
         return LinearForm(total)
 
     def __sub__(self, other: LinearForm) -> LinearForm:
-        """Return the difference."""
         return self + other.scaled(-1.0)
 
     def scaled(self, factor: float | Array) -> LinearForm:

@@ -46,7 +46,6 @@ class Section:
     retardation: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check every number."""
         names = ["area", "second_moment", "modulus", "density"]
         names += [name for name in ("thickness", "shear_stiffness") if getattr(self, name)]
         problems = sign_problems(

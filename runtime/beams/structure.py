@@ -205,7 +205,6 @@ class Beam:
     kind: str = "cubic"
 
     def __post_init__(self) -> None:
-        """Check every value."""
         where = f"beam {self.name}"
         problems = []
         if not (is_finite(self.length) and self.length > 0):
@@ -282,7 +281,6 @@ class Node:
     slides_on: str | None = None
 
     def __post_init__(self) -> None:
-        """Check every value."""
         where = f"node {self.name}"
         values = {"mass": self.mass, "inertia": self.inertia}
         for group in ("stiffness", "damping"):
@@ -351,7 +349,6 @@ class Structure:
     provenance: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Check names, joints and that the ends of the beams meet."""
         problems = _name_problems(self.beams, self.nodes)
         if problems:
             raise BadInput(*problems)

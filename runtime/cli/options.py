@@ -244,7 +244,9 @@ def highest(values: Array, most: int = MOST_ROWS) -> NDArray[np.intp]:
     """Return the places of the local maxima inside a row, rising, the highest ``most`` of them."""
     import numpy as np
 
-    inner = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
+    from ..core.maxima import local_maxima
+
+    inner = local_maxima(values)
     return np.sort(inner[np.argsort(-values[inner], kind="stable")[:most]])
 
 

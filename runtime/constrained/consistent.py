@@ -96,11 +96,10 @@ def consistent_state(
     free = _free(system, hold)
     place, speed, count = q0, qd0, 0
     if system.constraints:
-        _check(system, q0, time)
+        mass = _checked_mass(system, q0, time)
         equations = Equations(system, q0, np.zeros_like(q0), time)
         columns = equations.columns
         try:
-            mass = system.dynamics(q0, np.zeros_like(q0), time)["mass"]
             x, count = equations.positions(time, q0 / columns, mass, free)
         except NoConvergence as reason:
             raise bad(
@@ -147,7 +146,7 @@ def _given(
         if not np.isfinite(array).all():
             raise bad(name, "a number that is not finite", "finite numbers", "correct it")
         if name != "t" and array.shape[-1:] != (n,):
-            fix = f"one for each of {', '.join(system.labels) or n}"
+            fix = f"one for each of {', '.join(system.labels)}"
             raise bad(name, f"shape {array.shape}", f"shape (..., {n})", fix)
     shapes = [arrays["q"].shape[:-1], arrays["qd"].shape[:-1], arrays["t"].shape]
     try:
@@ -180,8 +179,8 @@ def _free(system: Constrained, hold: Iterable[str | int]) -> Array:
     return free
 
 
-def _check(system: Constrained, q: Array, t: Array) -> None:
-    """Refuse constraints that depend on each other, and one whose row of the Jacobian vanishes."""
+def _checked_mass(system: Constrained, q: Array, t: Array) -> Array:
+    """Return the masses; refuse constraints that depend on each other or have no direction."""
     mass = system.dynamics(q, np.zeros_like(q), t)["mass"]
     at = system.violation(q, t)
     if not all(np.isfinite(value).all() for value in (mass, *at.values())):
@@ -207,3 +206,4 @@ def _check(system: Constrained, q: Array, t: Array) -> None:
                 "leave the position where the linkage can branch",
             )
         )
+    return mass

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import bad
 from ..core.families import Constrained
 from ..core.families.multipliers import kkt_matrix, scaling
 
@@ -271,18 +270,6 @@ def solved(matrix: Array, right: Array) -> Array:
     if not np.isfinite(solution).all():
         raise NoConvergence("the equations of motion are not finite")
     return np.asarray(solution, dtype=np.float64)
-
-
-def require_variations(system: Constrained) -> Callable[..., Mapping[str, Array]]:
-    """Return the variational equations of a system."""
-    if system.variations is None:
-        raise bad(
-            "system",
-            "no variational equations",
-            "a constrained system with variations",
-            "emit the model with the output 'variations'",
-        )
-    return system.variations
 
 
 def constraint_norms(

@@ -106,12 +106,11 @@ class ConstrainedMotion(Result):
         from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
-        names = self.labels or tuple(f"q{i + 1}" for i in range(self.q.shape[1]))
-        for label, values in zip(names, self.q.T, strict=True):
+        for label, values in zip(self.labels, self.q.T, strict=True):
             ax.plot(self.time, values, label=label, linewidth=0.9)
         ax.set_xlabel("time [s]")
         ax.set_ylabel("coordinate")
-        if len(names) > 1:
+        if len(self.labels) > 1:
             ax.legend()
         return ax
 

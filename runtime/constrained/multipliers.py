@@ -245,15 +245,9 @@ def _eigenvalues(matrix: Array, shift: float) -> tuple[ComplexArray, Array]:
     """Return the eigenvalues in a fixed order, each with its error from that of the matrix."""
     if not matrix.size:
         return np.zeros(0, dtype=complex), np.zeros(0)
-    from ..periodic.multipliers import conditions, multiplier_order
+    from ..periodic.multipliers import eigenvalues, multiplier_order
 
-    values, vectors = np.linalg.eig(matrix)
-    values = values.astype(complex)
-    norm = float(np.linalg.norm(matrix))
-    condition = conditions(vectors[None])[0]
-    near = np.sum(np.abs(values[:, None] - values) <= 2 * np.sqrt(norm * shift), axis=-1)
-    root = 2 * norm * (shift / norm) ** (1 / np.maximum(near, 2))
-    error = np.minimum(condition * shift, root)
+    values, error, _ = (part[0] for part in eigenvalues(matrix[None], np.array([shift])))
     with np.errstate(divide="ignore"):
         order = multiplier_order(np.log(np.abs(values)), np.angle(values))
     return values[order], error[order]

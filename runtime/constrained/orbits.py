@@ -14,6 +14,7 @@ from ..core.families import Constrained
 from ..core.families.multipliers import check_rank, scaling
 from ..core.inputs import numbers
 from ..core.results import Check, Result, provenance
+from ..periodic.ring import solve_ring
 from .collocation import Nodes, integrals, nodes, stage_matrix
 from .equations import (
     EPS,
@@ -22,7 +23,6 @@ from .equations import (
     Linearised,
     NoConvergence,
     constraint_norms,
-    require_variations,
     solved,
 )
 from .motion import linear_range, march
@@ -248,12 +248,10 @@ class Shooting:
     def _newton_step(self, here: Shot) -> tuple[Array, Array, Array, float] | None:
         """Return the changes of states and stage accelerations, and the largest of them."""
         ring, swept, n = here.ring, here.sweep, self.equations.n
-        along = self.junctions(ring).along
-        back = np.swapaxes(ring.following(along), -1, -2)
-        inside = closed_chain(back @ swept.maps @ along, back @ swept.gap[..., None])
-        if inside is None:
+        moved = self._closed(here, swept.gap[..., None])
+        if moved is None:
             return None
-        change = (along @ inside)[..., 0]
+        change = (moved[0] @ moved[1])[..., 0]
         a = swept.change + (swept.response @ change[:, None, :, None])[..., 0]
         inner = float(np.max(np.abs(a))) * ring.step / self.rate
         return (
@@ -288,48 +286,38 @@ class Shooting:
             part /= 2
         return reason
 
+    def _closed(self, shot: Shot, wrong: Array) -> tuple[Array, Array] | None:
+        """Return the tangent spaces, and the changes in them ``(m, p, k)`` that close the ring.
+
+        The ends of the steps are off by ``wrong (m, 2n, k)``; None where nothing closes it.
+        """
+        along = self.junctions(shot.ring).along
+        back = np.swapaxes(shot.ring.following(along), -1, -2)
+        maps, loads = back @ shot.sweep.maps @ along, np.moveaxis(back @ wrong, -1, 0)
+        if not loads.size:  # constraints that leave nothing free
+            return along, np.moveaxis(loads, 0, -1)
+        solution, _ = solve_ring(np.broadcast_to(maps, (len(loads), *maps.shape)), loads)
+        if not np.all(np.isfinite(solution)):
+            return None
+        return along, np.moveaxis(solution, 0, -1)
+
     def rounding(self, shot: Shot) -> float:
         """Return what rounding in every step does to the motion, by random samples of it."""
-        ring, size = shot.ring, self.size(shot.ring)
-        along = self.junctions(ring).along
-        back = np.swapaxes(ring.following(along), -1, -2)
+        size = self.size(shot.ring)
         # Rounding of one step of the motion's size: random samples, enlarged for the largest of
         # more.
         shape = (*shot.sweep.gap.shape, 4)
         noise = np.random.default_rng(0).normal(size=shape) * size * EPS
-        moved = closed_chain(back @ shot.sweep.maps @ along, back @ noise)
-        return np.inf if moved is None else 4.0 * float(np.max(np.abs(moved))) / size
+        moved = self._closed(shot, noise)
+        return (
+            np.inf if moved is None else 4.0 * float(np.max(np.abs(moved[1]), initial=0.0)) / size
+        )
 
     def error(self, coarse: Shot, fine: Shot) -> float:
         """Return the error of the finer motion: what refinement changed, and rounding."""
         x, v = fine.ring.x[::2] - coarse.ring.x, fine.ring.v[::2] - coarse.ring.v
         gap = float(np.max(np.abs(self.state(x, v)))) / self.size(fine.ring)
         return gap * LEFT + self.rounding(fine)
-
-
-def closed_chain(maps: Array, wrong: Array) -> Array | None:
-    """Solve ``e_{j+1} - G_j e_j = r_j`` round a ring; None where it is singular.
-
-    G are the ``maps (m, p, p)``, r what is ``wrong (m, p, k)``.  The equations stand together
-    (sparse), not multiplied up, so that growth does no harm.
-    """
-    from scipy import sparse
-    from scipy.sparse.linalg import splu
-
-    m, p, _ = maps.shape
-    if p == 0:
-        return np.zeros_like(wrong)
-    each = np.arange(m)
-    blocks = np.stack([-maps, np.broadcast_to(np.eye(p), maps.shape)], axis=1)
-    columns = np.stack([each, np.roll(each, -1)], axis=1)
-    rows = 2 * np.arange(m + 1)
-    matrix = sparse.bsr_matrix((blocks.reshape(-1, p, p), columns.ravel(), rows)).tocsc()
-    matrix.eliminate_zeros()
-    try:
-        solution: Array = splu(matrix).solve(np.ascontiguousarray(wrong.reshape(m * p, -1)))
-    except RuntimeError:
-        return None
-    return solution.reshape(wrong.shape) if np.all(np.isfinite(solution)) else None
 
 
 @dataclass(frozen=True)
@@ -429,8 +417,7 @@ class PeriodicOrbit(Result):
         ax = axes_or_new(ax)
         t = np.linspace(0.0, self.period, 1001)
         q = self.at(t)[0] - np.multiply.outer(t / self.period, self.advance)
-        names = self.labels or tuple(f"q{i + 1}" for i in range(q.shape[1]))
-        for values, name in zip((q - q.mean(axis=0)).T, names, strict=True):
+        for values, name in zip((q - q.mean(axis=0)).T, self.labels, strict=True):
             ax.plot(t / self.period, values, linewidth=1.0, label=name)
         ax.set_xlabel("time over period")
         ax.set_ylabel("coordinates less their means")
@@ -593,7 +580,9 @@ def _checked(
     advance: ArrayLike | None,
 ) -> _Guess:
     """Return the guess as arrays, having checked numbers, shapes and the system's period."""
-    require_variations(system)
+    if system.variations is None:
+        expected, fix = "one with variations", "emit the model with the output 'variations'"
+        raise bad("system", "no variational equations", expected, fix)
     period = system.period if period is None else period
     if not (isinstance(period, Real) and np.isfinite(float(period)) and period > 0):
         raise bad("period", repr(period), "a finite number above 0 [s]", "correct it")

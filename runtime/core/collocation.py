@@ -97,12 +97,8 @@ def radau_tableau(stages: int) -> CollocationTableau:
 def legendre_integrals(x: Array, stages: int | None = None) -> Array:
     """Return the integrals from -1 to x of the Legendre polynomials 0 to s - 1, ``(nx, s)``."""
     count = len(x) if stages is None else stages
-    values = np.polynomial.legendre.legvander(x, count)
-    out = np.empty((len(x), count))
-    out[:, 0] = 1 + x
-    for k in range(1, count):
-        out[:, k] = (values[:, k + 1] - values[:, k - 1]) / (2 * k + 1)
-    return out
+    legendre = np.polynomial.legendre
+    return np.asarray(legendre.legvander(x, count) @ legendre.legint(np.eye(count), lbnd=-1.0))
 
 
 def gauss_maps(stages: int, generator: Generator, theta: Array, step: float) -> Array:

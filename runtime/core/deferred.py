@@ -22,7 +22,6 @@ class DeferredField:
     """
 
     def __set_name__(self, owner: type, name: str) -> None:
-        """Take the field's name."""
         self._name = name
 
     def __set__(self, instance: object, value: object) -> None:
@@ -30,7 +29,6 @@ class DeferredField:
         instance.__dict__[self._name] = value
 
     def __get__(self, instance: object | None, owner: type | None = None) -> Any:
-        """Return the value, computed on the first look."""
         if instance is None:  # the dataclass asks for a default: there is none
             raise AttributeError(self._name)
         value = instance.__dict__[self._name]

@@ -80,12 +80,18 @@ def bad(where: str, found: object, expected: str, fix: str) -> BadInput:
     return BadInput(Problem(where, str(found), expected, fix))
 
 
-def warn_of_large_deflection(largest: float | None) -> None:
+def warn_of_large_deflection(
+    largest: float | None,
+    length: str = "the reference length",
+    fix: str = "leave out resonant speeds or add damping",
+    *,
+    stacklevel: int = 3,
+) -> None:
     """Warn whoever called the caller where a deflection over the length is beyond 5 %."""
     if largest is not None and largest > LINEAR_RANGE:
         warnings.warn(
-            f"deflection reaches {largest:.3g} of the reference length; the linear equations "
-            f"hold to about {LINEAR_RANGE}: leave out resonant speeds or add damping",
+            f"deflection reaches {largest:.3g} of {length}; the linear equations hold to about "
+            f"{LINEAR_RANGE}: {fix}",
             LinearRangeWarning,
-            stacklevel=3,
+            stacklevel=stacklevel,
         )

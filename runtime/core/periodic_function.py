@@ -200,7 +200,6 @@ class PeriodicFunction:
         return np.asarray(total.real + coefficients[0].real)
 
     def __add__(self, other: PeriodicFunction | float) -> PeriodicFunction:
-        """Return the sum with another function or with a constant."""
         if isinstance(other, PeriodicFunction):
             size = max(len(self.a), len(other.a))
             a = _filled(self.a, size) + _filled(other.a, size)
@@ -215,7 +214,6 @@ class PeriodicFunction:
     __radd__ = __add__
 
     def __mul__(self, factor: float) -> PeriodicFunction:
-        """Return the function times a number."""
         if not isinstance(factor, (int, float, np.integer, np.floating)):
             return NotImplemented
         c = float(factor)
@@ -224,11 +222,9 @@ class PeriodicFunction:
     __rmul__ = __mul__
 
     def __neg__(self) -> PeriodicFunction:
-        """Return the function with its sign changed."""
         return self * -1.0
 
     def __sub__(self, other: PeriodicFunction | float) -> PeriodicFunction:
-        """Return the difference from another function or from a constant."""
         return self + (-1.0) * other
 
     def derivative(self) -> PeriodicFunction:

@@ -67,15 +67,12 @@ class DeferredChecks(Mapping[str, Check]):
         return self._made
 
     def __getitem__(self, name: str) -> Check:
-        """Return one check by name."""
         return self._checks[name]
 
     def __iter__(self) -> Iterator[str]:
-        """Iterate over the names."""
         return iter(self._checks)
 
     def __len__(self) -> int:
-        """Return how many there are."""
         return len(self._checks)
 
 

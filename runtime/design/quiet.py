@@ -14,6 +14,7 @@ from ..beams.element_forms import required_structure
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
+from ..core.maxima import local_maxima
 from ..core.results import Check, Result
 from ..recovery.stress_over_speed import StressCurve, shade_unstable, stress_curve
 from .speed_profile import Array
@@ -199,9 +200,8 @@ def _limits(limits: float | Mapping[str, float], links: list[str]) -> dict[str, 
 
 def _maxima(speed: Array, values: Array) -> list[tuple[float, float]]:
     """Return local maxima with their heights, each refined by a parabola in the logarithm."""
-    inner = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
     found = []
-    for k in inner:
+    for k in local_maxima(values):
         a, b, c = np.log(values[k - 1 : k + 2])
         left, right = speed[k] - speed[k - 1], speed[k + 1] - speed[k]
         first, second = (b - a) / left, (c - b) / right

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -14,7 +13,7 @@ import numpy as np
 from ..beams.assembly import in_own_axes, products
 from ..beams.element_forms import required_structure
 from ..beams.elements import placed_rotation, placed_shapes
-from ..core.errors import LINEAR_RANGE, BadInput, LinearRangeWarning, Problem, bad
+from ..core.errors import LINEAR_RANGE, BadInput, Problem, bad, warn_of_large_deflection
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_whole, require_whole
 from ..core.results import Check, Result, provenance
@@ -404,13 +403,8 @@ def _difference(finer: _Motion, coarse: _Motion) -> Array:
 def _result(run: _Run, found: _Motion, error: Array, rtol: float) -> Transient:
     system, profile = run.full, run.profile
     largest = run.deflection(found)
-    if largest > LINEAR_RANGE:
-        warnings.warn(
-            f"deflection reaches {largest:.3g} of the length of its link; the linear equations "
-            "hold to about 0.05: run through faster, or add damping",
-            LinearRangeWarning,
-            stacklevel=3,
-        )
+    fix = "run through faster, or add damping"
+    warn_of_large_deflection(largest, "the length of its link", fix, stacklevel=4)
     followed = "all coordinates" if run.followed is system else f"{run.followed.size} modes or more"
     return Transient(
         method=f"Gauss-Legendre collocation of order {2 * _STAGES}, {followed}",

@@ -8,8 +8,9 @@ for rounding.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -191,24 +192,35 @@ def _count(finer: DynamicStiffness, omega: float) -> int:
     return round(float(finer.poles(omega))) + int(negative)
 
 
-def isolate(problem: DynamicStiffness, whole: Interval) -> list[Interval]:
+# From a frequency to one close to it, and how many lie below that.
+Counted = Callable[[float], tuple[float, int]]
+
+
+def isolate(
+    counted: Counted, whole: Interval, narrow: Callable[[Interval], bool]
+) -> list[Interval]:
     """Return narrow intervals with all frequencies of one, in ascending order."""
     found, pending = [], [whole]
     while pending:
         item = pending.pop()
         if item.first == item.last:
             continue
-        width = (item.high - item.low) / item.high
-        narrow = narrow_enough(problem, item.high)
-        if width <= narrow and (item.last == item.first + 1 or width <= narrow**2):
+        middle = float(((np.sqrt(item.low) + np.sqrt(item.high)) / 2.0) ** 2)
+        if narrow(item) or not item.low < middle < item.high:
             found.append(item)
             continue
-        middle = ((np.sqrt(item.low) + np.sqrt(item.high)) / 2.0) ** 2
-        place, count = certain_count(problem, float(middle))
+        place, count = counted(middle)
         count = min(max(count, item.first), item.last)
         pending.append(Interval(place, item.high, count, item.last))
         pending.append(Interval(item.low, place, item.first, count))
     return found
+
+
+def _solvable(problem: DynamicStiffness, item: Interval) -> bool:
+    """Return whether an interval is narrow enough for its frequencies to be computed."""
+    width = (item.high - item.low) / item.high
+    narrow = narrow_enough(problem, item.high)
+    return width <= narrow and (item.last == item.first + 1 or width <= narrow**2)
 
 
 def solve(problem: DynamicStiffness, item: Interval) -> list[Mode]:
@@ -475,46 +487,21 @@ class FrameFrequencies(Result):
 
 def bisected(problem: Transcendental, upto: float | None, count: int | None) -> FrameFrequencies:
     """Return the frequencies of a problem by bisection on their number."""
-    high = upto if upto is not None else _bracketed(problem, count or 1)
-    total = int(problem.count(high))
-    pending = [(0.0, high, 0, total)]
-    found: list[tuple[float, float]] = []
-    while pending:
-        low, high, first, last = pending.pop()
-        if first == last:
-            continue
-        middle = (low + high) / 2.0
-        if high - low <= 1e-12 * high or not low < middle < high:
-            found += [(middle, (high - low) / 2.0)] * (last - first)
-            continue
-        between = min(max(int(problem.count(middle)), first), last)
-        pending.append((middle, high, between, last))
-        pending.append((low, middle, first, between))
-    places = np.array([place for place, _ in found])
-    widths = np.array([width for _, width in found])
-    chosen = slice(None) if count is None else slice(count)
-    _, group, size = np.unique(places, return_inverse=True, return_counts=True)
-    return FrameFrequencies(
-        frequencies=places[chosen],
-        multiplicity=size[group][chosen].astype(np.int64),
-        modes=(),
-        problem=problem,
-        method="Wittrick-Williams count, bisection",
-        error=widths[chosen],
-        error_norm="each frequency, absolute [rad/s]",
-        error_kind="bound",
-        checks={"frequencies not found": Check(float(abs(len(found) - total)), 0.0)},
-        provenance=provenance(problem.provenance),
+
+    def counted(omega: float) -> tuple[float, int]:
+        return omega, int(problem.count(omega))
+
+    high, total = counted(upto) if upto is not None else _above(counted, 1e-3, count or 1)
+    found = isolate(
+        counted,
+        Interval(0.0, high, 0, total),
+        lambda item: item.high - item.low <= 1e-12 * item.high,
     )
-
-
-def _bracketed(problem: Transcendental, count: int) -> float:
-    high = 1e-3
-    for _ in range(400):
-        if int(problem.count(high)) >= count:
-            return high
-        high *= 2.0
-    raise bad("count", str(count), "fewer frequencies", "ask for fewer")
+    number = [item.last - item.first for item in found]
+    places = np.repeat([(item.low + item.high) / 2.0 for item in found], number)
+    widths = np.repeat([(item.high - item.low) / 2.0 for item in found], number)
+    method = "Wittrick-Williams count, bisection"
+    return _result(problem, (places, widths), (), method, total, slice(count))
 
 
 def wittrick_williams(
@@ -558,18 +545,21 @@ def wittrick_williams(
         raise bad("problem", found, "a Transcendental", "make one with dynamic_stiffness")
     if not isinstance(problem, DynamicStiffness):
         return bisected(problem, upto, count)
-    rigid = rigid_motions(problem)
-    low = _below_all(problem, len(rigid))
-    high = upto if upto is not None else _above(problem, low, count or 1)
-    modes = list(rigid)
-    total = len(rigid)
+    modes = rigid_motions(problem)
+    counted = partial(certain_count, problem)
+    low, total = _below_all(problem, len(modes)), len(modes)
+    high = upto if upto is not None else _above(counted, low, count or 1)[0]
     if high > low:
-        high, total = certain_count(problem, high)
-        for item in isolate(problem, Interval(low, high, len(rigid), total)):
+        high, total = counted(high)
+        whole = Interval(low, high, len(modes), total)
+        for item in isolate(counted, whole, partial(_solvable, problem)):
             modes += solve(problem, item)
-    kept = [mode for mode in modes if upto is None or mode.omega < upto]
-    kept = kept if count is None else kept[:count]
-    return _result(problem, kept, len(modes), total)
+    omega, error = (
+        np.array([getattr(mode, name) for mode in modes]) for name in ("omega", "error")
+    )
+    chosen = slice(count if upto is None else int(np.sum(omega < upto)))
+    method = "Wittrick-Williams count, Newton's method on the eigenvalue of D"
+    return _result(problem, (omega, error), tuple(modes), method, total, chosen)
 
 
 def rigid_motions(problem: DynamicStiffness) -> list[Mode]:
@@ -598,35 +588,40 @@ def _below_all(problem: DynamicStiffness, rigid: int) -> float:
     )
 
 
-def _above(problem: DynamicStiffness, low: float, count: int) -> float:
-    """Return a frequency with at least so many below."""
+def _above(counted: Counted, low: float, count: int) -> tuple[float, int]:
+    """Return a frequency with at least so many below, and how many."""
     high = low
-    for _ in range(200):
-        high, found = certain_count(problem, 1.7 * high)
+    for _ in range(400):
+        high, found = counted(1.7 * high)
         if found >= count:
-            return high
+            return high, found
     raise bad("count", str(count), "fewer frequencies", "ask for fewer")
 
 
 def _result(
-    problem: DynamicStiffness, modes: list[Mode], found: int, total: int
+    problem: Transcendental,
+    found: tuple[Array, Array],
+    modes: tuple[Mode, ...],
+    method: str,
+    total: int,
+    chosen: slice,
 ) -> FrameFrequencies:
-    omega = np.array([mode.omega for mode in modes])
-    error = np.array([mode.error for mode in modes])
-    uncertain = sum(not mode.certified for mode in modes)
+    """Return those chosen of the frequencies and errors that were found."""
+    omega, error = found
+    checks = {"frequencies not found": Check(float(abs(len(omega) - total)), 0.0)}
+    if isinstance(problem, DynamicStiffness):
+        uncertain = sum(not mode.certified for mode in modes[chosen])
+        checks["frequencies that counts do not confirm"] = Check(float(uncertain), 0.0)
     return FrameFrequencies(
-        frequencies=omega,
-        multiplicity=multiplicities(omega, error),
-        modes=tuple(modes),
+        frequencies=omega[chosen],
+        multiplicity=multiplicities(omega, error)[chosen],
+        modes=modes[chosen],
         problem=problem,
-        method="Wittrick-Williams count, Newton's method on the eigenvalue of D",
-        error=error,
+        method=method,
+        error=error[chosen],
         error_norm="each frequency, absolute [rad/s]",
         error_kind="bound",
-        checks={
-            "frequencies not found": Check(float(abs(found - total)), 0.0),
-            "frequencies that counts do not confirm": Check(float(uncertain), 0.0),
-        },
+        checks=checks,
         provenance=provenance(problem.provenance),
     )
 

@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from ..core.errors import BadInput, LinearRangeWarning, bad
+from ..core.errors import BadInput, bad
 from ..core.families import DAMPING, LinearPeriodic
 from ..core.inputs import require_whole, speed_span
+from ..core.maxima import local_maxima
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
-from .held import buckling_speed, held_frequencies, require_system
+from .held import buckling_speed, held_frequencies, mean_frequencies, require_system
 from .multiplier_maxima import Maxima, meissner_maxima, multiplier_maxima
-from .natural import natural_frequencies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -125,56 +124,59 @@ class CriticalSpeeds(Result):
 
 @dataclass(frozen=True)
 class Request:
-    """Range [rad/s], number of modes, number of speeds scanned."""
+    """A range of speeds [rad/s], and how many of them are scanned."""
 
     system: LinearPeriodic
     low: float
     high: float
-    count: int
+    mean: Array  # natural frequencies, crank held, at rest, and their errors [rad/s], (modes,)
+    mean_error: Array
     speeds: int
     progress: bool
 
+    @property
+    def count(self) -> int:
+        """Number of modes."""
+        return len(self.mean)
 
-def _result(
-    request: Request,
-    mean: Array,
-    columns: tuple[Array, Indices, Indices, Array],
-    method: str,
-    height: Array | None = None,
-    scan: tuple[Array, Array] | None = None,
-    quantity: str = "none",
-    checks: Mapping[str, Check] | None = None,
-) -> CriticalSpeeds:
-    """Return the result from columns of speed, mode, order and error."""
-    by_speed = np.argsort(columns[0], kind="stable")
-    speed, error = columns[0][by_speed], columns[3][by_speed]
-    mode, order = columns[1][by_speed], columns[2][by_speed]
-    return CriticalSpeeds(
-        method=method,
-        error=error,
-        error_norm="absolute, of each speed [rad/s], as this method defines it",
-        checks=checks or {},
-        provenance=provenance(request.system.provenance),
-        speed=speed,
-        mode=mode,
-        order=order,
-        ratio=mean[mode - 1] / (order * speed),
-        height=np.ones(len(speed)) if height is None else height[by_speed],
-        mean_frequency=mean,
-        scan_speed=np.zeros(0) if scan is None else scan[0],
-        scan=np.zeros(0) if scan is None else scan[1],
-        quantity=quantity,
-    )
+    def answered(
+        self,
+        method: str,
+        speed: ArrayLike,
+        mode: ArrayLike,
+        order: ArrayLike,
+        error: ArrayLike,
+        *,
+        height: Array | None = None,
+        scan: tuple[Array, Array] = (np.zeros(0), np.zeros(0)),
+        quantity: str = "none",
+        checks: Mapping[str, Check] | None = None,
+    ) -> CriticalSpeeds:
+        """Return the result, by rising speed."""
+        rising = np.argsort(speed, kind="stable")
+        speed, error = np.asarray(speed)[rising], np.asarray(error)[rising]
+        mode, order = (np.asarray(column, dtype=np.int64)[rising] for column in (mode, order))
+        return CriticalSpeeds(
+            method=method,
+            error=error,
+            error_norm="absolute, of each speed [rad/s], as this method defines it",
+            checks=checks or {},
+            provenance=provenance(self.system.provenance),
+            speed=speed,
+            mode=mode,
+            order=order,
+            ratio=self.mean[mode - 1] / (order * speed),
+            height=np.ones(len(rising)) if height is None else height[rising],
+            mean_frequency=self.mean,
+            scan_speed=scan[0],
+            scan=scan[1],
+            quantity=quantity,
+        )
 
-
-def _listed(
-    request: Request, mean: Array, rows: Sequence[tuple[float, int, int, float]], method: str
-) -> CriticalSpeeds:
-    """Return the result of a method that names mode and order itself."""
-    kept = [row for row in sorted(rows) if request.low <= row[0] <= request.high]
-    speed, error = (np.array([row[k] for row in kept], dtype=float) for k in (0, 3))
-    mode, order = (np.array([row[k] for row in kept], dtype=np.int64) for k in (1, 2))
-    return _result(request, mean, (speed, mode, order, error), method)
+    def listed(self, method: str, rows: Sequence[tuple[float, int, int, float]]) -> CriticalSpeeds:
+        """Return the result of speed, mode, order and error in rows, of those within the range."""
+        kept = [row for row in sorted(rows) if self.low <= row[0] <= self.high]
+        return self.answered(method, *np.array(kept, dtype=float).reshape(-1, 4).T)
 
 
 def label_speeds(mean: Array, speed: Array) -> tuple[Indices, Indices]:
@@ -201,6 +203,8 @@ def label_speeds(mean: Array, speed: Array) -> tuple[Indices, Indices]:
     return mode, order
 
 
+# Relative error of the means.
+_ENOUGH = 1e-12
 # Speeds at which the means are taken; between them they are interpolated.
 _NODES = 12
 # The means end this far before the held mechanism buckles: there they lose their smoothness.
@@ -209,13 +213,13 @@ _SHORT = 0.98
 
 def by_mean_frequency(request: Request) -> CriticalSpeeds:
     """Return the means of the natural frequencies over n = 1, 2, ..., crank held."""
-    still = natural_frequencies(request.system, 0.0, request.count)
+    means = zip(request.mean, request.mean_error, strict=True)
     rows = [
         (float(mean / n), mode, n, float(error / n))
-        for mode, (mean, error) in enumerate(zip(still.mean, still.mean_error, strict=True), 1)
+        for mode, (mean, error) in enumerate(means, 1)
         for n in range(1, int(np.floor(mean / request.low)) + 1)
     ]
-    return _listed(request, still.mean, rows, "mean natural frequencies over n")
+    return request.listed("mean natural frequencies over n", rows)
 
 
 def by_running_mean(request: Request) -> CriticalSpeeds:
@@ -223,7 +227,6 @@ def by_running_mean(request: Request) -> CriticalSpeeds:
 
     They end where those forces buckle the held mechanism at some angle.
     """
-    still = natural_frequencies(request.system, 0.0, request.count)
     limit = _SHORT * buckling_speed(request.system).speed
     if limit <= request.low:
         raise bad(
@@ -236,22 +239,22 @@ def by_running_mean(request: Request) -> CriticalSpeeds:
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     place = np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
     runs = [
-        natural_frequencies(request.system, 0.0, request.count, speed=float(middle + half * x))
+        mean_frequencies(request.system, request.count, _ENOUGH, float(middle + half * x))
         for x in place
     ]
     rows = []
     for mode in range(1, request.count + 1):
-        values = np.array([run.mean[mode - 1] for run in runs])
+        values = np.array([mean[mode - 1] for mean, _ in runs])
         curve = np.polynomial.Chebyshev.fit(place, values, _NODES - 1, domain=[-1, 1])
         # The mean is smooth in the square of the speed: its last terms tell what is left out.
         doubt = float(np.sum(np.abs(curve.coef[-2:])))
-        doubt += max(float(run.mean_error[mode - 1]) for run in runs)
+        doubt += max(float(error[mode - 1]) for _, error in runs)
         for n in range(1, int(np.floor(np.max(values) / low)) + 1):
             line = np.polynomial.Chebyshev([n * middle, n * half], domain=[-1, 1])
             roots = (curve - line).roots()
             real = roots[(np.abs(roots.imag) < 1e-9) & (np.abs(roots.real) <= 1.0)].real
             rows += [(float(middle + half * x), mode, n, doubt / n) for x in real]
-    return _listed(request, still.mean, rows, "mean natural frequencies at the speed over n")
+    return request.listed("mean natural frequencies at the speed over n", rows)
 
 
 def by_multipliers(request: Request) -> CriticalSpeeds:
@@ -271,13 +274,13 @@ def by_meissner(request: Request) -> CriticalSpeeds:
 
 def _marked(request: Request, maxima: Maxima, quantity: str) -> CriticalSpeeds:
     """Return maxima that know their mode; its mean frequency gives the order."""
-    mean = natural_frequencies(request.system, 0.0, request.count).mean
-    order = np.maximum(1, np.round(mean[maxima.mode - 1] / maxima.speed)).astype(np.int64)
-    return _result(
-        request,
-        mean,
-        (maxima.speed, maxima.mode, order, maxima.error),
+    mean = request.mean[maxima.mode - 1]
+    return request.answered(
         maxima.method,
+        maxima.speed,
+        maxima.mode,
+        np.maximum(1, np.round(mean / maxima.speed)),
+        maxima.error,
         height=maxima.value,
         quantity=quantity,
         checks=maxima.checks,
@@ -311,19 +314,18 @@ def by_response(request: Request) -> CriticalSpeeds:
             "add some with with_modal_damping",
         )
     speeds = np.linspace(request.low, request.high, request.speeds)
-    mean = natural_frequencies(system, 0.0, request.count).mean
     values = _scanned(system, speeds)
     if values is None:
         values, _ = _deflections(system, speeds, request.progress)
-    top = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
+    top = local_maxima(values)
     speed = height = error = np.zeros(0)
     if len(top):
         speed, height, error = _maxima(system, speeds[top - 1], speeds[top + 1])
-    return _result(
-        request,
-        mean,
-        (speed, *label_speeds(mean, speed), error),
+    return request.answered(
         f"local maxima of the steady state, {len(speeds)} speeds scanned",
+        speed,
+        *label_speeds(request.mean, speed),
+        error,
         height=height,
         scan=(speeds, values),
         quantity="r.m.s. deflection over length",
@@ -361,29 +363,22 @@ def _deflections(
     system: LinearPeriodic, speeds: Array, progress: bool = False
 ) -> tuple[Array, Array]:
     """Return the largest r.m.s. deflection over the length, and the motions' relative error."""
-    from ..periodic import steady_state
+    from ..periodic.peaks import quiet_state
 
-    relative = system.relative_deflection
-    if relative is None and system.shape is None and system.moving_shape is None:
-        raise bad(
-            "system",
-            "deflections that are not known",
-            "mode shapes or relative_deflection",
-            "choose another method",
-        )
     rtol = _FINE if system.structure is None else _RTOL
     out, error = np.empty((2, len(speeds)))
-    with warnings.catch_warnings(), bar(progress, len(speeds)) as tick:
-        # At a critical speed the linear range is left as a matter of course.
-        warnings.simplefilter("ignore", LinearRangeWarning)
+    with bar(progress, len(speeds)) as tick:
         for begin in range(0, len(speeds), _TOGETHER):
             part = slice(begin, min(begin + _TOGETHER, len(speeds)))
-            state = steady_state(system, speeds[part], rtol=rtol)
-            if relative is not None:
-                rows = relative(state.theta)
-            else:
-                shapes = system.shapes(np.linspace(0.0, 1.0, 21), state.theta)
-                rows = np.zeros((len(state.theta), 1, system.size)) if shapes is None else shapes
+            state = quiet_state(system, speeds[part], rtol)
+            rows = system.deflection_rows(state.theta, np.linspace(0.0, 1.0, 21))
+            if rows is None:
+                raise bad(
+                    "system",
+                    "deflections that are not known",
+                    "mode shapes or relative_deflection",
+                    "choose another method",
+                )
             # One speed at a time: deflections of all would fill the memory.
             squares = [np.mean(np.einsum("tkn,tn->tk", rows, q) ** 2, axis=0) for q in state.q]
             out[part] = np.sqrt(np.max(squares, axis=1))
@@ -508,8 +503,8 @@ def critical_speeds(
     count = require_whole("modes", wanted, 1, system.size)
     if not (isinstance(speeds, int) and speeds >= 3):
         raise bad("speeds", repr(speeds), "a whole number, 3 or more", "choose 240")
-    request = Request(system, low, high, count, speeds, progress)
-    return METHODS[method](request)
+    means = mean_frequencies(system, count, _ENOUGH)
+    return METHODS[method](Request(system, low, high, *means, speeds, progress))
 
 
 def _require_moving(system: LinearPeriodic) -> None:

@@ -290,8 +290,8 @@ def element_matrices(
     arrays, angle = AngleArrays(structure), np.array([float(theta)])
     made = _assembly(structure, float(theta), structure.freedoms, rigid)
     reduction = made.reduction
-    mass = arrays.mass(angle)[0] + np.diag(made.lumped_mass)
-    stiffness = arrays.stiffness(angle)[0] + np.diag(made.springs)
+    mass = arrays.sum("mass", angle)[0] + np.diag(made.lumped_mass)
+    stiffness = arrays.sum("stiffness", angle)[0] + np.diag(made.springs)
     return reduction.T @ mass @ reduction, reduction.T @ stiffness @ reduction, reduction
 
 

@@ -5,16 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.errors import bad
+from ..core.errors import BadInput, bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers_in_a_row, require_kind
 from ..core.maxima import narrowed
 from ..core.trigonometric import even_angles
+from ..periodic.moving_basis import flexible_modes
 
 Array = NDArray[np.float64]
 
@@ -58,11 +58,10 @@ def held_modes(
     A mass or stiffness that is not positive definite at some angle is refused.
     """
     mass, stiffness = held_arrays(system, theta, parameters, speed)
-    half = _inverse_factor(mass, stiffness, theta)
-    flexibility = half @ mass @ np.swapaxes(half, -1, -2)
-    # Of the inverse problem the lowest frequencies are the largest eigenvalues, the accurate ones.
-    _, vectors = np.linalg.eigh((flexibility + np.swapaxes(flexibility, -1, -2)) / 2)
-    shape = np.swapaxes(half, -1, -2) @ vectors[:, :, ::-1]
+    try:
+        _, shape = flexible_modes(mass, stiffness)
+    except np.linalg.LinAlgError:
+        raise _indefinite(mass, stiffness, theta) from None
     square, error = _quotients(mass, stiffness, shape)
     shape = shape / np.sqrt(np.einsum("tik,tij,tjk->tk", shape, mass, shape))[:, None, :]
     order = np.argsort(square, axis=1, kind="stable")
@@ -89,23 +88,19 @@ def _quotients(mass: Array, stiffness: Array, shape: Array) -> tuple[Array, Arra
     return square, 2.0 * _EPS * summed / kinetic
 
 
-def _inverse_factor(mass: Array, stiffness: Array, theta: Array) -> Array:
-    """Return the inverse of Cholesky's factor of K; both matrices must have one."""
-    factor: NDArray[np.floating[Any]] = mass
-    for name, matrix in (("mass M", mass), ("stiffness K + Kg", stiffness)):
-        try:
-            factor = np.linalg.cholesky(matrix)
-        except np.linalg.LinAlgError:
-            symmetric = (matrix + np.swapaxes(matrix, -1, -2)) / 2
-            lowest = np.min(np.linalg.eigvalsh(symmetric), axis=-1)
-            where = float(theta[int(np.argmin(lowest))])
-            raise bad(
-                name,
-                f"smallest eigenvalue {float(np.min(lowest)):.3g} at crank angle {where:.6g}",
-                "a positive definite matrix at every angle",
-                "check the parameters; a rigid or buckled motion has no natural frequency",
-            ) from None
-    return np.asarray(np.linalg.inv(factor))
+def _indefinite(mass: Array, stiffness: Array, theta: Array) -> BadInput:
+    """Return the refusal of the mass, or else of the stiffness, with its smallest eigenvalue."""
+    both = (matrix + np.swapaxes(matrix, -1, -2) for matrix in (mass, stiffness))
+    of_mass, of_stiffness = (np.min(np.linalg.eigvalsh(matrix / 2), axis=-1) for matrix in both)
+    name, lowest = "mass M", of_mass
+    if np.min(of_mass) > 0.0:
+        name, lowest = "stiffness K + Kg", of_stiffness
+    return bad(
+        name,
+        f"smallest eigenvalue {np.min(lowest):.3g} at crank angle {theta[np.argmin(lowest)]:.6g}",
+        "a positive definite matrix at every angle",
+        "check the parameters; a rigid or buckled motion has no natural frequency",
+    )
 
 
 def require_system(system: object) -> None:

@@ -313,7 +313,7 @@ def _changed(system: LinearPeriodic, link: str, quantity: str, value: float) -> 
         beams = tuple(changed if one is beam else one for one in structure.beams)
         return replace(structure, beams=beams)
 
-    return _remade(system, change)
+    return system.remeshed(change)
 
 
 def _heavier(system: LinearPeriodic, name: str, factor: float) -> LinearPeriodic:
@@ -325,11 +325,4 @@ def _heavier(system: LinearPeriodic, name: str, factor: float) -> LinearPeriodic
         nodes = tuple(changed if one is node else one for one in structure.nodes)
         return replace(structure, nodes=nodes)
 
-    return _remade(system, change)
-
-
-def _remade(system: LinearPeriodic, change: Callable[[Structure], Structure]) -> LinearPeriodic:
-    """Return the system of a changed structure, its loads, further terms and parameters kept."""
-    if system.remesh is None:
-        raise bad("system", "one made for its own beams alone", "a linkage", "use linkage_system")
-    return replace(system.remesh(change), parameters=dict(system.parameters))
+    return system.remeshed(change)

@@ -29,7 +29,6 @@ _BENDING = (
     (5, 5, 1, 1, 2),
 )
 _AXIAL = ((0, 0, 0), (0, 3, 1), (3, 3, 0))
-_LOWER = np.tril_indices(6, -1)
 
 
 def phases(
@@ -93,18 +92,9 @@ def member_matrices(
     square = np.asarray(omega)[..., None] ** 2
     elastic = np.where(rigid, 1.0, ea) / span * stretch
     along = np.where(rigid, -square * weight * stretch_rates, elastic)
-    shape = (*z.shape, 6, 6)
-    kind = np.result_type(z, b, along, ei)
-    stiffness, mass = np.zeros(shape, kind), np.zeros(shape, kind)
-    bend, bend_rates = functions.bending(z), functions.bending_rates(z)
-    for row, column, sign, which, power in _BENDING:
-        factor = sign * span**power
-        stiffness[..., row, column] = factor * (ei / span**3) * bend[which]
-        mass[..., row, column] = factor * weight * bend_rates[which]
-    for row, column, which in _AXIAL:
-        stiffness[..., row, column] = along[which]
-        mass[..., row, column] = weight * stretch_rates[which]
-    return _mirrored(stiffness), _mirrored(mass)
+    stiffness = _placed((ei / span**3) * np.array(functions.bending(z)), along, span)
+    bend_rates = np.array(functions.bending_rates(z))
+    return stiffness, _placed(weight * bend_rates, weight * stretch_rates, span)
 
 
 def member_inertias(
@@ -118,20 +108,18 @@ def member_inertias(
     given = (length, bending_stiffness, axial_stiffness, mass_per_length)
     z, b = phases(omega, *given)
     weight = mass_per_length * length
-    found = np.zeros((len(z), 6, 6))
-    bend, along = functions.bending_inertias(z), functions.axial_inertias(b)
+    across, along = functions.bending_inertias(z), functions.axial_inertias(b)
+    return _placed(weight * np.array(across), weight * np.array(along), length)
+
+
+def _placed(across: Array, along: Array, length: Array) -> Array:
+    """Return matrices ``(..., n, 6, 6)`` of the functions of bending and of axial motion."""
+    found = np.zeros((*across.shape[1:], 6, 6), np.result_type(across, along))
     for row, column, sign, which, power in _BENDING:
-        found[:, row, column] = sign * length**power * weight * bend[which]
+        found[..., row, column] = found[..., column, row] = sign * length**power * across[which]
     for row, column, which in _AXIAL:
-        found[:, row, column] = weight * along[which]
-    return _mirrored(found)
-
-
-def _mirrored(upper: Array) -> Array:
-    """Fill the lower half of matrices from the upper one."""
-    row, column = _LOWER
-    upper[..., row, column] = upper[..., column, row]
-    return upper
+        found[..., row, column] = found[..., column, row] = along[which]
+    return found
 
 
 def _require_positive(values: dict[str, ArrayLike]) -> None:

@@ -13,11 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
-from ..core.maxima import narrowed
+from ..core.maxima import local_maxima, narrowed
 from ..core.results import Result, provenance
 from ..periodic.peaks import peak_error, quiet_state, require_shapes
 from .critical import label_speeds
-from .natural import natural_frequencies
+from .held import mean_frequencies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -160,10 +160,10 @@ def resonance_curve(
     if speeds.ndim != 1 or len(speeds) < 3 or not np.all(np.diff(speeds) > 0):
         raise bad("speed", speed, "at least three rising speeds [rad/s]", "use numpy.linspace")
     require_shapes("resonance_curve", system)
-    mean = natural_frequencies(system, 0.0, **parameters).mean
+    mean, _ = mean_frequencies(system.with_parameters(**parameters), min(6, system.size), 1e-12)
     state = quiet_state(system, speeds, rtol, parameters)
     peak = state.peak(x)
-    tops = _tops(peak)
+    tops = local_maxima(peak)
 
     def peaks(at: Array) -> Array:
         return quiet_state(system, at, rtol, parameters).peak(x)
@@ -191,12 +191,3 @@ def resonance_curve(
         mean_frequency=mean,
         x=float(x),
     )
-
-
-def _tops(peak: Array) -> NDArray[np.intp]:
-    """Return the places of the local maxima of a curve; a gap in it is none."""
-    values = np.where(np.isfinite(peak), peak, np.inf)
-    middle = values[1:-1]
-    top = (middle > values[:-2]) & (middle >= values[2:]) & np.isfinite(middle)
-    places: NDArray[np.intp] = np.flatnonzero(top) + 1
-    return places

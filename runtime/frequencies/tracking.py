@@ -204,21 +204,12 @@ def _swapped(
     """Return the encounters at which neighbours in rank swap their shapes."""
     out = []
     for index, ranks in swaps:
-        low, high = theta[index], theta[index + 1]
-        if len(ranks) == len({*ranks}) and all(k + 1 not in ranks for k in ranks):
-            out += [_looked_at(modes, arrays, low, high, k, period) for k in ranks]
-            continue
-        # Several meet at once: one angle for all, in the order of the swaps.
-        angle, doubt = least_gap(modes, float(low), float(high), ranks[0])
-        out += [describe(modes, arrays, angle, doubt, k, period) for k in ranks]
+        apart = len(ranks) == len({*ranks}) and all(k + 1 not in ranks for k in ranks)
+        # Of several that meet at once there is one angle for all, in the order of the swaps.
+        for group in [(k,) for k in ranks] if apart else [ranks]:
+            at = least_gap(modes, float(theta[index]), float(theta[index + 1]), group[0])
+            out += [describe(modes, arrays, *at, k, period) for k in group]
     return out
-
-
-def _looked_at(
-    modes: Modes, arrays: Arrays, low: float, high: float, rank: int, period: float
-) -> Encounter:
-    angle, doubt = least_gap(modes, float(low), float(high), rank)
-    return describe(modes, arrays, angle, doubt, rank, period)
 
 
 def _with(modes: Modes, theta: Array, held: HeldModes, new: Array) -> tuple[Array, HeldModes]:
@@ -308,7 +299,8 @@ def _narrows(
             rise = max(before, after) ** 2 - here**2
             if here**2 * (theta[k + 1] - low) ** 2 > (2 * _WIDEST * period) ** 2 * rise:
                 continue
-            found = _looked_at(modes, arrays, low, theta[k + 1], rank, period)
+            at = least_gap(modes, float(low), float(theta[k + 1]), rank)
+            found = describe(modes, arrays, *at, rank, period)
             # An encounter this close to the last one, over the period, is the same.
             near = [
                 one

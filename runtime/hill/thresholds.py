@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, bad
-from ..core.maxima import narrowed
+from ..core.maxima import local_maxima, narrowed
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
@@ -344,7 +344,7 @@ def _climb(closing: Solver, grid: Array, most: float) -> tuple[Array, Array]:
 
 def _peaks(closing: Solver, grid: Array, value: Array) -> tuple[Array, Array]:
     """Return the places of maxima near those on a grid, and the values there."""
-    inner = np.flatnonzero((value[1:-1] > value[:-2]) & (value[1:-1] >= value[2:])) + 1
+    inner = local_maxima(value)
     if not inner.size:
         return np.zeros(0), np.zeros(0)
 

@@ -6,7 +6,7 @@ the subspace that they span does neither where the next frequency keeps its dist
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -66,10 +66,29 @@ class MovingBasis:
         """Return dPhi/dtheta at angles ``(nt,)`` [rad], shape ``(nt, n, m)``."""
         return self.series.derivative(np.asarray(theta, dtype=float))
 
+    def deflections_of(self, system: LinearPeriodic) -> dict[str, Any]:
+        """Return how a system deflects by coordinates on the basis, as a LinearPeriodic has it."""
+        found: dict[str, Any] = {}
+        if system.shape is not None or system.moving_shape is not None:
+            found["moving_shape"] = partial(_shapes, system, self)
+        if system.relative_deflection is not None:
+            found["relative_deflection"] = partial(_deflections, system.relative_deflection, self)
+        return found
+
     @property
     def fixed(self) -> bool:
         """True where the basis does not depend on the angle."""
         return len(self.theta) == 1
+
+
+def _shapes(system: LinearPeriodic, basis: MovingBasis, x: Array, theta: Array) -> Array:
+    shapes = system.shapes(x, theta)
+    assert shapes is not None
+    return np.asarray(shapes @ basis(theta))
+
+
+def _deflections(full: Callable[[Array], Array], basis: MovingBasis, theta: Array) -> Array:
+    return np.asarray(full(theta) @ basis(theta))
 
 
 @dataclass(frozen=True)
@@ -206,14 +225,26 @@ def natural_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
     LinAlgError
         If a matrix is not positive definite.
     """
+    values, shapes = flexible_modes(mass, stiffness)
+    return 1.0 / values, shapes / np.sqrt(values)[:, None, :]
+
+
+def flexible_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
+    """Return one over squared natural frequencies, falling, and K-orthonormal modes at angles.
+
+    Where the matrices are ill-conditioned the last values are round-off, of either sign.
+
+    Raises
+    ------
+    LinAlgError
+        If a matrix is not positive definite.
+    """
     np.linalg.cholesky(mass)
     root = np.linalg.inv(np.linalg.cholesky(stiffness))
     # The flexible modes are the large eigenvalues of the inverse problem, the accurate ones.
     flexible = root @ mass @ np.swapaxes(root, -1, -2)
     values, vectors = np.linalg.eigh(0.5 * (flexible + np.swapaxes(flexible, -1, -2)))
-    values, vectors = values[:, ::-1], vectors[:, :, ::-1]
-    shapes = np.swapaxes(root, -1, -2) @ vectors / np.sqrt(values)[:, None, :]
-    return 1.0 / values, shapes
+    return values[:, ::-1], np.swapaxes(root, -1, -2) @ vectors[:, :, ::-1]
 
 
 def _border(squares: Array, modes: int) -> tuple[Array, Array]:
@@ -271,52 +302,3 @@ def _rough(modes: int, found: str) -> Exception:
         "a subspace that is smooth and periodic in the crank angle",
         "keep one mode more or less, so that the next frequency keeps its distance at all angles",
     )
-
-
-def projections(array: str, values: Array, phi: Array, slope: Array) -> Iterator[tuple[str, Array]]:
-    """Yield the arrays that one array of a system gives on a basis and its derivative.
-
-    Parameters
-    ----------
-    array : str
-        ``M A B S C D K Kg f h g p``.
-    values : ndarray, shape (nt, n, n) or (nt, n)
-        Its samples.
-    phi, slope : ndarray, shape (nt, n, m)
-        Phi and Phi' there.
-    """
-    across = np.swapaxes(phi, -1, -2)
-    if values.ndim == 2:
-        yield array, (across @ values[..., None])[..., 0]
-        return
-    carried = values @ phi
-    yield array, across @ carried
-    turning = np.swapaxes(slope, -1, -2)
-    if array == "M":
-        yield "A", across @ (values @ slope)
-        yield "B", turning @ (values @ slope)
-    elif array == "A":
-        both = turning @ carried
-        yield "B", both + np.swapaxes(both, -1, -2)
-    elif array == "C":
-        yield "D", across @ (values @ slope)
-
-
-def deflection_on(system: LinearPeriodic, basis: MovingBasis) -> dict[str, Any]:
-    """Return what tells the deflection of a system on a basis, as fields of a LinearPeriodic."""
-    more: dict[str, Any] = {}
-    if system.shape is not None or system.moving_shape is not None:
-        more["moving_shape"] = partial(_shapes, system, basis)
-    if system.relative_deflection is not None:
-        more["relative_deflection"] = partial(_deflections, system.relative_deflection, basis)
-    return more
-
-
-def _shapes(system: LinearPeriodic, basis: MovingBasis, x: Array, theta: Array) -> Array:
-    shapes = system.shapes(x, theta)
-    assert shapes is not None
-    return np.asarray(shapes @ basis(theta))
-
-
-def _deflections(full: Callable[[Array], Array], basis: MovingBasis, theta: Array) -> Array:
-    return np.asarray(full(theta) @ basis(theta))

@@ -347,17 +347,21 @@ def _spectra(way: Method, equation: Equation, segments: int) -> tuple[Array, ...
     matrix, exponent, rounding = _matrices(way, equation, segments)
     _, extra = np.frexp(np.max(np.abs(matrix), axis=(-2, -1)))
     matrix, exponent = np.ldexp(matrix, -extra[:, None, None]), exponent + extra
-    values, vectors = np.linalg.eig(matrix)
-    values = values.astype(complex)
-    norm = np.linalg.norm(matrix, axis=(-2, -1))[:, None]
-    shift = rounding[:, None]
+    found: tuple[Any, ...] = (matrix, exponent, *eigenvalues(matrix, rounding))
+    return found
+
+
+def eigenvalues(matrices: Array, shift: Array) -> tuple[ComplexArray, Array, ComplexArray]:
+    """Return eigenvalues, how far errors of the matrices ``(nb,)`` may move them, eigenvectors."""
+    values, vectors = np.linalg.eig(matrices)
+    values, shift = values.astype(complex), shift[:, None]
+    norm = np.linalg.norm(matrices, axis=(-2, -1))[:, None]
     # Near a double eigenvalue the condition number explodes and the square root holds; near an
     # r-fold one the r-th root.
     distance = np.abs(values[:, :, None] - values[:, None, :])
     near = np.sum(distance <= 2.0 * np.sqrt(norm * shift)[..., None], axis=-1)
     root = 2.0 * norm * (shift / norm) ** (1.0 / np.maximum(near, 2))
-    moved = np.minimum(conditions(vectors) * shift, root)
-    return matrix, exponent, values, moved, vectors.astype(complex)
+    return values, np.minimum(conditions(vectors) * shift, root), vectors.astype(complex)
 
 
 def conditions(vectors: ComplexArray) -> Array:

@@ -165,13 +165,16 @@ def require_shapes(where: str, system: LinearPeriodic) -> None:
 
 
 def quiet_state(
-    system: LinearPeriodic, speeds: Array, rtol: float, parameters: Mapping[str, float]
+    system: LinearPeriodic,
+    speeds: ArrayLike,
+    rtol: float,
+    parameters: Mapping[str, float] | None = None,
 ) -> SteadyState:
     """Return the steady state without a warning of the linear range; its check tells."""
     with warnings.catch_warnings():
         # At a resonance it is left as a matter of course.
         warnings.simplefilter("ignore", LinearRangeWarning)
-        changes: dict[str, Any] = dict(parameters)
+        changes: dict[str, Any] = dict(parameters or {})
         return steady_state(system, speeds, rtol=rtol, **changes)
 
 

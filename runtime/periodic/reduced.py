@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from ..core.families import LinearPeriodic, Term
 from ..core.trigonometric import Array, even_angles, interpolated, tail
-from .moving_basis import MovingBasis, deflection_on, moving_basis, projections
+from .moving_basis import MovingBasis, moving_basis
 
 # Even angles from which the reduced arrays are interpolated.
 _FEWEST, _MOST = 128, 2048
@@ -137,7 +137,7 @@ def reduced_system(
         limits=system.limits,
         full=system,
         basis=phi,
-        **deflection_on(system, phi),
+        **phi.deflections_of(system),
     )
 
 
@@ -149,6 +149,35 @@ def _reduced_anew(
 ) -> LinearPeriodic:
     """Return another geometry's system on its own modes."""
     return reduced_system(replace(rebuild(geometry), parameters=dict(parameters)), modes)
+
+
+def projections(array: str, values: Array, phi: Array, slope: Array) -> Iterator[tuple[str, Array]]:
+    """Yield the arrays that one array of a system gives on a basis and its derivative.
+
+    Parameters
+    ----------
+    array : str
+        ``M A B S C D K Kg f h g p``.
+    values : ndarray, shape (nt, n, n) or (nt, n)
+        Its samples.
+    phi, slope : ndarray, shape (nt, n, m)
+        Phi and Phi' there.
+    """
+    across = np.swapaxes(phi, -1, -2)
+    if values.ndim == 2:
+        yield array, (across @ values[..., None])[..., 0]
+        return
+    carried = values @ phi
+    yield array, across @ carried
+    turning = np.swapaxes(slope, -1, -2)
+    if array == "M":
+        yield "A", across @ (values @ slope)
+        yield "B", turning @ (values @ slope)
+    elif array == "A":
+        both = turning @ carried
+        yield "B", both + np.swapaxes(both, -1, -2)
+    elif array == "C":
+        yield "D", across @ (values @ slope)
 
 
 def _fixed_terms(system: LinearPeriodic, phi: MovingBasis) -> tuple[Term, ...]:

@@ -137,15 +137,11 @@ class Truncations:
     ----------
     system : LinearPeriodic
         The system.
-    modes : int, optional
-        The least number of modes that is kept; by default any with a gap to the next.
     """
 
-    def __init__(self, system: LinearPeriodic, modes: int | None = None) -> None:
+    def __init__(self, system: LinearPeriodic) -> None:
         self.system = system
         self.numbers = modes_offered(system)
-        if modes is not None:
-            self.numbers = [modes, *(m for m in self.numbers if m > modes)]
         self._made: dict[tuple[int, int], tuple[TruncatedSystem, SampledSystem] | None] = {}
         self._held = lru_cache(maxsize=None)(partial(still_modes, system))
         self._arrays = lru_cache(maxsize=None)(self._arrays_at)

@@ -24,14 +24,8 @@ from ..core.families import LinearPeriodic, Term
 from ..core.inputs import require_whole
 from ..core.trigonometric import differentiated, interpolated, resampled
 from .equation import SPEED_POWER
-from .moving_basis import (
-    MovingBasis,
-    StillModes,
-    carried_basis,
-    deflection_on,
-    projections,
-    still_modes,
-)
+from .moving_basis import MovingBasis, StillModes, carried_basis, still_modes
+from .reduced import projections
 
 Array = NDArray[np.float64]
 
@@ -97,31 +91,12 @@ class TruncatedSystem(LinearPeriodic):
         q = self.modes @ reduced
         change = np.zeros(q.shape[1:])
         for _ in range(_CORRECTIONS):
-            correction = self.flexibility @ self._rest(q, speeds)
+            correction = self.flexibility @ unmet_forces(self.arrays, self.period, q, speeds)
             q = q + correction
             change = np.max(np.abs(correction), axis=0)
         size = np.max(np.abs(q), axis=0)
         relative = np.max(change / np.where(size > 0.0, size, 1.0), axis=0)
         return np.moveaxis(q, -1, 0), relative
-
-    def _rest(self, q: Array, speeds: Array) -> Array:
-        """Return forces less what motions ``(nt, n, ns)`` need, of the same shape."""
-        slope = differentiated(q, self.period)
-        momentum, total = np.zeros_like(q), np.zeros_like(q)
-        for (array, power), values in self.arrays.items():
-            factor = speeds**power
-            if values.ndim == 2:
-                total += values[..., None] * factor
-            elif array == "M":
-                momentum += factor * (values @ slope)
-            elif array == "A":
-                momentum += factor * (values @ q)
-                total += factor * (np.swapaxes(values, -1, -2) @ slope)
-            elif array == "C":
-                total -= factor * (values @ slope)
-            else:
-                total += (1.0 if array == "B" else -1.0) * factor * (values @ q)
-        return np.asarray(total - differentiated(momentum, self.period))
 
 
 def modal_truncation(
@@ -224,11 +199,10 @@ def truncated_on(
             for (name, power), values in sums.items()
             if np.any(values)
         ),
-        parameters={},
-        scales=_no_scales,
         period=period,
         labels=tuple(f"mode {k + 1}" for k in range(size)),
         reference_length=system.reference_length,
+        **basis.deflections_of(system),
         provenance={**system.provenance, "modes kept": str(size)},
         full=system,
         theta=basis.theta,
@@ -237,7 +211,6 @@ def truncated_on(
         arrays=arrays,
         highest_kept=float(np.max(basis.kept)),
         lowest_left_out=float(np.min(basis.left_out)),
-        **deflection_on(system, basis),
     )
 
 
@@ -258,6 +231,31 @@ def arrays_at(system: LinearPeriodic, theta: Array) -> dict[tuple[str, int], Arr
         if np.any(part):
             sums[key] = sums[key] + part if key in sums else part
     return sums
+
+
+def unmet_forces(
+    arrays: Mapping[tuple[str, int], Array], period: float, q: Array, speeds: Array
+) -> Array:
+    """Return forces less what motions ``(nt, n, ns)`` need, of the same shape.
+
+    The arrays are those of :func:`arrays_at`, at the even angles of the motions.
+    """
+    slope = differentiated(q, period)
+    momentum, total = np.zeros_like(q), np.zeros_like(q)
+    for (array, power), values in arrays.items():
+        factor = speeds**power
+        if values.ndim == 2:
+            total += values[..., None] * factor
+        elif array == "M":
+            momentum += factor * (values @ slope)
+        elif array == "A":
+            momentum += factor * (values @ q)
+            total += factor * (np.swapaxes(values, -1, -2) @ slope)
+        elif array == "C":
+            total -= factor * (values @ slope)
+        else:
+            total += (1.0 if array == "B" else -1.0) * factor * (values @ q)
+    return np.asarray(total - differentiated(momentum, period))
 
 
 @dataclass
@@ -356,7 +354,3 @@ def _followed(
 
 def _symmetric(matrices: Array) -> Array:
     return np.asarray(0.5 * (matrices + np.swapaxes(matrices, -1, -2)))
-
-
-def _no_scales(values: Mapping[str, ArrayLike]) -> Mapping[str, Array]:
-    return {}

@@ -21,7 +21,6 @@ from ..beams.element_forms import ElementForms, required_structure
 from ..beams.elements import placed_rotation, placed_shapes
 from ..beams.recovery_forms import LinearForm, stacked
 from ..beams.structure import Beam, PlacedElement, Structure
-from ..core.deferred import DeferredGroup
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
@@ -310,7 +309,7 @@ def recover(
     chosen = stations_of(required_structure(system), stations)
     moving = beam_motion(system, motion)
     own: dict[str, Any] = dict(evaluated(system, moving, stations, method))
-    doubt = DeferredGroup(partial(_doubt, system, moving, stations, method, own))
+    doubt = partial(_doubt, system, moving, stations, method, own)
     return BeamForces(
         method=method,
         links=tuple(station.beam for station in chosen),

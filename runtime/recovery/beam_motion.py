@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeAlias
@@ -11,7 +10,7 @@ import numpy as np
 
 from ..beams.assembly import Array
 from ..beams.element_forms import required_structure
-from ..core.errors import BadInput, LinearRangeWarning, Problem, bad
+from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic
 from ..core.results import Check
 
@@ -61,7 +60,6 @@ class BeamMotion:
     checks: Mapping[str, Check] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Check shapes and values."""
         problems = []
         if (
             self.q.ndim != 2
@@ -137,12 +135,10 @@ def chunks(motion: BeamMotion) -> list[slice]:
 
 def quiet_steady_state(system: LinearPeriodic, speed: float) -> SteadyState:
     """Return the steady state at a speed [rad/s]; the caller looks at the linear range."""
-    from ..periodic import steady_state
+    from ..periodic.peaks import quiet_state
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", LinearRangeWarning)
-        # Mesh and equations err far more than this.
-        return steady_state(system, speed, rtol=1e-7)
+    # Mesh and equations err far more than this.
+    return quiet_state(system, speed, 1e-7)
 
 
 def _steady(motion: SteadyState) -> BeamMotion:

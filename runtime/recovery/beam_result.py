@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -14,7 +13,7 @@ from ..beams.assembly import Array
 from ..beams.element_forms import ElementForms
 from ..beams.recovery_forms import LinearForm
 from ..core.deferred import DeferredField, DeferredGroup
-from ..core.errors import LINEAR_RANGE, LinearRangeWarning, bad
+from ..core.errors import LINEAR_RANGE, bad, warn_of_large_deflection
 from ..core.families import LinearPeriodic
 from ..core.results import Check, Result, provenance
 from .beam_motion import BeamMotion, chunks
@@ -79,42 +78,30 @@ def stations_on(links: tuple[str, ...], link: str) -> NDArray[np.int64]:
 def in_motion(
     system: LinearPeriodic,
     motion: BeamMotion,
-    doubt: DeferredGroup,
+    doubt: Callable[[], Mapping[str, Any]],
     checks: Mapping[str, Check] | None = None,
+    later: tuple[str, ...] = ("error", "error_norm"),
 ) -> dict[str, Any]:
-    """Return the fields of :class:`BeamResult`, all but the method, with an error to be computed.
+    """Return the fields of :class:`BeamResult`, all but the method.
 
-    Warns whoever called the caller where a deflection is beyond 5 % of the length of its beam.
+    Those named in ``later`` come from ``doubt()`` when they are first looked at.  Warns whoever
+    called the caller where a deflection is beyond 5 % of the length of its beam.
     """
+    found = {**motion.checks, **(checks or {})}
+    parts = [system.largest_deflection(motion.theta[c], motion.q[None, c]) for c in chunks(motion)]
+    sizes = [size for size in parts if size is not None]
+    if sizes:
+        found["linear range"] = Check(max(sizes), LINEAR_RANGE)
+        fix = "lower the speed or stiffen the beams"
+        warn_of_large_deflection(max(sizes), "the length of its beam", fix, stacklevel=4)
+    group = DeferredGroup(doubt)
     return {
-        "error": doubt.later("error"),
-        "error_norm": doubt.later("error_norm"),
-        "checks": {**motion.checks, **(checks or {}), **_linear_range(system, motion)},
+        **{name: group.later(name) for name in later},
+        "checks": found,
         "provenance": provenance({**system.provenance, **motion.provenance}),
         "speed": motion.speed,
         "theta": motion.theta,
     }
-
-
-def _linear_range(system: LinearPeriodic, motion: BeamMotion) -> dict[str, Check]:
-    """Return the check of the largest deflection over the length of its beam."""
-    if system.relative_deflection is None:
-        return {}
-    largest = 0.0
-    for chunk in chunks(motion):
-        rows = system.relative_deflection(motion.theta[chunk])
-        largest = max(
-            largest, float(np.max(np.abs(np.einsum("tkn,tn->tk", rows, motion.q[chunk]))))
-        )
-    if largest > LINEAR_RANGE:
-        warnings.warn(
-            f"deflection reaches {largest:.3g} of the length of its beam; the linear equations "
-            f"hold to about {LINEAR_RANGE}: lower the speed or stiffen the beams",
-            LinearRangeWarning,
-            # Through in_motion and the function that was called, to its caller.
-            stacklevel=4,
-        )
-    return {"linear range": Check(largest, LINEAR_RANGE)}
 
 
 class MotionValues:

@@ -12,7 +12,6 @@ import numpy as np
 from ..beams.assembly import Array
 from ..beams.element_forms import required_structure
 from ..beams.structure import Beam
-from ..core.deferred import DeferredGroup
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite
@@ -127,7 +126,7 @@ def elastic_coupler_curve(
         raise bad("system", "a structure that stands still", "a linkage", "use recover()")
     place = (float(foot), float(across))
     shift, doubt = _shift(system, beam, moving, place)
-    later = DeferredGroup(partial(_doubt, system, moving, link, place, (shift, doubt)))
+    later = partial(_doubt, system, moving, link, place, (shift, doubt))
     rigid = structure.configuration(moving.theta)[link].point(float(foot), float(across)).position
     return ElasticCurve(
         method="shape functions",

@@ -14,8 +14,8 @@ import numpy as np
 from ..beams.assembly import Array
 from ..beams.structure import Beam, Structure
 from ..core.errors import BadInput
-from ..core.families import MATRICES, LinearPeriodic
-from ..core.trigonometric import differentiated
+from ..core.families import LinearPeriodic
+from ..core.trigonometric import differentiated, even_angles
 from .beam_motion import BeamMotion, standing
 
 # The finer mesh is not the last one: where a resonance is near both may be off to one side.
@@ -44,31 +44,13 @@ def _finer(beam: Beam) -> Beam:
 
 def finer_system(system: LinearPeriodic) -> LinearPeriodic | None:
     """Return the same system on a finer mesh; None where its terms tell no other mesh."""
-    if system.remesh is None or not _is_remade(system):
+    if system.remesh is None or not system.has_terms_of(system.remesh(lambda same: same)):
         return None
     try:
-        made = system.remesh(finer_structure)
+        return system.remeshed(finer_structure)
     except (BadInput, ValueError):
         # Terms of this mesh alone were added to the system.
         return None
-    return replace(made, parameters=dict(system.parameters))
-
-
-def _is_remade(system: LinearPeriodic) -> bool:
-    """Return whether the system made anew on its own mesh is the one that is given."""
-    if system.remesh is None:
-        return False
-    theta = system.period * np.array([0.1, 0.45, 0.8])
-    made = system.remesh(_as_it_is)
-    return len(made.terms) == len(system.terms) and all(
-        (new.array, new.scale, new.power) == (own.array, own.scale, own.power)
-        and np.allclose(new(theta), own(theta), rtol=1e-6, atol=0.0)
-        for new, own in zip(made.terms, system.terms, strict=True)
-    )
-
-
-def _as_it_is(structure: Structure) -> Structure:
-    return structure
 
 
 def on_finer_mesh(
@@ -148,18 +130,9 @@ def answered(system: LinearPeriodic, speed: float, q: Array) -> Array:
     A displacement that is wrong by a millionth, across the beams, may stretch them by far more
     than they are: stiff directions are taken from the forces instead.
     """
-    period = system.period
-    theta = period * np.arange(len(q)) / len(q)
-    at = {name: system.array(name, theta, speed) for name in (*MATRICES, "f", "h", "p")}
+    from ..periodic.truncation import arrays_at, unmet_forces
 
-    def acting(name: str, values: Array) -> Array:
-        return np.asarray((at[name] @ values[..., None])[..., 0])
-
-    slope = differentiated(q, period)
-    momentum = acting("M", slope) + acting("A", q)
-    back = (np.swapaxes(at["A"], -1, -2) @ slope[..., None])[..., 0] + acting("B", q)
-    inertia = speed**2 * (differentiated(momentum, period) - back - at["f"])
-    drag = speed * (acting("C", slope) + acting("D", q) - at["h"])
-    stiffness = at["K"] + at["Kg"]
-    rest = at["p"] - inertia - drag - (stiffness @ q[..., None])[..., 0]
-    return np.asarray(q + np.linalg.solve(stiffness, rest[..., None])[..., 0])
+    theta, speeds = even_angles(system.period, len(q)), np.array([speed])
+    rest = unmet_forces(arrays_at(system, theta), system.period, q[..., None], speeds)
+    stiffness = system.array("K", theta) + system.array("Kg", theta, speed)
+    return np.asarray(q + np.linalg.solve(stiffness, rest)[..., 0])

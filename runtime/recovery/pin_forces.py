@@ -11,7 +11,6 @@ import numpy as np
 
 from ..beams.assembly import Array
 from ..beams.element_forms import ElementForms, required_structure
-from ..core.deferred import DeferredGroup
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.results import Check
@@ -152,7 +151,7 @@ def pin_reactions(system: LinearPeriodic, motion: Motion | float | None = None) 
     gap = float(np.max(np.abs(total + drag - rate)))
     # Round-off of the balance, over the largest end force of an element.
     checks = {"balance": Check(gap / largest if largest else gap, 1e-9)}
-    doubt = DeferredGroup(partial(_doubt, system, moving, on_beams))
+    doubt = partial(_doubt, system, moving, on_beams)
     return PinReactions(
         method="end forces of the elements",
         on_beams=on_beams,
@@ -225,9 +224,7 @@ def _outside_forces(forms: ElementForms, values: MotionValues) -> Array:
         force = values(forms.outside.turned(back @ (share * own.mass) @ at.own))
         total += force[:, [0, 1]] + force[:, [3, 4]]
     lumped = forms.factor["lumped_mass"] * forms.lumped
-    pick = np.zeros((forms.arrays.count, len(forms.arrays.free)))
-    pick[forms.arrays.free, np.arange(len(forms.arrays.free))] = 1.0
-    nodes = values(forms.outside.turned(lumped[:, None] * pick))
+    nodes = values(forms.outside.turned(lumped[:, None] * forms.spread))
     for node in forms.structure.nodes:
         places = [forms.structure.freedoms.at(node.name, part) for part in ("x", "y")]
         total += nodes[:, places]

@@ -12,7 +12,6 @@ import numpy as np
 from ..beams.assembly import Array
 from ..beams.element_forms import ElementForms, required_structure
 from ..beams.recovery_forms import LinearForm
-from ..core.deferred import DeferredGroup
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.results import Check
@@ -124,7 +123,7 @@ class Energies:
         passive = self._rayleigh(e) @ own.stiffness
         work += _dot(turned, forces - passive)
         work += self._stiffening(e, local, turned, rate, sums)
-        weight = self._weight(e)
+        weight = forms.weight(e)
         carried = weight @ mass
         power = w * _dot(first + rate, carried) + w * _dot(spun, weight @ across)
         sums["loads"] += power
@@ -142,11 +141,6 @@ class Energies:
             return np.zeros((len(forms.theta), at.own.shape[1]))
         share = forms.factor["rayleigh_stiffness"] * forms.factor["elasticity"]
         return np.asarray(share * self.speed * _times(at.own, self.slope))
-
-    def _weight(self, e: int) -> Array:
-        forms, at = self.forms, self.forms.turning[e]
-        field = forms.axial.weight_field(forms.theta)[:, forms.elements[e][0].indices]
-        return np.asarray(np.einsum("tij,tj->ti", at.back, field))
 
     def _stiffening(
         self, e: int, local: Array, turned: Array, rate: Array, sums: dict[str, Array]
@@ -324,7 +318,7 @@ def beam_energies(system: LinearPeriodic, motion: Motion | float | None = None) 
     moving = beam_motion(system, motion)
     structure = required_structure(system)
     joined = _energies(system, moving)
-    doubt = DeferredGroup(partial(_doubt, system, moving, joined["strain"]))
+    doubt = partial(_doubt, system, moving, joined["strain"])
     shared = in_motion(system, moving, doubt)
     made = BeamEnergies(
         method="element matrices",

@@ -20,9 +20,9 @@ from ..core.trigonometric import differentiated, even_angles, resampled
 from ..periodic.equation import equation_of
 from ..periodic.multipliers import floquet_multipliers
 from ..periodic.periodic_motion import by_segments
-from ..periodic.swept_motions import Growth, Truncations, speed_ranges
+from ..periodic.swept_motions import Growth, Trial, Truncations, speed_ranges
 from ..periodic.truncation import arrays_at
-from .beam_forces import METHODS
+from .beam_forces import require_method
 from .stresses import stress_operator
 
 if TYPE_CHECKING:
@@ -219,7 +219,8 @@ def stress_curve(
         If an argument is unusable, the system is not one of beams, nothing acts on it, or no
         subspace of modes is smooth.
     """
-    given = _checked(system, speeds, rtol, method)
+    given = _checked(system, speeds, rtol)
+    require_method(method)
     _require_damped(system)
     rising, back = np.unique(given, return_inverse=True)
     # Stations per link by default: with three elements their ends and middles.
@@ -330,16 +331,6 @@ class _Range:
     deflection: Array  # largest at each speed, (ns,)
 
 
-@dataclass(frozen=True)
-class _Trial:
-    """One number of modes at a few speeds: stresses ``(links, k)``, growth, upper harmonics."""
-
-    modes: int
-    size: Array
-    growth: Growth
-    tail: float
-
-
 class _Work:
     """One call's work: range after range, with the numbers of modes and of angles reached so far.
 
@@ -356,12 +347,11 @@ class _Work:
 
     def range_of(self, speeds: Array) -> _Range:
         """Return what one range of rising speeds gives."""
-        low, high = float(speeds[0]), float(speeds[-1])
-        few, many = self._trials(np.unique(speeds[[len(speeds) // 2, -1]]))
-        change = np.max(np.abs(few.size / many.size - 1.0), axis=1)
+        span = float(speeds[0]), float(speeds[-1])
+        few, many, change = self._trials(np.unique(speeds[[len(speeds) // 2, -1]]))
         shift = np.abs(few.growth.modulus - many.growth.modulus)
         defect = float(np.max(shift / many.growth.condition))
-        moving = self.truncations.motions(many.modes, self.angles, (low, high), self.flow)
+        moving = self.truncations.motions(many.truncated.size, self.angles, span, self.flow)
         theta = moving.truncated.theta
         peaks, errors, norms, deflection = [], [], [], []
         for part, q, error in moving.blocks(speeds):
@@ -377,7 +367,7 @@ class _Work:
         error = 3.0 * weight * np.concatenate(errors) + found.error + ELSEWHERE * change[:, None]
         return _Range(
             peaks=replace(found, error=error),
-            modes=many.modes,
+            modes=many.truncated.size,
             growth=moving.growth(speeds),
             defect=defect,
             deflection=np.concatenate(deflection),
@@ -391,28 +381,33 @@ class _Work:
         exact = self.fibres.peaks(theta, q, np.array([speed])).size[:, 0]
         return np.asarray(np.abs(size / exact - 1.0))
 
-    def _trials(self, speeds: Array) -> tuple[_Trial, _Trial]:
-        """Return two numbers of modes that agree at some speeds of a range."""
+    def _trials(self, speeds: Array) -> tuple[Trial, Trial, Array]:
+        """Return two numbers of modes that agree at some speeds, and what stresses change by.
+
+        That is relative, the largest of the speeds, of each link.
+        """
         while True:
-            numbers_ = self.truncations.usable(self.least, self.angles)
-            if not numbers_:
+            offered = self.truncations.usable(self.least, self.angles)
+            if not offered:
                 found = f"no smooth and periodic subspace of {self.least} modes or more"
                 expected = "modes whose frequencies keep their distance over the revolution"
                 raise bad("system", found, expected, "take stress() speed by speed")
-            trials = [self._trial(number, speeds) for number in numbers_]
-            if self.angles < _MOST_ANGLES and trials[-1].tail > _TAIL * self.rtol:
+            trials = [
+                self.truncations.trial(number, self.angles, speeds, self.flow) for number in offered
+            ]
+            few, many = trials[0], trials[-1]
+            if self.angles < _MOST_ANGLES and many.tail > _TAIL * self.rtol:
                 self.angles *= 2
                 continue
-            change = float(np.max(np.abs(trials[0].size / trials[-1].size - 1.0)))
-            last = trials[-1].modes == self.truncations.numbers[-1]
-            if last or ELSEWHERE * change <= 0.5 * self.rtol:
-                return trials[0], trials[-1]
-            self.least = trials[-1].modes
-
-    def _trial(self, modes: int, speeds: Array) -> _Trial:
-        tried = self.truncations.trial(modes, self.angles, speeds, self.flow)
-        size = self.fibres.peaks(tried.truncated.theta, tried.q, speeds).size
-        return _Trial(modes, size, tried.growth, tried.tail)
+            first, last = (
+                self.fibres.peaks(tried.truncated.theta, tried.q, speeds).size
+                for tried in (few, many)
+            )
+            change = np.max(np.abs(first / last - 1.0), axis=1)
+            most = many.truncated.size == self.truncations.numbers[-1]
+            if most or ELSEWHERE * np.max(change) <= 0.5 * self.rtol:
+                return few, many, change
+            self.least = many.truncated.size
 
     def _deflection(self, theta: Array, q: Array) -> Array:
         if self.system.relative_deflection is None:
@@ -488,7 +483,7 @@ def _require_damped(system: LinearPeriodic) -> None:
         raise bad("system", found, "damping, which bounds the resonances", fix)
 
 
-def _checked(system: LinearPeriodic, speeds: ArrayLike, rtol: float, method: str) -> Array:
+def _checked(system: LinearPeriodic, speeds: ArrayLike, rtol: float) -> Array:
     """Return the speeds; refuse arguments that are unusable."""
     required_structure(system)
     given = np.atleast_1d(numbers("speeds", speeds))
@@ -496,6 +491,4 @@ def _checked(system: LinearPeriodic, speeds: ArrayLike, rtol: float, method: str
         raise bad("speeds", speeds, "positive finite speeds [rad/s], one row", "correct them")
     if not (isinstance(rtol, Real) and 1e-6 <= rtol <= 1e-2):
         raise bad("rtol", repr(rtol), "a number from 1e-6 to 1e-2", "choose 1e-4")
-    if method not in METHODS:
-        raise bad("method", repr(method), f"one of {METHODS}", "choose 'equilibrium'")
     return given

@@ -398,7 +398,7 @@ def stress(
     moving = beam_motion(system, motion)
     own = stresses(system, moving, stations, method, levers)
     still = DeferredGroup(partial(_still, system, moving, stations, method, levers))
-    doubt = DeferredGroup(partial(_doubt, system, moving, stations, method, levers, own))
+    doubt = partial(_doubt, system, moving, stations, method, levers, own)
     return StressResult(
         method=method,
         links=tuple(station.beam for station in chosen),
@@ -407,10 +407,10 @@ def stress(
         bending=own[1],
         static_axial=still.later("axial"),
         static_bending=still.later("bending"),
-        motion_error=doubt.later("motion_error"),
-        mesh_error=doubt.later("mesh_error"),
         period=moving.period,
-        **in_motion(system, moving, doubt),
+        **in_motion(
+            system, moving, doubt, later=("error", "error_norm", "motion_error", "mesh_error")
+        ),
     )
 
 

@@ -87,16 +87,15 @@ def assemble(
     )
     if modes is not None and modes != size:
         raise bad("modes", modes, f"{size}, the module's own", "ask for a module of that number")
-    scales: Callable[[Mapping[str, ArrayLike]], Mapping[str, Array]] = _no_scales
     if "scales" in module.RETURNS:
         used = inspect.signature(module.scales).parameters
         fixed = {name: geometry[name] for name in used if name in geometry}
         # Parameters that no term uses, pruned ones, stay known to the user.
         names = tuple(name for name in used if name not in fixed)
-        scales = partial(_scales, module.scales, module.RETURNS["scales"], names, fixed)
-    return LinearPeriodic(
-        size=size, terms=tuple(terms), parameters=dict(parameters), scales=scales, **attributes
-    )
+        attributes["scales"] = partial(
+            _scales, module.scales, module.RETURNS["scales"], names, fixed
+        )
+    return LinearPeriodic(size=size, terms=tuple(terms), parameters=dict(parameters), **attributes)
 
 
 def _rows(module: ModuleType, drop: Collection[str]) -> tuple[_Row, ...]:
@@ -109,10 +108,6 @@ def _rows(module: ModuleType, drop: Collection[str]) -> tuple[_Row, ...]:
 
 
 # Functions with some arguments given, and no module among them, so that systems can be pickled.
-
-
-def _no_scales(values: Mapping[str, ArrayLike]) -> Mapping[str, Array]:
-    return {}
 
 
 def _scales(

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..errors import bad
 from .emitted import Places, Values, dropped_names, nothing, parameter_values, stacked
@@ -84,6 +85,10 @@ class Constrained:
     reference: Callable[[Array], tuple[Array, Array]] | None = None
     watch: Callable[[Array, Array], ArrayLike] | None = None
     guards: tuple[Guard, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not self.labels:
+            object.__setattr__(self, "labels", tuple(f"q{i + 1}" for i in range(self.size)))
 
     @classmethod
     def from_module(
@@ -216,19 +221,20 @@ class _AtState:
     def __call__(self, *arguments: ArrayLike) -> Mapping[str, Array]:
         """Evaluate at coordinates, more vectors, and time last."""
         *vectors, time = (np.asarray(argument, dtype=float) for argument in arguments)
-        written, places, blocks = self._layout
-        arrays = row = None
+        places, blocks = self._layout
+        row: tuple[Any, ...] | None = None
+        batch: tuple[int, ...] = ()
         if self._plain and time.ndim == 0 and all(vector.ndim == 1 for vector in vectors):
-            try:  # plain floats are several times faster than arrays of no dimension
+            # Plain floats are several times faster than arrays of no dimension, but refuse what
+            # these return as infinite.
+            with suppress(OverflowError, ZeroDivisionError):
                 row = self._row(vectors, time, np.ndarray.tolist)
-                arrays = places.filled(row)
-            except (OverflowError, ZeroDivisionError):
-                pass  # they refuse what arrays return as infinite
-        if arrays is None or row is None:
+        if row is None:
             shapes = [np.shape(value) for value in self.values.values()]
             shapes += [vector.shape[:-1] for vector in vectors]
+            batch = np.broadcast_shapes(time.shape, *shapes)
             row = self._row(vectors, time, _columns)
-            arrays = stacked(written, row, np.broadcast_shapes(time.shape, *shapes))
+        arrays = stacked(places, row, batch)
         first = len(self.module.COORDINATES) - 1
         for name, start, matrix in blocks:
             factor = np.asarray(row[start])[..., None, None]
@@ -270,12 +276,12 @@ class _AtState:
         return tuple(row)
 
     @cached_property
-    def _layout(self) -> tuple[Places, _Places, tuple[tuple[str, int, Array], ...]]:
+    def _layout(self) -> tuple[Places, tuple[tuple[str, int, Array], ...]]:
         """Where the numbers go with all modes written out, and those that multiply matrices."""
         arrays = self.module.ARRAYS[self.name]
         if not self.numbers:
             written = {name: self._of_kept(name, *places) for name, places in arrays.items()}
-            return written, _Places.of(written), ()
+            return written, ()
         first = len(self.module.COORDINATES) - 1
         matrices = {name: n if n.ndim == 2 else np.diag(n) for name, n in self.numbers.items()}
         count = len(next(iter(matrices.values())))
@@ -305,7 +311,7 @@ class _AtState:
                     entries.append((i, j, start))
             full = tuple(n + count - 1 if n > first else n for n in shape)
             whole[name] = (full, tuple(entries))
-        return whole, _Places.of(whole), tuple(blocks)
+        return whole, tuple(blocks)
 
     def _of_kept(self, name: str, shape: tuple[int, int], filled: Any) -> tuple[Any, Any]:
         """Return shape and places of an array without the rows of released constraints."""
@@ -319,34 +325,3 @@ class _AtState:
 def _columns(vectors: Array) -> list[Any]:
     """Return the components of vectors, each an array over the batch."""
     return [vectors[..., i] for i in range(vectors.shape[-1])]
-
-
-@dataclass(frozen=True)
-class _Places:
-    """Where the numbers of an emitted function go in one long vector, and its parts by name."""
-
-    size: int
-    target: NDArray[np.intp]
-    source: tuple[int, ...]
-    parts: tuple[tuple[str, int, int, tuple[int, int]], ...]
-
-    @classmethod
-    def of(cls, arrays: Places) -> _Places:
-        target: list[int] = []
-        source: list[int] = []
-        parts = []
-        start = 0
-        for name, (shape, filled) in arrays.items():
-            stop = start + shape[0] * shape[1]
-            parts.append((name, start, stop, shape))
-            target += [start + row * shape[1] + column for row, column, _ in filled]
-            source += [position for _, _, position in filled]
-            start = stop
-        return cls(start, np.array(target, dtype=np.intp), tuple(source), tuple(parts))
-
-    def filled(self, returned: object) -> dict[str, Array]:
-        """Return the arrays by name."""
-        entries = returned if isinstance(returned, tuple) else (returned,)
-        whole: Array = np.zeros(self.size)
-        whole[self.target] = [entries[i] for i in self.source]
-        return {name: whole[a:b].reshape(shape) for name, a, b, shape in self.parts}

@@ -68,6 +68,10 @@ class Term:
         return np.broadcast_to(self.function, (*theta.shape, *self.function.shape))
 
 
+def _no_scales(values: Mapping[str, ArrayLike]) -> Mapping[str, Array]:
+    return {}
+
+
 @dataclass(frozen=True)
 class LinearPeriodic:
     """A linear system with periodic coefficients, from a quadratic Lagrangian.
@@ -98,7 +102,7 @@ class LinearPeriodic:
         Values of the named parameters, in SI units.
     scales : callable
         From parameter values (floats or arrays that broadcast) to the values of the monomials
-        that the terms name.
+        that the terms name; by default there are none.
     period : float
         Period of the coefficients in theta [rad].
     labels : tuple of str
@@ -130,8 +134,8 @@ class LinearPeriodic:
 
     size: int
     terms: tuple[Term, ...]
-    parameters: Mapping[str, float]
-    scales: Callable[[Mapping[str, ArrayLike]], Mapping[str, Array]]
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    scales: Callable[[Mapping[str, ArrayLike]], Mapping[str, Array]] = _no_scales
     period: float = 2.0 * np.pi
     labels: tuple[str, ...] = ()
     reference_length: float = 1.0
@@ -146,7 +150,6 @@ class LinearPeriodic:
     remesh: Callable[[Callable[[Structure], Structure]], LinearPeriodic] | None = None
 
     def __post_init__(self) -> None:
-        """Check that every term names a known array and has the system's size."""
         for term in self.terms:
             if term.array not in MATRICES + VECTORS:
                 raise bad(
@@ -182,6 +185,25 @@ class LinearPeriodic:
         fixed = np.asarray(self.shape(x), dtype=float)
         return np.broadcast_to(fixed, (len(theta), *fixed.shape))
 
+    def deflection_rows(self, theta: Array, places: Array = _PLACES) -> Array | None:
+        """Return what turns coordinates into deflections over the length of their link.
+
+        Parameters
+        ----------
+        theta : ndarray
+            Crank angles [rad], shape ``(nt,)``.
+        places : ndarray
+            Places x/length of a system that is known by its shapes, ``(nx,)``.
+
+        Returns
+        -------
+        ndarray or None
+            Shape ``(nt, k, n)``; None where none is known.
+        """
+        if self.relative_deflection is not None:
+            return np.asarray(self.relative_deflection(theta), dtype=float)
+        return self.shapes(places, theta)
+
     def largest_deflection(self, theta: Array, q: Array) -> float | None:
         """Return the largest deflection over the length of its link; None where none is known.
 
@@ -192,14 +214,11 @@ class LinearPeriodic:
         q : ndarray
             Motions, shape ``(nb, nt, n)``; one that is not finite counts for nothing.
         """
-        if self.relative_deflection is not None:
-            shapes: Array | None = np.asarray(self.relative_deflection(theta), dtype=float)
-        else:
-            shapes = self.shapes(_PLACES, theta)
-        if shapes is None:
+        rows = self.deflection_rows(theta)
+        if rows is None:
             return None
         sizes = [
-            float(np.max(np.abs(np.einsum("txn,tn->tx", shapes, one)), initial=0.0))
+            float(np.max(np.abs(np.einsum("txn,tn->tx", rows, one)), initial=0.0))
             for one in q
             if np.all(np.isfinite(one))
         ]
@@ -426,16 +445,43 @@ class LinearPeriodic:
             for name, make in makers.items()
         }
 
+    def has_terms_of(self, made: LinearPeriodic) -> bool:
+        """Return whether its terms are those of a system made anew, and not replaced ones."""
+        theta = self.period * np.array([0.1, 0.45, 0.8])
+
+        def alike(new: Array, old: Array) -> bool:
+            # Entries that are round-off beside the largest need not agree.
+            rounding = 1e-12 * float(np.max(np.abs(old), initial=0.0))
+            return np.allclose(new, old, rtol=1e-6, atol=rounding)
+
+        return len(made.terms) == len(self.terms) and all(
+            (new.array, new.scale, new.power) == (term.array, term.scale, term.power)
+            and alike(new(theta), term(theta))
+            for new, term in zip(made.terms, self.terms, strict=True)
+        )
+
     @cached_property
     def _rebuilds_itself(self) -> bool:
-        """Whether made anew for its own geometry it has its own terms, and not replaced ones."""
-        made = self.rebuild(self.geometry) if self.rebuild else self
-        theta = self.period * np.array([0.1, 0.45, 0.8])
-        return len(made.terms) == len(self.terms) and all(
-            (new.array, new.scale, new.power) == (own.array, own.scale, own.power)
-            and (new.function is own.function or np.allclose(new(theta), own(theta), rtol=1e-6))
-            for new, own in zip(made.terms, self.terms, strict=True)
-        )
+        return self.rebuild is None or self.has_terms_of(self.rebuild(self.geometry))
+
+    def remeshed(self, change: Callable[[Structure], Structure]) -> LinearPeriodic:
+        """Return the system of a changed structure, its further terms and parameters kept.
+
+        Parameters
+        ----------
+        change : callable
+            From the structure to the changed one.
+
+        Raises
+        ------
+        BadInput
+            If the system tells no other structure.
+        """
+        if self.remesh is None:
+            raise bad(
+                "system", "one made for its own beams alone", "a linkage", "use linkage_system"
+            )
+        return replace(self.remesh(change), parameters=dict(self.parameters))
 
     def with_geometry(self, **changes: float) -> LinearPeriodic:
         """Return the same system with other lengths or ratios, its functions of angle made anew.

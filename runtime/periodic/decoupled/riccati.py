@@ -22,7 +22,8 @@ from numpy.typing import NDArray
 from ...core.errors import bad
 from ...core.trigonometric import differentiated, even_angles
 from ..equation import Equation, SampledSystem, equation_of
-from ..moving_basis import StillModes, carried_basis, projections
+from ..moving_basis import StillModes, carried_basis
+from ..reduced import projections
 
 Array = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from ...core.families import DAMPING, LinearPeriodic, Term
 from ...core.inputs import numbers, require_whole, speed_span
 from ...core.trigonometric import interpolated
 from ..equation import Equation, SampledSystem, at_geometry, sampled
-from ..moving_basis import projections
+from ..reduced import projections
 from .riccati import Frames, moving_frames, plain_equation, slow_part
 from .slow_modes import decoupling_error, frozen_frequencies, gap_choices, integrated
 
@@ -120,17 +120,11 @@ def slow_system(
     reduced = LinearPeriodic(
         chosen.frames.modes,
         tuple(terms),
-        {},
-        _no_scales,
         period=system.period,
         labels=tuple(f"slow {i + 1}" for i in range(chosen.frames.modes)),
         provenance=system.changed_provenance(**changed),
     )
     return SlowSystem(reduced, chosen.frames.modes, (low, high), fit, chosen.change, degree)
-
-
-def _no_scales(values: object) -> dict[str, Array]:
-    return {}
 
 
 @dataclass(frozen=True)

@@ -77,7 +77,6 @@ class FreeFreeModes:
     size: int
 
     def __post_init__(self) -> None:
-        """Refuse a size that is none."""
         why = "the beam has long ceased to be slender for such modes"
         object.__setattr__(self, "size", require_modes(self.size, 1000, why))
 
@@ -169,7 +168,6 @@ class FreeFreeBasis:
     size: int
 
     def __post_init__(self) -> None:
-        """Refuse a number of modes that is none."""
         object.__setattr__(self, "size", self.modes.size)
 
     @cached_property

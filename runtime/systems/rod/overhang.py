@@ -284,7 +284,6 @@ class OverhangBasis:
     size: int
 
     def __post_init__(self) -> None:
-        """Refuse a size that is none."""
         object.__setattr__(self, "size", require_modes(self.size, _MOST, _WHY))
 
     @property

@@ -269,7 +269,6 @@ class PolynomialBasis(_TwoSided):
     orthogonal: bool = True
 
     def __post_init__(self) -> None:
-        """Refuse a size that is none."""
         size = require_modes(self.size, 400, "their exact integrals take minutes")
         object.__setattr__(self, "size", size)
 
@@ -359,7 +358,6 @@ class TwoSegmentBasis(_TwoSided):
     size: int
 
     def __post_init__(self) -> None:
-        """Refuse a size that is none."""
         why = "round-off takes the low frequencies' digits, and 16 are converged"
         object.__setattr__(self, "size", require_modes(self.size, 40, why))
 

@@ -50,12 +50,6 @@ def test_slack_and_rigid_core():
     assert hard.bonded == pytest.approx(alone * (1 + y), rel=1e-14)
 
 
-def test_layers_glued_without_core_are_one_beam():
-    thin = section(core(1e18, thickness=1e-12))
-    whole = WIDTH * 70e9 * (4e-3) ** 3 / 12
-    assert thin.bending_stiffness == pytest.approx(whole, rel=1e-8)
-
-
 @pytest.mark.parametrize("loss", [0.0, 0.3, 1.5])
 @pytest.mark.parametrize("wave", [1.0, 10.0, 300.0])
 def test_the_equation_of_sixth_order(loss, wave):
@@ -68,18 +62,6 @@ def test_the_equation_of_sixth_order(loss, wave):
     assert found.bending_stiffness == pytest.approx(float(stiffness.real), rel=1e-13)
     expected = float(stiffness.imag / stiffness.real)
     assert found.loss_factor == pytest.approx(expected, rel=1e-12, abs=1e-300)
-
-
-def test_best_shear_parameter_is_ungars():
-    """The loss factor is largest at ``x = 1/sqrt((1 + Y) (1 + eta^2))``."""
-    loss = 0.8
-    _, y, x = geometry(core(1.0, loss), WAVE)
-    best = 1 / np.sqrt((1 + y) * (1 + loss**2))
-    largest = loss * y / (2 + y + 2 / best)
-    shear = best / x
-    found = [section(core(shear * f, loss)).loss_factor for f in (0.9, 1.0, 1.1)]
-    assert found[1] == pytest.approx(largest, rel=1e-12)
-    assert found[1] > found[0] and found[1] > found[2]
 
 
 # ---------------------------------------------------------------- plane elasticity

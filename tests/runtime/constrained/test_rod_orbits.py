@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from elastolink.runtime.constrained import constrained_motion, orbit_multipliers, periodic_orbit
+from elastolink.runtime.core.families import Constrained
 from elastolink.runtime.systems import free_free_rod
 from free_free_loads import ROD
 from scipy.integrate import solve_ivp
@@ -116,3 +117,34 @@ def test_the_distance_from_the_rigid_motion_is_told(rod, orbit):
     """It falls with the square of the speed, as the deflection does."""
     slow = periodic_orbit(free_free_rod(1, crank_ratio=0.2, speed=15.0, **ROD))
     assert slow.moved < 0.1 * orbit.moved < 0.05
+
+
+def test_where_nothing_is_free_the_constraints_give_the_motion():
+    """A mass of 2 on a spring of 3, led along x = cos t: the force that leads it is cos t."""
+
+    def one(values):
+        return np.asarray(values, dtype=float)[..., None, None]
+
+    def violation(q, t):
+        gap = q[..., 0] - np.cos(t)
+        return {"constraints": one(gap), "jacobian": one(np.ones_like(gap))}
+
+    def dynamics(q, qd, t):
+        x, cos, sin = np.broadcast_arrays(q[..., 0], np.cos(t), np.sin(t))
+        unit = np.ones_like(x)
+        parts = {"mass": 2 * unit, "rest": 0 * unit, "forces": -3 * x, "jacobian": unit}
+        parts |= {"velocity_rhs": -sin, "gamma": -cos}
+        return {name: one(part) for name, part in parts.items()}
+
+    def variations(q, *_):
+        parts = {"damping": 0, "stiffness": 3, "jacobian_rate": 0, "jacobian_acceleration": 0}
+        return {name: one(np.full_like(q[..., 0], part)) for name, part in parts.items()}
+
+    led = Constrained(1, 1, dynamics, violation, variations, period=2 * np.pi)
+    orbit = periodic_orbit(led, q=[1.0], qd=[0.0])
+    orbit.require()
+    np.testing.assert_allclose(orbit.q[:, 0], np.cos(orbit.t), atol=1e-14)
+    np.testing.assert_allclose(orbit.multipliers[:, 0], np.cos(orbit.t), atol=1e-14)
+    found = orbit_multipliers(orbit)
+    found.require()
+    assert found.physical.shape == (0,) and found.stable

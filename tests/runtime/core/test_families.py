@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 from constrained_truth import Circle
-from elastolink.generated import four_bar_coupler_complete, hill_plain
+from elastolink.generated import hill_plain
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import (
     MATRICES,
@@ -19,7 +19,6 @@ from elastolink.runtime.core.families import (
     Transcendental,
     array_function,
 )
-from elastolink.runtime.systems import assemble
 from periodic_systems import named, wave
 
 
@@ -190,33 +189,3 @@ def test_arguments_beside_the_frequency():
     np.testing.assert_array_equal(found.count(1.0), [0, 1])
     with pytest.raises(BadInput, match="theta"):
         Transcendental.from_module(emitted, given)
-
-
-def test_assembled_module_takes_functions_of_angle():
-    found = assemble(
-        hill_plain,
-        geometry={},
-        parameters={"lam2": 1.3, "mu": 0.4, "damping": 0.1},
-        external={"f": lambda theta: np.cos(2 * theta)},
-        labels=("y",),
-    )
-    assert found.labels == ("y",)
-    theta = np.linspace(0.0, 3.0, 4)
-    np.testing.assert_allclose(found.array("Kg", theta)[:, 0, 0], 0.4 * np.cos(2 * theta))
-    np.testing.assert_allclose(found.array("C", 0.0), [[[0.2]]])
-
-
-def test_what_an_assembled_module_lacks_is_named():
-    with pytest.raises(BadInput, match="damping"):
-        assemble(hill_plain, geometry={}, parameters={"lam2": 1.0, "mu": 1.0})
-    numbers = dict.fromkeys(hill_plain.PARAMETERS, 1.0)
-    with pytest.raises(BadInput, match=r"none for \['f'\]"):
-        assemble(hill_plain, geometry={}, parameters=numbers)
-    numbers = dict.fromkeys(four_bar_coupler_complete.PARAMETERS, 1.0)
-    with pytest.raises(BadInput, match="follower"):
-        assemble(
-            four_bar_coupler_complete,
-            geometry={"frame": 1.0, "crank": 0.2, "coupler": 1.0},
-            parameters=numbers,
-            modes=1,
-        )

@@ -8,20 +8,16 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.frequencies import campbell
 from elastolink.runtime.scenes import load_scene
+from periodic_systems import system_of, wave
 
 
 def _system(softening=0.0, varying=0.0) -> LinearPeriodic:
     """Two oscillators of 30 and 70 rad/s, axial forces w^2 softening, a varying stiffness."""
-    terms = [
-        Term("M", None, np.eye(2)),
-        Term("K", None, np.diag([900.0, 4900.0])),
-        Term("Kg", None, -softening * np.eye(2), power=2),
-    ]
-    if varying:
-        terms.append(
-            Term("K", None, lambda t: varying * np.cos(t)[:, None, None] * np.diag([1.0, 0.0]))
-        )
-    return LinearPeriodic(2, tuple(terms), {}, lambda values: {})
+    return system_of(
+        M=np.eye(2),
+        K=[np.diag([900.0, 4900.0]), wave(np.diag([varying, 0.0]))],
+        Kg=(None, -softening * np.eye(2), 2),
+    )
 
 
 def test_constant_frequencies_and_their_orders():
@@ -64,8 +60,7 @@ def test_axial_forces_move_the_frequencies_until_buckling():
 def test_modes_are_told_by_their_shapes_where_others_are_nearer():
     """Gyroscopic coupling 0.8 w moves 30 and 70 rad/s apart: near 70 - 30 they pass each other."""
     gyro = np.array([[0.0, 0.0], [0.8, 0.0]])
-    plain = _system()
-    system = LinearPeriodic(2, (*plain.terms, Term("A", None, gyro)), {}, plain.scales)
+    system = _system().with_terms(Term("A", None, gyro))
     speeds = np.linspace(20.0, 55.0, 8)
     found = campbell(system, speeds)
     # (900 - x) (4900 - x) = (0.8 w)^2 x, x the squares of the frequencies.

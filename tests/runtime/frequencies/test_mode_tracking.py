@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.core.families import LinearPeriodic
 from elastolink.runtime.frequencies import natural_frequencies
+from periodic_systems import system_of
 
 
-def _system(stiffness, size=2, mass=None) -> LinearPeriodic:
-    """Return a system of unit mass, or a given one, with a stiffness over the crank angle."""
-    terms = (
-        Term("M", None, np.eye(size) if mass is None else mass),
-        Term("K", None, stiffness),
-    )
-    return LinearPeriodic(size, terms, {}, lambda values: {})
+def _system(stiffness, size=2) -> LinearPeriodic:
+    """Return a system of unit mass with a stiffness over the crank angle."""
+    return system_of(M=np.eye(size), K=stiffness)
 
 
 def _matrix(a, b, c):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.beams import Section, frame, linear_system
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.core.families import Term
 from elastolink.runtime.frequencies import (
     buckling_speed,
     draw_mode,
@@ -18,6 +18,7 @@ from elastolink.runtime.frequencies import (
     pinned_frequency,
 )
 from elastolink.runtime.scenes import load_scene
+from periodic_systems import system_of
 
 
 def _linkage(elements=1, formulation="cubic_beams"):
@@ -102,15 +103,10 @@ def test_buckling_by_hand():
     def softening(theta):
         return -(1.0 + 0.5 * np.cos(theta - 1.0))[:, None, None] * np.eye(1)
 
-    terms = (
-        Term("M", None, np.eye(1)),
-        Term("K", None, 600.0 * np.eye(1)),
-        Term("Kg", None, softening, power=2),
-    )
-    found = buckling_speed(LinearPeriodic(1, terms, {}, lambda values: {}))
+    still = system_of(M=np.eye(1), K=600.0 * np.eye(1))
+    found = buckling_speed(still.with_terms(Term("Kg", None, softening, power=2)))
     assert found.speed == pytest.approx(20.0, rel=1e-12)
     assert found.angle == pytest.approx(1.0, abs=3e-6)
-    still = LinearPeriodic(1, terms[:2], {}, lambda values: {})
     assert buckling_speed(still).speed == np.inf
 
 
@@ -169,8 +165,5 @@ def test_bad_input_to_the_studies_is_refused(linkage):
             link_frequencies(linkage, *arguments)
     with pytest.raises(BadInput, match="mode"):
         draw_mode(linkage, 0.0, 10)
-    plain = LinearPeriodic(
-        1, (Term("M", None, np.eye(1)), Term("K", None, np.eye(1))), {}, lambda values: {}
-    )
     with pytest.raises(BadInput, match="beams"):
-        draw_modes(plain)
+        draw_modes(system_of(M=np.eye(1), K=np.eye(1)))

@@ -27,15 +27,6 @@ def system(**changes):
     return assemble(four_bar_coupler_complete, **options)
 
 
-def test_terms_sum_up_to_the_arrays():
-    found = system()
-    scales = found.scale_values()
-    for name in ("M", "B", "S", "C", "K", "f", "g"):
-        terms = [t for t in found.terms if t.array == name]
-        expected = sum((1.0 if t.scale is None else scales[t.scale]) * t(THETA) for t in terms)
-        np.testing.assert_array_equal(found.array(name, THETA), expected)
-
-
 def test_every_row_of_the_table_becomes_a_term():
     rows = [(row[0], row[1], row[2]) for row in four_bar_coupler_complete.TERMS]
     assert [(t.array, t.power, t.scale) for t in system().terms] == rows

@@ -8,8 +8,8 @@ import elastolink as el
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.systems import with_modal_damping
+from periodic_systems import system_of
 from scipy.linalg import eig
 
 RATIO = 0.02
@@ -82,15 +82,7 @@ def floquet(system):
 
 
 def test_a_constant_system_gets_a_constant_matrix():
-    system = LinearPeriodic(
-        2,
-        (
-            Term("M", None, np.diag([1.0, 4.0])),
-            Term("K", None, np.array([[5.0, -1.0], [-1.0, 8.0]])),
-        ),
-        {},
-        lambda values: {},
-    )
+    system = system_of(M=np.diag([1.0, 4.0]), K=np.array([[5.0, -1.0], [-1.0, 8.0]]))
     damped = with_modal_damping(system, 0.1)
     assert damped.is_constant("C")
     assert damped.rebuild is None

@@ -15,7 +15,7 @@ from functools import cache
 from importlib import import_module, resources
 from typing import TYPE_CHECKING, Any
 
-from .records import KINDS, Columns, Drawn, FigureEntry, Page, Quoted
+from .records import KINDS, Drawn, FigureEntry, Quoted
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -68,9 +68,6 @@ def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> F
         )
         return drawn
 
-    if "page" in record:
-        record["page"] = Page(**record["page"])
-    record["tables"] = tuple(Columns(**table) for table in record.get("tables", ()))
     for name in {"panels", "size"} & record.keys():
         record[name] = tuple(record[name])
     return FigureEntry(

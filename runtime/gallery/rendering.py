@@ -98,7 +98,7 @@ def reproduce(
             shown.append(item)
             if picture is not None:
                 files[f"{entry.stem}.png"] = picture
-                files |= {name: text.encode() for name, text in item.files}
+                files |= {name: text.encode() for name, text in item.files.items()}
             if tick is not None:
                 tick(done)
     if out is not None:

@@ -157,7 +157,7 @@ def test_the_whole_gallery(document, tmp_path):
     gallery = reproduce(document, out=tmp_path)
     assert failed(gallery) == []
     pictures = {f"{entry.stem}.png" for entry in figures(document)}
-    texts = dict(pair for item in gallery.shown for pair in item.files)
+    texts = {name: text for item in gallery.shown for name, text in item.files.items()}
     assert {path.name for path in tmp_path.iterdir()} == pictures | {"index.html", *texts}
     page = (tmp_path / "index.html").read_text()
     assert all(page.count(f'src="{name}"') == 1 for name in pictures)

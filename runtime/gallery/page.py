@@ -47,18 +47,16 @@ def page(title: str, shown: Sequence[Shown]) -> str:
 
 
 def _summary(shown: Sequence[Shown]) -> str:
-    lines = ["<table>\n<tr><th>figure</th><th>title</th>"]
-    lines.append("<th>printed</th><th>in words</th><th>tables</th><th>agree</th></tr>")
+    rows = []
     for item in shown:
         numbers = [sum(row.kind == kind for row in item.quoted) for kind in KINDS]
         numbers.append(sum(row.agrees for row in item.quoted))
-        lines.append(
-            f'<tr><td><a href="#{item.entry.stem}">{escape(item.entry.label)}</a></td>'
-            f"<td>{escape(item.entry.title)}</td>"
+        link = f'<a href="#{item.entry.stem}">{escape(item.entry.label)}</a>'
+        rows.append(
+            f"<td>{link}</td><td>{escape(item.entry.title)}</td>"
             + "".join(f'<td class="number">{number}</td>' for number in numbers)
-            + "</tr>"
         )
-    return "\n".join([*lines, "</table>"])
+    return _html(("figure", "title", "printed", "in words", "tables", "agree"), rows)
 
 
 def _figure(item: Shown) -> str:
@@ -78,32 +76,33 @@ def _figure(item: Shown) -> str:
 
 
 def _quoted(rows: Sequence[Quoted], name: str) -> str:
-    names = ("what", "section", name, "computed", "deviation", "tolerance", "verdict")
-    lines = ["<table>\n<tr>" + "".join(f"<th>{name}</th>" for name in names) + "</tr>"]
+    lines = []
     for row in rows:
         sign = "" if row.relation == "=" else f"{escape(row.relation)} "
         unit = f" {escape(row.unit)}" if row.unit else ""
         kind = "agrees" if row.agrees else "known" if row.differs else "differs"
         remark = f": {escape(row.differs)}" if row.differs else ""
-        cells = [
-            f"<td>{escape(row.number)}</td><td>{escape(row.where)}</td>",
-            f'<td class="number">{sign}{row.expected:.4g}{unit}</td>',
-            f'<td class="number">{row.computed:.4g}{unit}</td>',
-            f'<td class="number">{row.deviation:+.2g}{unit}</td>',
-            f"<td>{row.tolerance:.2g}{unit} ({escape(row.meaning)})</td>",
-            f'<td class="{kind}">{row.verdict}{remark}</td>',
-        ]
-        lines.append("<tr>" + "".join(cells) + "</tr>")
-    return "\n".join([*lines, "</table>"])
+        lines.append(
+            f"<td>{escape(row.number)}</td><td>{escape(row.where)}</td>"
+            f'<td class="number">{sign}{row.expected:.4g}{unit}</td>'
+            f'<td class="number">{row.computed:.4g}{unit}</td>'
+            f'<td class="number">{row.deviation:+.2g}{unit}</td>'
+            f"<td>{row.tolerance:.2g}{unit} ({escape(row.meaning)})</td>"
+            f'<td class="{kind}">{row.verdict}{remark}</td>'
+        )
+    header = ("what", "section", name, "computed", "deviation", "tolerance", "verdict")
+    return _html(header, lines)
 
 
 def _table(table: Table) -> str:
-    lines = [f"<h3>{escape(table.title)}</h3>", "<table>"]
-    lines.append("<tr>" + "".join(f"<th>{escape(name)}</th>" for name in table.header) + "</tr>")
-    lines += [
-        "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in table.rows
-    ]
-    return "\n".join([*lines, "</table>"])
+    rows = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in table.rows]
+    return f"<h3>{escape(table.title)}</h3>\n{_html(table.header, rows)}"
+
+
+def _html(header: Sequence[str], rows: Sequence[str]) -> str:
+    """Return a table under its headings, the cells of each row in their marks."""
+    lines = ["".join(f"<th>{escape(name)}</th>" for name in header), *rows]
+    return "\n".join(["<table>", *(f"<tr>{line}</tr>" for line in lines), "</table>"])
 
 
 def write_together(folder: Path, contents: Mapping[str, bytes]) -> None:

@@ -20,12 +20,12 @@ from ..hill import (
 from ..linkages import FourBar
 from .drawing import COLOURS, Array, outline
 from .records import Drawn
-from .smith_linkages import end_load, f3_series, linkage_of
+from .smith_linkages import linkage_of, series
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_LINKAGE = "(2,1,2,2)"
+_LINKAGE = linkage_of("(2,1,2,2)")
 # Of the space: the region and the parameters' range.
 _REGION, _REACH = 2, 0.6
 
@@ -56,7 +56,7 @@ def _shade(ax: Axes, f: PeriodicFunction, mu: Array, regions: Sequence[int], lef
 
 def figure_34(axes: Sequence[Axes]) -> Drawn:
     """Draw exact, first-order and second-order boundaries of a typical linkage."""
-    ax, f, regions = axes[0], f3_series(_LINKAGE), (1, 2, 3, 4)
+    ax, f, regions = axes[0], series(_LINKAGE), (1, 2, 3, 4)
     mu = np.linspace(0.0, 1.5, 151)
     _shade(ax, f, mu, (0, *regions, 5, 6), -1.5)
     exact, gaps = hill_boundaries(f, mu, (1,)), []
@@ -74,7 +74,7 @@ def figure_35(axes: Sequence[Axes]) -> Drawn:
     """Draw the unstable regions for four cranks, the other links being equal."""
     mu, regions, widths = np.linspace(0.0, 1.0, 121), (1, 2, 3), []
     for ax, crank in zip(axes, (0.5, 1.5, 3.0, 4.0), strict=True):
-        f = _series(FourBar(frame=6.0, crank=crank, coupler=6.0, follower=6.0), "f3")
+        f = series(FourBar(frame=6.0, crank=crank, coupler=6.0, follower=6.0))
         _shade(ax, f, mu, (0, *regions, 4), -1.0)
         _edges(ax, mu, _to_order(f, mu, regions, 2), ":", COLOURS[2], "second order")
         widths.append(hill_boundaries(f, 1.0, regions).width)
@@ -83,16 +83,12 @@ def figure_35(axes: Sequence[Axes]) -> Drawn:
     return Drawn([short[1] / short[0], short[2] / short[0], growth])
 
 
-def _series(linkage: FourBar, name: str) -> PeriodicFunction:
-    return PeriodicFunction.from_callable(lambda theta: getattr(end_load(linkage, theta), name))
-
-
 def damped(axes: Sequence[Axes], regions: list[int], dampings: list[float], top: float) -> None:
     """Draw regions up to a mu for several dampings, exact and, of a single one, to first order.
 
     Figs. 36 and 37.
     """
-    f, ax = f3_series(_LINKAGE), axes[0]
+    f, ax = series(_LINKAGE), axes[0]
     for damping, colour in zip(dampings, COLOURS, strict=False):
         # Closer values above the tips, exact and by (7.51), where the outlines are flat.
         tips = 2.0 * damping * np.array(regions) / f.amplitudes[regions]
@@ -134,7 +130,7 @@ class _Pair:
 def figure_38(axes: Sequence[Axes]) -> Drawn:
     """Draw both boundary surfaces of one region and their first-order lines in the planes."""
     space: Any = axes[0]
-    pair = _Pair(_series(linkage_of(_LINKAGE), "f1"), f3_series(_LINKAGE))
+    pair = _Pair(series(_LINKAGE, "f1"), series(_LINKAGE))
     turn, amounts = np.linspace(0.0, 0.5 * pi, 41), np.linspace(0.0, 1.0, 33)
     reach = np.minimum(_REACH / np.maximum(np.cos(turn), np.sin(turn)), 2.0 * _REACH)
     rays = [

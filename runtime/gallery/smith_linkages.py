@@ -16,49 +16,34 @@ from ..core.periodic_function import PeriodicFunction
 from ..hill import HillForm, hill_boundaries, hill_form
 from ..linkages import FourBar
 from ..scenes import load_scene
+from .registry import contents
 
 Array = NDArray[np.float64]
 
 RPM = pi / 30.0
 # 1 lbf in s^2 in kg m^2, from the exact pound, standard gravity and the exact inch.
 LBF_IN_S2 = 0.45359237 * 9.80665 * 0.0254
-PROPORTIONS = {
-    "(2,1,2,2)": "smith_1972_2122",
-    "(4,1,4,4)": "smith_1972_4144",
-    "(5,1,5,2)": "smith_1972_5152_sixteenth_inch",
-    "(10,1,10,4)": "smith_1972_101104_sixteenth_inch",
-    "(54,0.4,54,3)": "smith_1972_54_04_54_3",
-}
+# The linkages that the thesis names by their proportions, and their scenes.
+PROPORTIONS: Mapping[str, str] = contents("smith")["proportions"]
 EQUATIONS = ("reduced", "printed", "complete")
 
 
-@dataclass(frozen=True)
-class EndLoad:
-    """Functions of the coupler equation at crank angles; every array has their shape.
+def end_load(linkage: FourBar, theta: ArrayLike) -> dict[str, Array]:
+    """Return the functions of the coupler equation at crank angles [rad], by name.
 
-    phi, f1, f2, f3 as defined under Smith (6.17), and ``cos(theta2 - theta3)``, the shape of the
-    tension that (6.17) leaves out.
+    phi, f1, f2, f3 as defined under Smith (6.17), and ``cos23``, the cosine of theta2 - theta3: the
+    shape of the tension that (6.17) leaves out.
     """
-
-    phi: Array
-    f1: Array
-    f2: Array
-    f3: Array
-    cos23: Array
-
-
-def end_load(linkage: FourBar, theta: ArrayLike) -> EndLoad:
-    """Return the functions phi, f1, f2, f3 of Smith (6.17) at crank angles [rad]."""
     motion = linkage.motion(theta)
     between = motion.theta3 - motion.theta4
     crank = motion.theta2 - motion.theta3
-    return EndLoad(
-        phi=motion.omega3**2,
-        f1=-motion.alpha3 / np.tan(between),
-        f2=np.sin(crank) / np.tan(between),
-        f3=-motion.alpha4 / np.sin(between),
-        cos23=np.cos(crank),
-    )
+    return {
+        "phi": motion.omega3**2,
+        "f1": -motion.alpha3 / np.tan(between),
+        "f2": np.sin(crank) / np.tan(between),
+        "f3": -motion.alpha4 / np.sin(between),
+        "cos23": np.cos(crank),
+    }
 
 
 def linkage_of(proportions: str) -> FourBar:
@@ -74,11 +59,10 @@ def four_bar_of(scene: str) -> FourBar:
     return linkage
 
 
-@lru_cache(maxsize=8)
-def f3_series(proportions: str) -> PeriodicFunction:
-    """Return the Fourier series of f3, Smith (6.17), for a linkage named by its proportions."""
-    linkage = linkage_of(proportions)
-    return PeriodicFunction.from_callable(lambda theta: end_load(linkage, theta).f3)
+@lru_cache(maxsize=16)
+def series(linkage: FourBar, name: str = "f3") -> PeriodicFunction:
+    """Return the Fourier series of one of the functions of :func:`end_load`."""
+    return PeriodicFunction.from_callable(lambda theta: end_load(linkage, theta)[name])
 
 
 @dataclass(frozen=True)
@@ -150,15 +134,7 @@ class Rig:
         return np.asarray(np.where(positive, self.frequency / roots, np.inf))
 
 
-RIGS = tuple(
-    Rig(f"smith_1972_{plain}_{inch}_inch", linkage, thickness, figure)
-    for plain, linkage, first in (("5152", "(5,1,5,2)", 82), ("101104", "(10,1,10,4)", 85))
-    for figure, inch, thickness in (
-        (str(first), "thirtysecond", "1/32"),
-        (str(first + 1), "threesixtyfourths", "3/64"),
-        (str(first + 2), "sixteenth", "1/16"),
-    )
-)
+RIGS = tuple(Rig(**row) for row in contents("smith")["rig"])
 RIG: Mapping[str, Rig] = {rig.figure: rig for rig in RIGS}
 
 

@@ -99,7 +99,7 @@ def end_loads(axes: Sequence[Axes], proportions: str) -> Drawn:
         ("f2", "$f_2$", COLOURS[2]),
         ("f3", "$f_3$", COLOURS[0]),
     ):
-        ax.plot(np.degrees(theta), getattr(parts, name), color=colour, label=label)
+        ax.plot(np.degrees(theta), parts[name], color=colour, label=label)
     sizes, eps2 = _sizes(proportions), pi**2 * linkage.crank / (2 * linkage.coupler)
     if proportions == "(54,0.4,54,3)":
         return Drawn([*(sizes[name] / sizes["f3"] for name in ("phi", "f1", "f2")), eps2])
@@ -115,7 +115,7 @@ def end_loads(axes: Sequence[Axes], proportions: str) -> Drawn:
 def _sizes(proportions: str) -> dict[str, float]:
     """Return the peaks of the components."""
     parts = end_load(linkage_of(proportions), np.linspace(0.0, 2 * pi, 2881))
-    return {n: float(np.max(np.abs(getattr(parts, n)))) for n in ("phi", "f1", "f2", "f3")}
+    return {n: float(np.max(np.abs(parts[n]))) for n in ("phi", "f1", "f2", "f3")}
 
 
 def _with_coupler(linkage: FourBar, change: float, crossed: bool = False) -> FourBar:

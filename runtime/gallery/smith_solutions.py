@@ -17,7 +17,7 @@ from ..scenes import load_scene
 from .algorithms import de_vogelaere_maps, de_vogelaere_start, kutta_merson, second_order_form
 from .drawing import COLOURS, Array, panel_title
 from .records import Drawn
-from .smith_linkages import f3_series
+from .smith_linkages import linkage_of, series
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -188,7 +188,7 @@ def figure_32(axes: Sequence[Axes]) -> Drawn:
 
 def figure_33(axes: Sequence[Axes]) -> Drawn:
     """Draw three unstable and three stable solutions of the homogeneous equation."""
-    f, mu = f3_series("(2,1,2,2)"), 0.5
+    f, mu = series(linkage_of("(2,1,2,2)")), 0.5
     # Unstable and stable ones by turns.
     squares = (0.25, 0.5, 1.0, 1.5, 2.25, 3.0)
     changes = {

@@ -192,11 +192,11 @@ def _terms(linkage: str, theta: Array) -> dict[str, Array]:
     links = linkage_of(linkage)
     parts, eps2 = end_load(links, theta), pi**2 * links.crank / (2 * links.coupler)
     return {
-        "phi": parts.phi,
-        "eps1 f1": pi**2 / 3 * parts.f1,
-        "eps2 f2": eps2 * parts.f2,
-        "eps2 cos23": eps2 * parts.cos23,
-        "(pi^2/3 - 1/4) phi": (pi**2 / 3 - 0.25) * parts.phi,
+        "phi": parts["phi"],
+        "eps1 f1": pi**2 / 3 * parts["f1"],
+        "eps2 f2": eps2 * parts["f2"],
+        "eps2 cos23": eps2 * parts["cos23"],
+        "(pi^2/3 - 1/4) phi": (pi**2 / 3 - 0.25) * parts["phi"],
     }
 
 

@@ -18,9 +18,9 @@ from elastolink.runtime.gallery.smith_linkages import (
     RIGS,
     RPM,
     end_load,
-    f3_series,
     four_bar_of,
     linkage_of,
+    series,
 )
 from elastolink.runtime.gallery.smith_responses import Response, envelope
 from elastolink.runtime.gallery.smith_speeds import OBSERVATIONS
@@ -47,7 +47,7 @@ def test_the_reduced_coefficient_is_eps3_times_f3(rig):
     coupler, follower = scene["links"]["coupler"], scene["links"]["follower"]
     eps3 = inertia * np.pi**2 / (scene["coupler"]["mass_per_length"] * coupler**2 * follower)
     theta = np.linspace(0.0, 2 * np.pi, 50)
-    expected = eps3 * end_load(linkage_of(rig.linkage), theta).f3
+    expected = eps3 * end_load(linkage_of(rig.linkage), theta)["f3"]
     np.testing.assert_allclose(rig.function("reduced", inertia)(theta), expected, atol=1e-11)
 
 
@@ -121,8 +121,8 @@ def test_only_a_scene_with_a_four_bar_gives_one():
 
 
 def test_the_surfaces_of_the_space_are_those_of_the_sum_of_both_functions():
-    f1 = smith_charts._series(linkage_of("(2,1,2,2)"), "f1")
-    pair = smith_charts._Pair(f1, f3_series("(2,1,2,2)"))
+    linkage = linkage_of("(2,1,2,2)")
+    pair = smith_charts._Pair(series(linkage, "f1"), series(linkage))
     lower, upper = pair.along(0.3, 0.4, np.array([0.0, 1.0]))
     exact = hill_boundaries(pair.first * 0.3 + pair.second * 0.4, 1.0, (2,))
     assert lower[1] == exact.lower[0] and upper[1] == exact.upper[0]

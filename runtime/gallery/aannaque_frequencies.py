@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 from itertools import zip_longest
-from typing import TYPE_CHECKING, Any, SupportsFloat
+from typing import Any, SupportsFloat
 
 import numpy as np
 
 from ..beams import Section, Structure, frame
-from ..core.families import Array
 from ..core.trigonometric import even_angles
 from ..frequencies import (
     dynamic_stiffness,
@@ -19,12 +18,9 @@ from ..frequencies import (
     wittrick_williams,
 )
 from .aannaque_models import FULL, beams, exact_frequencies, held, structure_of
-from .drawing import COLOURS, turn
+from .drawing import COLOURS, Array, Panels, turn
 from .records import Drawn
 from .registry import contents
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 @lru_cache(maxsize=1)
@@ -41,7 +37,7 @@ def _models() -> dict[str, tuple[int, Array]]:
     return {name: (system.size, held(system, theta)) for name, system in models.items()}
 
 
-def elements(axes: Sequence[Axes], mode: int) -> Drawn:
+def elements(axes: Panels, mode: int) -> Drawn:
     """Draw one natural frequency over the crank angle, five models (Fig. 4.6)."""
     models, curves = _models(), {}
     for (name, (size, frequencies)), style, colour in zip(
@@ -109,7 +105,7 @@ def _elements(column: str) -> Array:
     return np.asarray(_FACTOR * np.sqrt(eigh(stiffness, mass, eigvals_only=True)))
 
 
-def figure_5_1(axes: Sequence[Axes]) -> Drawn:
+def figure_5_1(axes: Panels) -> Drawn:
     """Draw the logarithm of the determinant of D over the frequency, bars whole and halved."""
     low, high = 20.0, 1200.0
     known = _exact()
@@ -135,7 +131,7 @@ def figure_5_1(axes: Sequence[Axes]) -> Drawn:
     return Drawn(orders)
 
 
-def table_5_1(axes: Sequence[Axes]) -> Drawn:
+def table_5_1(axes: Panels) -> Drawn:
     """Draw the relative errors of Table 5.1.b, recomputed, with the printed ones."""
     ax, exact, columns = axes[0], _exact(), {name: _elements(name) for name in _TABLE["columns"]}
 
@@ -174,7 +170,7 @@ def _both() -> tuple[Array, Array, Array]:
     return theta, held(system, theta), exact_frequencies(structure_of(system), theta, 4)
 
 
-def exact_and_elements(axes: Sequence[Axes], mode: int) -> Drawn:
+def exact_and_elements(axes: Panels, mode: int) -> Drawn:
     """Draw one natural frequency, three elements and exact, and their gap (Fig. 5.3)."""
     theta, three, exact = _both()
     turn(axes[0], theta, three[:, mode - 1], color=COLOURS[0], label="3 elements")

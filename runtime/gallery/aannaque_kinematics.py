@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import lru_cache
 from math import cos, degrees, pi, radians, sin, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,13 +16,10 @@ from ..rigid import rigid_forces
 from ..scenes import load_scene
 from . import sketch
 from .aannaque_models import FRAMES
-from .drawing import COLOURS, Array, panel_title
+from .drawing import COLOURS, Array, Axes, Panels, panel_title
 from .records import Drawn
 from .registry import contents
 from .smith_linkages import four_bar_of
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _SCENE = "aannaque_1996_table_3_2"
 # The projection of the three axes on the paper, the third upwards.
@@ -37,7 +32,7 @@ _VIEW = np.array(
 )
 
 
-def figure_3_4(axes: Sequence[Axes]) -> None:
+def figure_3_4(axes: Panels) -> None:
     """Draw the solution space up to a base plane, seen obliquely."""
     ax, plane = axes[0], base_plane(1.5)
     total = sqrt(3.0) * plane.lam
@@ -93,7 +88,7 @@ def _call(ax: Axes, place: Array, text: str, shift: tuple[float, float]) -> None
     )
 
 
-def figure_3_5(axes: Sequence[Axes]) -> Drawn:
+def figure_3_5(axes: Panels) -> Drawn:
     """Draw three base planes with the class of each region."""
     # Below, at and above the plane through the linkage of four equal links.
     planes = [base_plane(lam) for lam in (1.0, sqrt(3.0), 3.0)]
@@ -130,7 +125,7 @@ def cycle(frame: float | None = None) -> FourBarMotion:
     return chosen.motion(np.linspace(0.0, 2.0 * pi, 3601))
 
 
-def figure_3_6(axes: Sequence[Axes]) -> None:
+def figure_3_6(axes: Panels) -> None:
     """Draw both assemblies at one crank angle."""
     ax, bars, theta = sketch.canvas(axes[0]), linkage(), radians(130.0)
     other = FourBar(bars.frame, bars.crank, bars.coupler, bars.follower, assembly="crossed")
@@ -153,7 +148,7 @@ def figure_3_6(axes: Sequence[Axes]) -> None:
     sketch.arc(ax, a, 0.07 * bars.frame, (0.0, theta), "$t_1$")
 
 
-def rates(axes: Sequence[Axes], kind: str) -> Drawn | None:
+def rates(axes: Panels, kind: str) -> Drawn | None:
     """Draw speeds ``omega`` or accelerations ``alpha`` of both links (Figs. 3.7 and 3.8)."""
     motion = cycle()
     for number, link in ((3, "coupler"), (4, "follower")):
@@ -168,7 +163,7 @@ def rates(axes: Sequence[Axes], kind: str) -> Drawn | None:
     return Drawn([np.count_nonzero(peaks), rise / 360.0])
 
 
-def figure_3_9(axes: Sequence[Axes]) -> Drawn:
+def figure_3_9(axes: Panels) -> Drawn:
     """Draw the transmission angle over one cycle with the recommended band."""
     ax, bars, theta = axes[0], linkage(), np.linspace(0.0, 2.0 * pi, 721)
     mu = transmission_angle(bars)
@@ -183,7 +178,7 @@ def figure_3_9(axes: Sequence[Axes]) -> Drawn:
     return Drawn([degrees(mu.least), degrees(mu.greatest)])
 
 
-def figure_3_10(axes: Sequence[Axes]) -> None:
+def figure_3_10(axes: Panels) -> None:
     """Draw the mechanism at several positions, and the paths of some points of its coupler."""
     ax, bars = sketch.canvas(axes[0]), linkage()
     length, start = bars.coupler, radians(70.0)
@@ -216,7 +211,7 @@ def figure_3_10(axes: Sequence[Axes]) -> None:
     sketch.four_bar(ax, joints, 0.07 * bars.frame, "OABC")
 
 
-def free_body(axes: Sequence[Axes], link: str) -> Drawn:
+def free_body(axes: Panels, link: str) -> Drawn:
     """Draw one link cut free (Fig. 3.11)."""
     ax, scene = sketch.canvas(axes[0]), load_scene(_SCENE)
     machine, speed = scene.machine(), scene["operation"]["speed"]
@@ -240,7 +235,7 @@ def free_body(axes: Sequence[Axes], link: str) -> Drawn:
     return Drawn(values, tables=[rows])
 
 
-def figure_7_12(axes: Sequence[Axes]) -> Drawn:
+def figure_7_12(axes: Panels) -> Drawn:
     """Draw the follower's acceleration for several distances of the pivots."""
     ax, speed = axes[0], load_scene(_SCENE)["operation"]["speed"]
     for frame in FRAMES:

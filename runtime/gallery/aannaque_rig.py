@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from math import degrees, radians
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -23,12 +23,9 @@ from ..recovery.stress_over_speed import StressCurve, stress_curve
 from ..scenes import load_scene
 from .aannaque_kinematics import cycle
 from .aannaque_models import FRAME, exact_frequencies, maxima, structure_of
-from .drawing import COLOURS, mark_fractions, panel_title, turn
+from .drawing import COLOURS, Axes, Panels, mark_fractions, panel_title, turn
 from .records import Drawn
 from .registry import contents
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 SHORT, LONG = "aannaque_1996_table_4_1", "aannaque_1996_long_coupler"
 # Speeds in the captions of appendices C and D [rad/s].
@@ -64,7 +61,7 @@ def midpoint(speed: float) -> ElasticCurve:
     return elastic_coupler_curve(rig(), steady_state(rig(), speed, rtol=1e-5))
 
 
-def figure_8_2(axes: Sequence[Axes]) -> Drawn:
+def figure_8_2(axes: Panels) -> Drawn:
     """Draw the path at a low and at a high speed, the rigid linkage's beside it."""
     for ax, speed in zip(axes, (_SLOW, _FAST), strict=True):
         path, larger = midpoint(speed), _LARGER[speed]
@@ -76,7 +73,7 @@ def figure_8_2(axes: Sequence[Axes]) -> Drawn:
     return Drawn([1e3 * midpoint(speed).largest for speed in (_SLOW, _FAST)])
 
 
-def figure_8_3(axes: Sequence[Axes]) -> Drawn:
+def figure_8_3(axes: Panels) -> Drawn:
     """Draw the path at a low speed and how far it lies from that of the rigid linkage."""
     path = midpoint(_SLOW)
     _closed(axes[0], path.elastic, "-", COLOURS[0], "elastic linkage")
@@ -85,7 +82,7 @@ def figure_8_3(axes: Sequence[Axes]) -> Drawn:
     return Drawn([1e3 * path.largest])
 
 
-def figure_8_4(axes: Sequence[Axes]) -> Drawn:
+def figure_8_4(axes: Panels) -> Drawn:
     """Draw the paths at a low and at a high speed over each other, and their distances."""
     slow, fast = midpoint(_SLOW), midpoint(_FAST)
     _closed(axes[0], slow.elastic, "--", COLOURS[4], f"{_SLOW:g} rad/s")
@@ -114,7 +111,7 @@ def held_modes() -> NaturalFrequencies:
     return natural_frequencies(rig(), np.radians(ANGLES), 3)
 
 
-def modes(axes: Sequence[Axes], place: int) -> Drawn:
+def modes(axes: Panels, place: int) -> Drawn:
     """Draw the modes at one of the ten crank angles (Figs. 8.9 to 8.18)."""
     angle, tracked = ANGLES[place], held_modes().tracked[place]
     computed, order = np.sort(tracked), np.argsort(tracked)
@@ -141,7 +138,7 @@ def crossing() -> float:
     return float(_LENGTHS[0] * np.sqrt(pinned["coupler"][0] / pinned["follower"][0]))
 
 
-def figure_9_1(axes: Sequence[Axes]) -> Drawn:
+def figure_9_1(axes: Panels) -> Drawn:
     """Draw the mean first frequency over the coupler's length, and those of the pinned links."""
     over = over_coupler()
     ax = over.plot(axes[0])
@@ -180,7 +177,7 @@ def _critical(over: StressCurve, link: str) -> Array:
     return maxima(over.speed, over.of(link), -np.log1p(-0.05))
 
 
-def long_frame(axes: Sequence[Axes], frame: float) -> Drawn:
+def long_frame(axes: Panels, frame: float) -> Drawn:
     """Draw the follower's largest stress over the speed for one L4 (Figs. 8.19 to 8.23)."""
     ax, looks = axes[0], {FRAME: ("--", COLOURS[4])}
     for value, (style, colour) in {**looks, frame: ("-", COLOURS[0])}.items():
@@ -238,7 +235,7 @@ def _nearest(frame: float, order: int) -> float:
     return float(speeds[np.argmin(np.abs(speeds - mean_frequency(SHORT, frame) / order))])
 
 
-def figure_8_24(axes: Sequence[Axes]) -> Drawn:
+def figure_8_24(axes: Panels) -> Drawn:
     """Draw the follower's stress over the cycle with a long ground link."""
     ax, motion = axes[0], cycle(0.662)
     values = []
@@ -255,7 +252,7 @@ def figure_8_24(axes: Sequence[Axes]) -> Drawn:
     return Drawn([*values, widest, lowest, 100.0 * (11.31 / 13.67 - 1.0)])
 
 
-def long_coupler(axes: Sequence[Axes], link: str) -> Drawn:
+def long_coupler(axes: Panels, link: str) -> Drawn:
     """Draw a link's largest stress over the speed, long coupler (Figs. 8.25 and 8.26)."""
     ax, short, long = axes[0], curve(SHORT, FRAME), curve(LONG, FRAME, _LONG_HIGH)
     ax.semilogy(long.speed, long.of(link) / 1e6, color=COLOURS[0], label="$L_2$ = 0.636 m")
@@ -292,7 +289,7 @@ def cycles(
     return motion.theta, by_station
 
 
-def sheet(axes: Sequence[Axes], letter: str, first: int, last: int) -> Drawn:
+def sheet(axes: Panels, letter: str, first: int, last: int) -> Drawn:
     """Draw some figures of appendix C or D, a row of links for each."""
     numbers = range(first, last + 1)
     speeds = tuple(SPEEDS[letter][number - 1] for number in numbers)

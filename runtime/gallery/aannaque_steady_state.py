@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.families import Array
 from ..core.trigonometric import even_angles
 from ..periodic import SteadyState, cycles_to_settle, steady_state
 from .aannaque_models import CRITICAL, FULL, THESIS, beams, midpoint, moved, rms
@@ -20,12 +17,9 @@ from .algorithms import (
     operation_count,
     printed_count,
 )
-from .drawing import COLOURS, panel_title, turn
+from .drawing import COLOURS, Array, Panels, panel_title, turn
 from .records import Drawn
 from .registry import contents
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _SPEED = 35.0
 _FORMS = ((THESIS, "the thesis' form"), (FULL, "full form with stiffening"))
@@ -38,7 +32,7 @@ _NAMES = {
 }
 
 
-def figure_6_1(axes: Sequence[Axes]) -> Drawn:
+def figure_6_1(axes: Panels) -> Drawn:
     """Draw the regions of stability of Newmark's scheme over gamma and beta."""
     ax, right = axes[0], np.linspace(0.5, 1.2, 71)
     pairs, real = 0.25 * (right + 0.5) ** 2, 0.5 * right
@@ -79,7 +73,7 @@ def _across(link: str, q: Array) -> Array:
     return moved(beams(1), link, even_angles(2.0 * np.pi, len(q)), q)
 
 
-def deflections(axes: Sequence[Axes], link: str) -> Drawn:
+def deflections(axes: Panels, link: str) -> Drawn:
     """Draw a link's midpoint over the cycle, with and without uncoupled modes (Fig. 6.3)."""
     ax, full = axes[0], steady_state(beams(1, FULL), _SPEED, rtol=1e-5)
     for q, style, colour, label in (
@@ -117,7 +111,7 @@ def _contributions(link: str) -> tuple[Array, Array]:
     return np.einsum("tn,tn->t", row, motion.q), parts
 
 
-def contributions(axes: Sequence[Axes], link: str) -> Drawn:
+def contributions(axes: Panels, link: str) -> Drawn:
     """Draw the parts of four modes in the displacement of a midpoint (Fig. 6.4)."""
     ax, turned = axes[0], np.degrees(_whole().theta)
     whole, parts = _contributions(link)
@@ -169,7 +163,7 @@ def _settled(values: Array, tolerance: float) -> float:
     return float(np.argmax(changes(values) < tolerance) + 2)
 
 
-def figure_6_5(axes: Sequence[Axes]) -> Drawn:
+def figure_6_5(axes: Panels) -> Drawn:
     """Draw the follower's midpoint from rest at 62 rad/s, and its change in a cycle."""
     values = march()[0]
     cycles = np.arange(values.size) / values.shape[1]
@@ -199,7 +193,7 @@ def _cycles(ratio: float) -> int:
     return int(cycles_to_settle(values[np.argmax(np.abs(values))], 1e-4))
 
 
-def figure_6_6(axes: Sequence[Axes]) -> Drawn:
+def figure_6_6(axes: Panels) -> Drawn:
     """Draw the operations over the intervals: algorithms 1 and 2, and marching at two dampings."""
     intervals = (90, 180, 360, 540, 720)
     lines = [
@@ -238,7 +232,7 @@ def _break_even(freedoms: int) -> float:
     return float(cycles)
 
 
-def table_6_1(axes: Sequence[Axes]) -> Drawn:
+def table_6_1(axes: Panels) -> Drawn:
     """Draw the counted operations over those of the printed formulas."""
     freedoms = np.unique(np.round(np.geomspace(3, 300, 25)).astype(int))
 
@@ -260,7 +254,7 @@ def table_6_1(axes: Sequence[Axes]) -> Drawn:
     return Drawn([ratio(name, 300) for name in _NAMES], tables=[rows])
 
 
-def table_6_2(axes: Sequence[Axes]) -> Drawn:
+def table_6_2(axes: Panels) -> Drawn:
     """Draw the entries of Table 6.2 and those of the printed formulas."""
     ax, entries = axes[0], np.array(_TABLES["operations"])
     keys, printed, places = entries[:, :3].astype(int), entries[:, 3:], np.arange(len(entries))
@@ -277,7 +271,7 @@ def table_6_2(axes: Sequence[Axes]) -> Drawn:
     return Drawn([np.max(np.abs(printed / computed - 1.0))])
 
 
-def table_6_3(axes: Sequence[Axes]) -> Drawn:
+def table_6_3(axes: Panels) -> Drawn:
     """Draw the operations of the Fourier series and of algorithm 1 over the harmonics."""
     harmonics, entries = range(1, 31), _TABLES["series"]
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -33,11 +32,8 @@ from .aannaque_models import (
     structure_of,
     tops,
 )
-from .drawing import COLOURS
+from .drawing import COLOURS, Panels
 from .records import Drawn
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 # Speeds [rad/s] of Figs. 7.1 and 7.3, of 7.4 and 7.6, of 7.7 to 7.11.
 _SPEEDS, _COARSE = np.linspace(20.0, 75.0, 221), np.linspace(20.0, 70.0, 81)
@@ -67,7 +63,7 @@ def real_parts(drop: tuple[str, ...] = THESIS) -> Array:
     return np.asarray(np.max(real.reshape(len(_SPEEDS), _MODES, 2), axis=-1))
 
 
-def figure_7_1(axes: Sequence[Axes]) -> Drawn:
+def figure_7_1(axes: Panels) -> Drawn:
     """Draw the largest stress and the real parts of the multipliers over the speed."""
     for drop, style, colour, label in (
         (THESIS, "-", COLOURS[0], "the thesis' form"),
@@ -110,7 +106,7 @@ def _meissner(speed: Array, intervals: int) -> Array:
     return discriminant(Meissner.of(levels**2), 0.0, 1.0 / speed**2).value
 
 
-def figure_7_3(axes: Sequence[Axes]) -> Drawn:
+def figure_7_3(axes: Panels) -> Drawn:
     """Draw J_2, J_3, J_4 and the real part of a multiplier over the speed, first mode."""
     ax, fine = axes[0], _meissner(_SPEEDS, 180)
     ax.plot(_SPEEDS, fine, color="0.15", lw=1.2, label="180 intervals")
@@ -145,7 +141,7 @@ def _response(frame: float) -> tuple[Array, Array]:
     return 1e3 * rms(moved(system, "follower", motion.theta, motion.q)), np.max(energy, axis=1)
 
 
-def six_frames(axes: Sequence[Axes], quantity: str) -> Drawn:
+def six_frames(axes: Panels, quantity: str) -> Drawn:
     """Draw a quantity over the speed for six frames (Figs. 7.4 to 7.6).
 
     The rms displacement of the follower's midpoint, the crank's largest stress, or the peak of the
@@ -188,7 +184,7 @@ def _curve(elements: int, ratio: float = 0.02, drop: tuple[str, ...] = THESIS) -
     return np.stack([curve.of(link) for link in LINKS], axis=1)
 
 
-def damping(axes: Sequence[Axes], ratio: float) -> Drawn:
+def damping(axes: Panels, ratio: float) -> Drawn:
     """Draw the largest stress of each link over the speed (Figs. 7.7, 7.10, 7.11)."""
     ax = axes[0]
     for drop, style, lead in ((THESIS, "-", ""), (FULL, ":", "full form, ")):
@@ -206,7 +202,7 @@ def damping(axes: Sequence[Axes], ratio: float) -> Drawn:
     return Drawn([*values, np.max((damped / base)[_WIDE > 20.0])])
 
 
-def figure_7_8(axes: Sequence[Axes]) -> Drawn:
+def figure_7_8(axes: Panels) -> Drawn:
     """Draw the largest stress over the speed for one, two and three elements, and "exact"."""
     ax, counts = axes[0], (1, 2, 3)
     largest = [np.max(_curve(count), axis=1) for count in counts]
@@ -243,7 +239,7 @@ def bending_at_midpoint(
     return forces.theta, np.asarray(factor * forces.of("follower", "moment")[:, 0])
 
 
-def figure_7_9(axes: Sequence[Axes]) -> Drawn:
+def figure_7_9(axes: Panels) -> Drawn:
     """Draw the stress at the follower's midpoint over the cycle at 30 rad/s, four models."""
     ax = axes[0]
     models = {
@@ -262,7 +258,7 @@ def figure_7_9(axes: Sequence[Axes]) -> Drawn:
     return Drawn([two, one / two, peaks[1] / peaks[0], peaks[2] / peaks[1]])
 
 
-def figure_7_13(axes: Sequence[Axes]) -> Drawn:
+def figure_7_13(axes: Panels) -> Drawn:
     """Draw the stress at the follower's midpoint over the cycle, six frames."""
     ax, pulses = axes[0], []
     for frame in FRAMES:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import lru_cache
 from itertools import combinations_with_replacement
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,11 +12,8 @@ from ..frequencies import ResonanceCurve, natural_frequencies, resonance_curve
 from ..periodic import floquet_multipliers
 from ..stability import StabilityChart, stability_chart
 from .beale_tip import AS_PRINTED, ENOUGH, FLEXIBLE, peak, rod, tip_from_rest
-from .drawing import COLOURS, panel_title
+from .drawing import COLOURS, Axes, Panels, panel_title
 from .records import Drawn
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _RATIO, _QUOTED = 0.2, 900.0
 _COMPLETE: tuple[str, ...] = ()
@@ -48,7 +43,7 @@ def mean_frequency(formulation: str = "polynomial", modes: int = 3, ratio: float
     return float(natural_frequencies(_rod(formulation, modes, AS_PRINTED, ratio), 0.0, 1).mean[0])
 
 
-def figure_11(axes: Sequence[Axes]) -> Drawn:
+def figure_11(axes: Panels) -> Drawn:
     """Draw the first natural frequency with the crank held, against its angle."""
     ax = axes[0]
     for formulation, modes, style, colour in (
@@ -63,7 +58,7 @@ def figure_11(axes: Sequence[Axes]) -> Drawn:
     return Drawn([mean_frequency(), np.max(first) / np.min(first)])
 
 
-def figure_12(axes: Sequence[Axes]) -> Drawn:
+def figure_12(axes: Panels) -> Drawn:
     """Draw the tip from rest near the mean frequency: three polynomials, and converged modes."""
     mean, heights, turns = mean_frequency(), [], 60
     for k, (formulation, modes, drop, speed) in enumerate(
@@ -114,7 +109,7 @@ def resonances(ratio: float) -> ResonanceCurve:
     return resonance_curve(system.with_parameters(internal_damping=drag), speeds)
 
 
-def figure_resonances(axes: Sequence[Axes]) -> Drawn:
+def figure_resonances(axes: Panels) -> Drawn:
     """Draw the largest steady tip deflection against the crank speed, for three crank ratios."""
     ax = axes[0]
     values: list[float] = []
@@ -144,7 +139,7 @@ def frequencies(formulation: str, modes: int) -> Array:
     return natural_frequencies(_rod(formulation, modes, AS_PRINTED, 1e-6)).mean
 
 
-def figure_chart(axes: Sequence[Axes]) -> Drawn:
+def figure_chart(axes: Panels) -> Drawn:
     """Draw two bases, three polynomials and four overhang modes, with and without tension."""
     from matplotlib.colors import ListedColormap
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +18,8 @@ from ..periodic.transition import method, segments_of
 from ..scenes import load_scene
 from ..systems.rod import FreeFreeRod
 from . import sketch
-from .drawing import COLOURS
+from .drawing import COLOURS, Axes, Panels
 from .records import Drawn
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 STIFF = "beale_1992_bahgat_willmert"
 HEAVY = "beale_1992_bahgat_willmert_heavy"
@@ -122,7 +119,7 @@ def turns(values: Array) -> int:
     return int(np.count_nonzero(np.diff(np.sign(np.diff(values)))))
 
 
-def polynomials(axes: Sequence[Axes], modes: int) -> Drawn:
+def polynomials(axes: Panels, modes: int) -> Drawn:
     """Draw the large crank's tip with so many polynomial modes (Figs. 2 and 3)."""
     values: list[float] = []
     for ax, scene in zip(axes, READINGS, strict=True):
@@ -164,7 +161,7 @@ def components(scene: str) -> tuple[Array, Array, Array]:
     return theta, -bent[:, -1] * np.sin(direction), bent[:, -1] * np.cos(direction)
 
 
-def figure_4(axes: Sequence[Axes]) -> Drawn:
+def figure_4(axes: Panels) -> Drawn:
     """Draw the linkage at some crank angles, and both components for both mass readings."""
     _draw_linkage(axes[0])
     values: list[float] = []
@@ -223,7 +220,7 @@ def lean(scene: str) -> float:
     return float(np.degrees(np.arctan2(drawn_in, abs(last[-1]))))
 
 
-def figure_5(axes: Sequence[Axes]) -> Drawn:
+def figure_5(axes: Panels) -> Drawn:
     """Draw the first turn and the periodic motion of ten polynomial modes with 0.002 damping."""
     values, rows = [], []
     for ax, scene in zip(axes, READINGS, strict=True):
@@ -268,7 +265,7 @@ def _word(modes: int) -> str:
     return f"{modes} free-free mode{'s' if modes > 1 else ''}"
 
 
-def figure_7(axes: Sequence[Axes]) -> Drawn:
+def figure_7(axes: Panels) -> Drawn:
     """Draw the flexible rod's tip at the small crank with one, two and three modes."""
     theta, exact = tip_from_rest(rod(FLEXIBLE, "overhang", ENOUGH, FRAME), 100.0)
     angle, gaps = np.degrees(theta), []
@@ -281,7 +278,7 @@ def figure_7(axes: Sequence[Axes]) -> Drawn:
     return Drawn([gaps[0], gaps[1] - gaps[2]])
 
 
-def large_crank(axes: Sequence[Axes], modes: int) -> Drawn:
+def large_crank(axes: Panels, modes: int) -> Drawn:
     """Draw the stiff rod's tip with so many free-free modes (Figs. 8 to 10)."""
     values: list[float] = []
     dashed: dict[str, Any] = {"color": COLOURS[1], "ls": "--"}

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+    import matplotlib.axes
 
 Array = NDArray[np.float64]
+Axes: TypeAlias = "matplotlib.axes.Axes"
+# The panels of a figure, in the order of rows and columns.
+Panels: TypeAlias = "Sequence[matplotlib.axes.Axes]"
 
 CRANK_ANGLE = r"crank angle $\theta_2$ [deg]"
 # Blue, orange, green, purple, grey, brown: distinct in print and by the colour-blind.
@@ -38,7 +41,7 @@ SETTINGS: dict[str, Any] = {
 
 
 def finish(
-    axes: Sequence[Axes],
+    axes: Panels,
     columns: int,
     common: Mapping[str, Any],
     panels: Sequence[Mapping[str, Any]],
@@ -83,7 +86,7 @@ def dress(ax: Axes, settings: Mapping[str, Any]) -> None:
     ax.set(**rest)
 
 
-def legend_below(axes: Sequence[Axes], columns: int) -> None:
+def legend_below(axes: Panels, columns: int) -> None:
     """Put one legend for all the axes under them, each label once; none where there is no label."""
     named: dict[str, Any] = {}
     for ax in axes:

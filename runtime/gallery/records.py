@@ -6,12 +6,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from math import nan
 from textwrap import fill
-from typing import TYPE_CHECKING, Any, Literal, SupportsFloat
+from typing import Any, Literal, SupportsFloat
 
 from ..core.results import Check, Result
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from .drawing import Axes, Panels
 
 Relation = Literal["=", "<", ">"]
 Kind = Literal["printed", "words", "check"]
@@ -228,7 +226,7 @@ class FigureEntry:
     document: str
     label: str
     title: str
-    draw: Callable[[Sequence[Axes]], Drawn | None]
+    draw: Callable[[Panels], Drawn | None]
     panels: tuple[int, int] = (1, 1)
     size: tuple[float, float] = (7.2, 4.6)
     projection: str | None = None
@@ -250,7 +248,7 @@ class FigureEntry:
             parts.append((plain[:digits].zfill(2) if digits else "") + plain[digits:])
         return "_".join([self.document, *parts])
 
-    def show(self, axes: Sequence[Axes]) -> Shown:
+    def show(self, axes: Panels) -> Shown:
         """Draw the figure and put the computed values beside the quoted ones."""
         drawn = self.draw(axes) or Drawn()
         words = drawn.words

@@ -10,15 +10,13 @@ table ``notes``; ``page`` is a document that notes and tables make up.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cache
 from importlib import import_module, resources
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from .drawing import Panels
 from .records import KINDS, Drawn, FigureEntry, Quoted
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 NAMES = ("smith", "aannaque", "beale")
 
@@ -60,7 +58,7 @@ def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> F
     common = record.pop("common", {})
     place, arguments = record.pop("draw"), record.pop("arguments", ())
 
-    def draw(axes: Sequence[Axes]) -> Drawn | None:
+    def draw(axes: Panels) -> Drawn | None:
         # The module that draws is loaded only now.
         module, _, name = place.partition(".")
         drawn: Drawn | None = getattr(import_module(f".{module}", __package__), name)(

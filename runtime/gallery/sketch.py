@@ -5,16 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..rigid import Machine, RigidForces, rigid_forces
-from .drawing import COLOURS, Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from .drawing import COLOURS, Array, Axes
 
 INK, GROUND = "#2b2b2b", "0.45"
 LINK_COLOURS = {"crank": "#c8641e", "coupler": "#1f5a8c", "follower": "#3a7d44"}

@@ -15,11 +15,11 @@ derivative, his K and ``K = delta^3/(1 + delta^2)`` follow from the latter.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from math import radians
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -32,12 +32,9 @@ from ..rigid import (
 )
 from ..rigid.counterweights import CASES, Case
 from . import sketch
-from .drawing import COLOURS, Array, panel_title
+from .drawing import COLOURS, Array, Axes, Panels, panel_title
 from .records import Drawn
 from .smith_forces import INCH, TURN, example, example_forces, finish_polar, peak
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 # Discs half an inch thick, 6 in from the pins, as the thesis states none of these.
 _THICKNESS, _OFFSET = 0.5 * INCH, 6.0 * INCH
@@ -65,7 +62,7 @@ def _forces(case: Case, offset: float = _OFFSET, thickness: float = _THICKNESS) 
     return rigid_forces(changed, TURN, speed)
 
 
-def figure_20(axes: Sequence[Axes]) -> Drawn:
+def figure_20(axes: Panels) -> Drawn:
     """Draw the four configurations with their counterweights to scale."""
     from matplotlib.patches import Circle
 
@@ -116,7 +113,7 @@ def _balance_values() -> list[float]:
     ]
 
 
-def figure_21(axes: Sequence[Axes]) -> Drawn:
+def figure_21(axes: Panels) -> Drawn:
     """Draw the force on the frame, unbalanced and partially balanced, as a polar diagram."""
     ax = axes[0]
     plans: tuple[tuple[Case, str, int, str], ...] = (
@@ -136,7 +133,7 @@ def figure_21(axes: Sequence[Axes]) -> Drawn:
     return Drawn([peak(_forces("b").shaking_force)[0] / peak(_forces("a").shaking_force)[0]])
 
 
-def figure_22(axes: Sequence[Axes]) -> Drawn:
+def figure_22(axes: Panels) -> Drawn:
     """Draw the moment on the frame in the four cases, by (4.13) and complete."""
     for ax in axes:
         for case in CASES:
@@ -162,7 +159,7 @@ def _moment(case: Case, complete: bool) -> Array:
     return np.asarray(example()[0].linkage.lengths["frame"] * forces["y41"])
 
 
-def figure_23d(axes: Sequence[Axes]) -> Drawn:
+def figure_23d(axes: Panels) -> Drawn:
     """Draw the crank-pin force for several offsets of the counterweights of case (d)."""
     ax, peaks = axes[0], {}
     cases = ((0.0, "(a) unbalanced"), (6.0, "(d)"), (3.0, "(d')"), (1.0, "(d'')"))
@@ -247,7 +244,7 @@ def _best() -> list[tuple[str, float, float, float]]:
     return list(zip("ABCDE", densities, numbers, optimal_offset(numbers).tolist(), strict=True))
 
 
-def figure_23a(axes: Sequence[Axes]) -> Drawn:
+def figure_23a(axes: Panels) -> Drawn:
     """Draw K over the offset for which it makes the inertia least."""
     ax, delta = axes[0], np.linspace(0.0, 1.0, 401)
     ax.plot(delta, offset_function(delta), color=COLOURS[0])
@@ -268,7 +265,7 @@ def _densities(ax: Axes, delta: Array, beside: float) -> None:
         sketch.write(ax, (best, least), letter, (beside, -10.0), color=colour)
 
 
-def figure_23b(axes: Sequence[Axes]) -> Drawn:
+def figure_23b(axes: Panels) -> Drawn:
     """Draw the inertia over the offset for a range of densities."""
     ax, delta = axes[0], np.linspace(0.06, 1.0, 471)
     # So light that no counterweight at all is best.
@@ -284,7 +281,7 @@ def figure_23b(axes: Sequence[Axes]) -> Drawn:
     return Drawn([max(offsets), min(offsets)], tables=[rows])
 
 
-def figure_23c(axes: Sequence[Axes]) -> Drawn:
+def figure_23c(axes: Panels) -> Drawn:
     """Draw the neighbourhood of the minima, and the line on which they lie."""
     ax, delta = axes[0], np.linspace(0.1, 1.0, 451)
     line = BalancedLink(delta, offset_function(delta))

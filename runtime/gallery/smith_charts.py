@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -18,12 +18,9 @@ from ..hill import (
     perturbation_boundaries,
 )
 from ..linkages import FourBar
-from .drawing import COLOURS, Array, outline
+from .drawing import COLOURS, Array, Axes, Panels, outline
 from .records import Drawn
 from .smith_linkages import linkage_of, series
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _LINKAGE = linkage_of("(2,1,2,2)")
 # Of the space: the region and the parameters' range.
@@ -54,7 +51,7 @@ def _shade(ax: Axes, f: PeriodicFunction, mu: Array, regions: Sequence[int], lef
     _edges(ax, mu, np.stack([exact.lower, exact.upper]), "-", COLOURS[5], "exact")
 
 
-def figure_34(axes: Sequence[Axes]) -> Drawn:
+def figure_34(axes: Panels) -> Drawn:
     """Draw exact, first-order and second-order boundaries of a typical linkage."""
     ax, f, regions = axes[0], series(_LINKAGE), (1, 2, 3, 4)
     mu = np.linspace(0.0, 1.5, 151)
@@ -70,7 +67,7 @@ def figure_34(axes: Sequence[Axes]) -> Drawn:
     return Drawn(words={"first": gaps[0], "second": gaps[1]})
 
 
-def figure_35(axes: Sequence[Axes]) -> Drawn:
+def figure_35(axes: Panels) -> Drawn:
     """Draw the unstable regions for four cranks, the other links being equal."""
     mu, regions, widths = np.linspace(0.0, 1.0, 121), (1, 2, 3), []
     for ax, crank in zip(axes, (0.5, 1.5, 3.0, 4.0), strict=True):
@@ -83,7 +80,7 @@ def figure_35(axes: Sequence[Axes]) -> Drawn:
     return Drawn([short[1] / short[0], short[2] / short[0], growth])
 
 
-def damped(axes: Sequence[Axes], regions: list[int], dampings: list[float], top: float) -> None:
+def damped(axes: Panels, regions: list[int], dampings: list[float], top: float) -> None:
     """Draw regions up to a mu for several dampings, exact and, of a single one, to first order.
 
     Figs. 36 and 37.
@@ -127,7 +124,7 @@ class _Pair:
         return ends.lower[0], ends.upper[0]
 
 
-def figure_38(axes: Sequence[Axes]) -> Drawn:
+def figure_38(axes: Panels) -> Drawn:
     """Draw both boundary surfaces of one region and their first-order lines in the planes."""
     space: Any = axes[0]
     pair = _Pair(series(_LINKAGE, "f1"), series(_LINKAGE))

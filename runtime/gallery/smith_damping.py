@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,13 +14,10 @@ from ..hill import critical_damping, hill_boundaries, perturbation_boundaries
 from ..hill.bloch import effective_operator
 from ..periodic import floquet_multipliers
 from ..stability import stability_edges
-from .drawing import COLOURS, Array, panel_title
+from .drawing import COLOURS, Array, Panels, panel_title
 from .records import Drawn
 from .registry import contents
 from .smith_linkages import LBF_IN_S2, RIG, RPM, OfRig, region_name
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True)
@@ -89,7 +85,7 @@ def at_rest(estimate: Estimate) -> tuple[float, float]:
     return least * factor, most * factor
 
 
-def estimates_table(axes: Sequence[Axes]) -> Drawn:
+def estimates_table(axes: Panels) -> Drawn:
     """Draw the damping that closes each region over the follower's inertia."""
     values = []
     for ax, one in zip(axes, ESTIMATES, strict=True):
@@ -259,7 +255,7 @@ def _damped(chart: str, modes: int) -> LinearPeriodic:
     return RIG[chart].system(modes=modes, decrement=RIG[chart].decrements[0])
 
 
-def modes_table(axes: Sequence[Axes]) -> Drawn:
+def modes_table(axes: Panels) -> Drawn:
     """Draw the widths of all regions of two modes over the crank speed."""
     tables, titles = [], []
     for ax, (chart, inertia) in zip(axes, _CASES, strict=True):

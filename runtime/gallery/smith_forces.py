@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 from math import degrees, pi, radians
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,12 +13,9 @@ from ..linkages import FourBar
 from ..rigid import Machine, MassDistribution, RigidForces, rigid_forces
 from ..scenes import load_scene
 from . import sketch
-from .drawing import COLOURS, Array
+from .drawing import COLOURS, Array, Axes, Panels
 from .records import Drawn
 from .registry import contents
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 INCH, POUND = 0.0254, 4.4482216152605
 TURN = np.linspace(0.0, 2.0 * pi, 1441)
@@ -45,7 +42,7 @@ def peak(values: Array) -> tuple[float, float]:
     return float(size[at]), (degrees(TURN[at]) + 180.0) % 360.0 - 180.0
 
 
-def figure_11(axes: Sequence[Axes]) -> Drawn:
+def figure_11(axes: Panels) -> Drawn:
     """Draw the links cut free, every force to one scale."""
     ax = sketch.canvas(axes[0])
     machine, speed = example()
@@ -69,7 +66,7 @@ def figure_11(axes: Sequence[Axes]) -> Drawn:
     return Drawn(tables=[rows])
 
 
-def polar(axes: Sequence[Axes], joint: str) -> Drawn:
+def polar(axes: Panels, joint: str) -> Drawn:
     """Draw one polar diagram of Figs. 12 to 16."""
     ax, forces = axes[0], example_forces()
     forces.plot(ax, joint)
@@ -98,7 +95,7 @@ def finish_polar(ax: Axes) -> None:
 
 
 def family(
-    axes: Sequence[Axes], frame: float, coupler: float, follower: float, cranks: Sequence[float]
+    axes: Panels, frame: float, coupler: float, follower: float, cranks: Sequence[float]
 ) -> Drawn:
     """Draw the follower-frame force of linkages that differ in the crank [in], Figs. 17 to 19."""
     ax, peaks, accelerations = axes[0], [], []

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import acos, cos, degrees, pi, radians, sin, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,12 +12,9 @@ from ..linkages import FourBar, FourBarMotion
 from ..linkages.clearance import clearance_range
 from ..linkages.transmission import transmission_angle
 from . import sketch
-from .drawing import COLOURS, Array
+from .drawing import COLOURS, Array, Axes, Panels
 from .records import Drawn
 from .smith_linkages import PROPORTIONS, end_load, four_bar_of, linkage_of
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _CRANKS = (2.0, 4.0, 6.0, 8.0, 9.0, 9.9)
 _DASHED = (0, (3.5, 1.5))
@@ -28,7 +24,7 @@ def _follower(crank: float, theta: Array) -> FourBarMotion:
     return FourBar(frame=10.0, crank=crank, coupler=10.0, follower=10.0).motion(theta)
 
 
-def output(axes: Sequence[Axes], rate: str, small: float, slope: float, level: float) -> Drawn:
+def output(axes: Panels, rate: str, small: float, slope: float, level: float) -> Drawn:
     """Draw the follower's angle, speed or acceleration for a family of cranks (Fig. 6).
 
     Its value for a vanishing crank, the slope over the angle and the level of the parallelogram's.
@@ -59,7 +55,7 @@ def output(axes: Sequence[Axes], rate: str, small: float, slope: float, level: f
     )
 
 
-def figure_7(axes: Sequence[Axes]) -> Drawn:
+def figure_7(axes: Panels) -> Drawn:
     """Draw the harmonics of the follower's angle over the length of the crank."""
     cranks, top = np.linspace(0.25, 9.5, 38), 8
 
@@ -88,7 +84,7 @@ def figure_7(axes: Sequence[Axes]) -> Drawn:
     )
 
 
-def end_loads(axes: Sequence[Axes], proportions: str) -> Drawn:
+def end_loads(axes: Panels, proportions: str) -> Drawn:
     """Draw phi, f1, f2 and f3 of one linkage (Fig. 27)."""
     ax, theta = axes[0], np.linspace(0.0, 2 * pi, 1441)
     linkage = linkage_of(proportions)
@@ -134,7 +130,7 @@ def _direction(vector: Array) -> float:
     return float(np.arctan2(vector[1], vector[0]))
 
 
-def figure_8(axes: Sequence[Axes]) -> None:
+def figure_8(axes: Panels) -> None:
     """Draw the nominal position and the two extremes for one crank angle."""
     ax = sketch.canvas(axes[0])
     linkage, theta = FourBar(frame=10.0, crank=4.0, coupler=9.0, follower=7.0), radians(70.0)
@@ -191,7 +187,7 @@ def _ground(ax: Axes, a: Array, d: Array, unit: float) -> None:
         sketch.write(ax, place, name, (side, 4.0), style="italic")
 
 
-def figure_9a(axes: Sequence[Axes]) -> None:
+def figure_9a(axes: Panels) -> None:
     """Draw the extreme position in which coupler and follower lie in one line."""
     ax = sketch.canvas(axes[0])
     linkage = FourBar(frame=16.0, crank=8.0, coupler=7.0, follower=8.0)
@@ -217,7 +213,7 @@ def figure_9a(axes: Sequence[Axes]) -> None:
     sketch.write(ax, middle, "C", (10.0, 8.0), style="italic")
 
 
-def figure_9b(axes: Sequence[Axes]) -> None:
+def figure_9b(axes: Panels) -> None:
     """Draw the position in which BD and the follower are square."""
     ax = sketch.canvas(axes[0])
     linkage = FourBar(frame=10.0, crank=4.0, coupler=10.0, follower=6.0)
@@ -230,7 +226,7 @@ def figure_9b(axes: Sequence[Axes]) -> None:
     sketch.arc(ax, d, 2.6, (_direction(b - d), _direction(places["C'"] - d)), r"$\phi'$")
 
 
-def figure_10(axes: Sequence[Axes]) -> Drawn:
+def figure_10(axes: Panels) -> Drawn:
     """Draw the free motion of the follower over the crank angle for several clearances."""
     ax, linkage = axes[0], four_bar_of("smith_1972_10_8_10_10")
     unit, theta = linkage.frame / 10.0, np.linspace(0.0, 2.0 * pi, 3601)

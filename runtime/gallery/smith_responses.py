@@ -6,25 +6,22 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..hill import discriminant
 from ..periodic import simulate, steady_state
-from .drawing import COLOURS, Array, mark_fractions, panel_title, turn
+from .drawing import COLOURS, Array, Panels, mark_fractions, panel_title, turn
 from .records import Drawn
 from .smith_linkages import RIG, RPM, OfRig
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _RIG = RIG["84"]
 _LEAST = 0.0058
 
 
-def figure_45(axes: Sequence[Axes]) -> Drawn:
+def figure_45(axes: Panels) -> Drawn:
     """Draw the sine and the shape under a central load over half the coupler."""
     ax, x = axes[0], np.linspace(0.0, 0.5, 251)
     ax.plot(x, np.sin(pi * x), color=COLOURS[0], label=r"$\sin(\pi x/l)$")
@@ -33,7 +30,7 @@ def figure_45(axes: Sequence[Axes]) -> Drawn:
     return Drawn([100.0 * (1.0 - (3 * at - 4 * at**3) / np.sin(pi * at))])
 
 
-def wave_form(axes: Sequence[Axes], divisor: float) -> Drawn:
+def wave_form(axes: Panels, divisor: float) -> Drawn:
     """Draw the wave-form at the speed Omega/divisor (Figs. 47 to 51)."""
     ax, speed = axes[0], _RIG.frequency / divisor
     # Between the least and the greatest logarithmic decrement measured at 1/16 in (9.5.5).
@@ -114,7 +111,7 @@ def envelope(one: Response, decrement: float) -> Envelope:
 
 
 def response(
-    axes: Sequence[Axes],
+    axes: Panels,
     chart: str,
     inertia: float,
     low: float,
@@ -232,7 +229,7 @@ def wave(chart: str, inertia: float, speed: float) -> tuple[Array, Array]:
     return motion.theta, 1e3 * system.reference_length * motion.q[:, 0]
 
 
-def figure_54(axes: Sequence[Axes]) -> Drawn:
+def figure_54(axes: Panels) -> Drawn:
     """Draw the wave-form below, at and above the resonance Omega/4."""
     order, first = 4, []
     for ax, factor, name in zip(axes, (0.96, 1.0, 1.04), ("below", "at", "above"), strict=True):
@@ -245,7 +242,7 @@ def figure_54(axes: Sequence[Axes]) -> Drawn:
     return Drawn([abs(first[1]) / max(abs(first[0]), abs(first[2])), turned])
 
 
-def figure_55(axes: Sequence[Axes]) -> Drawn:
+def figure_55(axes: Panels) -> Drawn:
     """Draw the wave-form at one speed for several follower inertias."""
     ax, sizes = axes[0], []
     for inertia in (_LEAST, 0.0079, 0.0109):

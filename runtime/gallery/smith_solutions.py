@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import lru_cache
 from math import pi
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,12 +13,9 @@ from ..hill import discriminant
 from ..periodic import simulate
 from ..scenes import load_scene
 from .algorithms import de_vogelaere_maps, de_vogelaere_start, kutta_merson, second_order_form
-from .drawing import COLOURS, Array, panel_title
+from .drawing import COLOURS, Array, Axes, Panels, panel_title
 from .records import Drawn
 from .smith_linkages import linkage_of, series
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 # A wave of 20 degrees, as the text says of Fig. 28.
 _LAMBDA = 18.0
@@ -116,7 +111,7 @@ def _line(ax: Axes, run: _Run, colour: str, label: str = "", style: str = "-") -
     ax.plot(np.degrees(run[0]), 1e3 * run[1], style, color=colour, lw=1.0, label=label)
 
 
-def figure_28(axes: Sequence[Axes]) -> Drawn:
+def figure_28(axes: Panels) -> Drawn:
     """Draw solutions with a step that is too long and one that is short enough."""
     for ax, step, colour in zip(axes, (2.0, 1.0, 0.1), COLOURS, strict=False):
         _line(ax, _march(step, 2), colour)
@@ -129,7 +124,7 @@ def figure_28(axes: Sequence[Axes]) -> Drawn:
     return Drawn([left[0], decay, *left[1:]])
 
 
-def methods(axes: Sequence[Axes], other: str) -> Drawn:
+def methods(axes: Panels, other: str) -> Drawn:
     """Draw the first and the fourth cycle of two solutions (Figs. 29 and 30).
 
     De Vogelaere's with a half step of 0.5 degrees, beside another step or Kutta and Merson's.
@@ -159,7 +154,7 @@ def _fast_parts(q: Array) -> Array:
     return fast
 
 
-def figure_31(axes: Sequence[Axes]) -> Drawn:
+def figure_31(axes: Panels) -> Drawn:
     """Draw the first three modes, each on a scale of its own."""
     system = _system(3)
     run = simulate(system, _speed(system), 1.0, samples=3240)
@@ -175,7 +170,7 @@ def figure_31(axes: Sequence[Axes]) -> Drawn:
     return Drawn([*ratios, peak[0] / peak[2], peak[0] / peak[1]])
 
 
-def figure_32(axes: Sequence[Axes]) -> Drawn:
+def figure_32(axes: Panels) -> Drawn:
     """Draw the forcing of the first and the second mode."""
     theta = np.linspace(0.0, 2 * pi, 721)
     forcing = _system(3).array("f", theta)
@@ -186,7 +181,7 @@ def figure_32(axes: Sequence[Axes]) -> Drawn:
     return Drawn([peaks[0] / peaks[2], odd])
 
 
-def figure_33(axes: Sequence[Axes]) -> Drawn:
+def figure_33(axes: Panels) -> Drawn:
     """Draw three unstable and three stable solutions of the homogeneous equation."""
     f, mu = series(linkage_of("(2,1,2,2)")), 0.5
     # Unstable and stable ones by turns.

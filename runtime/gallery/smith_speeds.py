@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from ..hill import discriminant, perturbation_boundaries
 from ..scenes import load_scene
 from ..stability.boundary_speeds import speed_boundaries
-from .drawing import COLOURS, Array
+from .drawing import COLOURS, Array, Axes, Panels
 from .records import Drawn
 from .registry import contents
 from .smith_linkages import (
@@ -29,9 +29,6 @@ from .smith_linkages import (
     linkage_of,
     region_name,
 )
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _REGIONS = (3, 4, 5, 6, 7, 8)
 _TURN = np.linspace(0.0, 2 * pi, 1441)
@@ -87,7 +84,7 @@ OBSERVATIONS = tuple(Observation(**row) for row in contents("smith")["observatio
 _COMPARED = tuple(one for one in OBSERVATIONS if one.region)
 
 
-def chart(axes: Sequence[Axes], figure: str) -> Drawn:
+def chart(axes: Panels, figure: str) -> Drawn:
     """Draw the chart of one rig."""
     rig, ax = RIG[figure], axes[0]
     low, high = (end / RPM for end in load_scene(rig.scene).get("chart.x_range"))
@@ -230,7 +227,7 @@ def _claims(rig: Rig) -> list[float]:
     return []
 
 
-def equations_table(axes: Sequence[Axes]) -> Drawn:
+def equations_table(axes: Panels) -> Drawn:
     """Draw the deviation of each equation from each quoted speed; give the tables."""
     ax, places = axes[0], np.arange(len(_COMPARED))
     for equation, marker in zip(EQUATIONS, "os^", strict=True):

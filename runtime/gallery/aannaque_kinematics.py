@@ -134,14 +134,12 @@ def figure_3_6(axes: Panels) -> None:
     ax.plot(*np.transpose([b, d]), ":", color="0.4", lw=1.0)
     for motion, name, style in zip(both, ("B", "B'"), ("-", (0, (3, 1.2))), strict=True):
         c = np.asarray(motion.joints["C"])
-        sketch.bar(ax, b, c, sketch.LINK_COLOURS["coupler"], ls=style, zorder=3)
-        sketch.bar(ax, d, c, sketch.LINK_COLOURS["follower"], ls=style, zorder=3)
+        sketch.bar(ax, b, c, "coupler", ls=style)
+        sketch.bar(ax, d, c, "follower", ls=style)
         sketch.pin(ax, c)
         sketch.write(ax, c, name, (12.0, 10.0 if name == "B" else -10.0), style="italic")
-    sketch.bar(ax, a, b, sketch.LINK_COLOURS["crank"], zorder=4)
-    for place, name, shift in ((a, "O", -16.0), (d, "C", 16.0)):
-        sketch.pivot(ax, place, 0.1 * bars.frame)
-        sketch.write(ax, place, name, (shift, 4.0), style="italic")
+    sketch.bar(ax, a, b, "crank", zorder=4)
+    sketch.grounds(ax, a, d, 0.1 * bars.frame, "OC")
     sketch.pin(ax, b)
     sketch.write(ax, b, "A", (-10.0, 10.0), style="italic")
     ax.plot([0.0, 0.12 * bars.frame], [0.0, 0.0], color="0.35", lw=0.8)
@@ -181,7 +179,7 @@ def figure_3_9(axes: Panels) -> Drawn:
 def figure_3_10(axes: Panels) -> None:
     """Draw the mechanism at several positions, and the paths of some points of its coupler."""
     ax, bars = sketch.canvas(axes[0]), linkage()
-    length, start = bars.coupler, radians(70.0)
+    length, first = bars.coupler, radians(70.0)
     points = {
         "A": (0.0, 0.0),
         "B": (length, 0.0),
@@ -192,14 +190,14 @@ def figure_3_10(axes: Panels) -> None:
     }
     curves = {name: coupler_curve(bars, *place) for name, place in points.items()}
     for k in range(1, 8):
-        joints = bars.motion(start + k * pi / 4.0).joints
+        joints = bars.motion(first + k * pi / 4.0).joints
         for ends, link in (("AB", "crank"), ("BC", "coupler"), ("DC", "follower")):
-            colour = sketch.LINK_COLOURS[link]
-            sketch.bar(ax, joints[ends[0]], joints[ends[1]], colour, lw=1.6, alpha=0.22, zorder=2)
+            start, end = (joints[name] for name in ends)
+            sketch.bar(ax, start, end, link, lw=1.6, alpha=0.22, zorder=2)
     for (name, curve), colour in zip(curves.items(), ("0.35", "0.35", *COLOURS[3:]), strict=False):
         closed = np.vstack([curve.position, curve.position[:1]])
         ax.plot(*closed.T, color=colour, lw=1.4, ls="--" if name in "AB" else "-", zorder=4)
-    now = bars.motion(start)
+    now = bars.motion(first)
     joints = now.joints
     for name in "PQRS":
         at = now.point("coupler", *points[name]).position

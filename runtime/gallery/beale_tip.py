@@ -190,10 +190,8 @@ def _draw_linkage(ax: Axes) -> None:
         tip = linkage.rod * cm * np.array([np.cos(direction), np.sin(direction)])
         block = centre + linkage.crank * cm * np.array([np.cos(theta), np.sin(theta)])
         alpha = 1.0 if degrees == shown else 0.25
-        sketch.bar(
-            ax, (0.0, 0.0), tip, sketch.LINK_COLOURS["coupler"], alpha=alpha, lw=2.6, zorder=2
-        )
-        sketch.bar(ax, centre, block, sketch.LINK_COLOURS["crank"], alpha=alpha, lw=2.6, zorder=3)
+        sketch.bar(ax, (0.0, 0.0), tip, "coupler", alpha=alpha, lw=2.6, zorder=2)
+        sketch.bar(ax, centre, block, "crank", alpha=alpha, lw=2.6)
         away = 11.0 * (block - centre) / np.hypot(*(block - centre))
         sketch.write(ax, block, f"{degrees:.0f}°", away, fontsize=7, color="0.3")
         if degrees == shown:

@@ -25,10 +25,11 @@ def canvas(ax: Axes) -> Axes:
     return ax
 
 
-def bar(ax: Axes, start: ArrayLike, end: ArrayLike, colour: str = INK, **style: Any) -> None:
-    """Draw a link as a rounded bar between two places."""
+def bar(ax: Axes, start: ArrayLike, end: ArrayLike, link: str, **style: Any) -> None:
+    """Draw a link as a rounded bar between two places, in its colour."""
     (x, u), (y, v) = np.transpose([start, end])
-    ax.plot([x, u], [y, v], color=colour, solid_capstyle="round", **{"lw": 3.2, **style})
+    look = {"color": LINK_COLOURS[link], "solid_capstyle": "round", "lw": 3.2, "zorder": 3}
+    ax.plot([x, u], [y, v], **{**look, **style})
 
 
 def pin(ax: Axes, *places: ArrayLike, size: float = 5.5) -> None:
@@ -50,22 +51,23 @@ def pivot(ax: Axes, place: ArrayLike, unit: float) -> None:
     pin(ax, place)
 
 
+def grounds(ax: Axes, a: ArrayLike, d: ArrayLike, unit: float, letters: str = "AD") -> None:
+    """Draw the fixed pivots of a linkage with their letters outside, the first at the left."""
+    for place, letter, side in zip((a, d), letters, (-16.0, 16.0), strict=True):
+        pivot(ax, place, unit)
+        write(ax, place, letter, (side, 3.0), style="italic")
+
+
 def four_bar(ax: Axes, joints: Mapping[str, ArrayLike], unit: float, letters: str = "ABCD") -> None:
     """Draw a four-bar linkage by its joints, with letters at A, B, C and D."""
     a, b, c, d = (np.asarray(joints[name], dtype=float) for name in "ABCD")
     for link, start, end in (("crank", a, b), ("coupler", b, c), ("follower", d, c)):
-        bar(ax, start, end, LINK_COLOURS[link], zorder=3)
-    pivot(ax, a, unit)
-    pivot(ax, d, unit)
+        bar(ax, start, end, link)
+    grounds(ax, a, d, unit, letters[0] + letters[3])
     pin(ax, b, c)
-    middle = (a + b + c + d) / 4.0
-    for name, letter in zip("ABCD", letters, strict=True):
-        place = np.asarray(joints[name], dtype=float)
-        away = place - middle
-        shift = 13.0 * away / (np.hypot(*away) or 1.0)
-        if name in "AD":
-            shift = np.array([-13.0 if place[0] < middle[0] else 13.0, 2.0])
-        write(ax, place, letter, shift, style="italic")
+    for place, letter in ((b, letters[1]), (c, letters[2])):
+        away = place - (a + b + c + d) / 4.0
+        write(ax, place, letter, 13.0 * away / (np.hypot(*away) or 1.0), style="italic")
 
 
 def _pair(place: ArrayLike) -> tuple[float, float]:
@@ -226,7 +228,7 @@ def draw_body(
     places = [place + np.asarray(shift) for place in body.places]
     first, second, centre = places
     length = float(np.hypot(*(second - first)))
-    bar(ax, first, second, LINK_COLOURS[body.link], lw=4.5, zorder=3, alpha=0.85)
+    bar(ax, first, second, body.link, lw=4.5, alpha=0.85)
     pin(ax, first, second)
     ax.plot(*centre, "o", color="0.15", ms=4.0, zorder=6)
     normal = np.array([first[1] - second[1], second[0] - first[0]]) / length

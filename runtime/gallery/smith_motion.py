@@ -161,12 +161,8 @@ def _draw_extremes(
     for name, at in pins.items():
         alpha, style = (1.0, "-") if name == "C" else (0.6, _DASHED)
         end = b + linkage.coupler * (at - b) / np.hypot(*(at - b))
-        sketch.bar(
-            ax, b, end, sketch.LINK_COLOURS["coupler"], lw=2.4, alpha=alpha, ls=style, zorder=3
-        )
-        sketch.bar(
-            ax, d, at, sketch.LINK_COLOURS["follower"], lw=2.4, alpha=alpha, ls=style, zorder=3
-        )
+        for link, start, stop in (("coupler", b, end), ("follower", d, at)):
+            sketch.bar(ax, start, stop, link, lw=2.4, alpha=alpha, ls=style)
         hole = Circle((float(end[0]), float(end[1])), 0.5 * c, fill=False, lw=0.9, alpha=alpha)
         hole.set(edgecolor=sketch.LINK_COLOURS["coupler"], zorder=4)
         ax.add_patch(hole)
@@ -174,17 +170,11 @@ def _draw_extremes(
         sketch.pin(ax, at, size=4.5)
         shift = {"C": (0.0, 17.0), "C'": (16.0, 4.0), "C''": (-16.0, 6.0)}[name]
         sketch.write(ax, at, name, shift, style="italic")
-    sketch.bar(ax, a, b, sketch.LINK_COLOURS["crank"], zorder=3)
-    _ground(ax, a, d, 0.09 * linkage.frame)
+    sketch.bar(ax, a, b, "crank")
+    sketch.grounds(ax, a, d, 0.09 * linkage.frame)
     sketch.pin(ax, b)
     sketch.write(ax, b, "B", (-11.0, 9.0), style="italic")
     return {**joints, **pins}
-
-
-def _ground(ax: Axes, a: Array, d: Array, unit: float) -> None:
-    for place, name, side in ((a, "A", -16.0), (d, "D", 16.0)):
-        sketch.pivot(ax, place, unit)
-        sketch.write(ax, place, name, (side, 4.0), style="italic")
 
 
 def figure_9a(axes: Panels) -> None:
@@ -197,17 +187,17 @@ def figure_9a(axes: Panels) -> None:
     d = np.array([linkage.frame, 0.0])
     middle = d + l4 * (b - d) / (l3 + l4)
     for start, end, link in ((b, middle, "coupler"), (d, middle, "follower"), (a, b, "crank")):
-        sketch.bar(ax, start, end, sketch.LINK_COLOURS[link], zorder=3)
+        sketch.bar(ax, start, end, link)
     for name, up in (("C'", True), ("C''", False)):
         moved = _with_coupler(linkage, 0.4, crossed=not up).motion(theta)
         at = np.asarray(moved.joints["C"])
         for start, link in ((b, "coupler"), (d, "follower")):
-            sketch.bar(ax, start, at, sketch.LINK_COLOURS[link], lw=1.8, alpha=0.6, ls=_DASHED)
+            sketch.bar(ax, start, at, link, lw=1.8, alpha=0.6, ls=_DASHED, zorder=2)
         sketch.pin(ax, at, size=4.5)
         sketch.write(ax, at, name, (6.0, 12.0) if up else (-6.0, -12.0), style="italic")
         if up:
             sketch.arc(ax, d, 0.45 * l4, (_direction(b - d), float(moved.theta4)), r"$\phi'$")
-    _ground(ax, a, d, 1.3)
+    sketch.grounds(ax, a, d, 1.3)
     sketch.pin(ax, b, middle)
     sketch.write(ax, b, "B", (-11.0, 9.0), style="italic")
     sketch.write(ax, middle, "C", (10.0, 8.0), style="italic")

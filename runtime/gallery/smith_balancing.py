@@ -315,7 +315,9 @@ def _densities(ax: Axes, delta: Array, beside: float) -> None:
     """Draw the inertia over the offset for the densities, and its minima with their letters."""
     for (letter, density, number, best), colour in zip(_best(), COLOURS, strict=False):
         least = float(relative_inertia(best, number))
-        ax.plot(delta, relative_inertia(delta, number), color=colour, label=rf"$\rho$ = {density:g}")
+        ax.plot(
+            delta, relative_inertia(delta, number), color=colour, label=rf"$\rho$ = {density:g}"
+        )
         ax.plot(best, least, "o", color=colour, ms=4.5)
         sketch.write(ax, (best, least), letter, (beside, -10.0), color=colour)
 

@@ -4,17 +4,17 @@ import mpmath
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.gallery import smith_charts, smith_responses, smith_speeds
+from elastolink.runtime.gallery import smith_equation, smith_responses, smith_speeds
 from elastolink.runtime.gallery.sketch import free_bodies, round_force
 from elastolink.runtime.gallery.smith_balancing import (
     INCH,
     TURN,
     density_number,
     example,
-    relative_inertia,
     offset_function,
     optimal_offset,
     peak,
+    relative_inertia,
 )
 from elastolink.runtime.gallery.smith_linkages import (
     LBF_IN_S2,
@@ -124,14 +124,13 @@ def test_only_a_scene_with_a_four_bar_gives_one():
 
 
 def test_the_surfaces_of_the_space_are_those_of_the_sum_of_both_functions():
+    lower, upper = smith_equation.space_ends(0.3, 0.4, np.array([0.0, 1.0]))
     linkage = linkage_of("(2,1,2,2)")
-    pair = smith_charts._Pair(series(linkage, "f1"), series(linkage))
-    lower, upper = pair.along(0.3, 0.4, np.array([0.0, 1.0]))
-    exact = hill_boundaries(pair.first * 0.3 + pair.second * 0.4, 1.0, (2,))
+    exact = hill_boundaries(series(linkage, "f1") * 0.3 + series(linkage) * 0.4, 1.0, (2,))
     assert lower[1] == exact.lower[0] and upper[1] == exact.upper[0]
     assert lower[0] == pytest.approx(1.0, abs=1e-13)
-    near = pair.to_order(np.array([3e-3]), np.array([4e-3]), 2)
-    true = pair.along(3e-3, 4e-3, np.ones(1))
+    near = smith_equation.space_series(np.array([3e-3]), np.array([4e-3]), 2)
+    true = smith_equation.space_ends(3e-3, 4e-3, np.ones(1))
     # What is left out is of the third order.
     for one, other in zip(near, true, strict=True):
         assert abs(one[0] - other[0]) < 1e-6
@@ -164,7 +163,10 @@ def test_inertia_is_that_of_rod_extension_and_cylinder(k):
         return (1 + delta**3) / 3 + disc * delta**2 + disc * (2 * MP.mpf(k) * disc) / 2
 
     for delta in np.linspace(0.05, 1.0, 40):
-        assert abs(relative_inertia(delta, k) / exact(MP.mpf(float(delta))) - 1) < 8 * np.finfo(float).eps
+        assert (
+            abs(relative_inertia(delta, k) / exact(MP.mpf(float(delta))) - 1)
+            < 8 * np.finfo(float).eps
+        )
 
 
 @pytest.mark.parametrize("exponent", [-300, -61, -59, -20, -6, -1])

@@ -57,31 +57,20 @@ def output(axes: Panels, rate: str, small: float, slope: float, level: float) ->
 
 def figure_7(axes: Panels) -> Drawn:
     """Draw the harmonics of the follower's angle over the length of the crank."""
-    cranks, top = np.linspace(0.25, 9.5, 38), 8
+    cranks = np.linspace(0.25, 9.5, 38)
 
-    def padded(values: Array) -> Array:
-        return np.pad(values, (0, max(0, top + 1 - len(values))))[: top + 1]
+    def harmonics(crank: float) -> tuple[Array, Array]:
+        f = PeriodicFunction.from_callable(lambda theta: _follower(crank, theta).theta4)
+        return np.degrees(f.a[:6]), np.degrees(f.b[:6])
 
-    def harmonics(crank: float) -> PeriodicFunction:
-        return PeriodicFunction.from_callable(lambda theta: _follower(crank, theta).theta4)
-
-    series = [harmonics(float(crank)) for crank in cranks]
-    a = np.degrees([padded(f.a) for f in series])
-    b = np.degrees([padded(f.b) for f in series])
+    a, b = (np.array(part) for part in zip(*map(harmonics, cranks.tolist()), strict=True))
     for ax, values in zip(axes, (a, b), strict=True):
         for m in range(1, 6):
             ax.plot(cranks, values[:, m], label=f"m = {m}")
-    cosine, sine = np.abs(a[:, 1:6]), np.abs(b[:, 1:6])
+    cosine, sine = np.abs(a[:, 1:]), np.abs(b[:, 1:])
     total = np.hypot(cosine, sine)
-    return Drawn(
-        [
-            total[0, 1] / total[0, 0],
-            np.max(sine[:, 1:]) / np.max(sine[:, 0]),
-            np.max(cosine[:, 1:]) / np.max(cosine[:, 0]),
-            np.min(cosine / sine),
-            np.min(sine / cosine),
-        ]
-    )
+    higher = [np.max(part[:, 1:]) / np.max(part[:, 0]) for part in (sine, cosine)]
+    return Drawn([total[0, 1] / total[0, 0], *higher, np.min(cosine / sine), np.min(sine / cosine)])
 
 
 def end_loads(axes: Panels, proportions: str) -> Drawn:
@@ -96,22 +85,23 @@ def end_loads(axes: Panels, proportions: str) -> Drawn:
         ("f3", "$f_3$", COLOURS[0]),
     ):
         ax.plot(np.degrees(theta), parts[name], color=colour, label=label)
-    sizes, eps2 = _sizes(proportions), pi**2 * linkage.crank / (2 * linkage.coupler)
+    phi, f1, f2, f3 = _sizes(proportions)
+    eps2 = pi**2 * linkage.crank / (2 * linkage.coupler)
     if proportions == "(54,0.4,54,3)":
-        return Drawn([*(sizes[name] / sizes["f3"] for name in ("phi", "f1", "f2")), eps2])
-    values = [sizes["phi"] / max(sizes["f1"], sizes["f2"], sizes["f3"])]
+        return Drawn([phi / f3, f1 / f3, f2 / f3, eps2])
+    values = [phi / max(f1, f2, f3)]
     if proportions == "(2,1,2,2)":
         every = [_sizes(other) for other in PROPORTIONS]
-        values.append(sum(size["f3"] == max(size.values()) for size in every))
+        values.append(sum(sizes[3] == max(sizes) for sizes in every))
     if proportions == "(5,1,5,2)":
         values += [pi**2 / 3, eps2, pi**2 / 3]
     return Drawn(values)
 
 
-def _sizes(proportions: str) -> dict[str, float]:
-    """Return the peaks of the components."""
+def _sizes(proportions: str) -> list[float]:
+    """Return the peaks of phi, f1, f2 and f3."""
     parts = end_load(linkage_of(proportions), np.linspace(0.0, 2 * pi, 2881))
-    return {n: float(np.max(np.abs(parts[n]))) for n in ("phi", "f1", "f2", "f3")}
+    return [float(np.max(np.abs(parts[name]))) for name in ("phi", "f1", "f2", "f3")]
 
 
 def _with_coupler(linkage: FourBar, change: float, crossed: bool = False) -> FourBar:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import find_peaks
 
 from ..hill import discriminant
 from ..periodic import simulate, steady_state
@@ -24,10 +25,11 @@ _LEAST = 0.0058
 def figure_45(axes: Panels) -> Drawn:
     """Draw the sine and the shape under a central load over half the coupler."""
     ax, x = axes[0], np.linspace(0.0, 0.5, 251)
-    ax.plot(x, np.sin(pi * x), color=COLOURS[0], label=r"$\sin(\pi x/l)$")
-    ax.plot(x, 3 * x - 4 * x**3, "--", color=COLOURS[1], label=r"$3(x/l) - 4(x/l)^3$")
-    at = 0.1
-    return Drawn([100.0 * (1.0 - (3 * at - 4 * at**3) / np.sin(pi * at))])
+    sine, loaded = np.sin(pi * x), 3 * x - 4 * x**3
+    ax.plot(x, sine, color=COLOURS[0], label=r"$\sin(\pi x/l)$")
+    ax.plot(x, loaded, "--", color=COLOURS[1], label=r"$3(x/l) - 4(x/l)^3$")
+    # At the gauges, a tenth of the length from the end.
+    return Drawn([100.0 * (1.0 - loaded[50] / sine[50])])
 
 
 def wave_form(axes: Panels, divisor: float) -> Drawn:
@@ -79,8 +81,7 @@ class Response(OfRig):
     high: float
 
 
-@dataclass(frozen=True)
-class Envelope:
+class Envelope(NamedTuple):
     """Extreme deflections [mm] of the coupler's middle at crank speeds [rpm], and stability."""
 
     speed: Array
@@ -92,11 +93,6 @@ class Envelope:
     def height(self) -> Array:
         """Greatest less least deflection [mm]."""
         return self.greatest - self.least
-
-    @property
-    def unstable(self) -> Array:
-        """The unstable ones of the speeds [rpm]."""
-        return self.speed[~self.stable]
 
 
 @lru_cache(maxsize=64)
@@ -122,23 +118,20 @@ def response(
     """Draw a frequency response; compute resonances near speeds [rpm] and what a claim needs."""
     one, ax = Response(chart, inertia, low, high), axes[0]
     least, middle, most = one.rig.decrements
-    for decrement, colour, width, front in (
-        (least, COLOURS[1], 0.8, 2.0),
-        (middle, COLOURS[0], 1.3, 3.0),
-        (most, COLOURS[2], 0.8, 2.0),
+    for decrement, colour, width in (
+        (least, COLOURS[1], 0.8),
+        (middle, COLOURS[0], 1.3),
+        (most, COLOURS[2], 0.8),
     ):
         ends = envelope(one, decrement)
-        label = f"decrement {decrement:.3g}"
-        ax.plot(ends.speed, ends.greatest, color=colour, lw=width, label=label, zorder=front)
-        ax.plot(ends.speed, ends.least, color=colour, lw=width, zorder=front)
+        look: dict[str, Any] = {"color": colour, "lw": width, "zorder": 2.0 + width}
+        ax.plot(ends.speed, ends.greatest, label=f"decrement {decrement:.3g}", **look)
+        ax.plot(ends.speed, ends.least, **look)
     ends = envelope(one, middle)
-    unstable: dict[str, Any] = {"where": list(~ends.stable), "step": "mid"}
     if not np.all(ends.stable):
-        unstable["label"] = "unstable"
-    across = ax.get_xaxis_transform()
-    ax.fill_between(
-        ends.speed, 0.0, 1.0, color="#f7e3d3", lw=0, zorder=0, transform=across, **unstable
-    )
+        look = {"transform": ax.get_xaxis_transform(), "color": "#f7e3d3", "lw": 0, "zorder": 0}
+        inside = ~ends.stable
+        ax.fill_between(ends.speed, 0.0, 1.0, inside, step="mid", label="unstable", **look)
     # The axis is kept to what can be read, 15 % of the length; dashed lines say that up to 5 %
     # linear equations hold.
     length = 1e3 * one.rig.system(inertia=inertia).reference_length
@@ -155,9 +148,7 @@ def response(
 def resonance(one: Response, speed: float) -> float:
     """Return the crank speed [rpm] of the greatest deflection's maximum nearest to a speed."""
     ends = envelope(one, one.rig.decrements[0])
-    height = ends.height
-    inner = (height[1:-1] > height[:-2]) & (height[1:-1] >= height[2:])
-    places = ends.speed[1:-1][inner]
+    places = ends.speed[find_peaks(ends.height)[0]]
     return float(places[np.argmin(np.abs(places - speed))]) if len(places) else float("nan")
 
 
@@ -176,8 +167,7 @@ def _increment(one: Response) -> list[float]:
     """Return how the second increment of the inertia raises the amplitude near 300 rpm."""
     sizes = []
     for inertia in (one.inertia, 0.0069):
-        other = Response(one.chart, inertia, one.low, one.high)
-        ends = envelope(other, one.rig.decrements[0])
+        ends = envelope(replace(one, inertia=inertia), one.rig.decrements[0])
         sizes.append(float(np.interp(300.0, ends.speed, ends.height)))
     return [sizes[0] / sizes[1]]
 
@@ -189,7 +179,8 @@ def _unstable(
 
     With the least measured decrement, the middle or the greatest one (0, 1, 2).
     """
-    speeds = envelope(one, one.rig.decrements[damping]).unstable
+    ends = envelope(one, one.rig.decrements[damping])
+    speeds = ends.speed[~ends.stable]
     inside = speeds[(speeds > low) & (speeds < high)]
     first, last = float(inside[0]), float(inside[-1])
     return [first, 0.5 * (first + last), last]

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -33,6 +33,7 @@ from .smith_linkages import (
 _REGIONS = (3, 4, 5, 6, 7, 8)
 _TURN = np.linspace(0.0, 2 * pi, 1441)
 _FILL = "#f7e3d3"
+_LINKAGES = list(dict.fromkeys(rig.linkage for rig in RIGS))
 _NAMES = {"reduced": "(6.18)", "printed": "(6.17)", "complete": "complete"}
 
 
@@ -144,21 +145,11 @@ def _points(ax: Axes, seen: Sequence[Observation]) -> None:
         "end": ("v", "white", "stable again, quoted"),
         "stable": ("s", "white", "stable, quoted"),
     }
+    edges: dict[str, Any] = {"ms": 6, "mec": "black", "ecolor": "black", "capsize": 3, "zorder": 5}
     for one in seen:
         shape, face, label = marks[one.kind]
-        ax.errorbar(
-            1e3 * one.si_inertia,
-            one.speed,
-            yerr=one.half_width or None,
-            fmt=shape,
-            ms=6,
-            mfc=face,
-            mec="black",
-            ecolor="black",
-            capsize=3,
-            zorder=5,
-            label=label,
-        )
+        place, half = (1e3 * one.si_inertia, one.speed), one.half_width or None
+        ax.errorbar(*place, yerr=half, fmt=shape, mfc=face, label=label, **edges)
 
 
 def _margins(ax: Axes, rig: Rig, window: tuple[float, float]) -> None:
@@ -203,12 +194,12 @@ def _peak(values: Array) -> float:
 
 def _claims(rig: Rig) -> list[float]:
     """Return what section 9.5 says of single rigs."""
-
-    def damping(n: int, *inertias: float) -> float:
-        """K by (7.51), ``mu sqrt(a_n^2 + b_n^2)/(2 n)``, half way between two inertias."""
-        middle = 0.5 * sum(inertias) * LBF_IN_S2
-        return float(rig.function("reduced", middle).amplitudes[n]) / (2 * n)
-
+    damping = []
+    for row in contents("smith")["estimate"]:
+        if row["chart"] == rig.figure:
+            # K by (7.51), ``mu sqrt(a_n^2 + b_n^2)/(2 n)``, half way between two inertias.
+            n, middle = row["region"], 0.5 * (row["stable"] + row["unstable"]) * LBF_IN_S2
+            damping.append(float(rig.function("reduced", middle).amplitudes[n]) / (2 * n))
     if rig.figure == "82":
         speed = 230.0 * RPM
         ratio = rig.decrements[0] / (2 * pi) * rig.frequency / speed
@@ -216,15 +207,9 @@ def _claims(rig: Rig) -> list[float]:
             discriminant(rig.function("complete", i), (rig.frequency / speed) ** 2, 1.0, ratio)
             for i in rig.inertias
         ]
-        worst = max(float(abs(half.value) / half.level) for half in halves)
-        return [worst, damping(5, 0.0069, 0.0079), damping(6, 0.0130, 0.0149)]
-    if rig.figure == "83":
-        return [26.0 * 3.0 / 4.0]
-    if rig.figure == "84":
-        return [100.0 * (26.5 / 26.0 - 1.0)]
-    if rig.figure == "85":
-        return [damping(3, 0.0058, 0.0079), damping(4, 0.0130, 0.0149)]
-    return []
+        return [max(float(abs(half.value) / half.level) for half in halves), *damping]
+    quoted = {"83": [26.0 * 3.0 / 4.0], "84": [100.0 * (26.5 / 26.0 - 1.0)]}
+    return quoted.get(rig.figure, damping)
 
 
 def equations_table(axes: Panels) -> Drawn:
@@ -241,34 +226,21 @@ def equations_table(axes: Panels) -> Drawn:
     ]
     ax.set_yticks(places, names, fontsize=7)
     ax.invert_yaxis()
-    rigs = _rig_linkages()
     peaks: list[Sequence[Any]] = [
         [rig.name, *order_sizes(rig).values(), _ratio(rig.linkage)] for rig in RIGS
     ]
-    peaks += [
-        [f"{name}, no rig", *[""] * 5, _ratio(name)] for name in PROPORTIONS if name not in rigs
-    ]
-    observed = [
-        (
-            one.rig.name,
-            one.inertia,
-            region_name(one.region),
-            one.meaning,
-            one.speed,
-            *(one.predicted(name) for name in EQUATIONS),
-            _NAMES[one.nearest],
-        )
-        for one in _COMPARED
-    ]
+    others = [name for name in PROPORTIONS if name not in _LINKAGES]
+    peaks += [[f"{name}, no rig", *[""] * 5, _ratio(name)] for name in others]
+    observed = []
+    for one in _COMPARED:
+        speeds = (one.speed, *(one.predicted(name) for name in EQUATIONS), _NAMES[one.nearest])
+        place = (one.rig.name, one.inertia, region_name(one.region), one.meaning)
+        observed.append((*place, *speeds))
     tables = (peaks, _shifts(), observed, _summary())
     count = sum(one.nearest == "complete" for one in _COMPARED)
     first, complete = _trend("first order"), _trend("complete")
-    values = [min(map(_ratio, rigs)), count / len(_COMPARED)]
+    values = [min(map(_ratio, _LINKAGES)), count / len(_COMPARED)]
     return Drawn([*values, first[1] / first[0], complete[1] / complete[0]], _words(count), tables)
-
-
-def _rig_linkages() -> list[str]:
-    return list(dict.fromkeys(rig.linkage for rig in RIGS))
 
 
 def _ratio(linkage: str) -> float:
@@ -277,8 +249,7 @@ def _ratio(linkage: str) -> float:
     return _peak(tension + more) / _peak(f1 + f2 - phi)
 
 
-@dataclass(frozen=True)
-class _Shift:
+class _Shift(NamedTuple):
     """Ends of one region [rpm], lower and upper, by each equation and with the second mode."""
 
     rig: Rig
@@ -376,7 +347,7 @@ def _words(count: int) -> dict[str, object]:
     shifts = np.abs([one.ends["complete"] - one.ends["reduced"] for one in _moved()])
     second = [np.max(np.abs(one.two_modes - one.ends["complete"])) for one in _moved()]
     words: dict[str, object] = {
-        "ratios": " and ".join(f"{_ratio(name):.2f}" for name in _rig_linkages()),
+        "ratios": " and ".join(f"{_ratio(name):.2f}" for name in _LINKAGES),
         "count": count,
         "all": len(_COMPARED),
         "least": float(np.min(shifts)),

@@ -8,15 +8,11 @@ from itertools import zip_longest
 from typing import Any, SupportsFloat
 
 import numpy as np
+from scipy.linalg import eigh
 
 from ..beams import Section, Structure, frame
 from ..core.trigonometric import even_angles
-from ..frequencies import (
-    dynamic_stiffness,
-    element_matrices,
-    log_determinant,
-    wittrick_williams,
-)
+from ..frequencies import dynamic_stiffness, element_matrices, log_determinant, wittrick_williams
 from .aannaque_models import FULL, beams, exact_frequencies, held, structure_of
 from .drawing import COLOURS, Array, Panels, turn
 from .records import Drawn
@@ -99,8 +95,6 @@ def _exact() -> Array:
 @lru_cache(maxsize=8)
 def _elements(column: str) -> Array:
     """Return all frequencies of a column's elements [rad/s]."""
-    from scipy.linalg import eigh
-
     mass, stiffness, _ = element_matrices(_portal(column), inextensible=True)
     return np.asarray(_FACTOR * np.sqrt(eigh(stiffness, mass, eigvals_only=True)))
 

@@ -6,6 +6,7 @@ from functools import lru_cache
 from math import cos, degrees, pi, radians, sin, sqrt
 
 import numpy as np
+from scipy.optimize import brentq
 
 from ..linkages import FourBar, FourBarMotion
 from ..linkages.base_planes import base_plane
@@ -268,7 +269,6 @@ def pulses_of(frame: float) -> tuple[float, float]:
 
 def crossover() -> float:
     """Return the frame length [m] at which the second pulse is as large as the first."""
-    from scipy.optimize import brentq
 
     def excess(frame: float) -> float:
         first, second = pulses_of(frame)

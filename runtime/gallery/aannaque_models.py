@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import eigh
+from scipy.signal import find_peaks
 
 from ..beams import Structure
 from ..core.errors import bad
@@ -70,8 +72,7 @@ def stresses(system: LinearPeriodic, speeds: Array, rtol: float = 1e-3) -> Stres
 def midpoint(system: LinearPeriodic, link: str, theta: Array) -> Array:
     """Return what turns coordinates into the displacement across a link's midpoint [m], (nt, n)."""
     placed, deflection = structure_of(system).elements, system.relative_deflection
-    if deflection is None:
-        raise bad("system", "no deflections", "a system of beams", "load a scene with a mesh")
+    assert deflection is not None, "beams have deflections"
     at = [i for i, item in enumerate(placed) if item.beam.name == link]
     count = len(at)
     # Two places to each element: its middle and its end.
@@ -89,27 +90,17 @@ def rms(values: Array) -> Array:
     return np.asarray(np.sqrt(np.mean(np.square(values), axis=-1)))
 
 
-def maxima(speed: Array, values: Array, prominence: float = 0.02) -> Array:
-    """Return the speeds of local maxima that stand out of a curve by a part of their height.
-
-    The place is that of the parabola through the logarithms of three values.
-    """
-    from scipy.signal import find_peaks
-
-    level = np.log(values)
-    return _tops_of_parabolas(speed, level, find_peaks(level, prominence=prominence)[0])
-
-
-def tops(speed: Array, values: Array) -> Array:
-    """Return the speeds of all local maxima of a smooth curve, each refined by a parabola."""
-    at = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
-    return _tops_of_parabolas(speed, values, at)
-
-
-def _tops_of_parabolas(speed: Array, values: Array, at: NDArray[np.intp]) -> Array:
+def tops(speed: Array, values: Array, prominence: float | None = None) -> Array:
+    """Return the speeds of local maxima that stand out of a curve, each refined by a parabola."""
+    at = find_peaks(values, prominence=prominence)[0]
     before, here, after = values[at - 1], values[at], values[at + 1]
     shift = 0.5 * (before - after) / (before - 2.0 * here + after)
     return np.asarray(speed[at] + shift * (speed[1] - speed[0]))
+
+
+def maxima(speed: Array, values: Array, prominence: float = 0.02) -> Array:
+    """Return the speeds of local maxima that stand out of a curve by a part of their height."""
+    return tops(speed, np.log(values), prominence)
 
 
 def nearest(places: Array, speed: float) -> float:
@@ -128,8 +119,7 @@ def exact_frequencies(structure: Structure, theta: Array, count: int) -> Array:
     return np.stack([wittrick_williams(one, count=count).frequencies[:count] for one in problems])
 
 
-@dataclass(frozen=True)
-class HybridMatrices:
+class HybridMatrices(NamedTuple):
     """Mass and stiffness of one element for each link at crank angles [rad], at their first mode.
 
     M and K ``(nt, n, n)`` as in (5.16) and (5.17), that frequency [rad/s], how often the matrices
@@ -150,8 +140,6 @@ def hybrid_matrices(structure: Structure, theta: Array, rtol: float = 1e-3) -> H
     better frequency, and so on until it changes by less than ``rtol``.  That is Newton's method on
     the exact eigenproblem, so that few steps suffice; it needs a cubic element that is not far off.
     """
-    from scipy.linalg import eigh
-
     rows = []
     for angle in theta:
         problem = dynamic_stiffness(structure, float(angle))
@@ -196,13 +184,5 @@ def hybrid_model() -> LinearPeriodic:
         Term("K", None, stiffness),
         Term("f", None, force),
     )
-    bare = LinearPeriodic(
-        base.size,
-        terms,
-        {},
-        lambda values: {},
-        labels=base.labels,
-        relative_deflection=base.relative_deflection,
-        structure=base.structure,
-    )
-    return with_modal_damping(bare, 0.02)
+    kept = {name: getattr(base, name) for name in ("labels", "relative_deflection", "structure")}
+    return with_modal_damping(LinearPeriodic(base.size, terms, {}, lambda _: {}, **kept), 0.02)

@@ -22,7 +22,7 @@ from ..recovery import ElasticCurve, elastic_coupler_curve, stress_operator
 from ..recovery.stress_over_speed import StressCurve, stress_curve
 from ..scenes import load_scene
 from .aannaque_kinematics import cycle
-from .aannaque_models import FRAME, exact_frequencies, maxima, structure_of
+from .aannaque_models import FRAME, exact_frequencies, maxima, nearest, structure_of
 from .drawing import COLOURS, Axes, Panels, mark_fractions, panel_title, turn
 from .records import Drawn
 from .registry import contents
@@ -145,13 +145,11 @@ def figure_9_1(axes: Panels) -> Drawn:
     ax.axvline(FRAME, color="0.6", lw=0.8, ls=(0, (1, 3)))
     # The document shows it up to 60 Hz.
     ax.set_ylim(0.0, 120.0 * np.pi)
-    length, mean = over.value, over.mean[:, 0]
     pinned = dict(zip(over.links, over.pinned.T, strict=True))
-    coupler, follower = pinned["coupler"], pinned["follower"]
-    apart = 100.0 * np.abs(mean / np.minimum(coupler, follower) - 1.0)
-    short = length < FRAME
-    values = [crossing(), float(np.max(apart[short])), float(np.max(apart[~short]))]
-    return Drawn(values, {"most": np.max(apart), "crank": pinned["crank"][0] / (2 * np.pi)})
+    lowest = np.minimum(pinned["coupler"], pinned["follower"])
+    apart, short = 100.0 * np.abs(over.mean[:, 0] / lowest - 1.0), over.value < FRAME
+    words = {"most": np.max(apart), "crank": pinned["crank"][0] / (2 * np.pi)}
+    return Drawn([crossing(), np.max(apart[short]), np.max(apart[~short])], words)
 
 
 @lru_cache(maxsize=16)
@@ -179,8 +177,8 @@ def _critical(over: StressCurve, link: str) -> Array:
 
 def long_frame(axes: Panels, frame: float) -> Drawn:
     """Draw the follower's largest stress over the speed for one L4 (Figs. 8.19 to 8.23)."""
-    ax, looks = axes[0], {FRAME: ("--", COLOURS[4])}
-    for value, (style, colour) in {**looks, frame: ("-", COLOURS[0])}.items():
+    ax, looks = axes[0], {FRAME: ("--", COLOURS[4]), frame: ("-", COLOURS[0])}
+    for value, (style, colour) in looks.items():
         over = curve(SHORT, value)
         label = f"$L_4$ = {value:.3f} m"
         ax.semilogy(over.speed, over.of("follower") / 1e6, style, color=colour, label=label)
@@ -232,7 +230,7 @@ def least_frame(speed: float) -> float:
 def _nearest(frame: float, order: int) -> float:
     """Return the critical speed nearest to the mean first frequency over a whole number."""
     speeds = _critical(curve(SHORT, frame), "follower")
-    return float(speeds[np.argmin(np.abs(speeds - mean_frequency(SHORT, frame) / order))])
+    return nearest(speeds, mean_frequency(SHORT, frame) / order)
 
 
 def figure_8_24(axes: Panels) -> Drawn:
@@ -278,12 +276,8 @@ def cycles(
     system = rig(scene, frame)
     motion = steady_state(system, np.array(speeds), rtol=1e-5)
     form, stations = stress_operator(system, motion.theta, STATIONS)
-    values = np.stack(
-        [
-            form.values(speed, q, qd / speed)
-            for speed, q, qd in zip(speeds, motion.q, motion.qd, strict=True)
-        ]
-    )
+    each = zip(speeds, motion.q, motion.qd, strict=True)
+    values = np.stack([form.values(speed, q, qd / speed) for speed, q, qd in each])
     # Of each station the fibre on the positive side comes first.
     by_station = {(one.beam, one.place): values[:, :, k] for k, one in enumerate(stations)}
     return motion.theta, by_station

@@ -6,17 +6,12 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import eigh
 
 from ..core.trigonometric import even_angles
 from ..periodic import SteadyState, cycles_to_settle, steady_state
 from .aannaque_models import CRITICAL, FULL, THESIS, beams, midpoint, moved, rms
-from .algorithms import (
-    modal_motion,
-    newmark_limit,
-    newmark_maps,
-    operation_count,
-    printed_count,
-)
+from .algorithms import modal_motion, newmark_limit, newmark_maps, operation_count, printed_count
 from .drawing import COLOURS, Array, Panels, panel_title, turn
 from .records import Drawn
 from .registry import contents
@@ -99,8 +94,6 @@ def _gap(link: str, modes: int) -> float:
 @lru_cache(maxsize=2)
 def _contributions(link: str) -> tuple[Array, Array]:
     """Return the displacement at a midpoint and the part of each mode, (nt,) and (nt, 9) [m]."""
-    from scipy.linalg import eigh
-
     system, motion = beams(1), _whole()
     row = midpoint(system, link, motion.theta)
     mass, stiffness = (system.array(name, motion.theta) for name in "MK")
@@ -123,11 +116,10 @@ def contributions(axes: Panels, link: str) -> Drawn:
         whole, parts = _contributions(name)
         shares[name] = rms(parts.T) / rms(whole)
     coupler, follower = shares["coupler"], shares["follower"]
-    values = [follower[0] / np.max(follower[1:])]
+    value = follower[0] / np.max(follower[1:])
     if link == "coupler":
-        higher = np.sum(coupler[1:4]) / coupler[0]
-        values = [higher / (np.sum(follower[1:4]) / follower[0])]
-    return Drawn(values, tables=[[(name, *sizes[:6]) for name, sizes in shares.items()]])
+        value = np.sum(coupler[1:4]) / coupler[0] / (np.sum(follower[1:4]) / follower[0])
+    return Drawn([value], tables=[[(name, *sizes[:6]) for name, sizes in shares.items()]])
 
 
 @lru_cache(maxsize=4)

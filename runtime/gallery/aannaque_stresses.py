@@ -73,12 +73,9 @@ def figure_7_1(axes: Panels) -> Drawn:
     places = maxima(_SPEEDS, _stress(THESIS))
     # The two modes whose multipliers tell the critical speeds of this range.
     largest, second = real_parts().T[:2]
-    for values, style, colour, name in (
-        (largest, "-", COLOURS[1], "largest"),
-        (second, ".", COLOURS[2], "second"),
-    ):
-        label = f"multipliers of {name} modulus"
-        axes[1].plot(_SPEEDS, values, style, ms=3.5, color=colour, label=label)
+    label = "multipliers of {} modulus".format
+    axes[1].plot(_SPEEDS, largest, color=COLOURS[1], label=label("largest"))
+    axes[1].plot(_SPEEDS, second, ".", ms=3.5, color=COLOURS[2], label=label("second"))
     for ax in axes:
         for place in places:
             ax.axvline(place, color="0.6", lw=0.6, ls=(0, (1, 3)))
@@ -119,16 +116,10 @@ def figure_7_3(axes: Panels) -> Drawn:
     for level in (-1.0, 1.0):
         ax.axhline(level, color="0.6", lw=0.6)
     reference, whole = tops(_SPEEDS, fine), _meissner(_SPEEDS, 720)
-    divisions = float(_held().mean[0]) / np.arange(1, 12)
+    places = [tops(_SPEEDS, values) for values in counts.values()]
+    places += [_held().mean[0] / np.arange(1, 12), tops(_SPEEDS, damped)]
     gaps = [float(np.max(np.abs(_meissner(_SPEEDS, count) - whole))) for count in (90, 180)]
-    return Drawn(
-        [
-            *(_apart(reference, tops(_SPEEDS, values)) for values in counts.values()),
-            _apart(reference, divisions),
-            _apart(reference, tops(_SPEEDS, damped)),
-            np.log2(gaps[0] / gaps[1]),
-        ]
-    )
+    return Drawn([*(_apart(reference, some) for some in places), np.log2(gaps[0] / gaps[1])])
 
 
 @lru_cache(maxsize=8)
@@ -212,10 +203,8 @@ def figure_7_8(axes: Panels) -> Drawn:
     speeds = np.linspace(10.0, 70.0, 121)
     motion = steady_state(hybrid_model(), speeds, rtol=1e-3)
     form = stress_operator(beams(1), motion.theta, 7, method="shape")[0]
-    exact = [
-        1e-6 * np.max(np.abs(form.values(float(speed), q, qd / speed)))
-        for speed, q, qd in zip(speeds, motion.q, motion.qd, strict=True)
-    ]
+    each = zip(speeds.tolist(), motion.q, motion.qd, strict=True)
+    exact = [1e-6 * np.max(np.abs(form.values(speed, q, qd / speed))) for speed, q, qd in each]
     ax.semilogy(speeds, exact, "--", color="0.2", label='"exact"')
     second, third = (nearest(maxima(_WIDE, values), 23.5) for values in largest[1:])
     means = [float(natural_frequencies(beams(count), 0.0, 1).mean[0]) for count in counts]
@@ -231,10 +220,9 @@ def bending_at_midpoint(
 
     The motion is that of another system where one is given, the stress by the first one's shapes.
     """
-    motion = steady_state(system if moving is None else moving, 30.0, rtol=1e-5)
+    motion = steady_state(moving or system, 30.0, rtol=1e-5)
     forces = recover(system, motion, stations={"follower": [0.5]}, method="shape")
-    beams_of = structure_of(system).beams
-    (section,) = (beam.section for beam in beams_of if beam.name == "follower")
+    (section,) = (one.section for one in structure_of(system).beams if one.name == "follower")
     factor = 0.5 * (section.thickness or np.nan) / section.second_moment
     return forces.theta, np.asarray(factor * forces.of("follower", "moment")[:, 0])
 

@@ -129,20 +129,16 @@ def cycle(frame: float | None = None) -> FourBarMotion:
 def figure_3_6(axes: Panels) -> None:
     """Draw both assemblies at one crank angle."""
     ax, bars, theta = sketch.canvas(axes[0]), linkage(), radians(130.0)
-    other = FourBar(bars.frame, bars.crank, bars.coupler, bars.follower, assembly="crossed")
-    both = [item.motion(theta) for item in (bars, other)]
-    a, b, d = (np.asarray(both[0].joints[name]) for name in "ABD")
+    crossed = FourBar(bars.frame, bars.crank, bars.coupler, bars.follower, assembly="crossed")
+    joints = bars.motion(theta).joints
+    a, b, d = (np.asarray(joints[name]) for name in "ABD")
+    c = np.asarray(crossed.motion(theta).joints["C"])
     ax.plot(*np.transpose([b, d]), ":", color="0.4", lw=1.0)
-    for motion, name, style in zip(both, ("B", "B'"), ("-", (0, (3, 1.2))), strict=True):
-        c = np.asarray(motion.joints["C"])
-        sketch.bar(ax, b, c, "coupler", ls=style)
-        sketch.bar(ax, d, c, "follower", ls=style)
-        sketch.pin(ax, c)
-        sketch.write(ax, c, name, (12.0, 10.0 if name == "B" else -10.0), style="italic")
-    sketch.bar(ax, a, b, "crank", zorder=4)
-    sketch.grounds(ax, a, d, 0.1 * bars.frame, "OC")
-    sketch.pin(ax, b)
-    sketch.write(ax, b, "A", (-10.0, 10.0), style="italic")
+    for link, start in (("coupler", b), ("follower", d)):
+        sketch.bar(ax, start, c, link, ls=(0, (3, 1.2)))
+    sketch.pin(ax, c)
+    sketch.write(ax, c, "B'", (12.0, -10.0), style="italic")
+    sketch.four_bar(ax, joints, 0.1 * bars.frame, "OABC")
     ax.plot([0.0, 0.12 * bars.frame], [0.0, 0.0], color="0.35", lw=0.8)
     sketch.arc(ax, a, 0.07 * bars.frame, (0.0, theta), "$t_1$")
 

@@ -50,7 +50,7 @@ def finish(
     """Give each panel its settings, and all of them one legend below with so many columns.
 
     Labels that the panels share stand at the outer edges: below the last row, left of the first
-    column.
+    column.  The legend has each label once; it is none where ``legend`` is 0 or nothing is named.
     """
     for place, ax in enumerate(axes):
         look = dict(common)
@@ -59,8 +59,13 @@ def finish(
         if place % columns and "ylabel" in look:
             look["ylabel"] = ""
         dress(ax, {**look, **(panels[place] if panels else {})})
-    if legend:
-        legend_below(axes, legend)
+    named: dict[str, Any] = {}
+    for ax in axes:
+        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
+            named.setdefault(label, handle)
+    if legend and named:
+        place: dict[str, Any] = {"loc": "outside lower center", "ncols": min(legend, len(named))}
+        axes[0].figure.legend(named.values(), named.keys(), **place)
 
 
 def dress(ax: Axes, settings: Mapping[str, Any]) -> None:
@@ -84,18 +89,6 @@ def dress(ax: Axes, settings: Mapping[str, Any]) -> None:
     if not rest.pop("grid", True):
         ax.grid(visible=False)
     ax.set(**rest)
-
-
-def legend_below(axes: Panels, columns: int) -> None:
-    """Put one legend for all the axes under them, each label once; none where there is no label."""
-    named: dict[str, Any] = {}
-    for ax in axes:
-        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
-            named.setdefault(label, handle)
-    if named:
-        axes[0].figure.legend(
-            named.values(), named.keys(), loc="outside lower center", ncols=min(columns, len(named))
-        )
 
 
 def outline(lower: Array, upper: Array, height: Array) -> tuple[Array, Array]:

@@ -7,7 +7,6 @@ import os
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,9 +15,6 @@ from ..core.progress import bar
 from ..core.results import Check
 from . import registry
 from .records import FigureEntry, Gallery, Shown
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def figures(document: str | None = None, figure: str | None = None) -> tuple[FigureEntry, ...]:
@@ -104,7 +100,9 @@ def reproduce(
     if out is not None:
         from .page import page, write_together
 
-        files = {"index.html": page(_title(chosen), shown).encode(), **files}
+        names = ", ".join(sorted({entry.document.capitalize() for entry in chosen}))
+        title = f"Figures of {names}, redrawn and checked"
+        files = {"index.html": page(title, shown).encode(), **files}
         write_together(Path(out), files)
     return _gallery(shown, "" if out is None else str(out), tuple(files))
 
@@ -127,13 +125,11 @@ def render(entry: FigureEntry, *, picture: bool = True) -> tuple[Shown, bytes | 
         axes = list(np.ravel(canvas.subplots(*entry.panels, squeeze=False, subplot_kw=options)))
         shown = entry.show(axes)
         finish(axes, entry.panels[1], entry.axes, entry.panel, entry.legend)
-        return shown, _png(canvas) if picture else None
-
-
-def _png(canvas: Figure) -> bytes:
-    buffer = io.BytesIO()
-    canvas.savefig(buffer, format="png", dpi=150, metadata={"Software": None})
-    return buffer.getvalue()
+        if not picture:
+            return shown, None
+        buffer = io.BytesIO()
+        canvas.savefig(buffer, format="png", dpi=150, metadata={"Software": None})
+        return shown, buffer.getvalue()
 
 
 def _gallery(shown: Sequence[Shown], folder: str, files: tuple[str, ...]) -> Gallery:
@@ -154,11 +150,6 @@ def _gallery(shown: Sequence[Shown], folder: str, files: tuple[str, ...]) -> Gal
         folder=folder,
         files=files,
     )
-
-
-def _title(chosen: Sequence[FigureEntry]) -> str:
-    names = sorted({entry.document.capitalize() for entry in chosen})
-    return f"Figures of {', '.join(names)}, redrawn and checked"
 
 
 def _plain(label: str) -> str:

@@ -234,25 +234,24 @@ def draw_body(
     normal = np.array([first[1] - second[1], second[0] - first[0]]) / length
     # The centre's letter goes to one side of the link, the inertia force's name to its own side.
     aside = normal if normal @ body.forces[2] > 0 else -normal
-    for place, letter in zip(places, letters, strict=True):
-        shift = -12.0 * (aside if letter == "G" else normal)
-        if "torque" in names and place is first:
-            # In the gap of the arrow that stands for the torque.
-            shift = np.array([-13.0, 5.0])
-        write(ax, place, letter, shift, style="italic")
-    colours = (PIN_COLOUR, PIN_COLOUR, INERTIA_COLOUR)
-    for place, letter, force, colour in zip(places, letters, body.forces, colours, strict=True):
-        name = names.get(letter, "")
-        arrow(ax, place, scale * force, colour, "" if letter == "G" else name)
-        if letter == "G" and name:
+    for place, letter, force in zip(places, letters, body.forces, strict=True):
+        name, head = names.get(letter, ""), place + scale * force
+        if letter == "G":
+            write(ax, place, letter, -12.0 * aside, style="italic")
+            arrow(ax, place, scale * force, INERTIA_COLOUR)
             side = "left" if aside[0] > 0 else "right"
-            write(ax, place + scale * force, name, 8.0 * aside, color=colour, ha=side)
-    if "torque" in names:
-        value = float(body.torque)
-        turning_arrow(ax, first, 0.19 * length, value, names["torque"], COUPLE_COLOUR)
-    if "couple" in names:
-        value = float(body.inertia_couple)
-        turning_arrow(ax, centre, 0.13 * length, value, names["couple"], COUPLE_COLOUR)
+            write(ax, head, name, 8.0 * aside, color=INERTIA_COLOUR, ha=side)
+            continue
+        # In the gap of the arrow that stands for the torque.
+        gap = np.array([-13.0, 5.0]) if "torque" in names and place is first else -12.0 * normal
+        write(ax, place, letter, gap, style="italic")
+        arrow(ax, place, scale * force, PIN_COLOUR, name)
+    for name, place, share, value in (
+        ("torque", first, 0.19, body.torque),
+        ("couple", centre, 0.13, body.inertia_couple),
+    ):
+        if name in names:
+            turning_arrow(ax, place, share * length, float(value), names[name], COUPLE_COLOUR)
 
 
 def scale_bar(ax: Axes, corner: ArrayLike, scale: float, force: float) -> None:

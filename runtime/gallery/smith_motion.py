@@ -221,11 +221,10 @@ def figure_10(axes: Panels) -> Drawn:
     near = np.abs(theta - pi) < radians(60.0)
     values = [(at + 180.0) % 360.0 - 180.0 for at in greatest]
     values.append(degrees(theta[near][int(np.argmax(ranges[0.05].below[near]))]))
-    extremes = transmission_angle(linkage)
-    values += [degrees(extremes.least), degrees(extremes.greatest)]
-    # The case in which the transmission angle stays below 90 degrees.
+    # The first of these has a transmission angle that stays below 90 degrees.
     equal = [FourBar(10.0, crank, 10.0, 10.0) for crank in (4.0, 4.3)]
-    values += [degrees(transmission_angle(linkage).greatest) for linkage in equal]
+    extremes = [transmission_angle(bars) for bars in (linkage, *equal)]
+    values += [degrees(extremes[0].least), *(degrees(one.greatest) for one in extremes)]
     longer = clearance_range(equal[0], 0.05, theta).below
     values.append(degrees(theta[int(np.argmin(longer))]))
     return Drawn(values, {"apart": apart})

@@ -3,8 +3,9 @@
 A record holds the figure's label and title, the function that draws it (``draw``, a module and a
 name in it, with ``arguments`` after the axes), its panels and size, and what is compared, the
 expected value under the name of its kind; ``common`` holds what these share.  A record of a
-``kind`` takes what it does not say from the file's table ``kind``; a note ``@name`` stands in its
-table ``notes``; ``page`` is a document that notes and tables make up.
+``kind`` takes what it does not say from the file's table ``kind``, whose quoted numbers follow its
+own; a note ``@name`` stands in its table ``notes``; ``page`` is a document that notes and tables
+make up.
 """
 
 from __future__ import annotations
@@ -44,13 +45,14 @@ def _read(document: str) -> tuple[FigureEntry, ...]:
 
 
 def _merged(kind: Mapping[str, Any], record: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a record with what its kind adds; tables in both are joined."""
+    """Return a record with what its kind adds; tables in both are joined, and quoted numbers."""
     tables = {
         name: {**kind[name], **record[name]}
         for name in kind.keys() & record.keys()
         if isinstance(kind[name], dict)
     }
-    return {**kind, **record, **tables}
+    quoted = [*record.get("quoted", ()), *kind.get("quoted", ())]
+    return {**kind, **record, **tables, "quoted": quoted}
 
 
 def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> FigureEntry:

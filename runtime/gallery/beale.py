@@ -12,13 +12,13 @@ from itertools import combinations_with_replacement
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..constrained import constrained_motion
 from ..core.families import LinearPeriodic
 from ..frequencies import ResonanceCurve, natural_frequencies, resonance_curve
 from ..linkages import QuickReturn
-from ..periodic import floquet_multipliers, steady_state
+from ..periodic import FloquetMultipliers, floquet_multipliers, steady_state
 from ..periodic.equation import equation_of
 from ..periodic.transition import method, segments_of
 from ..scenes import load_scene
@@ -49,13 +49,10 @@ _GIVEN = 720
 # Places along the rod.
 _STATIONS = 201
 # Readings of "0.2 percent proportional damping", the caption's "0.002 damping".
-_DAMPINGS: tuple[tuple[str, dict[str, Any]], ...] = (
-    *(
-        (f"ratio 0.002, {law}", {"rod__damping_law": law, "rod__damping_ratio": 0.002})
-        for law in ("viscous", "internal", "modal")
-    ),
-    ("C = 0.002 s K", {"rod__relaxation_time": 0.002}),
-)
+_DAMPINGS: dict[str, dict[str, Any]] = {
+    f"ratio 0.002, {law}": {"rod__damping_law": law, "rod__damping_ratio": 0.002}
+    for law in ("viscous", "internal", "modal")
+} | {"C = 0.002 s K": {"rod__relaxation_time": 0.002}}
 _RATIO, _QUOTED = 0.2, 900.0
 _COMPLETE: tuple[str, ...] = ()
 # Speeds of the chart [rad/s].
@@ -82,20 +79,17 @@ def rod(
 
 
 def tip_from_rest(
-    system: LinearPeriodic, speed: float, turns: int = 1, steps: int = _STEPS
+    system: LinearPeriodic,
+    speed: float,
+    turns: int = 1,
+    steps: int = _STEPS,
+    places: ArrayLike = 1.0,
 ) -> tuple[Array, Array]:
-    """Return crank angles and the tip's deflection [m] of a rod that starts undeflected, at rest.
+    """Return crank angles and the deflection [m] of a rod that starts undeflected, at rest.
 
-    Gauss-Legendre collocation of order 12 with fixed steps in a period of one turn.
+    At the tip, or at places x/length, shape ``(nt, nx)``.  Gauss-Legendre collocation of order 12
+    with fixed steps in a period of one turn.
     """
-    theta, bent = _from_rest(system, speed, turns, steps, np.ones(1))
-    return theta, bent[:, 0]
-
-
-def _from_rest(
-    system: LinearPeriodic, speed: float, turns: int, steps: int, places: Array
-) -> tuple[Array, Array]:
-    """Return crank angles and deflections [m] at places x/length, shape ``(nt, nx)``."""
     equation = equation_of(system, speed, {}, forcing=True)
     maps = segments_of(equation, steps, method("gauss", 6)).maps[0]
     every = max(1, steps // _GIVEN)
@@ -111,10 +105,10 @@ def _from_rest(
         state = states[-1][-1]
     q = np.concatenate(states)[:, : system.size] * equation.scale[0]
     theta: Array = 2.0 * np.pi / len(flows) * np.arange(float(len(q)))
-    shapes = system.shapes(places, theta)
-    if shapes is None:
-        raise TypeError("a system without mode shapes has no tip")
-    return theta, system.reference_length * np.einsum("txn,tn->tx", shapes, q)
+    shapes = system.shapes(np.atleast_1d(places), theta)
+    assert shapes is not None, "a rod has mode shapes"
+    bent = system.reference_length * np.einsum("txn,tn->tx", shapes, q)
+    return theta, bent if np.ndim(places) else bent[:, 0]
 
 
 @lru_cache(maxsize=64)
@@ -171,8 +165,8 @@ def _stiff_shapes(scene: str) -> tuple[Array, Array]:
 
     At evenly spaced places from pin to tip, shape ``(nt, places)``, for the first turn.
     """
-    system = rod(scene, "overhang", ENOUGH, ())
-    return _from_rest(system, SPEED, 1, _STEPS, np.linspace(0.0, 1.0, _STATIONS))
+    system = rod(scene, "overhang", ENOUGH, _COMPLETE)
+    return tip_from_rest(system, SPEED, places=np.linspace(0.0, 1.0, _STATIONS))
 
 
 def components(scene: str) -> tuple[Array, Array, Array]:
@@ -242,21 +236,22 @@ def lean(scene: str) -> float:
 def figure_5(axes: Panels) -> Drawn:
     """Draw the first turn and the periodic motion of ten polynomial modes with 0.002 damping."""
     values, rows = [], []
+    # Those that are drawn, of three that give one curve a single one.
+    drawn = {
+        "ratio 0.002, internal": (COLOURS[0], "damping ratio 0.002 in mode 1, internal"),
+        "C = 0.002 s K": (COLOURS[1], "C = 0.002 s K"),
+    }
     for ax, scene in zip(axes, READINGS, strict=True):
         theta, free = stiff_tip(scene, "polynomial", 10)
         ax.plot(np.degrees(theta), 1e3 * free, **BAND, label="undamped, from rest")
         mass = "read as lbm/in" if scene == STIFF else "read as lbf s^2/in^2"
-        for (name, changes), colour, text in zip(
-            _DAMPINGS,
-            ("", COLOURS[0], "", COLOURS[1]),
-            ("", "damping ratio 0.002 in mode 1, internal", "", "C = 0.002 s K"),
-            strict=True,
-        ):
+        for name, changes in _DAMPINGS.items():
             system = rod(scene, "polynomial", 10, **changes)
             theta, tip = tip_from_rest(system, SPEED, steps=_GIVEN)
             around = steady_state(system, SPEED, rtol=1e-8, samples=_GIVEN).deflection()
             settled = np.append(around, around[0])
-            if text:
+            if name in drawn:
+                colour, text = drawn[name]
                 angle, label = np.degrees(theta), f"{text}, periodic"
                 ax.plot(angle, 1e3 * tip, color=colour, label=f"{text}, from rest")
                 ax.plot(angle, 1e3 * settled, "--", color=colour, lw=1.0, label=label)
@@ -355,14 +350,13 @@ def figure_11(axes: Panels) -> Drawn:
 def figure_12(axes: Panels) -> Drawn:
     """Draw the tip from rest near the mean frequency: three polynomials, and converged modes."""
     mean, heights, turns = mean_frequency(), [], 60
-    for k, (formulation, modes, drop, speed) in enumerate(
-        (
-            ("polynomial", 3, AS_PRINTED, mean),
-            ("polynomial", 3, AS_PRINTED, _QUOTED),
-            ("overhang", ENOUGH, AS_PRINTED, _QUOTED),
-            ("overhang", ENOUGH, _COMPLETE, _QUOTED),
-        )
-    ):
+    runs = (
+        ("polynomial", 3, AS_PRINTED, mean),
+        ("polynomial", 3, AS_PRINTED, _QUOTED),
+        ("overhang", ENOUGH, AS_PRINTED, _QUOTED),
+        ("overhang", ENOUGH, _COMPLETE, _QUOTED),
+    )
+    for k, (formulation, modes, drop, speed) in enumerate(runs):
         system = _rod(formulation, modes, drop)
         theta, tip = tip_from_rest(system, speed, turns=turns, steps=192)
         physics = "as printed" if drop else "with tension"
@@ -371,23 +365,24 @@ def figure_12(axes: Panels) -> Drawn:
         heights.append(np.abs(tip[1:]).reshape(turns, -1).max(axis=1))
     three = heights[0]
     values = [np.max(three), np.min(three) / np.max(three)]
-    values += [_largest("polynomial", 3, mean), _largest("overhang", ENOUGH, _QUOTED)]
+    values += [peak(_motion(*runs[k]).multipliers) for k in (0, 2)]
     rows = []
     speeds = (_QUOTED, mean, mean_frequency("overhang", ENOUGH))
     for drop in (AS_PRINTED, _COMPLETE):
         for formulation, modes in (("polynomial", 3), *(("overhang", n) for n in (2, 4, ENOUGH))):
             cells = [f"{modes} {formulation} modes", "as printed" if drop else "with tension"]
             for speed in speeds:
-                motion = floquet_multipliers(_rod(formulation, modes, drop), speed, rtol=1e-9)
+                motion = _motion(formulation, modes, drop, speed)
                 growth = 0.0 if motion.stable else float(motion.growth)
                 cells.append(f"{peak(motion.multipliers):.5f}, {growth:.2f} 1/s")
             rows.append(cells)
     return Drawn(values, {"speeds": speeds}, [rows])
 
 
-def _largest(formulation: str, modes: int, speed: float) -> float:
-    motion = floquet_multipliers(_rod(formulation, modes, AS_PRINTED), speed, rtol=1e-9)
-    return peak(motion.multipliers)
+def _motion(
+    formulation: str, modes: int, drop: tuple[str, ...], speed: float, ratio: float = _RATIO
+) -> FloquetMultipliers:
+    return floquet_multipliers(_rod(formulation, modes, drop, ratio), speed, rtol=1e-9)
 
 
 @lru_cache(maxsize=4)
@@ -448,7 +443,12 @@ def figure_chart(axes: Panels) -> Drawn:
         rows.append((f"{modes} {formulation}", words, *shares, np.max(points.error)))
     for _, colour, label in _KINDS:
         axes[0].fill([], [], color=colour, label=label)
-    return Drawn(_chart_values(), tables=[rows])
+    # Frequencies of two bases, a practical rod's multiplier, where regions start.
+    three, four = frequencies("polynomial", 3), frequencies("overhang", 4)
+    values = [three[0] / four[0], (three[0] + three[1]) / (four[0] + four[1])]
+    values.append(peak(_motion("overhang", 2, AS_PRINTED, 20.0, 0.3).multipliers))
+    values += [_start(0, 0, 1, 0.01), _start(0, 1, 1, 0.01), _start(1, 1, 2, 0.05)]
+    return Drawn(values, tables=[rows])
 
 
 def _mark(ax: Axes, omega: Array) -> None:
@@ -489,20 +489,6 @@ def _name(i: int, j: int, n: int) -> str:
     if n == 1:
         return f"${above}$"
     return f"${above}/{n}$" if i == j else f"$({above})/{n}$"
-
-
-def _chart_values() -> list[float]:
-    """Return frequencies of two bases, a practical rod's multiplier, where regions start."""
-    three, four = frequencies("polynomial", 3), frequencies("overhang", 4)
-    slow = floquet_multipliers(_rod("overhang", 2, AS_PRINTED, 0.3), 20.0, rtol=1e-9)
-    return [
-        three[0] / four[0],
-        (three[0] + three[1]) / (four[0] + four[1]),
-        peak(slow.multipliers),
-        _start(0, 0, 1, 0.01),
-        _start(0, 1, 1, 0.01),
-        _start(1, 1, 2, 0.05),
-    ]
 
 
 def _start(i: int, j: int, n: int, ratio: float) -> float:

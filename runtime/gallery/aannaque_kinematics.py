@@ -16,7 +16,7 @@ from ..linkages.transmission import transmission_angle
 from ..rigid import rigid_forces
 from ..scenes import load_scene
 from . import sketch
-from .aannaque_models import FRAMES
+from .aannaque_beams import FRAMES
 from .drawing import COLOURS, Array, Axes, Panels, panel_title
 from .records import Drawn
 from .registry import contents

@@ -21,8 +21,8 @@ from ..periodic import steady_state
 from ..recovery import ElasticCurve, elastic_coupler_curve, stress_operator
 from ..recovery.stress_over_speed import StressCurve, stress_curve
 from ..scenes import load_scene
+from .aannaque_beams import FRAME, exact_frequencies, maxima, nearest, structure_of
 from .aannaque_kinematics import cycle
-from .aannaque_models import FRAME, exact_frequencies, maxima, nearest, structure_of
 from .drawing import COLOURS, Axes, Panels, mark_fractions, panel_title, turn
 from .records import Drawn
 from .registry import contents

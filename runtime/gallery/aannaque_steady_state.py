@@ -10,7 +10,7 @@ from scipy.linalg import eigh
 
 from ..core.trigonometric import even_angles
 from ..periodic import SteadyState, cycles_to_settle, steady_state
-from .aannaque_models import CRITICAL, FULL, THESIS, beams, midpoint, moved, rms
+from .aannaque_beams import CRITICAL, FULL, THESIS, beams, midpoint, moved, rms
 from .algorithms import modal_motion, newmark_limit, newmark_maps, operation_count, printed_count
 from .drawing import COLOURS, Array, Panels, panel_title, turn
 from .records import Drawn

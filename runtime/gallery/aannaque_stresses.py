@@ -15,7 +15,7 @@ from ..hill import Meissner, discriminant
 from ..periodic import floquet_multipliers, steady_state
 from ..periodic.reduced import reduced_system
 from ..recovery import recover, stress_operator
-from .aannaque_models import (
+from .aannaque_beams import (
     CRITICAL,
     FRAMES,
     FULL,

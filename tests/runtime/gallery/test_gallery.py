@@ -12,8 +12,7 @@ from elastolink.runtime.cli import main
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.plotting import new_figure
 from elastolink.runtime.gallery import Drawn, FigureEntry, Quoted, figures, registry, reproduce
-from elastolink.runtime.gallery.page import write_together
-from elastolink.runtime.gallery.rendering import render
+from elastolink.runtime.gallery.rendering import render, write_together
 from elastolink.runtime.gallery.sketch import arrow, turning_arrow
 
 # Figures that are drawn within a second, of every kind.

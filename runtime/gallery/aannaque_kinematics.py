@@ -25,12 +25,8 @@ from .smith_linkages import four_bar_of
 _SCENE = "aannaque_1996_table_3_2"
 # The projection of the three axes on the paper, the third upwards.
 _TURN, _TILT = radians(38.0), radians(24.0)
-_VIEW = np.array(
-    [
-        [-sin(_TURN), cos(_TURN), 0.0],
-        [-cos(_TURN) * sin(_TILT), -sin(_TURN) * sin(_TILT), cos(_TILT)],
-    ]
-)
+_VIEW = np.array([[-sin(_TURN), cos(_TURN), 0.0], [0.0, 0.0, cos(_TILT)]])
+_VIEW[1, :2] = -sin(_TILT) * np.array([cos(_TURN), sin(_TURN)])
 
 
 def figure_3_4(axes: Panels) -> None:
@@ -59,9 +55,8 @@ def figure_3_4(axes: Panels) -> None:
     for i, axis in enumerate(np.eye(3)):
         ends = np.array([np.zeros(3), 1.25 * far * axis]) @ _VIEW.T
         ax.plot(*ends.T, color="0.3", lw=0.9, zorder=1)
-        sketch.write(
-            ax, ends[1], rf"$\lambda_{i + 2}$", 8.0 * ends[1] / np.hypot(*ends[1]), fontsize=11
-        )
+        beyond = 8.0 * ends[1] / np.hypot(*ends[1])
+        sketch.write(ax, ends[1], rf"$\lambda_{i + 2}$", beyond, fontsize=11)
     line = np.array([np.zeros(3), np.full(3, plane.lam / sqrt(3.0))]) @ _VIEW.T
     ax.plot(*line.T, "--", color="0.2", lw=1.0, zorder=8)
     ax.plot(*line[1], "o", color="0.2", ms=3.5, zorder=8)
@@ -76,17 +71,8 @@ def _face(ax: Axes, corners: Array, colour: str, alpha: float) -> None:
 
 def _call(ax: Axes, place: Array, text: str, shift: tuple[float, float]) -> None:
     """Name a face from outside, with a thin line to it."""
-    x, y = _VIEW @ place
-    ax.annotate(
-        text,
-        (float(x), float(y)),
-        xytext=shift,
-        textcoords="offset points",
-        ha="center",
-        va="center",
-        arrowprops={"arrowstyle": "-", "color": "0.4", "lw": 0.7},
-        zorder=9,
-    )
+    line = {"arrowstyle": "-", "color": "0.4", "lw": 0.7}
+    sketch.write(ax, _VIEW @ place, text, shift, arrowprops=line)
 
 
 def figure_3_5(axes: Panels) -> Drawn:
@@ -164,13 +150,11 @@ def figure_3_9(axes: Panels) -> Drawn:
     mu = transmission_angle(bars)
     ax.axhspan(*np.degrees(mu.band), color=COLOURS[2], alpha=0.10, label="recommended band")
     ax.plot(np.degrees(theta), np.degrees(mu.angle(theta)), color=COLOURS[0])
-    for angles, value, name, shift in (
-        ([0.0, 360.0], mu.least, "least", (38.0, -12.0)),
-        ([180.0], mu.greatest, "greatest", (0.0, 10.0)),
-    ):
-        ax.plot(angles, [degrees(value)] * len(angles), "o", color=COLOURS[1], ms=5)
-        sketch.write(ax, (angles[0], degrees(value)), f"{name}: {degrees(value):.2f}°", shift)
-    return Drawn([degrees(mu.least), degrees(mu.greatest)])
+    least, greatest = degrees(mu.least), degrees(mu.greatest)
+    ax.plot([0.0, 180.0, 360.0], [least, greatest, least], "o", color=COLOURS[1], ms=5)
+    sketch.write(ax, (0.0, least), f"least: {least:.2f}°", (38.0, -12.0))
+    sketch.write(ax, (180.0, greatest), f"greatest: {greatest:.2f}°", (0.0, 10.0))
+    return Drawn([least, greatest])
 
 
 def figure_3_10(axes: Panels) -> None:
@@ -242,17 +226,10 @@ def figure_7_12(axes: Panels) -> Drawn:
     last = cycle(FRAMES[-1])
     later = last.theta2 > radians(90.0)
     place = last.theta2[later][int(np.argmax(np.abs(last.alpha4[later])))]
-    return Drawn(
-        [
-            degrees(float(place)),
-            degrees(float(np.max(last.transmission_angle))),
-            np.min(pulses[1:, 1] / pulses[:-1, 1]),
-            pulses[0, 1] / pulses[0, 0],
-            pulses[-1, 1] / pulses[-1, 0],
-            crossover(),
-            np.max(pulses[1:, 0]) / pulses[0, 0],
-        ]
-    )
+    first, second = pulses.T
+    values = [degrees(float(place)), degrees(float(np.max(last.transmission_angle)))]
+    values += [np.min(second[1:] / second[:-1]), second[0] / first[0], second[-1] / first[-1]]
+    return Drawn([*values, crossover(), np.max(first[1:]) / first[0]])
 
 
 def pulses_of(frame: float) -> tuple[float, float]:
@@ -265,9 +242,5 @@ def pulses_of(frame: float) -> tuple[float, float]:
 
 def crossover() -> float:
     """Return the frame length [m] at which the second pulse is as large as the first."""
-
-    def excess(frame: float) -> float:
-        first, second = pulses_of(frame)
-        return second - first
-
-    return float(brentq(excess, 0.60, 0.68, xtol=1e-9))
+    excess = brentq(lambda frame: np.diff(pulses_of(frame))[0], 0.60, 0.68, xtol=1e-9)
+    return float(excess)

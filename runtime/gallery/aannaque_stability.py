@@ -122,18 +122,11 @@ def figure_7_2(axes: Panels) -> Drawn:
     for axis, name in ((ax.xaxis, "x_1"), (ax.yaxis, "x_2")):
         axis.set_ticks(range(widest + 1), ["0", "π", *(f"{i}π" for i in range(2, widest + 1))])
         axis.set_label_text(f"${name} = T v_{name[-1]} / 2$")
-    return Drawn([_branches()])
-
-
-def _branches() -> int:
-    """Return the number of unstable bands along a line of irrational slope, to x1 + x2 = 20 pi.
-
-    Such a line meets no pinched point.
-    """
+    # Unstable bands along a line of irrational slope, which meets no pinched point.
     slope, last = 1.0 / sqrt(3.0), 20
     along = np.linspace(0.0, (last + 0.5) * pi / (1.0 + slope), 40001)[1:]
     unstable = np.abs(_half_trace_2(along, slope * along)) > 1.0
-    return int(np.count_nonzero(unstable[1:] & ~unstable[:-1]))
+    return Drawn([np.count_nonzero(unstable[1:] & ~unstable[:-1])])
 
 
 @lru_cache(maxsize=1)

@@ -160,43 +160,32 @@ def figure_6_5(axes: Panels) -> Drawn:
     values = march()[0]
     cycles = np.arange(values.size) / values.shape[1]
     axes[0].plot(cycles, 1e3 * values.ravel(), color=COLOURS[0], lw=0.6)
-    for drop, label in _FORMS:
-        change = changes(march(drop)[0])
-        counted = np.arange(2, len(change) + 2)
-        axes[1].semilogy(counted, change, "o-", ms=3, label=label)
-    axes[1].axhline(1e-4, color="0.4", lw=0.8, ls="--", label=r"$10^{-4}$")
-    axes[1].axvline(31, color="0.4", lw=0.8, ls=":", label="31 cycles")
-    cycles_marched = _settled(values, 1e-4)
     rows = []
     for drop, name in _FORMS:
-        values, multipliers = march(drop)
+        marched, multipliers = march(drop)
+        change = changes(marched)
+        axes[1].semilogy(np.arange(2, len(change) + 2), change, "o-", ms=3, label=name)
         top = multipliers[np.argmax(np.abs(multipliers))]
         for tolerance in (1e-4, 1e-5):
-            cycles = (
-                cycles_to_settle(top, tolerance, norm=norm) for norm in ("change", "remaining")
-            )
-            rows.append((name, tolerance, abs(top), *cycles, _settled(values, tolerance)))
-    return Drawn([cycles_marched], tables=[rows])
-
-
-def _cycles(ratio: float) -> int:
-    """Return the cycles to a change of 1e-4 over the peak at 62 rad/s."""
-    values = march(ratio=ratio)[1]
-    return int(cycles_to_settle(values[np.argmax(np.abs(values))], 1e-4))
+            by = [cycles_to_settle(top, tolerance, norm=norm) for norm in ("change", "remaining")]
+            rows.append((name, tolerance, abs(top), *by, _settled(marched, tolerance)))
+    axes[1].axhline(1e-4, color="0.4", lw=0.8, ls="--", label=r"$10^{-4}$")
+    axes[1].axvline(31, color="0.4", lw=0.8, ls=":", label="31 cycles")
+    return Drawn([_settled(values, 1e-4)], tables=[rows])
 
 
 def figure_6_6(axes: Panels) -> Drawn:
     """Draw the operations over the intervals: algorithms 1 and 2, and marching at two dampings."""
     intervals = (90, 180, 360, 540, 720)
-    lines = [
-        ("transition_matrix", 1, "algorithm 1", COLOURS[0]),
-        ("closed_form", 1, "algorithm 2", COLOURS[1]),
-    ]
-    for ratio, colour in zip((0.02, 0.06), COLOURS[2:], strict=False):
-        label = rf"time marching, $\zeta$ = {ratio:g}, {_cycles(ratio)} cycles"
-        lines.append(("time_marching", _cycles(ratio), label, colour))
+    lines = [("transition_matrix", 1, "algorithm 1"), ("closed_form", 1, "algorithm 2")]
+    for ratio in (0.02, 0.06):
+        # To a change of 1e-4 over the peak at 62 rad/s.
+        multipliers = march(ratio=ratio)[1]
+        cycles = int(cycles_to_settle(multipliers[np.argmax(np.abs(multipliers))], 1e-4))
+        label = rf"time marching, $\zeta$ = {ratio:g}, {cycles} cycles"
+        lines.append(("time_marching", cycles, label))
     for ax, storage in zip(axes, (True, False), strict=True):
-        for name, cycles, label, colour in lines:
+        for (name, cycles, label), colour in zip(lines, COLOURS, strict=False):
             printed, counted = (
                 [1e-6 * count(name, n, 9, cycles, storage=storage) for n in intervals]
                 for count in (printed_count, operation_count)
@@ -206,10 +195,9 @@ def figure_6_6(axes: Panels) -> Drawn:
         ax.plot([], [], "--", lw=0.9, color="0.4", label="counted here")
         panel_title(ax, "matrices stored" if storage else "no storage")
     one, two = "transition_matrix", "closed_form"
+    cases = [(big, n) for n in (1, 2, 9, 27, 100) for big in (90, 720)]
     values = [
-        max(
-            count(one, big, n) / count(two, big, n) for n in (1, 2, 9, 27, 100) for big in (90, 720)
-        )
+        max(count(one, *case) / count(two, *case) for case in cases)
         for count in (printed_count, operation_count)
     ]
     values.append(operation_count(one, 1440, 9) / operation_count(one, 720, 9))
@@ -229,10 +217,8 @@ def table_6_1(axes: Panels) -> Drawn:
     freedoms = np.unique(np.round(np.geomspace(3, 300, 25)).astype(int))
 
     def ratio(name: str, n: int, storage: bool = True) -> float:
-        counts = (
-            count(name, 720, n, 5, storage=storage) for count in (operation_count, printed_count)
-        )
-        return next(counts) / next(counts)
+        case, kept = (name, 720, n, 5), {"storage": storage}
+        return operation_count(*case, **kept) / printed_count(*case, **kept)
 
     rows = []
     for ax, storage in zip(axes, (True, False), strict=True):

@@ -97,20 +97,7 @@ def arrow(
     """Draw a vector to the scale of the axes; its name beyond the head, some points to its left."""
     start, way = np.asarray(tail, dtype=float), np.asarray(vector, dtype=float)
     head = start + way
-    ax.annotate(
-        "",
-        _pair(head),
-        xytext=_pair(start),
-        arrowprops={
-            "arrowstyle": "-|>,head_length=0.45,head_width=0.2",
-            "color": colour,
-            "lw": 1.6,
-            "shrinkA": 0.0,
-            "shrinkB": 0.0,
-            "mutation_scale": 14,
-        },
-        zorder=7,
-    )
+    _head(ax, start, head, colour, ",head_length=0.45,head_width=0.2", lw=1.6, mutation_scale=14)
     # Annotations do not widen the limits of the axes.
     ax.update_datalim([start, head])
     ax.autoscale_view()
@@ -118,6 +105,13 @@ def arrow(
         along = way / (np.hypot(*way) or 1.0)
         left = np.array([-along[1], along[0]])
         write(ax, head, text, 11.0 * along + side * left, color=colour)
+
+
+def _head(
+    ax: Axes, start: ArrayLike, tip: ArrayLike, colour: str, size: str = "", **style: Any
+) -> None:
+    look = {"arrowstyle": f"-|>{size}", "color": colour, "shrinkA": 0.0, "shrinkB": 0.0, **style}
+    ax.annotate("", _pair(tip), xytext=_pair(start), arrowprops=look, zorder=7)
 
 
 def arc(
@@ -151,8 +145,7 @@ def turning_arrow(
     tip, start = (
         (x + radius * np.cos(angle), y + radius * np.sin(angle)) for angle in (last, before)
     )
-    style = {"arrowstyle": "-|>", "color": colour, "shrinkA": 0.0, "shrinkB": 0.0}
-    ax.annotate("", tip, xytext=start, arrowprops=style, zorder=7)
+    _head(ax, start, tip, colour)
     write(ax, (x + radius, y), text, (4.0, 0.0), color=colour, ha="left")
 
 

@@ -61,48 +61,46 @@ def midpoint(speed: float) -> ElasticCurve:
     return elastic_coupler_curve(rig(), steady_state(rig(), speed, rtol=1e-5))
 
 
+def _path(ax: Axes, speed: float, style: str, colour: str, label: str, larger: float = 1.0) -> None:
+    """Draw the midpoint's path, its displacement so many times as large: 0 of the rigid linkage."""
+    path = midpoint(speed)
+    places = 1e3 * (path.rigid + larger * path.displacement)
+    ax.plot(*np.vstack([places, places[:1]]).T, style, color=colour, label=label)
+
+
+def _displacement(ax: Axes, speed: float, colour: str) -> None:
+    path = midpoint(speed)
+    turn(ax, path.theta, 1e3 * np.hypot(*path.displacement.T), color=colour)
+
+
 def figure_8_2(axes: Panels) -> Drawn:
     """Draw the path at a low and at a high speed, the rigid linkage's beside it."""
-    for ax, speed in zip(axes, (_SLOW, _FAST), strict=True):
-        path, larger = midpoint(speed), _LARGER[speed]
-        _closed(ax, path.elastic, "-", COLOURS[0], "elastic linkage")
-        _closed(ax, path.rigid, "--", "0.8", "rigid linkage")
-        enlarged = path.rigid + larger * path.displacement
-        _closed(ax, enlarged, ":", COLOURS[1], "elastic linkage, its displacement enlarged")
+    for ax, (speed, larger) in zip(axes, _LARGER.items(), strict=True):
+        _path(ax, speed, "-", COLOURS[0], "elastic linkage")
+        _path(ax, speed, "--", "0.8", "rigid linkage", 0.0)
+        _path(ax, speed, ":", COLOURS[1], "elastic linkage, its displacement enlarged", larger)
         panel_title(ax, f"{speed:g} rad/s; dotted: displacement {larger:g} times as large")
     return Drawn([1e3 * midpoint(speed).largest for speed in (_SLOW, _FAST)])
 
 
 def figure_8_3(axes: Panels) -> Drawn:
     """Draw the path at a low speed and how far it lies from that of the rigid linkage."""
-    path = midpoint(_SLOW)
-    _closed(axes[0], path.elastic, "-", COLOURS[0], "elastic linkage")
-    _closed(axes[0], path.rigid, "--", "0.8", "rigid linkage")
-    _displacements(axes[1], {_SLOW: COLOURS[0]})
-    return Drawn([1e3 * path.largest])
+    _path(axes[0], _SLOW, "-", COLOURS[0], "elastic linkage")
+    _path(axes[0], _SLOW, "--", "0.8", "rigid linkage", 0.0)
+    _displacement(axes[1], _SLOW, COLOURS[0])
+    return Drawn([1e3 * midpoint(_SLOW).largest])
 
 
 def figure_8_4(axes: Panels) -> Drawn:
     """Draw the paths at a low and at a high speed over each other, and their distances."""
-    slow, fast = midpoint(_SLOW), midpoint(_FAST)
-    _closed(axes[0], slow.elastic, "--", COLOURS[4], f"{_SLOW:g} rad/s")
-    _closed(axes[0], fast.elastic, "-", COLOURS[1], f"{_FAST:g} rad/s")
-    enlarged = fast.rigid + _LARGER[_FAST] * fast.displacement
-    label = f"{_FAST:g} rad/s, displacement {_LARGER[_FAST]:g} times as large"
-    _closed(axes[0], enlarged, ":", COLOURS[1], label)
-    _displacements(axes[1], {_SLOW: COLOURS[4], _FAST: COLOURS[1]})
-    return Drawn([fast.largest / slow.largest / (_FAST / _SLOW) ** 2])
-
-
-def _closed(ax: Axes, places: Array, style: str, colour: str, label: str) -> None:
-    around = np.vstack([places, places[:1]])
-    ax.plot(*(1e3 * around).T, style, color=colour, label=label)
-
-
-def _displacements(ax: Axes, speeds: Mapping[float, str]) -> None:
-    for speed, colour in speeds.items():
-        path = midpoint(speed)
-        turn(ax, path.theta, 1e3 * np.hypot(*path.displacement.T), color=colour)
+    label, larger = f"{_FAST:g} rad/s", _LARGER[_FAST]
+    _path(axes[0], _SLOW, "--", COLOURS[4], f"{_SLOW:g} rad/s")
+    _path(axes[0], _FAST, "-", COLOURS[1], label)
+    more = f"{label}, displacement {larger:g} times as large"
+    _path(axes[0], _FAST, ":", COLOURS[1], more, larger)
+    _displacement(axes[1], _SLOW, COLOURS[4])
+    _displacement(axes[1], _FAST, COLOURS[1])
+    return Drawn([midpoint(_FAST).largest / midpoint(_SLOW).largest / (_FAST / _SLOW) ** 2])
 
 
 @lru_cache(maxsize=1)

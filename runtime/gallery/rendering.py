@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import io
 import os
-import shutil
 import tempfile
 import warnings
 from collections.abc import Mapping, Sequence
@@ -274,31 +273,29 @@ def write_together(folder: Path, contents: Mapping[str, bytes]) -> None:
     The files are written beside the folder's own first, then moved.  Other files in the folder
     stay.  A folder that cannot be made or written is refused.
     """
-    with ExitStack() as undo:
-        missing = [path for path in (folder, *folder.parents) if not path.exists()]
+    missing = [path for path in (folder, *folder.parents) if not path.exists()]
+    with ExitStack() as whole:
+        whole.callback(_remove, missing)
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            staging = Path(tempfile.mkdtemp(prefix=".gallery.", dir=folder))
+            staging = tempfile.TemporaryDirectory(prefix=".gallery.", dir=folder)
         except OSError as refusal:
-            _remove(missing)
             reason = refusal.strerror or "an error"
-            raise bad(
-                str(folder), reason, "a folder that can be written", "choose another"
-            ) from refusal
-        undo.callback(_remove, missing)
-        undo.callback(shutil.rmtree, staging)
-        new, old = staging / "new", staging / "old"
-        new.mkdir()
-        old.mkdir()
-        for name, content in contents.items():
-            (new / name).write_bytes(content)
-        for name in contents:
-            undo.callback(_restore, folder / name, new / name, old / name)
-            if (folder / name).exists():
-                (folder / name).replace(old / name)
-            (new / name).replace(folder / name)
-        undo.pop_all()
-    shutil.rmtree(staging)
+            expected = "a folder that can be written"
+            raise bad(str(folder), reason, expected, "choose another") from refusal
+        with staging as place, ExitStack() as undo:
+            new, old = Path(place, "new"), Path(place, "old")
+            new.mkdir()
+            old.mkdir()
+            for name, content in contents.items():
+                (new / name).write_bytes(content)
+            for name in contents:
+                undo.callback(_restore, folder / name, new / name, old / name)
+                if (folder / name).exists():
+                    (folder / name).replace(old / name)
+                (new / name).replace(folder / name)
+            undo.pop_all()
+        whole.pop_all()
 
 
 def _restore(target: Path, new: Path, old: Path) -> None:

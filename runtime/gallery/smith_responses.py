@@ -102,8 +102,7 @@ def envelope(one: Response, decrement: float) -> Envelope:
     speed = np.linspace(one.low, one.high, 241)
     motion = steady_state(system, speed * RPM)
     middle = 1e3 * system.reference_length * motion.q[..., 0]
-    stable = np.ones(len(speed), bool) if motion.stable is None else np.asarray(motion.stable)
-    return Envelope(speed, middle.min(axis=-1), middle.max(axis=-1), stable)
+    return Envelope(speed, middle.min(axis=-1), middle.max(axis=-1), np.asarray(motion.stable))
 
 
 def response(

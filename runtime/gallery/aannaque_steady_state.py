@@ -217,8 +217,8 @@ def table_6_1(axes: Panels) -> Drawn:
     freedoms = np.unique(np.round(np.geomspace(3, 300, 25)).astype(int))
 
     def ratio(name: str, n: int, storage: bool = True) -> float:
-        case, kept = (name, 720, n, 5), {"storage": storage}
-        return operation_count(*case, **kept) / printed_count(*case, **kept)
+        counted = operation_count(name, 720, n, 5, storage=storage)
+        return counted / printed_count(name, 720, n, 5, storage=storage)
 
     rows = []
     for ax, storage in zip(axes, (True, False), strict=True):

@@ -73,9 +73,9 @@ def figure_7_1(axes: Panels) -> Drawn:
     places = maxima(_SPEEDS, _stress(THESIS))
     # The two modes whose multipliers tell the critical speeds of this range.
     largest, second = real_parts().T[:2]
-    label = "multipliers of {} modulus".format
-    axes[1].plot(_SPEEDS, largest, color=COLOURS[1], label=label("largest"))
-    axes[1].plot(_SPEEDS, second, ".", ms=3.5, color=COLOURS[2], label=label("second"))
+    name = "multipliers of {} modulus"
+    axes[1].plot(_SPEEDS, largest, color=COLOURS[1], label=name.format("largest"))
+    axes[1].plot(_SPEEDS, second, ".", ms=3.5, color=COLOURS[2], label=name.format("second"))
     for ax in axes:
         for place in places:
             ax.axvline(place, color="0.6", lw=0.6, ls=(0, (1, 3)))

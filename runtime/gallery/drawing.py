@@ -64,8 +64,8 @@ def finish(
         for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
             named.setdefault(label, handle)
     if legend and named:
-        place: dict[str, Any] = {"loc": "outside lower center", "ncols": min(legend, len(named))}
-        axes[0].figure.legend(named.values(), named.keys(), **place)
+        below: dict[str, Any] = {"loc": "outside lower center", "ncols": min(legend, len(named))}
+        axes[0].figure.legend(named.values(), named.keys(), **below)
 
 
 def dress(ax: Axes, settings: Mapping[str, Any]) -> None:

@@ -16,7 +16,7 @@ from scipy.linalg import eigh
 from scipy.signal import find_peaks
 
 from ..beams import Section, Structure, frame
-from ..core.errors import bad
+from ..beams.element_forms import required_structure
 from ..core.families import LinearPeriodic, Term
 from ..core.trigonometric import even_angles, interpolated
 from ..frequencies import dynamic_stiffness, element_matrices, log_determinant, wittrick_williams
@@ -65,13 +65,6 @@ def beams(
     return load_scene(SCENE, overrides=overrides).linear_system()
 
 
-def structure_of(system: LinearPeriodic) -> Structure:
-    """Return the beams of a system, which is refused where it has none."""
-    if system.structure is None:
-        raise bad("system", "no beams", "a system of beams", "load a scene with a mesh")
-    return system.structure
-
-
 def stresses(system: LinearPeriodic, speeds: Array, rtol: float = 1e-3) -> StressCurve:
     """Return the largest stresses over the speed, by the shapes as in the thesis."""
     return stress_curve(system, speeds, rtol=rtol, method="shape")
@@ -79,7 +72,7 @@ def stresses(system: LinearPeriodic, speeds: Array, rtol: float = 1e-3) -> Stres
 
 def midpoint(system: LinearPeriodic, link: str, theta: Array) -> Array:
     """Return what turns coordinates into the displacement across a link's midpoint [m], (nt, n)."""
-    placed, deflection = structure_of(system).elements, system.relative_deflection
+    placed, deflection = required_structure(system).elements, system.relative_deflection
     assert deflection is not None, "beams have deflections"
     at = [i for i, item in enumerate(placed) if item.beam.name == link]
     count = len(at)
@@ -166,7 +159,7 @@ def hybrid_matrices(structure: Structure, theta: Array, rtol: float = 1e-3) -> H
 @lru_cache(maxsize=2)
 def hybrid(rtol: float) -> HybridMatrices:
     """Return the matrices of the beams of Table 4.1 at even crank angles."""
-    return hybrid_matrices(structure_of(beams(1)), even_angles(2.0 * np.pi, _ANGLES), rtol)
+    return hybrid_matrices(required_structure(beams(1)), even_angles(2.0 * np.pi, _ANGLES), rtol)
 
 
 @lru_cache(maxsize=1)
@@ -338,7 +331,7 @@ def table_5_1(axes: Panels) -> Drawn:
 def _both() -> tuple[Array, Array, Array]:
     """Return 48 crank angles, four frequencies there of three elements, and the exact ones."""
     theta, system = even_angles(2.0 * np.pi, 48), beams(3, FULL)
-    return theta, held(system, theta), exact_frequencies(structure_of(system), theta, 4)
+    return theta, held(system, theta), exact_frequencies(required_structure(system), theta, 4)
 
 
 def exact_and_elements(axes: Panels, mode: int) -> Drawn:

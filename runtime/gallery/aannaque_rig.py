@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..beams.element_forms import required_structure
 from ..core.families import Array, LinearPeriodic
 from ..frequencies import (
     LinkFrequencies,
@@ -21,7 +22,7 @@ from ..periodic import steady_state
 from ..recovery import ElasticCurve, elastic_coupler_curve, stress_operator
 from ..recovery.stress_over_speed import StressCurve, stress_curve
 from ..scenes import load_scene
-from .aannaque_beams import FRAME, exact_frequencies, maxima, nearest, structure_of
+from .aannaque_beams import FRAME, exact_frequencies, maxima, nearest
 from .aannaque_kinematics import cycle
 from .drawing import COLOURS, Axes, Panels, mark_fractions, panel_title, turn
 from .records import Drawn
@@ -117,7 +118,7 @@ def modes(axes: Panels, place: int) -> Drawn:
         draw_mode(rig(), radians(angle), int(order[rank]) + 1, ax, found=held_modes())
         hertz = computed[rank] / (2 * np.pi)
         ax.set_title(f"mode {rank + 1}: {hertz:.1f} Hz, {computed[rank]:.1f} rad/s", fontsize=9)
-    exact = exact_frequencies(structure_of(rig()), np.array([radians(angle)]), 3)[0]
+    exact = exact_frequencies(required_structure(rig()), np.array([radians(angle)]), 3)[0]
     rows = zip((1, 2, 3), computed / (2 * np.pi), exact / (2 * np.pi), strict=True)
     gap = 100.0 * np.max(np.abs(computed / exact - 1.0))
     return Drawn([angle, gap], {"angle": angle}, [rows])

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from ..beams.element_forms import required_structure
 from ..core.families import Array, LinearPeriodic
 from ..core.trigonometric import resampled
 from ..frequencies import NaturalFrequencies, natural_frequencies
@@ -29,7 +30,6 @@ from .aannaque_beams import (
     nearest,
     rms,
     stresses,
-    structure_of,
     tops,
 )
 from .drawing import COLOURS, Panels
@@ -222,7 +222,8 @@ def bending_at_midpoint(
     """
     motion = steady_state(moving or system, 30.0, rtol=1e-5)
     forces = recover(system, motion, stations={"follower": [0.5]}, method="shape")
-    (section,) = (one.section for one in structure_of(system).beams if one.name == "follower")
+    bars = required_structure(system).beams
+    (section,) = (bar.section for bar in bars if bar.name == "follower")
     factor = 0.5 * (section.thickness or np.nan) / section.second_moment
     return forces.theta, np.asarray(factor * forces.of("follower", "moment")[:, 0])
 

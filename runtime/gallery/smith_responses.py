@@ -112,9 +112,12 @@ def response(
     low: float,
     high: float,
     resonances: Sequence[float] = (),
-    claim: str = "",
+    claim: Sequence[Any] = (),
 ) -> Drawn:
-    """Draw a frequency response; compute resonances near speeds [rpm] and what a claim needs."""
+    """Draw a frequency response; compute resonances near speeds [rpm] and what a claim needs.
+
+    A claim is one of :data:`_CLAIMS` and what it takes.
+    """
     one, ax = Response(chart, inertia, low, high), axes[0]
     least, middle, most = one.rig.decrements
     for decrement, colour, width in (
@@ -141,7 +144,8 @@ def response(
             ax.axhline(level, color="0.5", lw=0.7, ls="--", zorder=1)
     mark_fractions(ax, one.rig.frequency / RPM, range(1, 13), "Ω/{}", (low, high), low=False)
     ax.set(xlim=(low, high), ylim=(-end, end))
-    return Drawn([*(resonance(one, at) for at in resonances), *(_CLAIMS[claim](one))])
+    values = [resonance(one, at) for at in resonances]
+    return Drawn([*values, *_CLAIMS[claim[0]](one, *claim[1:])] if claim else values)
 
 
 def resonance(one: Response, speed: float) -> float:
@@ -151,60 +155,52 @@ def resonance(one: Response, speed: float) -> float:
     return float(places[np.argmin(np.abs(places - speed))]) if len(places) else float("nan")
 
 
-def _harmonics(one: Response, orders: range) -> list[float]:
-    """Return how far from Omega/n [%] each harmonic is greatest, at most."""
+def _harmonics(one: Response, first: int, last: int) -> list[float]:
+    """Return how far from Omega/n [%] each of some harmonics is greatest, at most."""
     system = one.rig.system(decrement=one.rig.decrements[0], inertia=one.inertia)
     factor, apart = np.linspace(0.94, 1.06, 61), []
-    for order in orders:
+    for order in range(first, last + 1):
         motion = steady_state(system, factor * one.rig.frequency / order)
         size = np.abs(np.fft.rfft(motion.q[..., 0], axis=-1)[:, order])
         apart.append(abs(float(factor[np.argmax(size)]) - 1.0))
     return [100.0 * max(apart)]
 
 
-def _increment(one: Response) -> list[float]:
-    """Return how the second increment of the inertia raises the amplitude near 300 rpm."""
+def _increment(one: Response, before: float, at: float) -> list[float]:
+    """Return how an increment of the inertia, from one before, raises the amplitude at a speed."""
     sizes = []
-    for inertia in (one.inertia, 0.0069):
+    for inertia in (one.inertia, before):
         ends = envelope(replace(one, inertia=inertia), one.rig.decrements[0])
-        sizes.append(float(np.interp(300.0, ends.speed, ends.height)))
+        sizes.append(float(np.interp(at, ends.speed, ends.height)))
     return [sizes[0] / sizes[1]]
 
 
-def _unstable(
-    one: Response, low: float = 0.0, high: float = np.inf, damping: int = 1
-) -> list[float]:
-    """Return first, middle and last unstable speed within a range.
+def _unstable(one: Response, which: str, damping: int, low: float, high: float) -> list[float]:
+    """Return the ``first``, ``middle``, ``last`` unstable speed within a range, as many as named.
 
     With the least measured decrement, the middle or the greatest one (0, 1, 2).
     """
     ends = envelope(one, one.rig.decrements[damping])
-    speeds = ends.speed[~ends.stable]
-    inside = speeds[(speeds > low) & (speeds < high)]
+    inside = ends.speed[~ends.stable & (ends.speed > low) & (ends.speed < high)]
     first, last = float(inside[0]), float(inside[-1])
-    return [first, 0.5 * (first + last), last]
+    found = {"first": first, "middle": 0.5 * (first + last), "last": last}
+    return [found[name] for name in which.split()]
 
 
-def _between(one: Response) -> list[float]:
-    """Return at how many speeds about 500 rpm the periodic motion is largest."""
+def _largest(one: Response, at: float, apart: float) -> list[float]:
+    """Return at how many speeds about one the periodic motion is largest."""
     ends = envelope(one, one.rig.decrements[0])
-    inside = np.flatnonzero(np.abs(ends.speed - 500.0) < 15.0)
+    inside = np.flatnonzero(np.abs(ends.speed - at) < apart)
     beside = np.maximum(ends.height[inside - 1], ends.height[inside + 1])
     return [int(np.count_nonzero(ends.height[inside] > beside))]
 
 
 # What section 9.5.3 says of single figures, by the names in their records.
-_CLAIMS: dict[str, Callable[[Response], list[float]]] = {
-    "": lambda one: [],
-    "harmonics 3 to 10": lambda one: _harmonics(one, range(3, 11)),
-    "harmonics 4 to 7": lambda one: _harmonics(one, range(4, 8)),
+_CLAIMS: dict[str, Callable[..., list[float]]] = {
+    "harmonics": _harmonics,
     "increment": _increment,
-    # Below 300 rpm.
-    "region 5": lambda one: _unstable(one, 245.0, 291.0, damping=0)[1:2],
-    "region 3 passed": lambda one: _unstable(one)[1:],
-    "region 3 onset": lambda one: _unstable(one)[:1],
-    "region 3 onset, second": lambda one: _unstable(one, 0.6 * one.rig.frequency / RPM)[:1],
-    "largest about 500 rpm": _between,
+    "unstable": _unstable,
+    "largest": _largest,
 }
 
 

@@ -55,13 +55,19 @@ def test_the_clamped_bars_of_table_5_1():
         assert abs(np.cos(root) - 1.0 / np.cosh(root)) < 1e-9
 
 
-def test_maxima_are_refined_between_samples():
+def test_maxima_are_refined_between_samples_and_stand_out_by_the_share_asked_for():
     x = np.linspace(0.0, 10.0, 101)
     found = aannaque_beams.tops(x, np.cos(x - 1.234))
     assert found == pytest.approx([1.234, 1.234 + 2.0 * np.pi], abs=1e-4)
     curve = aannaque_beams.maxima(x, np.exp(np.cos(x - 1.234)))
     # The logarithm is the cosine itself.
     assert curve == pytest.approx([1.234, 1.234 + 2.0 * np.pi], abs=1e-4)
+    x = np.linspace(0.0, 10.0, 401)
+    y = np.exp(np.log(1.1) * np.exp(-(((x - 3.013) / 0.2) ** 2)))
+    y *= np.exp(np.log(1.02) * np.exp(-(((x - 7.0) / 0.2) ** 2)))
+    # A parabola through three places, an eighth of the width apart, is off by its cube.
+    assert aannaque_beams.maxima(x, y, -np.log1p(-0.05)) == pytest.approx([3.013], abs=2e-4)
+    assert len(aannaque_beams.maxima(x, y, -np.log1p(-0.01))) == 2
 
 
 @pytest.mark.slow
@@ -186,15 +192,6 @@ def test_stresses_of_a_cycle_are_those_of_the_curve_over_the_speed():
     np.testing.assert_allclose(size[own], whole[own], rtol=tolerance)
     # Where the other fibre has the largest stress, this one's is less.
     assert np.all(size[~own] < whole[~own] * (1 + tolerance))
-
-
-def test_maxima_stand_out_by_the_share_asked_for():
-    x = np.linspace(0.0, 10.0, 401)
-    y = np.exp(np.log(1.1) * np.exp(-(((x - 3.013) / 0.2) ** 2)))
-    y *= np.exp(np.log(1.02) * np.exp(-(((x - 7.0) / 0.2) ** 2)))
-    # A parabola through three places, an eighth of the width apart, is off by its cube.
-    assert aannaque_beams.maxima(x, y, -np.log1p(-0.05)) == pytest.approx([3.013], abs=2e-4)
-    assert len(aannaque_beams.maxima(x, y, -np.log1p(-0.01))) == 2
 
 
 @pytest.mark.slow

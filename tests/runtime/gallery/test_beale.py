@@ -8,7 +8,6 @@ from elastolink.runtime.frequencies import natural_frequencies
 from elastolink.runtime.gallery import beale
 from elastolink.runtime.gallery.beale import FLEXIBLE, HEAVY, STIFF, peak, rod, stiff_tip
 from elastolink.runtime.periodic import floquet_multipliers, steady_state
-from elastolink.runtime.scenes import load_scene
 from rod_tip_deflections import TIPS
 
 # Deflections leave the linear range at resonances; the equations stay linear.
@@ -77,9 +76,7 @@ def test_frequencies_at_crank_length_zero_are_those_of_another_basis():
 
 
 def _system(formulation, modes, *drop):
-    changes = {"model.formulation": formulation, "model.modes": modes, "model.drop": list(drop)}
-    overrides = {**changes, "links.crank_ratio": 0.2}
-    return load_scene("beale_1992_flexible_rod", overrides=overrides).linear_system()
+    return rod(FLEXIBLE, formulation, modes, drop, links__crank_ratio=0.2)
 
 
 def test_the_frequency_over_the_cycle():

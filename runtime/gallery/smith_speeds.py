@@ -247,8 +247,8 @@ def equations_table(axes: Panels) -> Drawn:
     for name in EQUATIONS:
         words |= zip((f"plain_{name}", f"fitted_{name}", f"edge_{name}"), _rms(name), strict=True)
     trends = (later / first for first, later in (_trend("first order"), _trend("complete")))
-    values = (min(map(_ratio, _LINKAGES)), count / len(_COMPARED), *trends)
-    return Drawn(values, words, (peaks, moved, observed, _summary()))
+    numbers = (min(map(_ratio, _LINKAGES)), count / len(_COMPARED), *trends)
+    return Drawn(numbers, words, (peaks, moved, observed, _summary()))
 
 
 def _ratio(linkage: str) -> float:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import lru_cache
 from math import cos, degrees, pi, radians, sin, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.optimize import brentq
 
 from ..linkages import FourBar, FourBarMotion
 from ..linkages.base_planes import base_plane
@@ -17,27 +16,20 @@ from ..linkages.transmission import transmission_angle
 from ..rigid import rigid_forces
 from ..scenes import load_scene
 from . import sketch
-from .aannaque_models import FRAMES
-from .drawing import COLOURS, Array, panel_title
+from .aannaque_beams import FRAMES
+from .drawing import COLOURS, Array, Axes, Panels, panel_title
 from .records import Drawn
 from .registry import contents
 from .smith_linkages import four_bar_of
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 _SCENE = "aannaque_1996_table_3_2"
 # The projection of the three axes on the paper, the third upwards.
 _TURN, _TILT = radians(38.0), radians(24.0)
-_VIEW = np.array(
-    [
-        [-sin(_TURN), cos(_TURN), 0.0],
-        [-cos(_TURN) * sin(_TILT), -sin(_TURN) * sin(_TILT), cos(_TILT)],
-    ]
-)
+_VIEW = np.array([[-sin(_TURN), cos(_TURN), 0.0], [0.0, 0.0, cos(_TILT)]])
+_VIEW[1, :2] = -sin(_TILT) * np.array([cos(_TURN), sin(_TURN)])
 
 
-def figure_3_4(axes: Sequence[Axes]) -> None:
+def figure_3_4(axes: Panels) -> None:
     """Draw the solution space up to a base plane, seen obliquely."""
     ax, plane = axes[0], base_plane(1.5)
     total = sqrt(3.0) * plane.lam
@@ -63,9 +55,8 @@ def figure_3_4(axes: Sequence[Axes]) -> None:
     for i, axis in enumerate(np.eye(3)):
         ends = np.array([np.zeros(3), 1.25 * far * axis]) @ _VIEW.T
         ax.plot(*ends.T, color="0.3", lw=0.9, zorder=1)
-        sketch.write(
-            ax, ends[1], rf"$\lambda_{i + 2}$", 8.0 * ends[1] / np.hypot(*ends[1]), fontsize=11
-        )
+        beyond = 8.0 * ends[1] / np.hypot(*ends[1])
+        sketch.write(ax, ends[1], rf"$\lambda_{i + 2}$", beyond, fontsize=11)
     line = np.array([np.zeros(3), np.full(3, plane.lam / sqrt(3.0))]) @ _VIEW.T
     ax.plot(*line.T, "--", color="0.2", lw=1.0, zorder=8)
     ax.plot(*line[1], "o", color="0.2", ms=3.5, zorder=8)
@@ -80,20 +71,11 @@ def _face(ax: Axes, corners: Array, colour: str, alpha: float) -> None:
 
 def _call(ax: Axes, place: Array, text: str, shift: tuple[float, float]) -> None:
     """Name a face from outside, with a thin line to it."""
-    x, y = _VIEW @ place
-    ax.annotate(
-        text,
-        (float(x), float(y)),
-        xytext=shift,
-        textcoords="offset points",
-        ha="center",
-        va="center",
-        arrowprops={"arrowstyle": "-", "color": "0.4", "lw": 0.7},
-        zorder=9,
-    )
+    line = {"arrowstyle": "-", "color": "0.4", "lw": 0.7}
+    sketch.write(ax, _VIEW @ place, text, shift, arrowprops=line)
 
 
-def figure_3_5(axes: Sequence[Axes]) -> Drawn:
+def figure_3_5(axes: Panels) -> Drawn:
     """Draw three base planes with the class of each region."""
     # Below, at and above the plane through the linkage of four equal links.
     planes = [base_plane(lam) for lam in (1.0, sqrt(3.0), 3.0)]
@@ -130,30 +112,24 @@ def cycle(frame: float | None = None) -> FourBarMotion:
     return chosen.motion(np.linspace(0.0, 2.0 * pi, 3601))
 
 
-def figure_3_6(axes: Sequence[Axes]) -> None:
+def figure_3_6(axes: Panels) -> None:
     """Draw both assemblies at one crank angle."""
     ax, bars, theta = sketch.canvas(axes[0]), linkage(), radians(130.0)
-    other = FourBar(bars.frame, bars.crank, bars.coupler, bars.follower, assembly="crossed")
-    both = [item.motion(theta) for item in (bars, other)]
-    a, b, d = (np.asarray(both[0].joints[name]) for name in "ABD")
+    crossed = FourBar(bars.frame, bars.crank, bars.coupler, bars.follower, assembly="crossed")
+    joints = bars.motion(theta).joints
+    a, b, d = (np.asarray(joints[name]) for name in "ABD")
+    c = np.asarray(crossed.motion(theta).joints["C"])
     ax.plot(*np.transpose([b, d]), ":", color="0.4", lw=1.0)
-    for motion, name, style in zip(both, ("B", "B'"), ("-", (0, (3, 1.2))), strict=True):
-        c = np.asarray(motion.joints["C"])
-        sketch.bar(ax, b, c, sketch.LINK_COLOURS["coupler"], ls=style, zorder=3)
-        sketch.bar(ax, d, c, sketch.LINK_COLOURS["follower"], ls=style, zorder=3)
-        sketch.pin(ax, c)
-        sketch.write(ax, c, name, (12.0, 10.0 if name == "B" else -10.0), style="italic")
-    sketch.bar(ax, a, b, sketch.LINK_COLOURS["crank"], zorder=4)
-    for place, name, shift in ((a, "O", -16.0), (d, "C", 16.0)):
-        sketch.pivot(ax, place, 0.1 * bars.frame)
-        sketch.write(ax, place, name, (shift, 4.0), style="italic")
-    sketch.pin(ax, b)
-    sketch.write(ax, b, "A", (-10.0, 10.0), style="italic")
+    for link, start in (("coupler", b), ("follower", d)):
+        sketch.bar(ax, start, c, link, ls=(0, (3, 1.2)))
+    sketch.pin(ax, c)
+    sketch.write(ax, c, "B'", (12.0, -10.0), style="italic")
+    sketch.four_bar(ax, joints, 0.1 * bars.frame, "OABC")
     ax.plot([0.0, 0.12 * bars.frame], [0.0, 0.0], color="0.35", lw=0.8)
     sketch.arc(ax, a, 0.07 * bars.frame, (0.0, theta), "$t_1$")
 
 
-def rates(axes: Sequence[Axes], kind: str) -> Drawn | None:
+def rates(axes: Panels, kind: str) -> Drawn | None:
     """Draw speeds ``omega`` or accelerations ``alpha`` of both links (Figs. 3.7 and 3.8)."""
     motion = cycle()
     for number, link in ((3, "coupler"), (4, "follower")):
@@ -168,25 +144,23 @@ def rates(axes: Sequence[Axes], kind: str) -> Drawn | None:
     return Drawn([np.count_nonzero(peaks), rise / 360.0])
 
 
-def figure_3_9(axes: Sequence[Axes]) -> Drawn:
+def figure_3_9(axes: Panels) -> Drawn:
     """Draw the transmission angle over one cycle with the recommended band."""
     ax, bars, theta = axes[0], linkage(), np.linspace(0.0, 2.0 * pi, 721)
     mu = transmission_angle(bars)
     ax.axhspan(*np.degrees(mu.band), color=COLOURS[2], alpha=0.10, label="recommended band")
     ax.plot(np.degrees(theta), np.degrees(mu.angle(theta)), color=COLOURS[0])
-    for angles, value, name, shift in (
-        ([0.0, 360.0], mu.least, "least", (38.0, -12.0)),
-        ([180.0], mu.greatest, "greatest", (0.0, 10.0)),
-    ):
-        ax.plot(angles, [degrees(value)] * len(angles), "o", color=COLOURS[1], ms=5)
-        sketch.write(ax, (angles[0], degrees(value)), f"{name}: {degrees(value):.2f}°", shift)
-    return Drawn([degrees(mu.least), degrees(mu.greatest)])
+    least, greatest = degrees(mu.least), degrees(mu.greatest)
+    ax.plot([0.0, 180.0, 360.0], [least, greatest, least], "o", color=COLOURS[1], ms=5)
+    sketch.write(ax, (0.0, least), f"least: {least:.2f}°", (38.0, -12.0))
+    sketch.write(ax, (180.0, greatest), f"greatest: {greatest:.2f}°", (0.0, 10.0))
+    return Drawn([least, greatest])
 
 
-def figure_3_10(axes: Sequence[Axes]) -> None:
+def figure_3_10(axes: Panels) -> None:
     """Draw the mechanism at several positions, and the paths of some points of its coupler."""
     ax, bars = sketch.canvas(axes[0]), linkage()
-    length, start = bars.coupler, radians(70.0)
+    length, first = bars.coupler, radians(70.0)
     points = {
         "A": (0.0, 0.0),
         "B": (length, 0.0),
@@ -197,14 +171,14 @@ def figure_3_10(axes: Sequence[Axes]) -> None:
     }
     curves = {name: coupler_curve(bars, *place) for name, place in points.items()}
     for k in range(1, 8):
-        joints = bars.motion(start + k * pi / 4.0).joints
+        joints = bars.motion(first + k * pi / 4.0).joints
         for ends, link in (("AB", "crank"), ("BC", "coupler"), ("DC", "follower")):
-            colour = sketch.LINK_COLOURS[link]
-            sketch.bar(ax, joints[ends[0]], joints[ends[1]], colour, lw=1.6, alpha=0.22, zorder=2)
+            start, end = (joints[name] for name in ends)
+            sketch.bar(ax, start, end, link, lw=1.6, alpha=0.22, zorder=2)
     for (name, curve), colour in zip(curves.items(), ("0.35", "0.35", *COLOURS[3:]), strict=False):
         closed = np.vstack([curve.position, curve.position[:1]])
         ax.plot(*closed.T, color=colour, lw=1.4, ls="--" if name in "AB" else "-", zorder=4)
-    now = bars.motion(start)
+    now = bars.motion(first)
     joints = now.joints
     for name in "PQRS":
         at = now.point("coupler", *points[name]).position
@@ -216,7 +190,7 @@ def figure_3_10(axes: Sequence[Axes]) -> None:
     sketch.four_bar(ax, joints, 0.07 * bars.frame, "OABC")
 
 
-def free_body(axes: Sequence[Axes], link: str) -> Drawn:
+def free_body(axes: Panels, link: str) -> Drawn:
     """Draw one link cut free (Fig. 3.11)."""
     ax, scene = sketch.canvas(axes[0]), load_scene(_SCENE)
     machine, speed = scene.machine(), scene["operation"]["speed"]
@@ -240,7 +214,7 @@ def free_body(axes: Sequence[Axes], link: str) -> Drawn:
     return Drawn(values, tables=[rows])
 
 
-def figure_7_12(axes: Sequence[Axes]) -> Drawn:
+def figure_7_12(axes: Panels) -> Drawn:
     """Draw the follower's acceleration for several distances of the pivots."""
     ax, speed = axes[0], load_scene(_SCENE)["operation"]["speed"]
     for frame in FRAMES:
@@ -252,17 +226,10 @@ def figure_7_12(axes: Sequence[Axes]) -> Drawn:
     last = cycle(FRAMES[-1])
     later = last.theta2 > radians(90.0)
     place = last.theta2[later][int(np.argmax(np.abs(last.alpha4[later])))]
-    return Drawn(
-        [
-            degrees(float(place)),
-            degrees(float(np.max(last.transmission_angle))),
-            np.min(pulses[1:, 1] / pulses[:-1, 1]),
-            pulses[0, 1] / pulses[0, 0],
-            pulses[-1, 1] / pulses[-1, 0],
-            crossover(),
-            np.max(pulses[1:, 0]) / pulses[0, 0],
-        ]
-    )
+    first, second = pulses.T
+    values = [degrees(float(place)), degrees(float(np.max(last.transmission_angle)))]
+    values += [np.min(second[1:] / second[:-1]), second[0] / first[0], second[-1] / first[-1]]
+    return Drawn([*values, crossover(), np.max(first[1:]) / first[0]])
 
 
 def pulses_of(frame: float) -> tuple[float, float]:
@@ -275,10 +242,5 @@ def pulses_of(frame: float) -> tuple[float, float]:
 
 def crossover() -> float:
     """Return the frame length [m] at which the second pulse is as large as the first."""
-    from scipy.optimize import brentq
-
-    def excess(frame: float) -> float:
-        first, second = pulses_of(frame)
-        return second - first
-
-    return float(brentq(excess, 0.60, 0.68, xtol=1e-9))
+    excess = brentq(lambda frame: np.diff(pulses_of(frame))[0], 0.60, 0.68, xtol=1e-9)
+    return float(excess)

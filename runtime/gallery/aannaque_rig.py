@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from math import degrees, radians
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from ..beams.element_forms import required_structure
 from ..core.families import Array, LinearPeriodic
 from ..frequencies import (
     LinkFrequencies,
@@ -21,14 +22,11 @@ from ..periodic import steady_state
 from ..recovery import ElasticCurve, elastic_coupler_curve, stress_operator
 from ..recovery.stress_over_speed import StressCurve, stress_curve
 from ..scenes import load_scene
+from .aannaque_beams import FRAME, exact_frequencies, maxima, nearest
 from .aannaque_kinematics import cycle
-from .aannaque_models import FRAME, exact_frequencies, maxima, structure_of
-from .drawing import COLOURS, mark_fractions, panel_title, turn
+from .drawing import COLOURS, Axes, Panels, mark_fractions, panel_title, turn
 from .records import Drawn
 from .registry import contents
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 SHORT, LONG = "aannaque_1996_table_4_1", "aannaque_1996_long_coupler"
 # Speeds in the captions of appendices C and D [rad/s].
@@ -64,48 +62,46 @@ def midpoint(speed: float) -> ElasticCurve:
     return elastic_coupler_curve(rig(), steady_state(rig(), speed, rtol=1e-5))
 
 
-def figure_8_2(axes: Sequence[Axes]) -> Drawn:
+def _path(ax: Axes, speed: float, style: str, colour: str, label: str, larger: float = 1.0) -> None:
+    """Draw the midpoint's path, its displacement so many times as large: 0 of the rigid linkage."""
+    path = midpoint(speed)
+    places = 1e3 * (path.rigid + larger * path.displacement)
+    ax.plot(*np.vstack([places, places[:1]]).T, style, color=colour, label=label)
+
+
+def _displacement(ax: Axes, speed: float, colour: str) -> None:
+    path = midpoint(speed)
+    turn(ax, path.theta, 1e3 * np.hypot(*path.displacement.T), color=colour)
+
+
+def figure_8_2(axes: Panels) -> Drawn:
     """Draw the path at a low and at a high speed, the rigid linkage's beside it."""
-    for ax, speed in zip(axes, (_SLOW, _FAST), strict=True):
-        path, larger = midpoint(speed), _LARGER[speed]
-        _closed(ax, path.elastic, "-", COLOURS[0], "elastic linkage")
-        _closed(ax, path.rigid, "--", "0.8", "rigid linkage")
-        enlarged = path.rigid + larger * path.displacement
-        _closed(ax, enlarged, ":", COLOURS[1], "elastic linkage, its displacement enlarged")
+    for ax, (speed, larger) in zip(axes, _LARGER.items(), strict=True):
+        _path(ax, speed, "-", COLOURS[0], "elastic linkage")
+        _path(ax, speed, "--", "0.8", "rigid linkage", 0.0)
+        _path(ax, speed, ":", COLOURS[1], "elastic linkage, its displacement enlarged", larger)
         panel_title(ax, f"{speed:g} rad/s; dotted: displacement {larger:g} times as large")
     return Drawn([1e3 * midpoint(speed).largest for speed in (_SLOW, _FAST)])
 
 
-def figure_8_3(axes: Sequence[Axes]) -> Drawn:
+def figure_8_3(axes: Panels) -> Drawn:
     """Draw the path at a low speed and how far it lies from that of the rigid linkage."""
-    path = midpoint(_SLOW)
-    _closed(axes[0], path.elastic, "-", COLOURS[0], "elastic linkage")
-    _closed(axes[0], path.rigid, "--", "0.8", "rigid linkage")
-    _displacements(axes[1], {_SLOW: COLOURS[0]})
-    return Drawn([1e3 * path.largest])
+    _path(axes[0], _SLOW, "-", COLOURS[0], "elastic linkage")
+    _path(axes[0], _SLOW, "--", "0.8", "rigid linkage", 0.0)
+    _displacement(axes[1], _SLOW, COLOURS[0])
+    return Drawn([1e3 * midpoint(_SLOW).largest])
 
 
-def figure_8_4(axes: Sequence[Axes]) -> Drawn:
+def figure_8_4(axes: Panels) -> Drawn:
     """Draw the paths at a low and at a high speed over each other, and their distances."""
-    slow, fast = midpoint(_SLOW), midpoint(_FAST)
-    _closed(axes[0], slow.elastic, "--", COLOURS[4], f"{_SLOW:g} rad/s")
-    _closed(axes[0], fast.elastic, "-", COLOURS[1], f"{_FAST:g} rad/s")
-    enlarged = fast.rigid + _LARGER[_FAST] * fast.displacement
-    label = f"{_FAST:g} rad/s, displacement {_LARGER[_FAST]:g} times as large"
-    _closed(axes[0], enlarged, ":", COLOURS[1], label)
-    _displacements(axes[1], {_SLOW: COLOURS[4], _FAST: COLOURS[1]})
-    return Drawn([fast.largest / slow.largest / (_FAST / _SLOW) ** 2])
-
-
-def _closed(ax: Axes, places: Array, style: str, colour: str, label: str) -> None:
-    around = np.vstack([places, places[:1]])
-    ax.plot(*(1e3 * around).T, style, color=colour, label=label)
-
-
-def _displacements(ax: Axes, speeds: Mapping[float, str]) -> None:
-    for speed, colour in speeds.items():
-        path = midpoint(speed)
-        turn(ax, path.theta, 1e3 * np.hypot(*path.displacement.T), color=colour)
+    label, larger = f"{_FAST:g} rad/s", _LARGER[_FAST]
+    _path(axes[0], _SLOW, "--", COLOURS[4], f"{_SLOW:g} rad/s")
+    _path(axes[0], _FAST, "-", COLOURS[1], label)
+    more = f"{label}, displacement {larger:g} times as large"
+    _path(axes[0], _FAST, ":", COLOURS[1], more, larger)
+    _displacement(axes[1], _SLOW, COLOURS[4])
+    _displacement(axes[1], _FAST, COLOURS[1])
+    return Drawn([midpoint(_FAST).largest / midpoint(_SLOW).largest / (_FAST / _SLOW) ** 2])
 
 
 @lru_cache(maxsize=1)
@@ -114,7 +110,7 @@ def held_modes() -> NaturalFrequencies:
     return natural_frequencies(rig(), np.radians(ANGLES), 3)
 
 
-def modes(axes: Sequence[Axes], place: int) -> Drawn:
+def modes(axes: Panels, place: int) -> Drawn:
     """Draw the modes at one of the ten crank angles (Figs. 8.9 to 8.18)."""
     angle, tracked = ANGLES[place], held_modes().tracked[place]
     computed, order = np.sort(tracked), np.argsort(tracked)
@@ -122,7 +118,7 @@ def modes(axes: Sequence[Axes], place: int) -> Drawn:
         draw_mode(rig(), radians(angle), int(order[rank]) + 1, ax, found=held_modes())
         hertz = computed[rank] / (2 * np.pi)
         ax.set_title(f"mode {rank + 1}: {hertz:.1f} Hz, {computed[rank]:.1f} rad/s", fontsize=9)
-    exact = exact_frequencies(structure_of(rig()), np.array([radians(angle)]), 3)[0]
+    exact = exact_frequencies(required_structure(rig()), np.array([radians(angle)]), 3)[0]
     rows = zip((1, 2, 3), computed / (2 * np.pi), exact / (2 * np.pi), strict=True)
     gap = 100.0 * np.max(np.abs(computed / exact - 1.0))
     return Drawn([angle, gap], {"angle": angle}, [rows])
@@ -141,20 +137,18 @@ def crossing() -> float:
     return float(_LENGTHS[0] * np.sqrt(pinned["coupler"][0] / pinned["follower"][0]))
 
 
-def figure_9_1(axes: Sequence[Axes]) -> Drawn:
+def figure_9_1(axes: Panels) -> Drawn:
     """Draw the mean first frequency over the coupler's length, and those of the pinned links."""
     over = over_coupler()
     ax = over.plot(axes[0])
     ax.axvline(FRAME, color="0.6", lw=0.8, ls=(0, (1, 3)))
     # The document shows it up to 60 Hz.
     ax.set_ylim(0.0, 120.0 * np.pi)
-    length, mean = over.value, over.mean[:, 0]
     pinned = dict(zip(over.links, over.pinned.T, strict=True))
-    coupler, follower = pinned["coupler"], pinned["follower"]
-    apart = 100.0 * np.abs(mean / np.minimum(coupler, follower) - 1.0)
-    short = length < FRAME
-    values = [crossing(), float(np.max(apart[short])), float(np.max(apart[~short]))]
-    return Drawn(values, {"most": np.max(apart), "crank": pinned["crank"][0] / (2 * np.pi)})
+    lowest = np.minimum(pinned["coupler"], pinned["follower"])
+    apart, short = 100.0 * np.abs(over.mean[:, 0] / lowest - 1.0), over.value < FRAME
+    words = {"most": np.max(apart), "crank": pinned["crank"][0] / (2 * np.pi)}
+    return Drawn([crossing(), np.max(apart[short]), np.max(apart[~short])], words)
 
 
 @lru_cache(maxsize=16)
@@ -180,10 +174,10 @@ def _critical(over: StressCurve, link: str) -> Array:
     return maxima(over.speed, over.of(link), -np.log1p(-0.05))
 
 
-def long_frame(axes: Sequence[Axes], frame: float) -> Drawn:
+def long_frame(axes: Panels, frame: float) -> Drawn:
     """Draw the follower's largest stress over the speed for one L4 (Figs. 8.19 to 8.23)."""
-    ax, looks = axes[0], {FRAME: ("--", COLOURS[4])}
-    for value, (style, colour) in {**looks, frame: ("-", COLOURS[0])}.items():
+    ax, looks = axes[0], {FRAME: ("--", COLOURS[4]), frame: ("-", COLOURS[0])}
+    for value, (style, colour) in looks.items():
         over = curve(SHORT, value)
         label = f"$L_4$ = {value:.3f} m"
         ax.semilogy(over.speed, over.of("follower") / 1e6, style, color=colour, label=label)
@@ -235,10 +229,10 @@ def least_frame(speed: float) -> float:
 def _nearest(frame: float, order: int) -> float:
     """Return the critical speed nearest to the mean first frequency over a whole number."""
     speeds = _critical(curve(SHORT, frame), "follower")
-    return float(speeds[np.argmin(np.abs(speeds - mean_frequency(SHORT, frame) / order))])
+    return nearest(speeds, mean_frequency(SHORT, frame) / order)
 
 
-def figure_8_24(axes: Sequence[Axes]) -> Drawn:
+def figure_8_24(axes: Panels) -> Drawn:
     """Draw the follower's stress over the cycle with a long ground link."""
     ax, motion = axes[0], cycle(0.662)
     values = []
@@ -255,7 +249,7 @@ def figure_8_24(axes: Sequence[Axes]) -> Drawn:
     return Drawn([*values, widest, lowest, 100.0 * (11.31 / 13.67 - 1.0)])
 
 
-def long_coupler(axes: Sequence[Axes], link: str) -> Drawn:
+def long_coupler(axes: Panels, link: str) -> Drawn:
     """Draw a link's largest stress over the speed, long coupler (Figs. 8.25 and 8.26)."""
     ax, short, long = axes[0], curve(SHORT, FRAME), curve(LONG, FRAME, _LONG_HIGH)
     ax.semilogy(long.speed, long.of(link) / 1e6, color=COLOURS[0], label="$L_2$ = 0.636 m")
@@ -281,18 +275,14 @@ def cycles(
     system = rig(scene, frame)
     motion = steady_state(system, np.array(speeds), rtol=1e-5)
     form, stations = stress_operator(system, motion.theta, STATIONS)
-    values = np.stack(
-        [
-            form.values(speed, q, qd / speed)
-            for speed, q, qd in zip(speeds, motion.q, motion.qd, strict=True)
-        ]
-    )
+    each = zip(speeds, motion.q, motion.qd, strict=True)
+    values = np.stack([form.values(speed, q, qd / speed) for speed, q, qd in each])
     # Of each station the fibre on the positive side comes first.
     by_station = {(one.beam, one.place): values[:, :, k] for k, one in enumerate(stations)}
     return motion.theta, by_station
 
 
-def sheet(axes: Sequence[Axes], letter: str, first: int, last: int) -> Drawn:
+def sheet(axes: Panels, letter: str, first: int, last: int) -> Drawn:
     """Draw some figures of appendix C or D, a row of links for each."""
     numbers = range(first, last + 1)
     speeds = tuple(SPEEDS[letter][number - 1] for number in numbers)

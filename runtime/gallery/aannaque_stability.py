@@ -7,11 +7,11 @@ becomes 2 pi, the multipliers over it are the same.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import lru_cache
 from itertools import pairwise
 from math import ceil, pi, sqrt
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,11 +19,8 @@ from numpy.typing import NDArray
 from ...generated import hill_meissner
 from ..core.periodic_function import PeriodicFunction
 from ..hill import critical_damping, discriminant, hill_boundaries
-from .drawing import COLOURS, Array, outline
+from .drawing import COLOURS, Array, Panels, outline
 from .records import Drawn
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 COSINE = PeriodicFunction(a=[0.0, 1.0])
 _interval: Callable[..., tuple[Array, Array]] = hill_meissner.interval
@@ -96,7 +93,7 @@ def _half_trace_2(x1: Array, x2: Array) -> Array:
     return _two_intervals(c1, s1, (x1 / pi) ** 2, c2, s2, (x2 / pi) ** 2)[0]
 
 
-def figure_7_2(axes: Sequence[Axes]) -> Drawn:
+def figure_7_2(axes: Panels) -> Drawn:
     """Draw the curves J_2 = 1 and J_2 = -1 over the phases of the two intervals."""
     # The largest phase that is shown, over pi.
     ax, widest = axes[0], 4
@@ -125,18 +122,11 @@ def figure_7_2(axes: Sequence[Axes]) -> Drawn:
     for axis, name in ((ax.xaxis, "x_1"), (ax.yaxis, "x_2")):
         axis.set_ticks(range(widest + 1), ["0", "π", *(f"{i}π" for i in range(2, widest + 1))])
         axis.set_label_text(f"${name} = T v_{name[-1]} / 2$")
-    return Drawn([_branches()])
-
-
-def _branches() -> int:
-    """Return the number of unstable bands along a line of irrational slope, to x1 + x2 = 20 pi.
-
-    Such a line meets no pinched point.
-    """
+    # Unstable bands along a line of irrational slope, which meets no pinched point.
     slope, last = 1.0 / sqrt(3.0), 20
     along = np.linspace(0.0, (last + 0.5) * pi / (1.0 + slope), 40001)[1:]
     unstable = np.abs(_half_trace_2(along, slope * along)) > 1.0
-    return int(np.count_nonzero(unstable[1:] & ~unstable[:-1]))
+    return Drawn([np.count_nonzero(unstable[1:] & ~unstable[:-1])])
 
 
 @lru_cache(maxsize=1)
@@ -145,7 +135,7 @@ def _surfaces() -> MultiplierSurfaces:
     return multiplier_surfaces((0.0, 30.0), eps, per_band=28)
 
 
-def surface(axes: Sequence[Axes], which: Literal["first", "second"]) -> Drawn:
+def surface(axes: Panels, which: Literal["first", "second"]) -> Drawn:
     """Draw the real part of one multiplier over (d, eps), cut off at -1 and 1 (E.1 and E.2)."""
     from matplotlib import colormaps
 
@@ -167,7 +157,7 @@ def surface(axes: Sequence[Axes], which: Literal["first", "second"]) -> Drawn:
     return Drawn([small / large])
 
 
-def figure_e_3(axes: Sequence[Axes]) -> Drawn:
+def figure_e_3(axes: Panels) -> Drawn:
     """Draw the stability charts without and with damping."""
     left, right, damping = -2.0, 20.0, 0.1
     grid = np.linspace(0.0, 20.0, 201)

@@ -2,30 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import eigh
 
-from ..core.families import Array
 from ..core.trigonometric import even_angles
 from ..periodic import SteadyState, cycles_to_settle, steady_state
-from .aannaque_models import CRITICAL, FULL, THESIS, beams, midpoint, moved, rms
-from .algorithms import (
-    modal_motion,
-    newmark_limit,
-    newmark_maps,
-    operation_count,
-    printed_count,
-)
-from .drawing import COLOURS, panel_title, turn
+from .aannaque_beams import CRITICAL, FULL, THESIS, beams, midpoint, moved, rms
+from .algorithms import modal_motion, newmark_limit, newmark_maps, operation_count, printed_count
+from .drawing import COLOURS, Array, Panels, panel_title, turn
 from .records import Drawn
 from .registry import contents
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _SPEED = 35.0
 _FORMS = ((THESIS, "the thesis' form"), (FULL, "full form with stiffening"))
@@ -38,7 +27,7 @@ _NAMES = {
 }
 
 
-def figure_6_1(axes: Sequence[Axes]) -> Drawn:
+def figure_6_1(axes: Panels) -> Drawn:
     """Draw the regions of stability of Newmark's scheme over gamma and beta."""
     ax, right = axes[0], np.linspace(0.5, 1.2, 71)
     pairs, real = 0.25 * (right + 0.5) ** 2, 0.5 * right
@@ -79,7 +68,7 @@ def _across(link: str, q: Array) -> Array:
     return moved(beams(1), link, even_angles(2.0 * np.pi, len(q)), q)
 
 
-def deflections(axes: Sequence[Axes], link: str) -> Drawn:
+def deflections(axes: Panels, link: str) -> Drawn:
     """Draw a link's midpoint over the cycle, with and without uncoupled modes (Fig. 6.3)."""
     ax, full = axes[0], steady_state(beams(1, FULL), _SPEED, rtol=1e-5)
     for q, style, colour, label in (
@@ -105,8 +94,6 @@ def _gap(link: str, modes: int) -> float:
 @lru_cache(maxsize=2)
 def _contributions(link: str) -> tuple[Array, Array]:
     """Return the displacement at a midpoint and the part of each mode, (nt,) and (nt, 9) [m]."""
-    from scipy.linalg import eigh
-
     system, motion = beams(1), _whole()
     row = midpoint(system, link, motion.theta)
     mass, stiffness = (system.array(name, motion.theta) for name in "MK")
@@ -117,7 +104,7 @@ def _contributions(link: str) -> tuple[Array, Array]:
     return np.einsum("tn,tn->t", row, motion.q), parts
 
 
-def contributions(axes: Sequence[Axes], link: str) -> Drawn:
+def contributions(axes: Panels, link: str) -> Drawn:
     """Draw the parts of four modes in the displacement of a midpoint (Fig. 6.4)."""
     ax, turned = axes[0], np.degrees(_whole().theta)
     whole, parts = _contributions(link)
@@ -129,11 +116,10 @@ def contributions(axes: Sequence[Axes], link: str) -> Drawn:
         whole, parts = _contributions(name)
         shares[name] = rms(parts.T) / rms(whole)
     coupler, follower = shares["coupler"], shares["follower"]
-    values = [follower[0] / np.max(follower[1:])]
+    value = follower[0] / np.max(follower[1:])
     if link == "coupler":
-        higher = np.sum(coupler[1:4]) / coupler[0]
-        values = [higher / (np.sum(follower[1:4]) / follower[0])]
-    return Drawn(values, tables=[[(name, *sizes[:6]) for name, sizes in shares.items()]])
+        value = np.sum(coupler[1:4]) / coupler[0] / (np.sum(follower[1:4]) / follower[0])
+    return Drawn([value], tables=[[(name, *sizes[:6]) for name, sizes in shares.items()]])
 
 
 @lru_cache(maxsize=4)
@@ -169,48 +155,37 @@ def _settled(values: Array, tolerance: float) -> float:
     return float(np.argmax(changes(values) < tolerance) + 2)
 
 
-def figure_6_5(axes: Sequence[Axes]) -> Drawn:
+def figure_6_5(axes: Panels) -> Drawn:
     """Draw the follower's midpoint from rest at 62 rad/s, and its change in a cycle."""
     values = march()[0]
     cycles = np.arange(values.size) / values.shape[1]
     axes[0].plot(cycles, 1e3 * values.ravel(), color=COLOURS[0], lw=0.6)
-    for drop, label in _FORMS:
-        change = changes(march(drop)[0])
-        counted = np.arange(2, len(change) + 2)
-        axes[1].semilogy(counted, change, "o-", ms=3, label=label)
-    axes[1].axhline(1e-4, color="0.4", lw=0.8, ls="--", label=r"$10^{-4}$")
-    axes[1].axvline(31, color="0.4", lw=0.8, ls=":", label="31 cycles")
-    cycles_marched = _settled(values, 1e-4)
     rows = []
     for drop, name in _FORMS:
-        values, multipliers = march(drop)
+        marched, multipliers = march(drop)
+        change = changes(marched)
+        axes[1].semilogy(np.arange(2, len(change) + 2), change, "o-", ms=3, label=name)
         top = multipliers[np.argmax(np.abs(multipliers))]
         for tolerance in (1e-4, 1e-5):
-            cycles = (
-                cycles_to_settle(top, tolerance, norm=norm) for norm in ("change", "remaining")
-            )
-            rows.append((name, tolerance, abs(top), *cycles, _settled(values, tolerance)))
-    return Drawn([cycles_marched], tables=[rows])
+            by = [cycles_to_settle(top, tolerance, norm=norm) for norm in ("change", "remaining")]
+            rows.append((name, tolerance, abs(top), *by, _settled(marched, tolerance)))
+    axes[1].axhline(1e-4, color="0.4", lw=0.8, ls="--", label=r"$10^{-4}$")
+    axes[1].axvline(31, color="0.4", lw=0.8, ls=":", label="31 cycles")
+    return Drawn([_settled(values, 1e-4)], tables=[rows])
 
 
-def _cycles(ratio: float) -> int:
-    """Return the cycles to a change of 1e-4 over the peak at 62 rad/s."""
-    values = march(ratio=ratio)[1]
-    return int(cycles_to_settle(values[np.argmax(np.abs(values))], 1e-4))
-
-
-def figure_6_6(axes: Sequence[Axes]) -> Drawn:
+def figure_6_6(axes: Panels) -> Drawn:
     """Draw the operations over the intervals: algorithms 1 and 2, and marching at two dampings."""
     intervals = (90, 180, 360, 540, 720)
-    lines = [
-        ("transition_matrix", 1, "algorithm 1", COLOURS[0]),
-        ("closed_form", 1, "algorithm 2", COLOURS[1]),
-    ]
-    for ratio, colour in zip((0.02, 0.06), COLOURS[2:], strict=False):
-        label = rf"time marching, $\zeta$ = {ratio:g}, {_cycles(ratio)} cycles"
-        lines.append(("time_marching", _cycles(ratio), label, colour))
+    lines = [("transition_matrix", 1, "algorithm 1"), ("closed_form", 1, "algorithm 2")]
+    for ratio in (0.02, 0.06):
+        # To a change of 1e-4 over the peak at 62 rad/s.
+        multipliers = march(ratio=ratio)[1]
+        cycles = int(cycles_to_settle(multipliers[np.argmax(np.abs(multipliers))], 1e-4))
+        label = rf"time marching, $\zeta$ = {ratio:g}, {cycles} cycles"
+        lines.append(("time_marching", cycles, label))
     for ax, storage in zip(axes, (True, False), strict=True):
-        for name, cycles, label, colour in lines:
+        for (name, cycles, label), colour in zip(lines, COLOURS, strict=False):
             printed, counted = (
                 [1e-6 * count(name, n, 9, cycles, storage=storage) for n in intervals]
                 for count in (printed_count, operation_count)
@@ -220,10 +195,9 @@ def figure_6_6(axes: Sequence[Axes]) -> Drawn:
         ax.plot([], [], "--", lw=0.9, color="0.4", label="counted here")
         panel_title(ax, "matrices stored" if storage else "no storage")
     one, two = "transition_matrix", "closed_form"
+    cases = [(big, n) for n in (1, 2, 9, 27, 100) for big in (90, 720)]
     values = [
-        max(
-            count(one, big, n) / count(two, big, n) for n in (1, 2, 9, 27, 100) for big in (90, 720)
-        )
+        max(count(one, *case) / count(two, *case) for case in cases)
         for count in (printed_count, operation_count)
     ]
     values.append(operation_count(one, 1440, 9) / operation_count(one, 720, 9))
@@ -238,15 +212,13 @@ def _break_even(freedoms: int) -> float:
     return float(cycles)
 
 
-def table_6_1(axes: Sequence[Axes]) -> Drawn:
+def table_6_1(axes: Panels) -> Drawn:
     """Draw the counted operations over those of the printed formulas."""
     freedoms = np.unique(np.round(np.geomspace(3, 300, 25)).astype(int))
 
     def ratio(name: str, n: int, storage: bool = True) -> float:
-        counts = (
-            count(name, 720, n, 5, storage=storage) for count in (operation_count, printed_count)
-        )
-        return next(counts) / next(counts)
+        counted = operation_count(name, 720, n, 5, storage=storage)
+        return counted / printed_count(name, 720, n, 5, storage=storage)
 
     rows = []
     for ax, storage in zip(axes, (True, False), strict=True):
@@ -260,7 +232,7 @@ def table_6_1(axes: Sequence[Axes]) -> Drawn:
     return Drawn([ratio(name, 300) for name in _NAMES], tables=[rows])
 
 
-def table_6_2(axes: Sequence[Axes]) -> Drawn:
+def table_6_2(axes: Panels) -> Drawn:
     """Draw the entries of Table 6.2 and those of the printed formulas."""
     ax, entries = axes[0], np.array(_TABLES["operations"])
     keys, printed, places = entries[:, :3].astype(int), entries[:, 3:], np.arange(len(entries))
@@ -277,7 +249,7 @@ def table_6_2(axes: Sequence[Axes]) -> Drawn:
     return Drawn([np.max(np.abs(printed / computed - 1.0))])
 
 
-def table_6_3(axes: Sequence[Axes]) -> Drawn:
+def table_6_3(axes: Panels) -> Drawn:
     """Draw the operations of the Fourier series and of algorithm 1 over the harmonics."""
     harmonics, entries = range(1, 31), _TABLES["series"]
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..beams.element_forms import required_structure
 from ..core.families import Array, LinearPeriodic
 from ..core.trigonometric import resampled
 from ..frequencies import NaturalFrequencies, natural_frequencies
@@ -16,7 +16,7 @@ from ..hill import Meissner, discriminant
 from ..periodic import floquet_multipliers, steady_state
 from ..periodic.reduced import reduced_system
 from ..recovery import recover, stress_operator
-from .aannaque_models import (
+from .aannaque_beams import (
     CRITICAL,
     FRAMES,
     FULL,
@@ -30,14 +30,10 @@ from .aannaque_models import (
     nearest,
     rms,
     stresses,
-    structure_of,
     tops,
 )
-from .drawing import COLOURS
+from .drawing import COLOURS, Panels
 from .records import Drawn
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 # Speeds [rad/s] of Figs. 7.1 and 7.3, of 7.4 and 7.6, of 7.7 to 7.11.
 _SPEEDS, _COARSE = np.linspace(20.0, 75.0, 221), np.linspace(20.0, 70.0, 81)
@@ -67,7 +63,7 @@ def real_parts(drop: tuple[str, ...] = THESIS) -> Array:
     return np.asarray(np.max(real.reshape(len(_SPEEDS), _MODES, 2), axis=-1))
 
 
-def figure_7_1(axes: Sequence[Axes]) -> Drawn:
+def figure_7_1(axes: Panels) -> Drawn:
     """Draw the largest stress and the real parts of the multipliers over the speed."""
     for drop, style, colour, label in (
         (THESIS, "-", COLOURS[0], "the thesis' form"),
@@ -77,12 +73,9 @@ def figure_7_1(axes: Sequence[Axes]) -> Drawn:
     places = maxima(_SPEEDS, _stress(THESIS))
     # The two modes whose multipliers tell the critical speeds of this range.
     largest, second = real_parts().T[:2]
-    for values, style, colour, name in (
-        (largest, "-", COLOURS[1], "largest"),
-        (second, ".", COLOURS[2], "second"),
-    ):
-        label = f"multipliers of {name} modulus"
-        axes[1].plot(_SPEEDS, values, style, ms=3.5, color=colour, label=label)
+    name = "multipliers of {} modulus"
+    axes[1].plot(_SPEEDS, largest, color=COLOURS[1], label=name.format("largest"))
+    axes[1].plot(_SPEEDS, second, ".", ms=3.5, color=COLOURS[2], label=name.format("second"))
     for ax in axes:
         for place in places:
             ax.axvline(place, color="0.6", lw=0.6, ls=(0, (1, 3)))
@@ -110,7 +103,7 @@ def _meissner(speed: Array, intervals: int) -> Array:
     return discriminant(Meissner.of(levels**2), 0.0, 1.0 / speed**2).value
 
 
-def figure_7_3(axes: Sequence[Axes]) -> Drawn:
+def figure_7_3(axes: Panels) -> Drawn:
     """Draw J_2, J_3, J_4 and the real part of a multiplier over the speed, first mode."""
     ax, fine = axes[0], _meissner(_SPEEDS, 180)
     ax.plot(_SPEEDS, fine, color="0.15", lw=1.2, label="180 intervals")
@@ -123,16 +116,10 @@ def figure_7_3(axes: Sequence[Axes]) -> Drawn:
     for level in (-1.0, 1.0):
         ax.axhline(level, color="0.6", lw=0.6)
     reference, whole = tops(_SPEEDS, fine), _meissner(_SPEEDS, 720)
-    divisions = float(_held().mean[0]) / np.arange(1, 12)
+    places = [tops(_SPEEDS, values) for values in counts.values()]
+    places += [_held().mean[0] / np.arange(1, 12), tops(_SPEEDS, damped)]
     gaps = [float(np.max(np.abs(_meissner(_SPEEDS, count) - whole))) for count in (90, 180)]
-    return Drawn(
-        [
-            *(_apart(reference, tops(_SPEEDS, values)) for values in counts.values()),
-            _apart(reference, divisions),
-            _apart(reference, tops(_SPEEDS, damped)),
-            np.log2(gaps[0] / gaps[1]),
-        ]
-    )
+    return Drawn([*(_apart(reference, some) for some in places), np.log2(gaps[0] / gaps[1])])
 
 
 @lru_cache(maxsize=8)
@@ -145,7 +132,7 @@ def _response(frame: float) -> tuple[Array, Array]:
     return 1e3 * rms(moved(system, "follower", motion.theta, motion.q)), np.max(energy, axis=1)
 
 
-def six_frames(axes: Sequence[Axes], quantity: str) -> Drawn:
+def six_frames(axes: Panels, quantity: str) -> Drawn:
     """Draw a quantity over the speed for six frames (Figs. 7.4 to 7.6).
 
     The rms displacement of the follower's midpoint, the crank's largest stress, or the peak of the
@@ -188,7 +175,7 @@ def _curve(elements: int, ratio: float = 0.02, drop: tuple[str, ...] = THESIS) -
     return np.stack([curve.of(link) for link in LINKS], axis=1)
 
 
-def damping(axes: Sequence[Axes], ratio: float) -> Drawn:
+def damping(axes: Panels, ratio: float) -> Drawn:
     """Draw the largest stress of each link over the speed (Figs. 7.7, 7.10, 7.11)."""
     ax = axes[0]
     for drop, style, lead in ((THESIS, "-", ""), (FULL, ":", "full form, ")):
@@ -206,7 +193,7 @@ def damping(axes: Sequence[Axes], ratio: float) -> Drawn:
     return Drawn([*values, np.max((damped / base)[_WIDE > 20.0])])
 
 
-def figure_7_8(axes: Sequence[Axes]) -> Drawn:
+def figure_7_8(axes: Panels) -> Drawn:
     """Draw the largest stress over the speed for one, two and three elements, and "exact"."""
     ax, counts = axes[0], (1, 2, 3)
     largest = [np.max(_curve(count), axis=1) for count in counts]
@@ -216,10 +203,8 @@ def figure_7_8(axes: Sequence[Axes]) -> Drawn:
     speeds = np.linspace(10.0, 70.0, 121)
     motion = steady_state(hybrid_model(), speeds, rtol=1e-3)
     form = stress_operator(beams(1), motion.theta, 7, method="shape")[0]
-    exact = [
-        1e-6 * np.max(np.abs(form.values(float(speed), q, qd / speed)))
-        for speed, q, qd in zip(speeds, motion.q, motion.qd, strict=True)
-    ]
+    each = zip(speeds.tolist(), motion.q, motion.qd, strict=True)
+    exact = [1e-6 * np.max(np.abs(form.values(speed, q, qd / speed))) for speed, q, qd in each]
     ax.semilogy(speeds, exact, "--", color="0.2", label='"exact"')
     second, third = (nearest(maxima(_WIDE, values), 23.5) for values in largest[1:])
     means = [float(natural_frequencies(beams(count), 0.0, 1).mean[0]) for count in counts]
@@ -235,15 +220,15 @@ def bending_at_midpoint(
 
     The motion is that of another system where one is given, the stress by the first one's shapes.
     """
-    motion = steady_state(system if moving is None else moving, 30.0, rtol=1e-5)
+    motion = steady_state(moving or system, 30.0, rtol=1e-5)
     forces = recover(system, motion, stations={"follower": [0.5]}, method="shape")
-    beams_of = structure_of(system).beams
-    (section,) = (beam.section for beam in beams_of if beam.name == "follower")
+    bars = required_structure(system).beams
+    (section,) = (bar.section for bar in bars if bar.name == "follower")
     factor = 0.5 * (section.thickness or np.nan) / section.second_moment
     return forces.theta, np.asarray(factor * forces.of("follower", "moment")[:, 0])
 
 
-def figure_7_9(axes: Sequence[Axes]) -> Drawn:
+def figure_7_9(axes: Panels) -> Drawn:
     """Draw the stress at the follower's midpoint over the cycle at 30 rad/s, four models."""
     ax = axes[0]
     models = {
@@ -262,7 +247,7 @@ def figure_7_9(axes: Sequence[Axes]) -> Drawn:
     return Drawn([two, one / two, peaks[1] / peaks[0], peaks[2] / peaks[1]])
 
 
-def figure_7_13(axes: Sequence[Axes]) -> Drawn:
+def figure_7_13(axes: Panels) -> Drawn:
     """Draw the stress at the follower's midpoint over the cycle, six frames."""
     ax, pulses = axes[0], []
     for frame in FRAMES:

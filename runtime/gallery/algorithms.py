@@ -15,6 +15,7 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.linalg import expm
 
 from ..core.families import Array, LinearPeriodic
 from ..core.trigonometric import differentiated, even_angles
@@ -203,8 +204,6 @@ def modal_motion(system: LinearPeriodic, speed: float, intervals: int, modes: in
 
 def _oscillator_steps(squares: Array, drag: Array, push: Array, step: float) -> Array:
     """Return the exact steps of ``x'' + drag x' + square x = push`` on (x, x', 1)."""
-    from scipy.linalg import expm
-
     generator = np.zeros((*squares.shape, 3, 3))
     generator[..., 0, 1] = step
     generator[..., 1, 0], generator[..., 1, 1] = -step * squares, -step * drag

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+    import matplotlib.axes
 
 Array = NDArray[np.float64]
+Axes: TypeAlias = "matplotlib.axes.Axes"
+# The panels of a figure, in the order of rows and columns.
+Panels: TypeAlias = "Sequence[matplotlib.axes.Axes]"
 
 CRANK_ANGLE = r"crank angle $\theta_2$ [deg]"
 # Blue, orange, green, purple, grey, brown: distinct in print and by the colour-blind.
@@ -38,7 +41,7 @@ SETTINGS: dict[str, Any] = {
 
 
 def finish(
-    axes: Sequence[Axes],
+    axes: Panels,
     columns: int,
     common: Mapping[str, Any],
     panels: Sequence[Mapping[str, Any]],
@@ -47,7 +50,7 @@ def finish(
     """Give each panel its settings, and all of them one legend below with so many columns.
 
     Labels that the panels share stand at the outer edges: below the last row, left of the first
-    column.
+    column.  The legend has each label once; it is none where ``legend`` is 0 or nothing is named.
     """
     for place, ax in enumerate(axes):
         look = dict(common)
@@ -56,8 +59,13 @@ def finish(
         if place % columns and "ylabel" in look:
             look["ylabel"] = ""
         dress(ax, {**look, **(panels[place] if panels else {})})
-    if legend:
-        legend_below(axes, legend)
+    named: dict[str, Any] = {}
+    for ax in axes:
+        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
+            named.setdefault(label, handle)
+    if legend and named:
+        below: dict[str, Any] = {"loc": "outside lower center", "ncols": min(legend, len(named))}
+        axes[0].figure.legend(named.values(), named.keys(), **below)
 
 
 def dress(ax: Axes, settings: Mapping[str, Any]) -> None:
@@ -81,18 +89,6 @@ def dress(ax: Axes, settings: Mapping[str, Any]) -> None:
     if not rest.pop("grid", True):
         ax.grid(visible=False)
     ax.set(**rest)
-
-
-def legend_below(axes: Sequence[Axes], columns: int) -> None:
-    """Put one legend for all the axes under them, each label once; none where there is no label."""
-    named: dict[str, Any] = {}
-    for ax in axes:
-        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
-            named.setdefault(label, handle)
-    if named:
-        axes[0].figure.legend(
-            named.values(), named.keys(), loc="outside lower center", ncols=min(columns, len(named))
-        )
 
 
 def outline(lower: Array, upper: Array, height: Array) -> tuple[Array, Array]:

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from math import nan
 from textwrap import fill
-from typing import TYPE_CHECKING, Any, Literal, SupportsFloat
+from typing import Any, Literal, SupportsFloat
 
 from ..core.results import Check, Result
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from .drawing import Axes, Panels
 
 Relation = Literal["=", "<", ">"]
 Kind = Literal["printed", "words", "check"]
@@ -103,20 +101,7 @@ class Quoted:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the row as plain numbers and texts."""
-        return {
-            "number": self.number,
-            "where": self.where,
-            "kind": self.kind,
-            "relation": self.relation,
-            "expected": float(self.expected),
-            "computed": float(self.computed),
-            "deviation": float(self.deviation),
-            "tolerance": float(self.tolerance),
-            "meaning": self.meaning,
-            "unit": self.unit,
-            "agrees": self.agrees,
-            "differs": self.differs,
-        }
+        return {**asdict(self), "deviation": float(self.deviation), "agrees": self.agrees}
 
 
 def counts(rows: Sequence[Quoted]) -> list[str]:
@@ -152,39 +137,33 @@ class Table:
     header: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
 
+    @classmethod
+    def of(
+        cls,
+        title: str,
+        columns: Mapping[str, str],
+        rows: Iterable[Sequence[Any]],
+        words: Mapping[str, object],
+    ) -> Table:
+        """Return the table of a record: its cells as texts, words in the braces of its headings.
+
+        From the heading of each column to the format of its numbers, empty for texts and counts.
+        """
+        title, *header = (text.format_map(words) for text in (title, *columns))
+        texts = tuple(
+            tuple(
+                f"{float(cell):{form}}" if form and not isinstance(cell, str) else str(cell)
+                for cell, form in zip(row, columns.values(), strict=True)
+            )
+            for row in rows
+        )
+        return cls(title, tuple(header), texts)
+
     def markdown(self) -> list[str]:
         """Return the lines of the table under its title; an empty cell shows a dash."""
         head = [f"## {self.title}", "", "| " + " | ".join(self.header) + " |"]
         head.append("|" + " --- |" * len(self.header))
         return head + ["| " + " | ".join(cell or "–" for cell in row) + " |" for row in self.rows]
-
-
-@dataclass(frozen=True)
-class Columns:
-    """What a record says of a table.
-
-    Attributes
-    ----------
-    title : str
-        One line.
-    columns : mapping
-        From the heading of each column to the format of its numbers; empty for texts and counts.
-    """
-
-    title: str
-    columns: Mapping[str, str]
-
-    def filled(self, rows: Iterable[Sequence[Any]], words: Mapping[str, object]) -> Table:
-        """Return the table with its cells as texts, and words in the braces of title and header."""
-        title, *header = (text.format_map(words) for text in (self.title, *self.columns))
-        texts = tuple(
-            tuple(
-                f"{float(cell):{form}}" if form and not isinstance(cell, str) else str(cell)
-                for cell, form in zip(row, self.columns.values(), strict=True)
-            )
-            for row in rows
-        )
-        return Table(title, tuple(header), texts)
 
 
 @dataclass(frozen=True)
@@ -204,34 +183,6 @@ class Drawn:
     values: Sequence[SupportsFloat] = ()
     words: Mapping[str, object] = field(default_factory=dict)
     tables: Sequence[Iterable[Sequence[Any]]] = ()
-
-
-@dataclass(frozen=True)
-class Page:
-    """A document of ours that a figure's notes and tables make up.
-
-    Attributes
-    ----------
-    file : str
-        Its name.
-    intro : str
-        What stands before them, in Markdown.
-    first : int
-        Which note is the first in it.
-    """
-
-    file: str
-    intro: str
-    first: int = 0
-
-    def text(self, notes: Sequence[str], tables: Sequence[Table]) -> str:
-        """Return the whole document."""
-        lines = [self.intro]
-        for note in notes[self.first :]:
-            lines += [fill(note, 110), ""]
-        for table in tables:
-            lines += [*table.markdown(), ""]
-        return "\n".join(lines)
 
 
 @dataclass(frozen=True)
@@ -265,16 +216,17 @@ class FigureEntry:
         Numbers of the text that the figure bears on, not computed yet.
     notes : tuple of str
         What the document leaves open and what was chosen for it.
-    tables : tuple of Columns
-        Tables of numbers behind the picture.
-    page : Page or None
-        The document of ours that it writes.
+    tables : sequence of mapping
+        Tables of numbers behind the picture: ``title`` and ``columns``, see :meth:`Table.of`.
+    page : mapping
+        The document of ours that notes and tables make up, if any: its ``file``, the ``intro`` in
+        Markdown that stands before them, and which note is the ``first`` in it.
     """
 
     document: str
     label: str
     title: str
-    draw: Callable[[Sequence[Axes]], Drawn | None]
+    draw: Callable[[Panels], Drawn | None]
     panels: tuple[int, int] = (1, 1)
     size: tuple[float, float] = (7.2, 4.6)
     projection: str | None = None
@@ -283,8 +235,8 @@ class FigureEntry:
     legend: int = 4
     quoted: tuple[Quoted, ...] = ()
     notes: tuple[str, ...] = ()
-    tables: tuple[Columns, ...] = ()
-    page: Page | None = None
+    tables: Sequence[Mapping[str, Any]] = ()
+    page: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def stem(self) -> str:
@@ -296,7 +248,7 @@ class FigureEntry:
             parts.append((plain[:digits].zfill(2) if digits else "") + plain[digits:])
         return "_".join([self.document, *parts])
 
-    def show(self, axes: Sequence[Axes]) -> Shown:
+    def show(self, axes: Panels) -> Shown:
         """Draw the figure and put the computed values beside the quoted ones."""
         drawn = self.draw(axes) or Drawn()
         words = drawn.words
@@ -306,11 +258,10 @@ class FigureEntry:
         )
         notes = tuple(note.format_map(words) if words else note for note in self.notes)
         tables = tuple(
-            one.filled(cells, words) for one, cells in zip(self.tables, drawn.tables, strict=True)
+            Table.of(**one, rows=cells, words=words)
+            for one, cells in zip(self.tables, drawn.tables, strict=True)
         )
-        page = self.page
-        files = ((page.file, page.text(notes, tables)),) if page else ()
-        return Shown(self, rows, notes, tables, files)
+        return Shown(self, rows, notes, tables)
 
 
 @dataclass(frozen=True)
@@ -327,15 +278,25 @@ class Shown:
         As in the record, with the computed words in place.
     tables : tuple of Table
         Numbers behind the picture.
-    files : tuple of (str, str)
-        Further files to write beside the picture: name and text.
     """
 
     entry: FigureEntry
     quoted: tuple[Quoted, ...] = ()
     notes: tuple[str, ...] = ()
     tables: tuple[Table, ...] = ()
-    files: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def files(self) -> dict[str, str]:
+        """Texts to write beside the picture, by the names of their files."""
+        page = self.entry.page
+        if not page:
+            return {}
+        lines = [page["intro"]]
+        for note in self.notes[page["first"] :]:
+            lines += [fill(note, 110), ""]
+        for table in self.tables:
+            lines += [*table.markdown(), ""]
+        return {page["file"]: "\n".join(lines)}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,22 +3,21 @@
 A record holds the figure's label and title, the function that draws it (``draw``, a module and a
 name in it, with ``arguments`` after the axes), its panels and size, and what is compared, the
 expected value under the name of its kind; ``common`` holds what these share.  A record of a
-``kind`` takes what it does not say from the file's table ``kind``; a note ``@name`` stands in its
-table ``notes``; ``page`` is a document that notes and tables make up.
+``kind`` takes what it does not say from the file's table ``kind``, whose quoted numbers follow its
+own; a note ``@name`` stands in its table ``notes``; ``page`` is a document that notes and tables
+make up.
 """
 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cache
 from importlib import import_module, resources
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from .records import KINDS, Columns, Drawn, FigureEntry, Page, Quoted
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from .drawing import Panels
+from .records import KINDS, Drawn, FigureEntry, Quoted
 
 NAMES = ("smith", "aannaque", "beale")
 
@@ -46,13 +45,14 @@ def _read(document: str) -> tuple[FigureEntry, ...]:
 
 
 def _merged(kind: Mapping[str, Any], record: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a record with what its kind adds; tables in both are joined."""
+    """Return a record with what its kind adds; tables in both are joined, and quoted numbers."""
     tables = {
         name: {**kind[name], **record[name]}
         for name in kind.keys() & record.keys()
         if isinstance(kind[name], dict)
     }
-    return {**kind, **record, **tables}
+    quoted = [*record.get("quoted", ()), *kind.get("quoted", ())]
+    return {**kind, **record, **tables, "quoted": quoted}
 
 
 def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> FigureEntry:
@@ -60,7 +60,7 @@ def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> F
     common = record.pop("common", {})
     place, arguments = record.pop("draw"), record.pop("arguments", ())
 
-    def draw(axes: Sequence[Axes]) -> Drawn | None:
+    def draw(axes: Panels) -> Drawn | None:
         # The module that draws is loaded only now.
         module, _, name = place.partition(".")
         drawn: Drawn | None = getattr(import_module(f".{module}", __package__), name)(
@@ -68,9 +68,6 @@ def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> F
         )
         return drawn
 
-    if "page" in record:
-        record["page"] = Page(**record["page"])
-    record["tables"] = tuple(Columns(**table) for table in record.get("tables", ()))
     for name in {"panels", "size"} & record.keys():
         record[name] = tuple(record[name])
     return FigureEntry(

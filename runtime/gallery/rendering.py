@@ -1,13 +1,18 @@
-"""Redraw the figures of the documents and check the numbers that they quote."""
+"""Redraw the figures of the documents and check the numbers that they quote.
+
+The page is one HTML file, its pictures beside it, written together.
+"""
 
 from __future__ import annotations
 
 import io
 import os
+import tempfile
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack, suppress
+from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,10 +20,23 @@ from ..core.errors import LinearRangeWarning, bad
 from ..core.progress import bar
 from ..core.results import Check
 from . import registry
-from .records import FigureEntry, Gallery, Shown
+from .records import KINDS, FigureEntry, Gallery, Quoted, Shown, Table, counts
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+_CSS = """
+body { font: 15px/1.5 Georgia, serif; color: #222; max-width: 62rem; margin: 2rem auto;
+  padding: 0 1rem; }
+h1, h2, h3, th, .note { font-family: Helvetica, Arial, sans-serif; }
+h1 { font-size: 1.6rem; } h2 { font-size: 1.15rem; margin-top: 3rem; }
+h3 { font-size: 1rem; }
+img { max-width: 100%; height: auto; display: block; }
+table { border-collapse: collapse; font-size: 0.85rem; margin: 0.8rem 0; }
+th, td { border-bottom: 1px solid #ddd; padding: 0.25rem 0.6rem; text-align: left;
+  vertical-align: top; }
+td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+.agrees { color: #2c6b37; } .known { color: #a3480f; }
+.differs { color: #b00020; font-weight: bold; }
+.note { font-size: 0.85rem; color: #444; }
+""".strip()
 
 
 def figures(document: str | None = None, figure: str | None = None) -> tuple[FigureEntry, ...]:
@@ -98,13 +116,13 @@ def reproduce(
             shown.append(item)
             if picture is not None:
                 files[f"{entry.stem}.png"] = picture
-                files |= {name: text.encode() for name, text in item.files}
+                files |= {name: text.encode() for name, text in item.files.items()}
             if tick is not None:
                 tick(done)
     if out is not None:
-        from .page import page, write_together
-
-        files = {"index.html": page(_title(chosen), shown).encode(), **files}
+        names = ", ".join(sorted({entry.document.capitalize() for entry in chosen}))
+        title = f"Figures of {names}, redrawn and checked"
+        files = {"index.html": page(title, shown).encode(), **files}
         write_together(Path(out), files)
     return _gallery(shown, "" if out is None else str(out), tuple(files))
 
@@ -127,13 +145,11 @@ def render(entry: FigureEntry, *, picture: bool = True) -> tuple[Shown, bytes | 
         axes = list(np.ravel(canvas.subplots(*entry.panels, squeeze=False, subplot_kw=options)))
         shown = entry.show(axes)
         finish(axes, entry.panels[1], entry.axes, entry.panel, entry.legend)
-        return shown, _png(canvas) if picture else None
-
-
-def _png(canvas: Figure) -> bytes:
-    buffer = io.BytesIO()
-    canvas.savefig(buffer, format="png", dpi=150, metadata={"Software": None})
-    return buffer.getvalue()
+        if not picture:
+            return shown, None
+        buffer = io.BytesIO()
+        canvas.savefig(buffer, format="png", dpi=150, metadata={"Software": None})
+        return shown, buffer.getvalue()
 
 
 def _gallery(shown: Sequence[Shown], folder: str, files: tuple[str, ...]) -> Gallery:
@@ -156,11 +172,6 @@ def _gallery(shown: Sequence[Shown], folder: str, files: tuple[str, ...]) -> Gal
     )
 
 
-def _title(chosen: Sequence[FigureEntry]) -> str:
-    names = sorted({entry.document.capitalize() for entry in chosen})
-    return f"Figures of {', '.join(names)}, redrawn and checked"
-
-
 def _plain(label: str) -> str:
     return "".join(c for c in label.lower() if c.isalnum() or c in "_.")
 
@@ -178,3 +189,125 @@ def _spanned(label: str) -> tuple[str, ...]:
     letter, _, low = first.partition(".")
     high = last.rpartition(".")[2]
     return (letter.lower(), *(f"{letter.lower()}.{k}" for k in range(int(low), int(high) + 1)))
+
+
+def page(title: str, shown: Sequence[Shown]) -> str:
+    """Return the whole page under a heading, figures in order."""
+    rows = [row for item in shown for row in item.quoted]
+    parts = [
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
+        f"<title>{escape(title)}</title>\n<style>\n{_CSS}\n</style>\n</head>\n<body>",
+        f"<h1>{escape(title)}</h1>",
+        f"<p>{len(shown)} figures redrawn, and what is computed held against:</p>\n<ul>",
+        *(f"<li>{escape(line)}</li>" for line in counts(rows)),
+        "</ul>",
+        _summary(shown),
+        *(_figure(item) for item in shown),
+        "</body>\n</html>\n",
+    ]
+    return "\n".join(parts)
+
+
+def _summary(shown: Sequence[Shown]) -> str:
+    rows = []
+    for item in shown:
+        numbers = [sum(row.kind == kind for row in item.quoted) for kind in KINDS]
+        numbers.append(sum(row.agrees for row in item.quoted))
+        link = f'<a href="#{item.entry.stem}">{escape(item.entry.label)}</a>'
+        rows.append(
+            f"<td>{link}</td><td>{escape(item.entry.title)}</td>"
+            + "".join(f'<td class="number">{number}</td>' for number in numbers)
+        )
+    return _html(("figure", "title", "printed", "in words", "tables", "agree"), rows)
+
+
+def _figure(item: Shown) -> str:
+    entry = item.entry
+    heading = f"{entry.document.capitalize()}, {entry.label}: {entry.title}"
+    lines = [
+        f'<h2 id="{entry.stem}">{escape(heading)}</h2>',
+        f'<p><img src="{entry.stem}.png" alt="{escape(entry.title, quote=True)}"></p>',
+    ]
+    lines += [f'<p class="note">{escape(note)}</p>' for note in item.notes]
+    for kind, (what, name) in KINDS.items():
+        rows = [row for row in item.quoted if row.kind == kind]
+        if rows:
+            lines += [f"<h3>{what.capitalize()}</h3>", _quoted(rows, name)]
+    lines += [_table(table) for table in item.tables]
+    return "\n".join(lines)
+
+
+def _quoted(rows: Sequence[Quoted], name: str) -> str:
+    lines = []
+    for row in rows:
+        sign = "" if row.relation == "=" else f"{escape(row.relation)} "
+        unit = f" {escape(row.unit)}" if row.unit else ""
+        kind = "agrees" if row.agrees else "known" if row.differs else "differs"
+        remark = f": {escape(row.differs)}" if row.differs else ""
+        lines.append(
+            f"<td>{escape(row.number)}</td><td>{escape(row.where)}</td>"
+            f'<td class="number">{sign}{row.expected:.4g}{unit}</td>'
+            f'<td class="number">{row.computed:.4g}{unit}</td>'
+            f'<td class="number">{row.deviation:+.2g}{unit}</td>'
+            f"<td>{row.tolerance:.2g}{unit} ({escape(row.meaning)})</td>"
+            f'<td class="{kind}">{row.verdict}{remark}</td>'
+        )
+    header = ("what", "section", name, "computed", "deviation", "tolerance", "verdict")
+    return _html(header, lines)
+
+
+def _table(table: Table) -> str:
+    rows = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in table.rows]
+    return f"<h3>{escape(table.title)}</h3>\n{_html(table.header, rows)}"
+
+
+def _html(header: Sequence[str], rows: Sequence[str]) -> str:
+    """Return a table under its headings, the cells of each row in their marks."""
+    lines = ["".join(f"<th>{escape(name)}</th>" for name in header), *rows]
+    return "\n".join(["<table>", *(f"<tr>{line}</tr>" for line in lines), "</table>"])
+
+
+def write_together(folder: Path, contents: Mapping[str, bytes]) -> None:
+    """Write files into a folder; on an error or an interrupt it is left as it was.
+
+    The files are written beside the folder's own first, then moved.  Other files in the folder
+    stay.  A folder that cannot be made or written is refused.
+    """
+    missing = [path for path in (folder, *folder.parents) if not path.exists()]
+    with ExitStack() as whole:
+        whole.callback(_remove, missing)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            staging = tempfile.TemporaryDirectory(prefix=".gallery.", dir=folder)
+        except OSError as refusal:
+            reason = refusal.strerror or "an error"
+            expected = "a folder that can be written"
+            raise bad(str(folder), reason, expected, "choose another") from refusal
+        with staging as place, ExitStack() as undo:
+            new, old = Path(place, "new"), Path(place, "old")
+            new.mkdir()
+            old.mkdir()
+            for name, content in contents.items():
+                (new / name).write_bytes(content)
+            for name in contents:
+                undo.callback(_restore, folder / name, new / name, old / name)
+                if (folder / name).exists():
+                    (folder / name).replace(old / name)
+                (new / name).replace(folder / name)
+            undo.pop_all()
+        whole.pop_all()
+
+
+def _restore(target: Path, new: Path, old: Path) -> None:
+    """Take back the move of a new file to its place, however far it came."""
+    if old.exists():
+        old.replace(target)
+    elif not new.exists():
+        target.unlink()
+
+
+def _remove(folders: list[Path]) -> None:
+    """Remove those of the folders, the innermost first, that are there and empty."""
+    for folder in folders:
+        with suppress(OSError):
+            folder.rmdir()

@@ -5,16 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..rigid import Machine, RigidForces, rigid_forces
-from .drawing import COLOURS, Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from .drawing import COLOURS, Array, Axes
 
 INK, GROUND = "#2b2b2b", "0.45"
 LINK_COLOURS = {"crank": "#c8641e", "coupler": "#1f5a8c", "follower": "#3a7d44"}
@@ -28,10 +25,11 @@ def canvas(ax: Axes) -> Axes:
     return ax
 
 
-def bar(ax: Axes, start: ArrayLike, end: ArrayLike, colour: str = INK, **style: Any) -> None:
-    """Draw a link as a rounded bar between two places."""
+def bar(ax: Axes, start: ArrayLike, end: ArrayLike, link: str, **style: Any) -> None:
+    """Draw a link as a rounded bar between two places, in its colour."""
     (x, u), (y, v) = np.transpose([start, end])
-    ax.plot([x, u], [y, v], color=colour, solid_capstyle="round", **{"lw": 3.2, **style})
+    look = {"color": LINK_COLOURS[link], "solid_capstyle": "round", "lw": 3.2, "zorder": 3}
+    ax.plot([x, u], [y, v], **{**look, **style})
 
 
 def pin(ax: Axes, *places: ArrayLike, size: float = 5.5) -> None:
@@ -53,22 +51,23 @@ def pivot(ax: Axes, place: ArrayLike, unit: float) -> None:
     pin(ax, place)
 
 
+def grounds(ax: Axes, a: ArrayLike, d: ArrayLike, unit: float, letters: str = "AD") -> None:
+    """Draw the fixed pivots of a linkage with their letters outside, the first at the left."""
+    for place, letter, side in zip((a, d), letters, (-16.0, 16.0), strict=True):
+        pivot(ax, place, unit)
+        write(ax, place, letter, (side, 3.0), style="italic")
+
+
 def four_bar(ax: Axes, joints: Mapping[str, ArrayLike], unit: float, letters: str = "ABCD") -> None:
     """Draw a four-bar linkage by its joints, with letters at A, B, C and D."""
     a, b, c, d = (np.asarray(joints[name], dtype=float) for name in "ABCD")
     for link, start, end in (("crank", a, b), ("coupler", b, c), ("follower", d, c)):
-        bar(ax, start, end, LINK_COLOURS[link], zorder=3)
-    pivot(ax, a, unit)
-    pivot(ax, d, unit)
+        bar(ax, start, end, link)
+    grounds(ax, a, d, unit, letters[0] + letters[3])
     pin(ax, b, c)
-    middle = (a + b + c + d) / 4.0
-    for name, letter in zip("ABCD", letters, strict=True):
-        place = np.asarray(joints[name], dtype=float)
-        away = place - middle
-        shift = 13.0 * away / (np.hypot(*away) or 1.0)
-        if name in "AD":
-            shift = np.array([-13.0 if place[0] < middle[0] else 13.0, 2.0])
-        write(ax, place, letter, shift, style="italic")
+    for place, letter in ((b, letters[1]), (c, letters[2])):
+        away = place - (a + b + c + d) / 4.0
+        write(ax, place, letter, 13.0 * away / (np.hypot(*away) or 1.0), style="italic")
 
 
 def _pair(place: ArrayLike) -> tuple[float, float]:
@@ -98,20 +97,7 @@ def arrow(
     """Draw a vector to the scale of the axes; its name beyond the head, some points to its left."""
     start, way = np.asarray(tail, dtype=float), np.asarray(vector, dtype=float)
     head = start + way
-    ax.annotate(
-        "",
-        _pair(head),
-        xytext=_pair(start),
-        arrowprops={
-            "arrowstyle": "-|>,head_length=0.45,head_width=0.2",
-            "color": colour,
-            "lw": 1.6,
-            "shrinkA": 0.0,
-            "shrinkB": 0.0,
-            "mutation_scale": 14,
-        },
-        zorder=7,
-    )
+    _head(ax, start, head, colour, ",head_length=0.45,head_width=0.2", lw=1.6, mutation_scale=14)
     # Annotations do not widen the limits of the axes.
     ax.update_datalim([start, head])
     ax.autoscale_view()
@@ -119,6 +105,13 @@ def arrow(
         along = way / (np.hypot(*way) or 1.0)
         left = np.array([-along[1], along[0]])
         write(ax, head, text, 11.0 * along + side * left, color=colour)
+
+
+def _head(
+    ax: Axes, start: ArrayLike, tip: ArrayLike, colour: str, size: str = "", **style: Any
+) -> None:
+    look = {"arrowstyle": f"-|>{size}", "color": colour, "shrinkA": 0.0, "shrinkB": 0.0, **style}
+    ax.annotate("", _pair(tip), xytext=_pair(start), arrowprops=look, zorder=7)
 
 
 def arc(
@@ -152,8 +145,7 @@ def turning_arrow(
     tip, start = (
         (x + radius * np.cos(angle), y + radius * np.sin(angle)) for angle in (last, before)
     )
-    style = {"arrowstyle": "-|>", "color": colour, "shrinkA": 0.0, "shrinkB": 0.0}
-    ax.annotate("", tip, xytext=start, arrowprops=style, zorder=7)
+    _head(ax, start, tip, colour)
     write(ax, (x + radius, y), text, (4.0, 0.0), color=colour, ha="left")
 
 
@@ -229,31 +221,30 @@ def draw_body(
     places = [place + np.asarray(shift) for place in body.places]
     first, second, centre = places
     length = float(np.hypot(*(second - first)))
-    bar(ax, first, second, LINK_COLOURS[body.link], lw=4.5, zorder=3, alpha=0.85)
+    bar(ax, first, second, body.link, lw=4.5, alpha=0.85)
     pin(ax, first, second)
     ax.plot(*centre, "o", color="0.15", ms=4.0, zorder=6)
     normal = np.array([first[1] - second[1], second[0] - first[0]]) / length
     # The centre's letter goes to one side of the link, the inertia force's name to its own side.
     aside = normal if normal @ body.forces[2] > 0 else -normal
-    for place, letter in zip(places, letters, strict=True):
-        shift = -12.0 * (aside if letter == "G" else normal)
-        if "torque" in names and place is first:
-            # In the gap of the arrow that stands for the torque.
-            shift = np.array([-13.0, 5.0])
-        write(ax, place, letter, shift, style="italic")
-    colours = (PIN_COLOUR, PIN_COLOUR, INERTIA_COLOUR)
-    for place, letter, force, colour in zip(places, letters, body.forces, colours, strict=True):
-        name = names.get(letter, "")
-        arrow(ax, place, scale * force, colour, "" if letter == "G" else name)
-        if letter == "G" and name:
+    for place, letter, force in zip(places, letters, body.forces, strict=True):
+        name, head = names.get(letter, ""), place + scale * force
+        if letter == "G":
+            write(ax, place, letter, -12.0 * aside, style="italic")
+            arrow(ax, place, scale * force, INERTIA_COLOUR)
             side = "left" if aside[0] > 0 else "right"
-            write(ax, place + scale * force, name, 8.0 * aside, color=colour, ha=side)
-    if "torque" in names:
-        value = float(body.torque)
-        turning_arrow(ax, first, 0.19 * length, value, names["torque"], COUPLE_COLOUR)
-    if "couple" in names:
-        value = float(body.inertia_couple)
-        turning_arrow(ax, centre, 0.13 * length, value, names["couple"], COUPLE_COLOUR)
+            write(ax, head, name, 8.0 * aside, color=INERTIA_COLOUR, ha=side)
+            continue
+        # In the gap of the arrow that stands for the torque.
+        gap = np.array([-13.0, 5.0]) if "torque" in names and place is first else -12.0 * normal
+        write(ax, place, letter, gap, style="italic")
+        arrow(ax, place, scale * force, PIN_COLOUR, name)
+    for name, place, share, value in (
+        ("torque", first, 0.19, body.torque),
+        ("couple", centre, 0.13, body.inertia_couple),
+    ):
+        if name in names:
+            turning_arrow(ax, place, share * length, float(value), names[name], COUPLE_COLOUR)
 
 
 def scale_bar(ax: Axes, corner: ArrayLike, scale: float, force: float) -> None:

@@ -6,22 +6,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from ..core.families import LinearPeriodic
+from ..core.periodic_function import PeriodicFunction
 from ..hill import critical_damping, perturbation_boundaries
 from ..hill.bloch import effective_operator
-from ..periodic import floquet_multipliers
+from ..periodic import FloquetMultipliers, floquet_multipliers
 from ..stability import stability_edges
-from .drawing import COLOURS, Array, panel_title
+from .drawing import COLOURS, Array, Panels, panel_title
 from .records import Drawn
 from .registry import contents
 from .smith_linkages import LBF_IN_S2, RIG, RPM, OfRig, region_name
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True)
@@ -47,6 +45,22 @@ class Estimate(OfRig):
         """Return the critical damping at the two inertias."""
         low, high = (critical(self, i, equation, order) for i in (self.stable, self.unstable))
         return low, high
+
+    @property
+    def at_rest(self) -> tuple[float, float]:
+        """K from the logarithmic decrements measured at rest, at the speed of the region.
+
+        A decrement d is a rate ``d Omega / 2 pi`` in time: ``K = d Omega / (2 pi omega_2)``.
+        """
+        place = critical_damping(self.at_stable, 1.0, (self.region,)).lam2[0]
+        least, _, most = self.rig.decrements
+        factor = float(np.sqrt(place)) / (2.0 * pi)
+        return least * factor, most * factor
+
+    @property
+    def at_stable(self) -> PeriodicFunction:
+        """The coefficient of (6.18) at the stable inertia."""
+        return self.rig.function("reduced", self.stable * LBF_IN_S2)
 
 
 ESTIMATES = tuple(Estimate(**row) for row in contents("smith")["estimate"])
@@ -77,19 +91,7 @@ def critical(estimate: Estimate, inertia: float, equation: str, order: int | Non
     return float(scan[k] + share * (scan[k + 1] - scan[k]))
 
 
-def at_rest(estimate: Estimate) -> tuple[float, float]:
-    """Return K from the logarithmic decrements measured at rest, at the speed of the region.
-
-    A decrement d is a rate ``d Omega / 2 pi`` in time: ``K = d Omega / (2 pi omega_2)``.
-    """
-    f = estimate.rig.function("reduced", estimate.stable * LBF_IN_S2)
-    place = float(critical_damping(f, 1.0, (estimate.region,)).lam2[0])
-    least, _, most = estimate.rig.decrements
-    factor = float(np.sqrt(place)) / (2.0 * pi)
-    return least * factor, most * factor
-
-
-def estimates_table(axes: Sequence[Axes]) -> Drawn:
+def estimates_table(axes: Panels) -> Drawn:
     """Draw the damping that closes each region over the follower's inertia."""
     values = []
     for ax, one in zip(axes, ESTIMATES, strict=True):
@@ -103,7 +105,7 @@ def estimates_table(axes: Sequence[Axes]) -> Drawn:
         ):
             closing = [critical(one, float(value), equation, order) for value in inertia]
             ax.plot(inertia, closing, style, color=colour, label=label)
-        ax.fill_between(inertia, *at_rest(one), color="0.92", lw=0, label="decrements at rest")
+        ax.fill_between(inertia, *one.at_rest, color="0.92", lw=0, label="decrements at rest")
         ax.hlines(one.quoted, one.stable, one.unstable, color="black", lw=3.0, label="quoted")
         panel_title(ax, f"{one.name}, {one.rig.name}")
         values.append(0.5 * sum(one.both("reduced", 1)))
@@ -119,7 +121,7 @@ def _estimates() -> list[list[str]]:
 
     def by_order(one: Estimate, order: int) -> str:
         """Return the span, starred where the order does not converge at the stable inertia."""
-        f, numbers = one.rig.function("reduced", one.stable * LBF_IN_S2), (one.region,)
+        f, numbers = one.at_stable, (one.region,)
         closing = critical_damping(f, 1.0, numbers).damping[0]
         outside = perturbation_boundaries(f, 1.0, numbers, order, closing).outside[0]
         return span(one, "reduced", order) + ("*" if outside else "")
@@ -129,7 +131,7 @@ def _estimates() -> list[list[str]]:
         cells = [one.name, f"{one.stable:g}-{one.unstable:g}", f"{one.quoted:g}"]
         cells += [by_order(one, order) for order in (1, 2, 3, 4, 6)]
         cells += [span(one, name, None) for name in ("reduced", "complete")]
-        rows.append([*cells, "-".join(f"{end:.2f}" for end in at_rest(one))])
+        rows.append([*cells, "-".join(f"{end:.2f}" for end in one.at_rest)])
     return rows
 
 
@@ -148,7 +150,7 @@ def _estimate_words() -> dict[str, object]:
         for name, order in (("reduced", 1), ("reduced", None), ("complete", None))
     )
     spans = [end for one in ESTIMATES for end in one.both("reduced", None)]
-    middles = [0.5 * sum(at_rest(one)) for one in ESTIMATES]
+    middles = [0.5 * sum(one.at_rest) for one in ESTIMATES]
     return {
         "exact": texts(exact),
         "first": texts(first),
@@ -174,19 +176,18 @@ _KINDS = {
 }
 
 
-@dataclass(frozen=True)
-class _Region:
-    """One unstable region in rpm: kind, label, ends without damping, about what damping leaves."""
+class _Region(NamedTuple):
+    """One unstable region in rpm: kind, label, ends and width without damping, what damping leaves.
+
+    The last is about the width that the lowest decrement measured at rest leaves.
+    """
 
     kind: str
     label: str
     lower: float
     upper: float
+    width: float
     damped: float
-
-    @property
-    def width(self) -> float:
-        return self.upper - self.lower
 
     @property
     def middle(self) -> float:
@@ -211,7 +212,7 @@ def regions(chart: str, inertia: float) -> tuple[list[_Region], int]:
         kind = bare.kind[i]
         if kind == "principal":
             kind = f"principal {bare.modes[i, 0]}"
-        opened.append(_Region(kind, bare.labels[i], low, high, share * (high - low)))
+        opened.append(_Region(kind, bare.labels[i], low, high, high - low, share * (high - low)))
     opened.sort(key=lambda one: -one.width)
     return opened, int(np.count_nonzero(width <= 2.0 * bare.error))
 
@@ -224,21 +225,20 @@ def _left_by_damping(chart: str, inertia: float, lower: Array, width: Array) -> 
     """
     places = np.concatenate([[-0.03, 1.03], np.linspace(0.0, 1.0, 27)[1:-1]])
     speeds = lower[:, None] + width[:, None] * places
-    motion = floquet_multipliers(
-        _damped(chart, 2), speeds.ravel(), follower_inertia=inertia * LBF_IN_S2
-    )
+    motion = _damped(chart, inertia, 2, speeds.ravel())
     outside = np.abs(motion.multipliers) > 1.0 + motion.error
     growing = np.sum(outside, axis=-1).reshape(speeds.shape)
     beside = np.min(growing[:, :2], axis=1)
     return np.asarray(np.mean(growing[:, 2:] > beside[:, None], axis=1))
 
 
-def _damped(chart: str, modes: int) -> LinearPeriodic:
-    """Return a rig with the lowest logarithmic decrement that was measured at rest."""
-    return RIG[chart].system(modes=modes, decrement=RIG[chart].decrements[0])
+def _damped(chart: str, inertia: float, modes: int, speeds: ArrayLike) -> FloquetMultipliers:
+    """Return the multipliers with the lowest logarithmic decrement that was measured at rest."""
+    system = RIG[chart].system(modes=modes, decrement=RIG[chart].decrements[0])
+    return floquet_multipliers(system, speeds, follower_inertia=inertia * LBF_IN_S2)
 
 
-def modes_table(axes: Sequence[Axes]) -> Drawn:
+def modes_table(axes: Panels) -> Drawn:
     """Draw the widths of all regions of two modes over the crank speed."""
     tables, titles = [], []
     for ax, (chart, inertia) in zip(axes, _CASES, strict=True):
@@ -247,18 +247,11 @@ def modes_table(axes: Sequence[Axes]) -> Drawn:
             chosen = [one for one in opened if one.kind == kind and np.isfinite(one.width)]
             if not chosen:
                 continue
-            left = [one for one in chosen if one.damped > 0.0]
-            ends = [one.middle for one in chosen], [one.width for one in chosen]
-            ax.plot(*ends, "o", mfc="none", color=colour, label=label)
-            kept = [one.middle for one in left], [one.damped for one in left]
-            ax.plot(*kept, "o", color=colour, ms=4)
+            middles, widths, damped = np.array([(r.middle, r.width, r.damped) for r in chosen]).T
+            ax.plot(middles, widths, "o", mfc="none", color=colour, label=label)
+            ax.plot(middles[damped > 0.0], damped[damped > 0.0], "o", color=colour, ms=4)
         panel_title(ax, f"{RIG[chart].name}, {inertia:g} lbf in s²")
-        tables.append(
-            [
-                (one.label, one.lower, one.upper, one.width, one.damped or "closed")
-                for one in opened[:10]
-            ]
-        )
+        tables.append([(*one[1:5], one.damped or "closed") for one in opened[:10]])
         rest = f"; {len(opened) - 10} narrower, {closed} closed" if len(opened) > 10 else ""
         titles.append(
             f"{RIG[chart].name}, follower inertia {inertia:g} lbf in s²: widest regions{rest}"
@@ -284,14 +277,6 @@ def _mode_words() -> dict[str, object]:
         "sums_left": sum(one.damped > 0.0 for one in sums),
         "differences": sum(one.kind == "difference" for _, one in every),
         "alive": len(alive),
-        "added": sum(_stable_alone(case, one) for case, one in alive),
+        # Where the damped first mode alone is stable in the middle of the region.
+        "added": sum(bool(np.all(_damped(*c, 1, r.middle * RPM).stable)) for c, r in alive),
     }
-
-
-def _stable_alone(case: tuple[str, float], one: _Region) -> bool:
-    """Return True where the damped first mode alone is stable in the middle of a region."""
-    chart, inertia = case
-    motion = floquet_multipliers(
-        _damped(chart, 1), one.middle * RPM, follower_inertia=inertia * LBF_IN_S2
-    )
-    return bool(np.all(motion.stable))

@@ -3,37 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import find_peaks
 
 from ..hill import discriminant
 from ..periodic import simulate, steady_state
-from .drawing import COLOURS, Array, mark_fractions, panel_title, turn
+from .drawing import COLOURS, Array, Panels, mark_fractions, panel_title, turn
 from .records import Drawn
 from .smith_linkages import RIG, RPM, OfRig
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _RIG = RIG["84"]
 _LEAST = 0.0058
 
 
-def figure_45(axes: Sequence[Axes]) -> Drawn:
+def figure_45(axes: Panels) -> Drawn:
     """Draw the sine and the shape under a central load over half the coupler."""
     ax, x = axes[0], np.linspace(0.0, 0.5, 251)
-    ax.plot(x, np.sin(pi * x), color=COLOURS[0], label=r"$\sin(\pi x/l)$")
-    ax.plot(x, 3 * x - 4 * x**3, "--", color=COLOURS[1], label=r"$3(x/l) - 4(x/l)^3$")
-    at = 0.1
-    return Drawn([100.0 * (1.0 - (3 * at - 4 * at**3) / np.sin(pi * at))])
+    sine, loaded = np.sin(pi * x), 3 * x - 4 * x**3
+    ax.plot(x, sine, color=COLOURS[0], label=r"$\sin(\pi x/l)$")
+    ax.plot(x, loaded, "--", color=COLOURS[1], label=r"$3(x/l) - 4(x/l)^3$")
+    # At the gauges, a tenth of the length from the end.
+    return Drawn([100.0 * (1.0 - loaded[50] / sine[50])])
 
 
-def wave_form(axes: Sequence[Axes], divisor: float) -> Drawn:
+def wave_form(axes: Panels, divisor: float) -> Drawn:
     """Draw the wave-form at the speed Omega/divisor (Figs. 47 to 51)."""
     ax, speed = axes[0], _RIG.frequency / divisor
     # Between the least and the greatest logarithmic decrement measured at 1/16 in (9.5.5).
@@ -82,8 +81,7 @@ class Response(OfRig):
     high: float
 
 
-@dataclass(frozen=True)
-class Envelope:
+class Envelope(NamedTuple):
     """Extreme deflections [mm] of the coupler's middle at crank speeds [rpm], and stability."""
 
     speed: Array
@@ -96,11 +94,6 @@ class Envelope:
         """Greatest less least deflection [mm]."""
         return self.greatest - self.least
 
-    @property
-    def unstable(self) -> Array:
-        """The unstable ones of the speeds [rpm]."""
-        return self.speed[~self.stable]
-
 
 @lru_cache(maxsize=64)
 def envelope(one: Response, decrement: float) -> Envelope:
@@ -109,39 +102,38 @@ def envelope(one: Response, decrement: float) -> Envelope:
     speed = np.linspace(one.low, one.high, 241)
     motion = steady_state(system, speed * RPM)
     middle = 1e3 * system.reference_length * motion.q[..., 0]
-    stable = np.ones(len(speed), bool) if motion.stable is None else np.asarray(motion.stable)
-    return Envelope(speed, middle.min(axis=-1), middle.max(axis=-1), stable)
+    return Envelope(speed, middle.min(axis=-1), middle.max(axis=-1), np.asarray(motion.stable))
 
 
 def response(
-    axes: Sequence[Axes],
+    axes: Panels,
     chart: str,
     inertia: float,
     low: float,
     high: float,
     resonances: Sequence[float] = (),
-    claim: str = "",
+    claim: Sequence[Any] = (),
 ) -> Drawn:
-    """Draw a frequency response; compute resonances near speeds [rpm] and what a claim needs."""
+    """Draw a frequency response; compute resonances near speeds [rpm] and what a claim needs.
+
+    A claim is one of :data:`_CLAIMS` and what it takes.
+    """
     one, ax = Response(chart, inertia, low, high), axes[0]
     least, middle, most = one.rig.decrements
-    for decrement, colour, width, front in (
-        (least, COLOURS[1], 0.8, 2.0),
-        (middle, COLOURS[0], 1.3, 3.0),
-        (most, COLOURS[2], 0.8, 2.0),
+    for decrement, colour, width in (
+        (least, COLOURS[1], 0.8),
+        (middle, COLOURS[0], 1.3),
+        (most, COLOURS[2], 0.8),
     ):
         ends = envelope(one, decrement)
-        label = f"decrement {decrement:.3g}"
-        ax.plot(ends.speed, ends.greatest, color=colour, lw=width, label=label, zorder=front)
-        ax.plot(ends.speed, ends.least, color=colour, lw=width, zorder=front)
+        look: dict[str, Any] = {"color": colour, "lw": width, "zorder": 2.0 + width}
+        ax.plot(ends.speed, ends.greatest, label=f"decrement {decrement:.3g}", **look)
+        ax.plot(ends.speed, ends.least, **look)
     ends = envelope(one, middle)
-    unstable: dict[str, Any] = {"where": list(~ends.stable), "step": "mid"}
     if not np.all(ends.stable):
-        unstable["label"] = "unstable"
-    across = ax.get_xaxis_transform()
-    ax.fill_between(
-        ends.speed, 0.0, 1.0, color="#f7e3d3", lw=0, zorder=0, transform=across, **unstable
-    )
+        look = {"transform": ax.get_xaxis_transform(), "color": "#f7e3d3", "lw": 0, "zorder": 0}
+        inside = ~ends.stable
+        ax.fill_between(ends.speed, 0.0, 1.0, inside, step="mid", label="unstable", **look)
     # The axis is kept to what can be read, 15 % of the length; dashed lines say that up to 5 %
     # linear equations hold.
     length = 1e3 * one.rig.system(inertia=inertia).reference_length
@@ -152,72 +144,63 @@ def response(
             ax.axhline(level, color="0.5", lw=0.7, ls="--", zorder=1)
     mark_fractions(ax, one.rig.frequency / RPM, range(1, 13), "Ω/{}", (low, high), low=False)
     ax.set(xlim=(low, high), ylim=(-end, end))
-    return Drawn([*(resonance(one, at) for at in resonances), *(_CLAIMS[claim](one))])
+    values = [resonance(one, at) for at in resonances]
+    return Drawn([*values, *_CLAIMS[claim[0]](one, *claim[1:])] if claim else values)
 
 
 def resonance(one: Response, speed: float) -> float:
     """Return the crank speed [rpm] of the greatest deflection's maximum nearest to a speed."""
     ends = envelope(one, one.rig.decrements[0])
-    height = ends.height
-    inner = (height[1:-1] > height[:-2]) & (height[1:-1] >= height[2:])
-    places = ends.speed[1:-1][inner]
+    places = ends.speed[find_peaks(ends.height)[0]]
     return float(places[np.argmin(np.abs(places - speed))]) if len(places) else float("nan")
 
 
-def _harmonics(one: Response, orders: range) -> list[float]:
-    """Return how far from Omega/n [%] each harmonic is greatest, at most."""
+def _harmonics(one: Response, first: int, last: int) -> list[float]:
+    """Return how far from Omega/n [%] each of some harmonics is greatest, at most."""
     system = one.rig.system(decrement=one.rig.decrements[0], inertia=one.inertia)
     factor, apart = np.linspace(0.94, 1.06, 61), []
-    for order in orders:
+    for order in range(first, last + 1):
         motion = steady_state(system, factor * one.rig.frequency / order)
         size = np.abs(np.fft.rfft(motion.q[..., 0], axis=-1)[:, order])
         apart.append(abs(float(factor[np.argmax(size)]) - 1.0))
     return [100.0 * max(apart)]
 
 
-def _increment(one: Response) -> list[float]:
-    """Return how the second increment of the inertia raises the amplitude near 300 rpm."""
+def _increment(one: Response, before: float, at: float) -> list[float]:
+    """Return how an increment of the inertia, from one before, raises the amplitude at a speed."""
     sizes = []
-    for inertia in (one.inertia, 0.0069):
-        other = Response(one.chart, inertia, one.low, one.high)
-        ends = envelope(other, one.rig.decrements[0])
-        sizes.append(float(np.interp(300.0, ends.speed, ends.height)))
+    for inertia in (one.inertia, before):
+        ends = envelope(replace(one, inertia=inertia), one.rig.decrements[0])
+        sizes.append(float(np.interp(at, ends.speed, ends.height)))
     return [sizes[0] / sizes[1]]
 
 
-def _unstable(
-    one: Response, low: float = 0.0, high: float = np.inf, damping: int = 1
-) -> list[float]:
-    """Return first, middle and last unstable speed within a range.
+def _unstable(one: Response, which: str, damping: int, low: float, high: float) -> list[float]:
+    """Return the ``first``, ``middle``, ``last`` unstable speed within a range, as many as named.
 
     With the least measured decrement, the middle or the greatest one (0, 1, 2).
     """
-    speeds = envelope(one, one.rig.decrements[damping]).unstable
-    inside = speeds[(speeds > low) & (speeds < high)]
+    ends = envelope(one, one.rig.decrements[damping])
+    inside = ends.speed[~ends.stable & (ends.speed > low) & (ends.speed < high)]
     first, last = float(inside[0]), float(inside[-1])
-    return [first, 0.5 * (first + last), last]
+    found = {"first": first, "middle": 0.5 * (first + last), "last": last}
+    return [found[name] for name in which.split()]
 
 
-def _between(one: Response) -> list[float]:
-    """Return at how many speeds about 500 rpm the periodic motion is largest."""
+def _largest(one: Response, at: float, apart: float) -> list[float]:
+    """Return at how many speeds about one the periodic motion is largest."""
     ends = envelope(one, one.rig.decrements[0])
-    inside = np.flatnonzero(np.abs(ends.speed - 500.0) < 15.0)
+    inside = np.flatnonzero(np.abs(ends.speed - at) < apart)
     beside = np.maximum(ends.height[inside - 1], ends.height[inside + 1])
     return [int(np.count_nonzero(ends.height[inside] > beside))]
 
 
 # What section 9.5.3 says of single figures, by the names in their records.
-_CLAIMS: dict[str, Callable[[Response], list[float]]] = {
-    "": lambda one: [],
-    "harmonics 3 to 10": lambda one: _harmonics(one, range(3, 11)),
-    "harmonics 4 to 7": lambda one: _harmonics(one, range(4, 8)),
+_CLAIMS: dict[str, Callable[..., list[float]]] = {
+    "harmonics": _harmonics,
     "increment": _increment,
-    # Below 300 rpm.
-    "region 5": lambda one: _unstable(one, 245.0, 291.0, damping=0)[1:2],
-    "region 3 passed": lambda one: _unstable(one)[1:],
-    "region 3 onset": lambda one: _unstable(one)[:1],
-    "region 3 onset, second": lambda one: _unstable(one, 0.6 * one.rig.frequency / RPM)[:1],
-    "largest about 500 rpm": _between,
+    "unstable": _unstable,
+    "largest": _largest,
 }
 
 
@@ -232,7 +215,7 @@ def wave(chart: str, inertia: float, speed: float) -> tuple[Array, Array]:
     return motion.theta, 1e3 * system.reference_length * motion.q[:, 0]
 
 
-def figure_54(axes: Sequence[Axes]) -> Drawn:
+def figure_54(axes: Panels) -> Drawn:
     """Draw the wave-form below, at and above the resonance Omega/4."""
     order, first = 4, []
     for ax, factor, name in zip(axes, (0.96, 1.0, 1.04), ("below", "at", "above"), strict=True):
@@ -245,7 +228,7 @@ def figure_54(axes: Sequence[Axes]) -> Drawn:
     return Drawn([abs(first[1]) / max(abs(first[0]), abs(first[2])), turned])
 
 
-def figure_55(axes: Sequence[Axes]) -> Drawn:
+def figure_55(axes: Panels) -> Drawn:
     """Draw the wave-form at one speed for several follower inertias."""
     ax, sizes = axes[0], []
     for inertia in (_LEAST, 0.0079, 0.0109):

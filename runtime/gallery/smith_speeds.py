@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from ..hill import discriminant, perturbation_boundaries
 from ..scenes import load_scene
 from ..stability.boundary_speeds import speed_boundaries
-from .drawing import COLOURS, Array
+from .drawing import COLOURS, Array, Axes, Panels
 from .records import Drawn
 from .registry import contents
 from .smith_linkages import (
@@ -30,12 +30,10 @@ from .smith_linkages import (
     region_name,
 )
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 _REGIONS = (3, 4, 5, 6, 7, 8)
 _TURN = np.linspace(0.0, 2 * pi, 1441)
 _FILL = "#f7e3d3"
+_LINKAGES = list(dict.fromkeys(rig.linkage for rig in RIGS))
 _NAMES = {"reduced": "(6.18)", "printed": "(6.17)", "complete": "complete"}
 
 
@@ -87,7 +85,7 @@ OBSERVATIONS = tuple(Observation(**row) for row in contents("smith")["observatio
 _COMPARED = tuple(one for one in OBSERVATIONS if one.region)
 
 
-def chart(axes: Sequence[Axes], figure: str) -> Drawn:
+def chart(axes: Panels, figure: str) -> Drawn:
     """Draw the chart of one rig."""
     rig, ax = RIG[figure], axes[0]
     low, high = (end / RPM for end in load_scene(rig.scene).get("chart.x_range"))
@@ -102,8 +100,6 @@ def chart(axes: Sequence[Axes], figure: str) -> Drawn:
     sizes = order_sizes(rig)
     values = [one.predicted("complete") for one in compared]
     values += [max(sizes[name] for name in ("phi", "eps1 f1", "eps2 f2")), *_claims(rig)]
-    if not seen:
-        return Drawn(values)
     rows = [
         (
             f"Fig. {one.figure}",
@@ -115,7 +111,7 @@ def chart(axes: Sequence[Axes], figure: str) -> Drawn:
         )
         for one in compared
     ]
-    return Drawn(values, tables=[rows])
+    return Drawn(values, tables=[rows] if seen else ())
 
 
 def _boundaries(ax: Axes, rig: Rig, inertia: Array, high: float) -> None:
@@ -147,21 +143,11 @@ def _points(ax: Axes, seen: Sequence[Observation]) -> None:
         "end": ("v", "white", "stable again, quoted"),
         "stable": ("s", "white", "stable, quoted"),
     }
+    edges: dict[str, Any] = {"ms": 6, "mec": "black", "ecolor": "black", "capsize": 3, "zorder": 5}
     for one in seen:
         shape, face, label = marks[one.kind]
-        ax.errorbar(
-            1e3 * one.si_inertia,
-            one.speed,
-            yerr=one.half_width or None,
-            fmt=shape,
-            ms=6,
-            mfc=face,
-            mec="black",
-            ecolor="black",
-            capsize=3,
-            zorder=5,
-            label=label,
-        )
+        place, half = (1e3 * one.si_inertia, one.speed), one.half_width or None
+        ax.errorbar(*place, yerr=half, fmt=shape, mfc=face, label=label, **edges)
 
 
 def _margins(ax: Axes, rig: Rig, window: tuple[float, float]) -> None:
@@ -192,11 +178,11 @@ def _terms(linkage: str, theta: Array) -> dict[str, Array]:
     links = linkage_of(linkage)
     parts, eps2 = end_load(links, theta), pi**2 * links.crank / (2 * links.coupler)
     return {
-        "phi": parts.phi,
-        "eps1 f1": pi**2 / 3 * parts.f1,
-        "eps2 f2": eps2 * parts.f2,
-        "eps2 cos23": eps2 * parts.cos23,
-        "(pi^2/3 - 1/4) phi": (pi**2 / 3 - 0.25) * parts.phi,
+        "phi": parts["phi"],
+        "eps1 f1": pi**2 / 3 * parts["f1"],
+        "eps2 f2": eps2 * parts["f2"],
+        "eps2 cos23": eps2 * parts["cos23"],
+        "(pi^2/3 - 1/4) phi": (pi**2 / 3 - 0.25) * parts["phi"],
     }
 
 
@@ -206,12 +192,12 @@ def _peak(values: Array) -> float:
 
 def _claims(rig: Rig) -> list[float]:
     """Return what section 9.5 says of single rigs."""
-
-    def damping(n: int, *inertias: float) -> float:
-        """K by (7.51), ``mu sqrt(a_n^2 + b_n^2)/(2 n)``, half way between two inertias."""
-        middle = 0.5 * sum(inertias) * LBF_IN_S2
-        return float(rig.function("reduced", middle).amplitudes[n]) / (2 * n)
-
+    damping = []
+    for row in contents("smith")["estimate"]:
+        if row["chart"] == rig.figure:
+            # K by (7.51), ``mu sqrt(a_n^2 + b_n^2)/(2 n)``, half way between two inertias.
+            n, middle = row["region"], 0.5 * (row["stable"] + row["unstable"]) * LBF_IN_S2
+            damping.append(float(rig.function("reduced", middle).amplitudes[n]) / (2 * n))
     if rig.figure == "82":
         speed = 230.0 * RPM
         ratio = rig.decrements[0] / (2 * pi) * rig.frequency / speed
@@ -219,18 +205,12 @@ def _claims(rig: Rig) -> list[float]:
             discriminant(rig.function("complete", i), (rig.frequency / speed) ** 2, 1.0, ratio)
             for i in rig.inertias
         ]
-        worst = max(float(abs(half.value) / half.level) for half in halves)
-        return [worst, damping(5, 0.0069, 0.0079), damping(6, 0.0130, 0.0149)]
-    if rig.figure == "83":
-        return [26.0 * 3.0 / 4.0]
-    if rig.figure == "84":
-        return [100.0 * (26.5 / 26.0 - 1.0)]
-    if rig.figure == "85":
-        return [damping(3, 0.0058, 0.0079), damping(4, 0.0130, 0.0149)]
-    return []
+        return [max(float(abs(half.value) / half.level) for half in halves), *damping]
+    quoted = {"83": [26.0 * 3.0 / 4.0], "84": [100.0 * (26.5 / 26.0 - 1.0)]}
+    return quoted.get(rig.figure, damping)
 
 
-def equations_table(axes: Sequence[Axes]) -> Drawn:
+def equations_table(axes: Panels) -> Drawn:
     """Draw the deviation of each equation from each quoted speed; give the tables."""
     ax, places = axes[0], np.arange(len(_COMPARED))
     for equation, marker in zip(EQUATIONS, "os^", strict=True):
@@ -244,34 +224,31 @@ def equations_table(axes: Sequence[Axes]) -> Drawn:
     ]
     ax.set_yticks(places, names, fontsize=7)
     ax.invert_yaxis()
-    rigs = _rig_linkages()
     peaks: list[Sequence[Any]] = [
         [rig.name, *order_sizes(rig).values(), _ratio(rig.linkage)] for rig in RIGS
     ]
-    peaks += [
-        [f"{name}, no rig", *[""] * 5, _ratio(name)] for name in PROPORTIONS if name not in rigs
-    ]
-    observed = [
-        (
-            one.rig.name,
-            one.inertia,
-            region_name(one.region),
-            one.meaning,
-            one.speed,
-            *(one.predicted(name) for name in EQUATIONS),
-            _NAMES[one.nearest],
-        )
-        for one in _COMPARED
-    ]
-    tables = (peaks, _shifts(), observed, _summary())
+    others = [name for name in PROPORTIONS if name not in _LINKAGES]
+    peaks += [[f"{name}, no rig", *[""] * 5, _ratio(name)] for name in others]
+    observed = []
+    for one in _COMPARED:
+        speeds = (one.speed, *(one.predicted(name) for name in EQUATIONS), _NAMES[one.nearest])
+        place = (one.rig.name, one.inertia, region_name(one.region), one.meaning)
+        observed.append((*place, *speeds))
+    moved, shifts, further = _shifts()
     count = sum(one.nearest == "complete" for one in _COMPARED)
-    first, complete = _trend("first order"), _trend("complete")
-    values = [min(map(_ratio, rigs)), count / len(_COMPARED)]
-    return Drawn([*values, first[1] / first[0], complete[1] / complete[0]], _words(count), tables)
-
-
-def _rig_linkages() -> list[str]:
-    return list(dict.fromkeys(rig.linkage for rig in RIGS))
+    words: dict[str, object] = {
+        "ratios": " and ".join(f"{_ratio(name):.2f}" for name in _LINKAGES),
+        "count": count,
+        "all": len(_COMPARED),
+        "least": np.min(shifts),
+        "most": np.max(shifts),
+        "second": np.max(further),
+    }
+    for name in EQUATIONS:
+        words |= zip((f"plain_{name}", f"fitted_{name}", f"edge_{name}"), _rms(name), strict=True)
+    trends = (later / first for first, later in (_trend("first order"), _trend("complete")))
+    numbers = (min(map(_ratio, _LINKAGES)), count / len(_COMPARED), *trends)
+    return Drawn(numbers, words, (peaks, moved, observed, _summary()))
 
 
 def _ratio(linkage: str) -> float:
@@ -280,33 +257,11 @@ def _ratio(linkage: str) -> float:
     return _peak(tension + more) / _peak(f1 + f2 - phi)
 
 
-@dataclass(frozen=True)
-class _Shift:
-    """Ends of one region [rpm], lower and upper, by each equation and with the second mode."""
+def _shifts() -> tuple[list[Sequence[Any]], Array, Array]:
+    """Return the ends of the unstable regions and how far they move, as a table and in rpm.
 
-    rig: Rig
-    inertia: float
-    region: int
-    ends: dict[str, Array]
-    two_modes: Array
-
-
-@lru_cache(maxsize=1)
-def _moved() -> tuple[_Shift, ...]:
-    moved = []
-    for rig in RIGS:
-        # Those that the thesis observed with this linkage.
-        regions = (3, 4, 5) if rig.linkage == "(10,1,10,4)" else (4, 5, 6)
-        for inertia in (float(rig.inertias[0]), float(rig.inertias[-1])):
-            ends = {name: rig.ends(name, inertia, regions)[..., 0] / RPM for name in EQUATIONS}
-            for i, n in enumerate(regions):
-                here = {name: values[:, i] for name, values in ends.items()}
-                moved.append(_Shift(rig, inertia, n, here, two_modes(rig, inertia, n) / RPM))
-    return tuple(moved)
-
-
-def _shifts() -> list[Sequence[Any]]:
-    """Return the ends of the unstable regions, and how far they move."""
+    In rpm: by the complete equation, and further by the second mode.
+    """
 
     def pair(values: Array) -> str:
         # Zero without a sign.
@@ -314,13 +269,20 @@ def _shifts() -> list[Sequence[Any]]:
         return f"{low:+.1f}, {high:+.1f}"
 
     rows: list[Sequence[Any]] = []
-    for one in _moved():
-        base = one.ends["reduced"]
-        place = (one.rig.name, one.inertia / LBF_IN_S2, region_name(one.region))
-        moves = (pair(one.ends[name] - base) for name in EQUATIONS[1:])
-        further = pair(one.two_modes - one.ends["complete"])
-        rows.append((*place, f"{base[0]:.1f} to {base[1]:.1f}", *moves, further))
-    return rows
+    shifts, further = [], []
+    for rig in RIGS:
+        # Those that the thesis observed with this linkage.
+        regions = (3, 4, 5) if rig.linkage == "(10,1,10,4)" else (4, 5, 6)
+        for inertia in (float(rig.inertias[0]), float(rig.inertias[-1])):
+            ends = [rig.ends(name, inertia, regions)[..., 0] / RPM for name in EQUATIONS]
+            for i, n in enumerate(regions):
+                base, printed, complete = (values[:, i] for values in ends)
+                shifts.append(complete - base)
+                further.append(two_modes(rig, inertia, n) / RPM - complete)
+                place = (rig.name, inertia / LBF_IN_S2, region_name(n))
+                moves = (pair(move) for move in (printed - base, shifts[-1], further[-1]))
+                rows.append((*place, f"{base[0]:.1f} to {base[1]:.1f}", *moves))
+    return rows, np.abs(shifts), np.abs(further)
 
 
 def two_modes(rig: Rig, inertia: float, n: int) -> Array:
@@ -337,16 +299,18 @@ def two_modes(rig: Rig, inertia: float, n: int) -> Array:
     return np.array([first[np.argmin(np.abs(first - end))] for end in alone])
 
 
-def _rms(equation: str, *, fitted: bool) -> float:
-    """Return the root mean square deviation in percent, with one frequency per coupler fitted."""
-    total = 0.0
-    for thickness in {rig.thickness for rig in RIGS}:
-        here = [one for one in _COMPARED if one.rig.thickness == thickness]
-        gaps = np.array([one.percent(equation) for one in here])
-        if fitted and len(gaps):
-            gaps = gaps - np.mean(gaps)
-        total += float(np.sum(gaps**2))
-    return float(np.sqrt(total / len(_COMPARED)))
+@lru_cache(maxsize=4)
+def _rms(equation: str) -> tuple[float, float, float]:
+    """Return the root mean square deviation [%], with one frequency per coupler fitted, of edges.
+
+    Edges are the speeds at which the motion becomes unstable or stable.
+    """
+    gaps = np.array([one.percent(equation) for one in _COMPARED])
+    couplers = np.array([one.rig.thickness for one in _COMPARED])
+    fitted = gaps - [np.mean(gaps[couplers == one]) for one in couplers]
+    edges = gaps[[one.kind in {"onset", "end"} for one in _COMPARED]]
+    plain, own, of_edges = (float(np.sqrt(np.mean(part**2))) for part in (gaps, fitted, edges))
+    return plain, own, of_edges
 
 
 def _summary() -> list[Sequence[Any]]:
@@ -354,7 +318,7 @@ def _summary() -> list[Sequence[Any]]:
     rows: list[Sequence[Any]] = []
     for name in EQUATIONS:
         count = sum(one.nearest == name for one in _COMPARED)
-        errors = (f"{_rms(name, fitted=fitted):.1f} %" for fitted in (False, True))
+        errors = (f"{error:.1f} %" for error in _rms(name)[:2])
         rows.append((_NAMES[name], count, *errors, *_trend(name)))
     rows.append(("(6.18), first order", "", "", "", *_trend("first order")))
     rows.append(("quoted", "", "", "", "250", "220"))
@@ -371,23 +335,3 @@ def _trend(equation: str) -> Array:
     bounds = perturbation_boundaries(rig.function("reduced", 1.0), ends, (6,), outside="value")
     speeds = rig.frequency / np.sqrt(np.stack([bounds.lower[0], bounds.upper[0]])) / RPM
     return np.asarray(np.mean(speeds, axis=0))
-
-
-def _words(count: int) -> dict[str, object]:
-    """Return the numbers of the conclusion."""
-    edges = [one for one in _COMPARED if one.kind in {"onset", "end"}]
-    shifts = np.abs([one.ends["complete"] - one.ends["reduced"] for one in _moved()])
-    second = [np.max(np.abs(one.two_modes - one.ends["complete"])) for one in _moved()]
-    words: dict[str, object] = {
-        "ratios": " and ".join(f"{_ratio(name):.2f}" for name in _rig_linkages()),
-        "count": count,
-        "all": len(_COMPARED),
-        "least": float(np.min(shifts)),
-        "most": float(np.max(shifts)),
-        "second": float(max(second)),
-    }
-    for name in EQUATIONS:
-        words[f"plain_{name}"] = _rms(name, fitted=False)
-        words[f"fitted_{name}"] = _rms(name, fitted=True)
-        words[f"edge_{name}"] = float(np.sqrt(np.mean([one.percent(name) ** 2 for one in edges])))
-    return words

@@ -4,20 +4,19 @@ import numpy as np
 import pytest
 from elastolink.runtime.frequencies import dynamic_stiffness
 from elastolink.runtime.gallery import (
-    aannaque_frequencies,
-    aannaque_models,
+    aannaque_beams,
     aannaque_rig,
     aannaque_steady_state,
     aannaque_stresses,
 )
-from elastolink.runtime.gallery.aannaque_kinematics import crossover, linkage
-from elastolink.runtime.gallery.aannaque_models import (
+from elastolink.runtime.gallery.aannaque_beams import (
     beams,
     exact_frequencies,
     held,
     hybrid_matrices,
     hybrid_model,
 )
+from elastolink.runtime.gallery.aannaque_kinematics import crossover, linkage
 from elastolink.runtime.gallery.aannaque_stability import multiplier_surfaces
 from elastolink.runtime.gallery.algorithms import operation_count, printed_count
 from elastolink.runtime.linkages import FourBar
@@ -52,17 +51,23 @@ def test_the_pulses_cross_where_the_peaks_found_by_roots_do():
 def test_the_clamped_bars_of_table_5_1():
     # cos z cosh z = 1, by the factor between the table and bars of unit data.
     for number in (4, 10):
-        root = np.sqrt(aannaque_frequencies._exact()[number - 1] / aannaque_frequencies._FACTOR)
+        root = np.sqrt(aannaque_beams._exact()[number - 1] / aannaque_beams._FACTOR)
         assert abs(np.cos(root) - 1.0 / np.cosh(root)) < 1e-9
 
 
-def test_maxima_are_refined_between_samples():
+def test_maxima_are_refined_between_samples_and_stand_out_by_the_share_asked_for():
     x = np.linspace(0.0, 10.0, 101)
-    found = aannaque_models.tops(x, np.cos(x - 1.234))
+    found = aannaque_beams.tops(x, np.cos(x - 1.234))
     assert found == pytest.approx([1.234, 1.234 + 2.0 * np.pi], abs=1e-4)
-    curve = aannaque_models.maxima(x, np.exp(np.cos(x - 1.234)))
+    curve = aannaque_beams.maxima(x, np.exp(np.cos(x - 1.234)))
     # The logarithm is the cosine itself.
     assert curve == pytest.approx([1.234, 1.234 + 2.0 * np.pi], abs=1e-4)
+    x = np.linspace(0.0, 10.0, 401)
+    y = np.exp(np.log(1.1) * np.exp(-(((x - 3.013) / 0.2) ** 2)))
+    y *= np.exp(np.log(1.02) * np.exp(-(((x - 7.0) / 0.2) ** 2)))
+    # A parabola through three places, an eighth of the width apart, is off by its cube.
+    assert aannaque_beams.maxima(x, y, -np.log1p(-0.05)) == pytest.approx([3.013], abs=2e-4)
+    assert len(aannaque_beams.maxima(x, y, -np.log1p(-0.01))) == 2
 
 
 @pytest.mark.slow
@@ -72,7 +77,7 @@ def test_midpoints_by_the_recovery_of_displacements():
         motion = steady_state(system, 20.0, rtol=1e-5)
         for link in ("coupler", "follower") if elements == 2 else ("follower",):
             found = recover(system, motion, stations={link: [0.5]}, method="shape")
-            ours = aannaque_models.moved(system, link, motion.theta, motion.q)
+            ours = aannaque_beams.moved(system, link, motion.theta, motion.q)
             theirs = found.of(link, "across")[:, 0]
             assert np.max(np.abs(ours - theirs)) < 1e-9 * np.max(np.abs(theirs))
 
@@ -80,8 +85,8 @@ def test_midpoints_by_the_recovery_of_displacements():
 def test_the_march_settles_to_the_cyclic_solution():
     system = beams(1)
     values = aannaque_steady_state.march()[0][-1]
-    motion = steady_state(system, aannaque_models.CRITICAL)
-    exact = aannaque_models.moved(system, "follower", motion.theta, motion.q)
+    motion = steady_state(system, aannaque_beams.CRITICAL)
+    exact = aannaque_beams.moved(system, "follower", motion.theta, motion.q)
     # Newmark's 720 steps: the sixth oscillation of the second mode is 4e-4 late in phase.
     assert abs(np.max(values) / np.max(exact) - 1.0) < 5e-3
 
@@ -164,9 +169,9 @@ def test_the_stress_of_the_midpoint_needs_several_elements():
 
 @pytest.mark.slow
 def test_finite_elements_lie_above_the_exact_frequencies():
-    theta, system = 2 * np.pi * np.arange(10) / 10, beams(3, aannaque_models.FULL)
+    theta, system = 2 * np.pi * np.arange(10) / 10, beams(3, aannaque_beams.FULL)
     exact, fine = exact_frequencies(system.structure, theta, 4), held(system, theta)
-    assert np.all(fine > exact) and np.all(held(beams(1, aannaque_models.FULL), theta) > fine)
+    assert np.all(fine > exact) and np.all(held(beams(1, aannaque_beams.FULL), theta) > fine)
 
 
 @pytest.mark.slow
@@ -187,15 +192,6 @@ def test_stresses_of_a_cycle_are_those_of_the_curve_over_the_speed():
     np.testing.assert_allclose(size[own], whole[own], rtol=tolerance)
     # Where the other fibre has the largest stress, this one's is less.
     assert np.all(size[~own] < whole[~own] * (1 + tolerance))
-
-
-def test_maxima_stand_out_by_the_share_asked_for():
-    x = np.linspace(0.0, 10.0, 401)
-    y = np.exp(np.log(1.1) * np.exp(-(((x - 3.013) / 0.2) ** 2)))
-    y *= np.exp(np.log(1.02) * np.exp(-(((x - 7.0) / 0.2) ** 2)))
-    # A parabola through three places, an eighth of the width apart, is off by its cube.
-    assert aannaque_models.maxima(x, y, -np.log1p(-0.05)) == pytest.approx([3.013], abs=2e-4)
-    assert len(aannaque_models.maxima(x, y, -np.log1p(-0.01))) == 2
 
 
 @pytest.mark.slow

@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from elastolink.runtime.frequencies import natural_frequencies
-from elastolink.runtime.gallery import beale_response, beale_tip
-from elastolink.runtime.gallery.beale_tip import FLEXIBLE, HEAVY, STIFF, peak, rod, stiff_tip
+from elastolink.runtime.gallery import beale
+from elastolink.runtime.gallery.beale import FLEXIBLE, HEAVY, STIFF, peak, rod, stiff_tip
 from elastolink.runtime.periodic import floquet_multipliers, steady_state
-from elastolink.runtime.scenes import load_scene
 from rod_tip_deflections import TIPS
 
 # Deflections leave the linear range at resonances; the equations stay linear.
@@ -20,7 +19,7 @@ FIXED_MESH = TIPS["flexible, ratio 0.01, 100 rad/s", False][1][:8]
 
 
 def test_the_tip_from_rest_is_that_of_a_fixed_mesh():
-    theta, tip = beale_tip.tip_from_rest(rod(FLEXIBLE, "overhang", 6), 100.0)
+    theta, tip = beale.tip_from_rest(rod(FLEXIBLE, "overhang", 6), 100.0)
     step = (len(theta) - 1) // 8
     np.testing.assert_allclose(theta[step], np.pi / 4, rtol=1e-12)
     # Six overhang modes are within 1.3e-5 of the peak of the exact deflection.
@@ -33,7 +32,7 @@ def test_steps_of_a_turn_are_enough():
     for scene, formulation, modes in ((STIFF, "polynomial", 6), (HEAVY, "overhang", 3)):
         system = rod(scene, formulation, modes)
         fewest, usual, more = (
-            beale_tip.tip_from_rest(system, 90.0, steps=steps)[1] for steps in (720, 1440, 2880)
+            beale.tip_from_rest(system, 90.0, steps=steps)[1] for steps in (720, 1440, 2880)
         )
         assert peak(more - usual) < 1e-6 * peak(more)
         assert peak(more - fewest) < 1e-6 * peak(more)
@@ -42,16 +41,16 @@ def test_steps_of_a_turn_are_enough():
 def test_constrained_and_linear_free_free_modes_agree_where_deflections_are_small():
     # Amplitude over length 1.5e-4: what the linear form leaves out is of its square.
     for modes in (1, 2):
-        theta, tip = beale_tip.constrained_tip(FLEXIBLE, modes)
+        theta, tip = beale.constrained_tip(FLEXIBLE, modes)
         linear = rod(FLEXIBLE, "free_free_linear", modes, ("tension",))
-        angle, other = beale_tip.tip_from_rest(linear, 100.0)
+        angle, other = beale.tip_from_rest(linear, 100.0)
         np.testing.assert_allclose(theta, angle, atol=1e-12)
         assert peak(tip - other) < 1e-4 * peak(other)
 
 
 @pytest.mark.parametrize("scene", [STIFF, pytest.param(HEAVY, marks=pytest.mark.slow)])
 def test_components_belong_to_a_deflection_across_the_rod(scene):
-    theta, along, across = beale_tip.components(scene)
+    theta, along, across = beale.components(scene)
     tip = stiff_tip(scene, "overhang", 6, ())[1]
     np.testing.assert_allclose(np.hypot(along, across), np.abs(tip), atol=1e-13 * peak(tip))
     # The block at a_x + G e^(i theta) gives the rod's direction without the mechanism.
@@ -63,30 +62,27 @@ def test_components_belong_to_a_deflection_across_the_rod(scene):
 @pytest.mark.slow
 def test_foreshortening_turns_the_tip_by_an_angle_in_proportion_to_the_deflection():
     light, heavy = (
-        beale_tip.lean(scene) / peak(stiff_tip(scene, "overhang", 6, ())[1])
-        for scene in (STIFF, HEAVY)
+        beale.lean(scene) / peak(stiff_tip(scene, "overhang", 6, ())[1]) for scene in (STIFF, HEAVY)
     )
     # The bent shapes differ, but not by much: the first mode in both.
     assert 0.5 < light / heavy < 2.0
 
 
 def test_frequencies_at_crank_length_zero_are_those_of_another_basis():
-    overhang = beale_response.frequencies("overhang", 4)[:2]
+    overhang = beale.frequencies("overhang", 4)[:2]
     other = rod(FLEXIBLE, "two_segment", 8, links__crank_ratio=1e-6)
     np.testing.assert_allclose(overhang, natural_frequencies(other).mean[:2], rtol=2e-4)
     assert abs(overhang[0] - 858.228) < 1e-2
 
 
 def _system(formulation, modes, *drop):
-    changes = {"model.formulation": formulation, "model.modes": modes, "model.drop": list(drop)}
-    overrides = {**changes, "links.crank_ratio": 0.2}
-    return load_scene("beale_1992_flexible_rod", overrides=overrides).linear_system()
+    return rod(FLEXIBLE, formulation, modes, drop, links__crank_ratio=0.2)
 
 
 def test_the_frequency_over_the_cycle():
     # The mean of the converged modes, by two bases that share nothing but the rod.
-    overhang = beale_response.mean_frequency("overhang", 4)
-    assert abs(overhang / beale_response.mean_frequency("two_segment", 8) - 1) < 1e-4
+    overhang = beale.mean_frequency("overhang", 4)
+    assert abs(overhang / beale.mean_frequency("two_segment", 8) - 1) < 1e-4
     assert abs(overhang - 873.597) < 5e-3
 
 
@@ -108,7 +104,7 @@ def test_the_unstable_region_at_900_rad_s_is_a_combination_in_converged_modes():
 
 @pytest.mark.slow
 def test_resonances_lie_at_fractions_of_the_mean_frequency():
-    curve = beale_response.resonances(0.05)
+    curve = beale.resonances(0.05)
     assert list(np.sort(curve.order[curve.mode == 1])) == [1, 2, 3, 4]
     np.testing.assert_allclose(curve.ratio[curve.mode == 1], 1.0, atol=4e-3)
 

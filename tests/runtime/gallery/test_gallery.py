@@ -12,8 +12,7 @@ from elastolink.runtime.cli import main
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.plotting import new_figure
 from elastolink.runtime.gallery import Drawn, FigureEntry, Quoted, figures, registry, reproduce
-from elastolink.runtime.gallery.page import write_together
-from elastolink.runtime.gallery.rendering import render
+from elastolink.runtime.gallery.rendering import render, write_together
 from elastolink.runtime.gallery.sketch import arrow, turning_arrow
 
 # Figures that are drawn within a second, of every kind.
@@ -157,7 +156,7 @@ def test_the_whole_gallery(document, tmp_path):
     gallery = reproduce(document, out=tmp_path)
     assert failed(gallery) == []
     pictures = {f"{entry.stem}.png" for entry in figures(document)}
-    texts = dict(pair for item in gallery.shown for pair in item.files)
+    texts = {name: text for item in gallery.shown for name, text in item.files.items()}
     assert {path.name for path in tmp_path.iterdir()} == pictures | {"index.html", *texts}
     page = (tmp_path / "index.html").read_text()
     assert all(page.count(f'src="{name}"') == 1 for name in pictures)

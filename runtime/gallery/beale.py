@@ -1,28 +1,32 @@
-"""Beale and Scott's Figs. 2 to 10: the tip's deflection by polynomial and by free-free modes."""
+"""Beale and Scott's figures: the tip by polynomial and free-free modes, resonances, a chart.
+
+Figs. 2 to 10 are the tip's deflection by polynomial and by free-free modes, Figs. 11 and 12 the
+response near the natural frequency; the stability chart is one that they left undone.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from itertools import combinations_with_replacement
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..constrained import constrained_motion
-from ..core.families import Array, LinearPeriodic
+from ..core.families import LinearPeriodic
+from ..frequencies import ResonanceCurve, natural_frequencies, resonance_curve
 from ..linkages import QuickReturn
-from ..periodic import steady_state
+from ..periodic import FloquetMultipliers, floquet_multipliers, steady_state
 from ..periodic.equation import equation_of
 from ..periodic.transition import method, segments_of
 from ..scenes import load_scene
+from ..stability import StabilityChart, stability_chart
 from ..systems.rod import FreeFreeRod
 from . import sketch
-from .drawing import COLOURS
+from .drawing import COLOURS, Array, Axes, Panels, panel_title
 from .records import Drawn
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 STIFF = "beale_1992_bahgat_willmert"
 HEAVY = "beale_1992_bahgat_willmert_heavy"
@@ -45,12 +49,23 @@ _GIVEN = 720
 # Places along the rod.
 _STATIONS = 201
 # Readings of "0.2 percent proportional damping", the caption's "0.002 damping".
-_DAMPINGS: tuple[tuple[str, dict[str, Any]], ...] = (
-    *(
-        (f"ratio 0.002, {law}", {"rod__damping_law": law, "rod__damping_ratio": 0.002})
-        for law in ("viscous", "internal", "modal")
-    ),
-    ("C = 0.002 s K", {"rod__relaxation_time": 0.002}),
+_DAMPINGS: dict[str, dict[str, Any]] = {
+    f"ratio 0.002, {law}": {"rod__damping_law": law, "rod__damping_ratio": 0.002}
+    for law in ("viscous", "internal", "modal")
+} | {"C = 0.002 s K": {"rod__relaxation_time": 0.002}}
+_RATIO, _QUOTED = 0.2, 900.0
+_COMPLETE: tuple[str, ...] = ()
+# Speeds of the chart [rad/s].
+_SPEEDS = np.linspace(500.0, 4000.0, 1401)
+_PANELS = [
+    (formulation, modes, drop, words)
+    for formulation, modes in (("polynomial", 3), ("overhang", 4))
+    for drop, words in ((AS_PRINTED, "as printed"), (_COMPLETE, "with centrifugal tension"))
+]
+_KINDS = (
+    (-1, "#f0bd98", "multiplier below -1"),
+    (1, "#c9783c", "multiplier above 1"),
+    (2, "#a58fc9", "complex multipliers: combination"),
 )
 
 
@@ -64,20 +79,17 @@ def rod(
 
 
 def tip_from_rest(
-    system: LinearPeriodic, speed: float, turns: int = 1, steps: int = _STEPS
+    system: LinearPeriodic,
+    speed: float,
+    turns: int = 1,
+    steps: int = _STEPS,
+    places: ArrayLike = 1.0,
 ) -> tuple[Array, Array]:
-    """Return crank angles and the tip's deflection [m] of a rod that starts undeflected, at rest.
+    """Return crank angles and the deflection [m] of a rod that starts undeflected, at rest.
 
-    Gauss-Legendre collocation of order 12 with fixed steps in a period of one turn.
+    At the tip, or at places x/length, shape ``(nt, nx)``.  Gauss-Legendre collocation of order 12
+    with fixed steps in a period of one turn.
     """
-    theta, bent = _from_rest(system, speed, turns, steps, np.ones(1))
-    return theta, bent[:, 0]
-
-
-def _from_rest(
-    system: LinearPeriodic, speed: float, turns: int, steps: int, places: Array
-) -> tuple[Array, Array]:
-    """Return crank angles and deflections [m] at places x/length, shape ``(nt, nx)``."""
     equation = equation_of(system, speed, {}, forcing=True)
     maps = segments_of(equation, steps, method("gauss", 6)).maps[0]
     every = max(1, steps // _GIVEN)
@@ -93,10 +105,10 @@ def _from_rest(
         state = states[-1][-1]
     q = np.concatenate(states)[:, : system.size] * equation.scale[0]
     theta: Array = 2.0 * np.pi / len(flows) * np.arange(float(len(q)))
-    shapes = system.shapes(places, theta)
-    if shapes is None:
-        raise TypeError("a system without mode shapes has no tip")
-    return theta, system.reference_length * np.einsum("txn,tn->tx", shapes, q)
+    shapes = system.shapes(np.atleast_1d(places), theta)
+    assert shapes is not None, "a rod has mode shapes"
+    bent = system.reference_length * np.einsum("txn,tn->tx", shapes, q)
+    return theta, bent if np.ndim(places) else bent[:, 0]
 
 
 @lru_cache(maxsize=64)
@@ -122,7 +134,7 @@ def turns(values: Array) -> int:
     return int(np.count_nonzero(np.diff(np.sign(np.diff(values)))))
 
 
-def polynomials(axes: Sequence[Axes], modes: int) -> Drawn:
+def polynomials(axes: Panels, modes: int) -> Drawn:
     """Draw the large crank's tip with so many polynomial modes (Figs. 2 and 3)."""
     values: list[float] = []
     for ax, scene in zip(axes, READINGS, strict=True):
@@ -153,8 +165,8 @@ def _stiff_shapes(scene: str) -> tuple[Array, Array]:
 
     At evenly spaced places from pin to tip, shape ``(nt, places)``, for the first turn.
     """
-    system = rod(scene, "overhang", ENOUGH, ())
-    return _from_rest(system, SPEED, 1, _STEPS, np.linspace(0.0, 1.0, _STATIONS))
+    system = rod(scene, "overhang", ENOUGH, _COMPLETE)
+    return tip_from_rest(system, SPEED, places=np.linspace(0.0, 1.0, _STATIONS))
 
 
 def components(scene: str) -> tuple[Array, Array, Array]:
@@ -164,7 +176,7 @@ def components(scene: str) -> tuple[Array, Array, Array]:
     return theta, -bent[:, -1] * np.sin(direction), bent[:, -1] * np.cos(direction)
 
 
-def figure_4(axes: Sequence[Axes]) -> Drawn:
+def figure_4(axes: Panels) -> Drawn:
     """Draw the linkage at some crank angles, and both components for both mass readings."""
     _draw_linkage(axes[0])
     values: list[float] = []
@@ -193,10 +205,8 @@ def _draw_linkage(ax: Axes) -> None:
         tip = linkage.rod * cm * np.array([np.cos(direction), np.sin(direction)])
         block = centre + linkage.crank * cm * np.array([np.cos(theta), np.sin(theta)])
         alpha = 1.0 if degrees == shown else 0.25
-        sketch.bar(
-            ax, (0.0, 0.0), tip, sketch.LINK_COLOURS["coupler"], alpha=alpha, lw=2.6, zorder=2
-        )
-        sketch.bar(ax, centre, block, sketch.LINK_COLOURS["crank"], alpha=alpha, lw=2.6, zorder=3)
+        sketch.bar(ax, (0.0, 0.0), tip, "coupler", alpha=alpha, lw=2.6, zorder=2)
+        sketch.bar(ax, centre, block, "crank", alpha=alpha, lw=2.6)
         away = 11.0 * (block - centre) / np.hypot(*(block - centre))
         sketch.write(ax, block, f"{degrees:.0f}°", away, fontsize=7, color="0.3")
         if degrees == shown:
@@ -223,24 +233,25 @@ def lean(scene: str) -> float:
     return float(np.degrees(np.arctan2(drawn_in, abs(last[-1]))))
 
 
-def figure_5(axes: Sequence[Axes]) -> Drawn:
+def figure_5(axes: Panels) -> Drawn:
     """Draw the first turn and the periodic motion of ten polynomial modes with 0.002 damping."""
     values, rows = [], []
+    # Those that are drawn, of three that give one curve a single one.
+    drawn = {
+        "ratio 0.002, internal": (COLOURS[0], "damping ratio 0.002 in mode 1, internal"),
+        "C = 0.002 s K": (COLOURS[1], "C = 0.002 s K"),
+    }
     for ax, scene in zip(axes, READINGS, strict=True):
         theta, free = stiff_tip(scene, "polynomial", 10)
         ax.plot(np.degrees(theta), 1e3 * free, **BAND, label="undamped, from rest")
         mass = "read as lbm/in" if scene == STIFF else "read as lbf s^2/in^2"
-        for (name, changes), colour, text in zip(
-            _DAMPINGS,
-            ("", COLOURS[0], "", COLOURS[1]),
-            ("", "damping ratio 0.002 in mode 1, internal", "", "C = 0.002 s K"),
-            strict=True,
-        ):
+        for name, changes in _DAMPINGS.items():
             system = rod(scene, "polynomial", 10, **changes)
             theta, tip = tip_from_rest(system, SPEED, steps=_GIVEN)
             around = steady_state(system, SPEED, rtol=1e-8, samples=_GIVEN).deflection()
             settled = np.append(around, around[0])
-            if text:
+            if name in drawn:
+                colour, text = drawn[name]
                 angle, label = np.degrees(theta), f"{text}, periodic"
                 ax.plot(angle, 1e3 * tip, color=colour, label=f"{text}, from rest")
                 ax.plot(angle, 1e3 * settled, "--", color=colour, lw=1.0, label=label)
@@ -268,7 +279,7 @@ def _word(modes: int) -> str:
     return f"{modes} free-free mode{'s' if modes > 1 else ''}"
 
 
-def figure_7(axes: Sequence[Axes]) -> Drawn:
+def figure_7(axes: Panels) -> Drawn:
     """Draw the flexible rod's tip at the small crank with one, two and three modes."""
     theta, exact = tip_from_rest(rod(FLEXIBLE, "overhang", ENOUGH, FRAME), 100.0)
     angle, gaps = np.degrees(theta), []
@@ -281,7 +292,7 @@ def figure_7(axes: Sequence[Axes]) -> Drawn:
     return Drawn([gaps[0], gaps[1] - gaps[2]])
 
 
-def large_crank(axes: Sequence[Axes], modes: int) -> Drawn:
+def large_crank(axes: Panels, modes: int) -> Drawn:
     """Draw the stiff rod's tip with so many free-free modes (Figs. 8 to 10)."""
     values: list[float] = []
     dashed: dict[str, Any] = {"color": COLOURS[1], "ls": "--"}
@@ -307,3 +318,184 @@ def large_crank(axes: Sequence[Axes], modes: int) -> Drawn:
             ax.plot(np.degrees(theta), 1e3 * tip, ":", color=COLOURS[0], lw=2.0, label=label)
             values.append(_gap(tip, linear))
     return Drawn(values)
+
+
+@lru_cache(maxsize=16)
+def _rod(
+    formulation: str, modes: int, drop: tuple[str, ...], ratio: float = _RATIO
+) -> LinearPeriodic:
+    return rod(FLEXIBLE, formulation, modes, drop, links__crank_ratio=ratio)
+
+
+def mean_frequency(formulation: str = "polynomial", modes: int = 3, ratio: float = _RATIO) -> float:
+    """Return the mean first natural frequency [rad/s] over the crank angle."""
+    return float(natural_frequencies(_rod(formulation, modes, AS_PRINTED, ratio), 0.0, 1).mean[0])
+
+
+def figure_11(axes: Panels) -> Drawn:
+    """Draw the first natural frequency with the crank held, against its angle."""
+    ax = axes[0]
+    for formulation, modes, style, colour in (
+        ("polynomial", 3, "-", COLOURS[0]),
+        ("overhang", ENOUGH, "--", COLOURS[1]),
+    ):
+        held = natural_frequencies(_rod(formulation, modes, AS_PRINTED))
+        label = f"{modes} {formulation} modes, mean {held.mean[0]:.1f} rad/s"
+        ax.plot(np.degrees(held.theta), held.frequency[:, 0], style, color=colour, label=label)
+        ax.axhline(held.mean[0], color=colour, lw=0.6, ls=(0, (1, 3)))
+    first = natural_frequencies(_rod("polynomial", 3, AS_PRINTED)).frequency[:, 0]
+    return Drawn([mean_frequency(), np.max(first) / np.min(first)])
+
+
+def figure_12(axes: Panels) -> Drawn:
+    """Draw the tip from rest near the mean frequency: three polynomials, and converged modes."""
+    mean, heights, turns = mean_frequency(), [], 60
+    runs = (
+        ("polynomial", 3, AS_PRINTED, mean),
+        ("polynomial", 3, AS_PRINTED, _QUOTED),
+        ("overhang", ENOUGH, AS_PRINTED, _QUOTED),
+        ("overhang", ENOUGH, _COMPLETE, _QUOTED),
+    )
+    for k, (formulation, modes, drop, speed) in enumerate(runs):
+        system = _rod(formulation, modes, drop)
+        theta, tip = tip_from_rest(system, speed, turns=turns, steps=192)
+        physics = "as printed" if drop else "with tension"
+        label = f"{modes} {formulation} modes, {physics}, {speed:.4g} rad/s"
+        axes[k // 2].plot(theta / (2 * np.pi), tip, color=COLOURS[k], lw=0.7, label=label)
+        heights.append(np.abs(tip[1:]).reshape(turns, -1).max(axis=1))
+    three = heights[0]
+    values = [np.max(three), np.min(three) / np.max(three)]
+    values += [peak(_motion(*runs[k]).multipliers) for k in (0, 2)]
+    rows = []
+    speeds = (_QUOTED, mean, mean_frequency("overhang", ENOUGH))
+    for drop in (AS_PRINTED, _COMPLETE):
+        for formulation, modes in (("polynomial", 3), *(("overhang", n) for n in (2, 4, ENOUGH))):
+            cells = [f"{modes} {formulation} modes", "as printed" if drop else "with tension"]
+            for speed in speeds:
+                motion = _motion(formulation, modes, drop, speed)
+                growth = 0.0 if motion.stable else float(motion.growth)
+                cells.append(f"{peak(motion.multipliers):.5f}, {growth:.2f} 1/s")
+            rows.append(cells)
+    return Drawn(values, {"speeds": speeds}, [rows])
+
+
+def _motion(
+    formulation: str, modes: int, drop: tuple[str, ...], speed: float, ratio: float = _RATIO
+) -> FloquetMultipliers:
+    return floquet_multipliers(_rod(formulation, modes, drop, ratio), speed, rtol=1e-9)
+
+
+@lru_cache(maxsize=4)
+def resonances(ratio: float) -> ResonanceCurve:
+    """Return the damped resonance curve of the flexible rod's tip at a crank ratio.
+
+    Two overhang modes, with tension; internal damping, 1 % of critical in the first mode.
+    """
+    system = _rod("overhang", 2, _COMPLETE, ratio)
+    stiffness = 0.7e11 * 0.5208e-6
+    drag = 2 * 0.01 * stiffness / mean_frequency("overhang", 2, ratio)
+    speeds = np.geomspace(150.0, 1000.0, 240)
+    return resonance_curve(system.with_parameters(internal_damping=drag), speeds)
+
+
+def figure_resonances(axes: Panels) -> Drawn:
+    """Draw the largest steady tip deflection against the crank speed, for three crank ratios."""
+    ax = axes[0]
+    values: list[float] = []
+    for ratio in (0.05, 0.1, _RATIO):
+        curve = resonances(ratio)
+        curve.plot(ax).lines[-1].set_label(f"crank ratio {ratio:g}")
+        mean, first = float(curve.mean_frequency[0]), curve.mode == 1
+        at = zip(curve.order[first], curve.maxima[first], strict=True)
+        values += [order * speed / mean for order, speed in at if order <= 4]
+        system = _rod("polynomial", 3, AS_PRINTED, ratio)
+        values.append(peak(tip_from_rest(system, mean_frequency(ratio=ratio) / 10, turns=10)[1]))
+        for order in range(1, 6) if ratio == _RATIO else ():
+            ax.axvline(mean / order, color="0.7", lw=0.6, ls=(0, (1, 3)))
+    return Drawn(values)
+
+
+@lru_cache(maxsize=4)
+def chart(formulation: str, modes: int, drop: tuple[str, ...]) -> StabilityChart:
+    """Return the flexible rod's stability over crank speed and crank ratio."""
+    system = _rod(formulation, modes, drop, 0.1)
+    return stability_chart(system, ("speed", _SPEEDS), ("crank_ratio", np.linspace(0.01, 0.2, 191)))
+
+
+@lru_cache(maxsize=4)
+def frequencies(formulation: str, modes: int) -> Array:
+    """Return the natural frequencies [rad/s] of the rod as the crank's length goes to zero."""
+    return natural_frequencies(_rod(formulation, modes, AS_PRINTED, 1e-6)).mean
+
+
+def figure_chart(axes: Panels) -> Drawn:
+    """Draw two bases, three polynomials and four overhang modes, with and without tension."""
+    from matplotlib.colors import ListedColormap
+
+    colours, rows = ListedColormap(["#ffffff", *(colour for _, colour, _ in _KINDS)]), []
+    for ax, (formulation, modes, drop, words) in zip(axes, _PANELS, strict=True):
+        points = chart(formulation, modes, drop)
+        codes = sum((points.kind == kind) * (i + 1) for i, (kind, _, _) in enumerate(_KINDS))
+        ax.pcolormesh(points.x, points.y, codes, cmap=colours, vmin=0, vmax=3, rasterized=True)
+        _mark(ax, frequencies(formulation, modes))
+        panel_title(ax, f"{modes} {formulation} modes, {words}")
+        shares = (100.0 * float(np.mean(points.kind == kind)) for kind, _, _ in _KINDS)
+        rows.append((f"{modes} {formulation}", words, *shares, np.max(points.error)))
+    for _, colour, label in _KINDS:
+        axes[0].fill([], [], color=colour, label=label)
+    # Frequencies of two bases, a practical rod's multiplier, where regions start.
+    three, four = frequencies("polynomial", 3), frequencies("overhang", 4)
+    values = [three[0] / four[0], (three[0] + three[1]) / (four[0] + four[1])]
+    values.append(peak(_motion("overhang", 2, AS_PRINTED, 20.0, 0.3).multipliers))
+    values += [_start(0, 0, 1, 0.01), _start(0, 1, 1, 0.01), _start(1, 1, 2, 0.05)]
+    return Drawn(values, tables=[rows])
+
+
+def _mark(ax: Axes, omega: Array) -> None:
+    """Mark the speeds from which regions start, at the foot of the axes, where they fit."""
+    places = sorted(
+        (float((omega[i] + omega[j]) / n), _name(i, j, n))
+        for i, j in combinations_with_replacement(range(2), 2)
+        for n in range(1, 4)
+    )
+    groups: list[list[tuple[float, str]]] = []
+    for place in places:
+        if not _SPEEDS[0] <= place[0] <= _SPEEDS[-1]:
+            continue
+        ax.plot([place[0]], [0.0], "^", color="0.2", ms=4, zorder=6)
+        # Marks closer than 150 rad/s share one label.
+        if groups and place[0] - groups[-1][-1][0] < 150.0:
+            groups[-1].append(place)
+        else:
+            groups.append([place])
+    ax.axhline(0.0, color="0.2", lw=0.7)
+    for i, group in enumerate(groups):
+        # Neighbours stand on two lines, so that they do not meet.
+        ax.annotate(
+            ", ".join(name for _, name in group),
+            (float(np.mean([speed for speed, _ in group])), 0.0),
+            xytext=(0.0, -4.0 - 9.0 * (i % 2)),
+            textcoords="offset points",
+            ha="center",
+            va="top",
+            fontsize=6.5,
+        )
+
+
+def _name(i: int, j: int, n: int) -> str:
+    if i == j and n == 2:
+        return rf"$\omega_{i + 1}$"
+    above = rf"2\omega_{i + 1}" if i == j else rf"\omega_{i + 1}+\omega_{j + 1}"
+    if n == 1:
+        return f"${above}$"
+    return f"${above}/{n}$" if i == j else f"$({above})/{n}$"
+
+
+def _start(i: int, j: int, n: int, ratio: float) -> float:
+    """Return the middle of a region at a crank ratio over where it should start."""
+    points, omega = chart("overhang", 4, AS_PRINTED), frequencies("overhang", 4)
+    start = float(omega[i] + omega[j]) / n
+    row = points.kind[int(np.argmin(np.abs(points.y - ratio)))]
+    kind = 2 if i != j else (-1) ** n
+    near = points.x[(row == kind) & (np.abs(points.x - start) < 0.05 * start)]
+    return (float(np.mean(near)) if len(near) else float("nan")) / start

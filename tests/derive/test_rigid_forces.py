@@ -6,7 +6,6 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import mpmath
-import numpy as np
 import pytest
 import sympy as sp
 from derivations import namespace_of
@@ -23,10 +22,10 @@ from force_machines import (
     cartesian,
     eliminate,
     emitted,
-    random_machine,
+    random_machines,
     state_of,
 )
-from forces_truth import LOADS, MECHANISMS, forces, loads
+from forces_truth import LOADS, MECHANISMS, MOMENTS, forces, loads
 
 FULL = ModelSpec("four_bar", "forces")
 
@@ -38,12 +37,11 @@ FULL = ModelSpec("four_bar", "forces")
 @pytest.mark.parametrize("mechanism", MECHANISMS)
 def test_multipliers_and_free_bodies_agree(mechanism, loaded):
     """The emitted closed forms have the digits of the free bodies: ``emitted_accuracy``."""
-    random = np.random.default_rng(8 if loaded else 7)
     reference = (loads if loaded else forces)(mechanism)
     redundant = emitted(f"{mechanism}_multibody")
-    for _ in range(30):
-        numbers = random_machine(mechanism, random)
-        numbers |= {"speed": 0.0, "acceleration": 0.0} if loaded else dict.fromkeys(LOADS, 0.0)
+    for numbers in random_machines(mechanism, loaded=loaded):
+        absent = ("speed", "acceleration", *MOMENTS) if loaded else LOADS
+        numbers |= dict.fromkeys(absent, 0.0)
         with mpmath.workdps(30):
             exact = reference({name: mpmath.mpf(value) for name, value in numbers.items()})
         size = max(abs(float(value)) for value in exact.values())
@@ -58,12 +56,10 @@ def test_multipliers_and_free_bodies_agree(mechanism, loaded):
 @pytest.mark.parametrize("mechanism", MECHANISMS)
 def test_the_free_linkage_follows_its_torque(mechanism):
     """Forward dynamics under the closed form's torque gives back the acceleration put into it."""
-    random = np.random.default_rng(9)
     module = emitted(f"{mechanism}_forces")
     free = namespace_of(ModelSpec(mechanism, "multibody", drop=("drive",)))
     free = SimpleNamespace(**free)
-    for _ in range(20):
-        numbers = random_machine(mechanism, random)
+    for numbers in random_machines(mechanism):
         for n in (2, 3, 4):  # a mass that exists: the equations are to be solved for motion
             numbers |= {f"mass{n}": 3.0, f"inertia{n}": 40.0}
         numbers |= dict.fromkeys(LOADS, 0.0)

@@ -12,12 +12,12 @@ from elastolink.runtime.beams import (
     linear_system,
     linkage_system,
 )
-from elastolink.runtime.core.trigonometric import even_angles, interpolated
 from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.linkages.linkage import LinkMotion
 from elastolink.runtime.recovery import BeamMotion
 from elastolink.runtime.recovery.stresses import StressResult
 from elastolink.runtime.systems import with_modal_damping
+from periodic_systems import second_order
 
 STEEL = {"modulus": 210e9, "density": 7850.0}
 FOUR_BAR = FourBar(crank=0.170, coupler=0.328, follower=0.525, frame=0.547)
@@ -45,26 +45,12 @@ def fourier_derivative(count, period=2 * np.pi):
 def periodic_motion(system, speed, count=64):
     """Return the steady state at one speed by collocation of the second-order equation."""
     n, theta = system.size, system.period * np.arange(count) / count
-
-    def at(name):
-        return system.array(name, theta, speed=speed)
-
-    def slope(name):
-        if not system.has(name):
-            return 0.0
-        angles = even_angles(system.period, 1024)
-        series = interpolated(system.array(name, angles, speed=speed), system.period)
-        return series.derivative(theta)
-
+    stiffness, damping, mass, force = second_order(system, theta, speed)
     first = fourier_derivative(count, system.period)
-    gyroscopic = slope("M") + at("A") - np.swapaxes(at("A"), 1, 2)
-    stiffness = at("K") + at("Kg") + speed * at("D") + speed**2 * (slope("A") - at("B"))
-    damping = speed * at("C") + speed**2 * gyroscopic
-    blocks = np.einsum("st,sij->sitj", first @ first, speed**2 * at("M"))
-    blocks += np.einsum("st,sij->sitj", first, damping)
+    blocks = np.einsum("st,sij->sitj", first @ first, speed**2 * mass)
+    blocks += np.einsum("st,sij->sitj", first, speed * damping)
     places = np.arange(count)
     blocks[places, :, places, :] += stiffness
-    force = speed**2 * at("f") + speed * at("h") + at("p")
     q = np.linalg.solve(blocks.reshape(count * n, count * n), force.reshape(-1))
     q = q.reshape(count, n)
     return BeamMotion(theta=theta, q=q, qd=speed * (first @ q), speed=speed, period=system.period)

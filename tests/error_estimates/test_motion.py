@@ -25,6 +25,7 @@ def four_bar_errors(point):
     lengths = [point.inputs[name] for name in LENGTHS]
     assembly = "open" if point.fixed["assembly"] > 0 else "crossed"
     motion = FourBar(*lengths, assembly).motion(point.inputs["theta2"])
+    assert motion.passed
     with mpmath.workdps(80):
         theta2, *exact = (mpmath.mpf(v) for v in (point.inputs["theta2"], *lengths))
         true = angles(theta2, *exact, mpmath.mpf(point.fixed["assembly"]))
@@ -41,6 +42,7 @@ def slider_errors(point):
     lengths = [point.inputs[name] for name in ("crank", "coupler", "offset")]
     assembly = "open" if point.fixed["assembly"] > 0 else "crossed"
     motion = SliderCrank(*lengths, assembly).motion(point.inputs["theta2"])
+    assert motion.passed
     with mpmath.workdps(80):
         truth = slider_motion({name: mpmath.mpf(v) for name, v in point.arguments.items()})
         turned = abs(mpmath.mpf(float(motion.theta3)) - truth["theta3"])
@@ -52,6 +54,7 @@ def rod_errors(point):
     """Return the estimate and the worse of the two actual errors, of a quick-return."""
     frame, crank = (point.inputs[name] for name in ("frame", "crank"))
     motion = QuickReturn(frame, crank, frame + crank).motion(point.inputs["theta2"])
+    assert motion.passed
     with mpmath.workdps(80):
         numbers = {name: mpmath.mpf(v) for name, v in point.arguments.items()}
         found = mpmath.mpf(float(motion.theta4))

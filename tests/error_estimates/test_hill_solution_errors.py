@@ -1,6 +1,6 @@
 """Figures of periodic solutions on boundaries, against Fourier matrices in more digits.
 
-The reference iterates on a whole subspace with a matrix of its own assembly: both ends of a region,
+The reference iterates on a whole subspace with the exact Fourier matrix: both ends of a region,
 or an end and the next region's, so that pairs of any closeness are told apart.  Where they lie
 close it computes with 60 digits, elsewhere in extended precision.
 """
@@ -10,9 +10,11 @@ from __future__ import annotations
 import mpmath
 import numpy as np
 import pytest
+from boundary_truth import combined, fixed, hill_rows, number
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import boundary_solution, hill_boundaries
+from exact_hill import ExactHarmonics
 from honesty import over_scenes
 
 pytestmark = pytest.mark.skipif(
@@ -54,40 +56,18 @@ def as_long(values):
     return high.astype(np.longdouble) + rest
 
 
-def fourier_matrix(functions, mu, damping, k, exact):
-    """Return the matrix of ``-y'' - 2 K y' - F y`` on cos k theta, then sin k theta."""
-    places = {float(wave): i for i, wave in enumerate(k)}
-    size, half = len(k), more_digits([0.5], exact)[0]
-    highest = max(f.harmonics for f in functions)
-    a, b = (more_digits(np.zeros(1 + highest), exact) for _ in range(2))
-    for f, value in zip(functions, more_digits(mu, exact), strict=True):
-        a[: f.harmonics + 1] += value * more_digits(f.a, exact)
-        b[: f.harmonics + 1] += value * more_digits(f.b, exact)
-    out = np.array([more_digits(np.zeros(2 * size), exact) for _ in range(2 * size)])
-
-    def add(wave, sine, column, amount):
-        """Add to cos or sin of any wave number, negative ones included."""
-        row = places.get(abs(wave))
-        if row is not None and not (sine and wave == 0):
-            sign = -1 if sine and wave < 0 else 1
-            out[row + size * sine, column] -= sign * amount
-
-    for i, wave in enumerate(k):
-        square = more_digits([wave * wave], exact)[0]
-        out[i, i] += square
-        out[i + size, i + size] += square
-        turn = 2 * more_digits([damping], exact)[0] * more_digits([wave], exact)[0]
-        out[i + size, i] += turn  # cos' = -k sin
-        out[i, i + size] -= turn
-        for h in range(len(a)):
-            add(wave + h, 0, i, half * a[h])
-            add(wave - h, 0, i, half * a[h])
-            add(wave + h, 1, i, half * b[h])
-            add(h - wave, 1, i, half * b[h])
-            add(wave + h, 1, i + size, half * a[h])
-            add(wave - h, 1, i + size, half * a[h])
-            add(h - wave, 0, i + size, half * b[h])
-            add(h + wave, 0, i + size, -half * b[h])
+def fourier_matrix(functions, mu, damping, n, count, exact):
+    """Return the matrix of ``-y'' - 2 K y' - F y`` on cos k theta, then sin k theta, k > 0."""
+    parts = [
+        ExactHarmonics.of(float(f.a[0]), f.a[1:].tolist(), f.b[1:].tolist()) for f in functions
+    ]
+    a, b = ([fixed(x) for x in row] for row in combined(parts, mu))
+    rows = hill_rows(a, b, fixed(damping), n % 2, count - 1)
+    places = {key: i for i, key in enumerate(sorted(rows, key=lambda key: key[::-1]))}
+    out = np.array([more_digits(np.zeros(len(rows)), exact) for _ in rows])
+    for key, row in rows.items():
+        values = [mpmath.mpf(number(value)) for value in row.values()]
+        out[places[key], [places[j] for j in row]] = values if exact else as_long(values)
     return out
 
 
@@ -154,9 +134,7 @@ def truth(given, found):
     # A way beyond these and back is 1e-28 of the coupling of the pair.
     highest = int(seen) + 2 + max(f.harmonics for f in functions)
     k = np.arange(highest) + 0.5 * (n % 2)
-    matrix = fourier_matrix(functions, mu, damping, k, exact)
-    if n % 2 == 0:  # no sine of 0
-        matrix = np.delete(np.delete(matrix, highest, 0), highest, 1)
+    matrix = fourier_matrix(functions, mu, damping, n, highest, exact)
     pair = gap < 1e-2 * max(1.0, abs(target))
     # Between the two, or a little beyond both.
     away = max(0.55 * gap if pair else 0.0, 1e-7 * max(1.0, abs(target))) * (1 if first else -1)

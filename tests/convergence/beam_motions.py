@@ -31,6 +31,9 @@ SECTIONS = {
         ("follower", 78.75e-6, 65.12e-12, 3.15e-3),
     )
 }
+# First frequency of a bar of 1 m, 10 mm thick, clamped at one end or (True) pinned at both [rad/s]:
+# (lambda L)^2 times sqrt(EI/m) = 14.93 m^2/s.
+FIRST = {False: 3.516 * 14.93, True: 9.870 * 14.93}
 JOINT_MASSES = {"B": 0.174, "C": 0.174}
 
 
@@ -115,15 +118,14 @@ def swinging(size, second=0.0, order=2):
 rocking = swinging(0.4)
 
 
-def rocking_bar(rng, elements):
-    """Return a random rocking bar and its speed, over its first frequency."""
-    angle = swinging(rng.uniform(0.05, 0.5), rng.uniform(-0.2, 0.2))
+def rocking_bar(rng, elements=1, *, thickness=0.01, drag=True):
+    """Return a random rocking bar of 1 m and its first frequency."""
+    angle = swinging(rng.uniform(0.02, 0.5), rng.uniform(-0.2, 0.2), int(rng.integers(2, 4)))
     pinned = bool(rng.integers(2))
-    # (lambda L)^2 of a pinned and of a clamped bar of 1 m, 10 mm thick: sqrt(EI/m) = 14.93 m^2/s.
-    first = (9.870 if pinned else 3.516) * 14.93
-    drag = rng.uniform(0.01, 0.1) * first
-    system = turning_bar(angle, pinned=pinned, drag=drag, elements=elements)
-    return system, rng.uniform(0.03, 0.6) * first
+    first = FIRST[pinned] * thickness / 0.01
+    loss = 10.0 ** rng.uniform(-2.5, -0.7) * first if drag else 0.0
+    made = turning_bar(angle, pinned=pinned, thickness=thickness, drag=loss, elements=elements)
+    return made, first
 
 
 def four_bar(elements=1, sections=SECTIONS, **options):

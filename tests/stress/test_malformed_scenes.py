@@ -6,7 +6,7 @@ from importlib import resources
 
 import pytest
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.scenes import list_scenes, load_scene, scene_from_document
+from elastolink.runtime.scenes import load_scene, scene_from_document
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -261,12 +261,3 @@ def test_any_document_at_all(content):
     document = content if isinstance(content, dict) else {"model": content}
     with pytest.raises(BadInput):
         scene_from_document("random", document)
-
-
-def test_the_built_in_files_use_no_key_that_the_schema_lacks():
-    for name in list_scenes():
-        raw = tomllib.loads((FOLDER / f"{name}.toml").read_text())
-        scene = load_scene(name)
-        for table, entries in raw.items():
-            if isinstance(entries, dict):
-                assert set(entries) <= set(scene[table])

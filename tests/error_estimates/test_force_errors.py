@@ -6,33 +6,16 @@ import numpy as np
 import pytest
 import rigid_truth
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
+from elastolink.runtime.linkages import FourBar, SliderCrank
 from elastolink.runtime.rigid import Load, Machine, MassDistribution, rigid_forces
 from honesty import over_scenes
+from random_linkages import KINDS, random_linkage
 
 ANGLES = 2
 
 
-def random_linkage(kind, random):
-    while True:
-        scale = 10.0 ** random.uniform(-3, 3)
-        try:
-            if kind == "four-bar":
-                lengths = random.uniform(0.1, 1.0, 4) * scale
-                return FourBar(*map(float, lengths), random.choice(["open", "crossed"]))
-            if kind == "slider-crank":
-                crank, coupler = random.uniform(0.1, 1.0, 2) * scale
-                offset = random.uniform(-0.5, 0.5) * scale
-                branch = random.choice(["open", "crossed"])
-                return SliderCrank(float(crank), float(coupler), float(offset), branch)
-            frame, crank = (float(size) for size in random.uniform(0.1, 1.0, 2) * scale)
-            return QuickReturn(frame, crank, 1.5 * (frame + crank))
-        except BadInput:
-            continue
-
-
 def random_machine(kind, random):
-    linkage = random_linkage(kind, random)
+    linkage = random_linkage(random, kind, 10.0 ** random.uniform(-3, 3))
     size = max(linkage.lengths.values())
     masses = {}
     for link in linkage.links:
@@ -63,7 +46,7 @@ def random_angles(linkage, random):
 
 
 @over_scenes(20260, few=20, many=80, floor=np.finfo(float).tiny)
-@pytest.mark.parametrize("kind", ["four-bar", "slider-crank", "quick-return"])
+@pytest.mark.parametrize("kind", KINDS)
 def test_the_estimate_covers_the_error_and_is_not_idle(rng, kind):
     machine, wrenches = random_machine(kind, rng)
     theta = random_angles(machine.linkage, rng)

@@ -5,21 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
 from elastolink.runtime.linkages.length_tolerances import tolerances
 from elastolink.runtime.rigid import Machine, MassDistribution
-
-
-def drawn(random, size):
-    """Return a random linkage whose lengths are of about a size."""
-    kind = random.integers(3)
-    assembly = str(random.choice(["open", "crossed"]))
-    if kind == 0:
-        return FourBar(*(size * random.uniform(0.1, 3.0, 4)), assembly=assembly)
-    if kind == 1:
-        offset = size * random.choice([0.0, random.uniform(-1.0, 1.0)])
-        return SliderCrank(*(size * random.uniform(0.1, 3.0, 2)), offset, assembly)
-    return QuickReturn(*(size * random.uniform(0.1, 3.0, 2)), size * random.uniform(1.0, 9.0))
+from random_linkages import KINDS, random_linkage
 
 
 def with_masses(linkage, size):
@@ -33,10 +21,7 @@ def test_random_linkages(size, scenes):
     random = np.random.default_rng(int(abs(np.log10(size))))
     shown = refused = 0
     while shown < scenes:
-        try:
-            linkage = drawn(random, size)
-        except BadInput:
-            continue
+        linkage = random_linkage(random, random.choice(KINDS), size)
         low, high = linkage.crank_ranges()[-1]
         theta = random.uniform(low, high, 5) + 2.0 * np.pi * random.integers(-2, 3)
         widths = {

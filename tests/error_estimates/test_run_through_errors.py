@@ -13,7 +13,7 @@ from beam_motions import rocking_bar
 from elastolink.runtime.beams import Section
 from elastolink.runtime.core.collocation import gauss_maps
 from elastolink.runtime.design import SpeedProfile, run_through
-from elastolink.runtime.design.transient import largest_by_shape
+from elastolink.runtime.design.transient import _between, largest_by_shape
 from elastolink.runtime.periodic import steady_state
 from honesty import over_scenes
 from periodic_systems import second_order
@@ -118,6 +118,14 @@ def test_the_reference_is_one():
         system, first = rocking_bar(rng, thickness=0.1)
         one, other = exact_largest(system, random_profile(rng, first), start, (PHASE, 0.6 * PHASE))
         assert abs(one / other - 1.0) < 1e-6
+
+
+@pytest.mark.parametrize("at", [18.5, 18.7, 18.9])
+def test_a_peak_between_the_last_two_steps_is_told(at):
+    wave = np.cos(0.3 * (np.arange(20.0) - at))[:, None]
+    for values in (wave, wave[::-1]):
+        missed = 1.0 / np.max(values) - 1.0
+        assert missed <= _between(values)[0] < 10.0 * missed
 
 
 @over_scenes(8200, few=2, many=80, floor=1e-12)

@@ -20,6 +20,7 @@ from elastolink import generated
 from elastolink.derive import entries, lowering, separation
 from elastolink.derive.pipeline import lower
 from elastolink.derive.spec import ModelSpec
+from free_free_truth import MODES_MODULE, mode_points
 from judging import Exact, Point, Reference, exact_at, reference_of
 from meissner_truth import meissner_points
 from overhang_truth import overhang_points
@@ -30,7 +31,7 @@ MOVING_ROD = "quick_return_rod_moving_basis"
 MODES = (*range(1, 13), 30, 59, 60)
 OVERHANG, MEISSNER = "quick_return_overhang_modes", "hill_meissner"
 PREFIXES = ("beam_element_", "beam_shapes_", SANDWICH, ROD_POLYNOMIALS, MOVING_ROD)
-PREFIXES += (OVERHANG, MEISSNER)
+PREFIXES += (OVERHANG, MEISSNER, MODES_MODULE)
 
 
 def judged_unlowered(module: str, function: str) -> bool:
@@ -83,6 +84,8 @@ def _points(module: str, function: str) -> Iterator[Point]:
         return overhang_points(function)
     if module == MEISSNER:
         return meissner_points(function)
+    if module == MODES_MODULE:
+        return mode_points(function)
     if module.startswith("beam_element_"):
         return _element_points(names)
     if module.startswith("beam_shapes_"):

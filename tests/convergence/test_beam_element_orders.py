@@ -10,10 +10,7 @@ from elastolink.runtime.beams import Section, frame
 from elastolink.runtime.frequencies import element_matrices
 from orders import slopes
 
-SUPPORTS = {
-    "pinned": {"O": ("x", "y"), "P": ("y",)},
-    "cantilever": {"O": ("x", "y", "rotation")},
-}
+SUPPORTS = {"pinned": {"O": ("x", "y"), "P": ("y",)}, "cantilever": {"O": ("x", "y", "rotation")}}
 
 
 def frequencies(kind, count, support, **changes):

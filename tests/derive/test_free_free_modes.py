@@ -8,11 +8,7 @@ import pytest
 import sympy as sp
 from elastolink.derive.models import free_free_modes as ff
 from elastolink.derive.projection import greens_identity
-from elastolink.derive.projection.greens_identity import (
-    NoPrimitive,
-    integral,
-    primitive,
-)
+from elastolink.derive.projection.greens_identity import NoPrimitive, integral, primitive
 
 S = ff.MIDDLE
 B, C = sp.symbols("b4 c4", positive=True)

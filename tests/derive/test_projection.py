@@ -79,10 +79,7 @@ def beam_with_everything() -> ActionDensity:
             PointTerm(l3 / 3, tip / 3 * y.diff(t) ** 2 - k / 5 * y**2),
         ),
         force_density={y: -c * y.diff(t) + push * th2.diff(t) ** 2},
-        end_forces=(
-            EndForce(l3, y, 1, load - c * y.diff(x, t)),
-            EndForce(l3 / 4, y, 0, Fx),
-        ),
+        end_forces=(EndForce(l3, y, 1, load - c * y.diff(x, t)), EndForce(l3 / 4, y, 0, Fx)),
         essential=(Essential(0, y, 0), Essential(0, y, 1)),
         supports=(Support(l3 / 2, y, R),),
         dissipation=c / 3 * y.diff(t) ** 2 + k / 7 * y.diff(x, 2, t) ** 2,

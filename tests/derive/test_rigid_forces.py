@@ -10,21 +10,10 @@ import pytest
 import sympy as sp
 from derivations import namespace_of
 from elastolink.derive.models import four_bar_forces
-from elastolink.derive.rigid.newton_euler import (
-    balances,
-    solve,
-    unknowns_of,
-)
+from elastolink.derive.rigid.newton_euler import balances, solve, unknowns_of
 from elastolink.derive.rigid.planar import ETA, XI, MassMoments, Pin
 from elastolink.derive.spec import ModelSpec
-from force_machines import (
-    call,
-    cartesian,
-    eliminate,
-    emitted,
-    random_machines,
-    state_of,
-)
+from force_machines import call, cartesian, eliminate, emitted, random_machines, state_of
 from forces_truth import LOADS, MECHANISMS, MOMENTS, forces, loads
 
 FULL = ModelSpec("four_bar", "forces")

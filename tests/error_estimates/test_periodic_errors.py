@@ -61,11 +61,7 @@ def _outcomes(seed):
         assert run.passed, run.checks
         out[f"simulate {rtol:g}"] = _of_motion(run, exact)
 
-    for method, rtol in (
-        ("auto", 1e-10),
-        ("auto", 1e-4),
-        ("harmonic_balance", 1e-9),
-    ):
+    for method, rtol in (("auto", 1e-10), ("auto", 1e-4), ("harmonic_balance", 1e-9)):
         steady = steady_state(system, speed, method=method, rtol=rtol)
         exact_steady = motion(steady.theta)
         out[f"{method} {rtol:g}"] = _of_motion(steady, exact_steady)

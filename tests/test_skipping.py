@@ -60,7 +60,7 @@ print(json.dumps([root, loaded]))
 
 
 def test_the_package_loads_itself_alone_and_so_does_each_emitted_module():
-    """Beside NumPy, which all but the recursion need; that none imports more: test_walls."""
+    """Beside NumPy, which all but the recursion need; that none imports more: test_layers."""
     root, loaded = json.loads(python(MEASURE, *sorted(SPECS)))
     assert [name for name in root if name.startswith("elastolink")] == ["elastolink"]
     # The standard library's importing machinery and no numerics.

@@ -12,12 +12,12 @@ from elastolink.runtime.beams import (
     linear_system,
     linkage_system,
 )
-from elastolink.runtime.core.trigonometric import even_angles, interpolated
 from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.linkages.linkage import LinkMotion
 from elastolink.runtime.recovery import BeamMotion
 from elastolink.runtime.recovery.stresses import StressResult
 from elastolink.runtime.systems import with_modal_damping
+from periodic_systems import second_order
 
 STEEL = {"modulus": 210e9, "density": 7850.0}
 FOUR_BAR = FourBar(crank=0.170, coupler=0.328, follower=0.525, frame=0.547)
@@ -31,6 +31,9 @@ SECTIONS = {
         ("follower", 78.75e-6, 65.12e-12, 3.15e-3),
     )
 }
+# First frequency of a bar of 1 m, 10 mm thick, clamped at one end or (True) pinned at both [rad/s]:
+# (lambda L)^2 times sqrt(EI/m) = 14.93 m^2/s.
+FIRST = {False: 3.516 * 14.93, True: 9.870 * 14.93}
 JOINT_MASSES = {"B": 0.174, "C": 0.174}
 
 
@@ -45,26 +48,12 @@ def fourier_derivative(count, period=2 * np.pi):
 def periodic_motion(system, speed, count=64):
     """Return the steady state at one speed by collocation of the second-order equation."""
     n, theta = system.size, system.period * np.arange(count) / count
-
-    def at(name):
-        return system.array(name, theta, speed=speed)
-
-    def slope(name):
-        if not system.has(name):
-            return 0.0
-        angles = even_angles(system.period, 1024)
-        series = interpolated(system.array(name, angles, speed=speed), system.period)
-        return series.derivative(theta)
-
+    stiffness, damping, mass, force = second_order(system, theta, speed)
     first = fourier_derivative(count, system.period)
-    gyroscopic = slope("M") + at("A") - np.swapaxes(at("A"), 1, 2)
-    stiffness = at("K") + at("Kg") + speed * at("D") + speed**2 * (slope("A") - at("B"))
-    damping = speed * at("C") + speed**2 * gyroscopic
-    blocks = np.einsum("st,sij->sitj", first @ first, speed**2 * at("M"))
-    blocks += np.einsum("st,sij->sitj", first, damping)
+    blocks = np.einsum("st,sij->sitj", first @ first, speed**2 * mass)
+    blocks += np.einsum("st,sij->sitj", first, speed * damping)
     places = np.arange(count)
     blocks[places, :, places, :] += stiffness
-    force = speed**2 * at("f") + speed * at("h") + at("p")
     q = np.linalg.solve(blocks.reshape(count * n, count * n), force.reshape(-1))
     q = q.reshape(count, n)
     return BeamMotion(theta=theta, q=q, qd=speed * (first @ q), speed=speed, period=system.period)
@@ -129,15 +118,14 @@ def swinging(size, second=0.0, order=2):
 rocking = swinging(0.4)
 
 
-def rocking_bar(rng, elements):
-    """Return a random rocking bar and its speed, over its first frequency."""
-    angle = swinging(rng.uniform(0.05, 0.5), rng.uniform(-0.2, 0.2))
+def rocking_bar(rng, elements=1, *, thickness=0.01, drag=True):
+    """Return a random rocking bar of 1 m and its first frequency."""
+    angle = swinging(rng.uniform(0.02, 0.5), rng.uniform(-0.2, 0.2), int(rng.integers(2, 4)))
     pinned = bool(rng.integers(2))
-    # (lambda L)^2 of a pinned and of a clamped bar of 1 m, 10 mm thick: sqrt(EI/m) = 14.93 m^2/s.
-    first = (9.870 if pinned else 3.516) * 14.93
-    drag = rng.uniform(0.01, 0.1) * first
-    system = turning_bar(angle, pinned=pinned, drag=drag, elements=elements)
-    return system, rng.uniform(0.03, 0.6) * first
+    first = FIRST[pinned] * thickness / 0.01
+    loss = 10.0 ** rng.uniform(-2.5, -0.7) * first if drag else 0.0
+    made = turning_bar(angle, pinned=pinned, thickness=thickness, drag=loss, elements=elements)
+    return made, first
 
 
 def four_bar(elements=1, sections=SECTIONS, **options):

@@ -135,25 +135,29 @@ def by_explicit_steps(system: Constrained, q, qd, times, rtol=1e-11):
     return run.y[:n].T, run.nfev // 12
 
 
-def unconstrained(push) -> Constrained:
-    """Return one free coordinate, x'' = push(x, x')."""
+def unconstrained(push, slope=None) -> Constrained:
+    """Return one free coordinate, x'' = push(x, x') or push(x, x', t); slope is -dpush/dx."""
+    timed = push.__code__.co_argcount == 3
+
+    def none(q):
+        return np.zeros((*np.shape(q)[:-1], 0, 1))
 
     def dynamics(q, qd, t):
-        batch = np.shape(q)[:-1]
-        return {
-            "mass": np.ones((*batch, 1, 1)),
-            "rest": np.zeros((*batch, 1, 1)),
-            "forces": push(np.asarray(q), np.asarray(qd))[..., None],
-            "jacobian": np.zeros((*batch, 0, 1)),
-            "velocity_rhs": np.zeros((*batch, 0, 1)),
-            "gamma": np.zeros((*batch, 0, 1)),
-        }
+        q, qd = np.asarray(q), np.asarray(qd)
+        force = push(q, qd, np.asarray(t)[..., None]) if timed else push(q, qd)
+        whole = {"mass": np.ones((*q.shape, 1)), "rest": np.zeros((*q.shape, 1))}
+        held = dict.fromkeys(("jacobian", "velocity_rhs", "gamma"), none(q))
+        return {**whole, "forces": force[..., None], **held}
 
     def violation(q, t):
-        batch = np.shape(q)[:-1]
-        return {"constraints": np.zeros((*batch, 0, 1)), "jacobian": np.zeros((*batch, 0, 1))}
+        return dict.fromkeys(("constraints", "jacobian"), none(q))
 
-    return Constrained(1, 0, dynamics, violation)
+    def variations(q, qd, qdd, lam, t):
+        stiffness = slope(np.asarray(q))[..., None]
+        held = dict.fromkeys(("jacobian_rate", "jacobian_acceleration"), none(q))
+        return {"damping": 0.0 * stiffness, "stiffness": stiffness, **held}
+
+    return Constrained(1, 0, dynamics, violation, variations if slope else None)
 
 
 LENGTHS = {"frame": 1.0, "crank": 0.3, "coupler": 0.9, "follower": 0.8}

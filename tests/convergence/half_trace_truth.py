@@ -1,20 +1,11 @@
-"""Half traces to more digits than doubles hold: a Taylor series in extended precision.
-
-Shares nothing with the solver: steps of the initial value problem, each a power series of high
-order whose coefficients follow from those of f by the product rule.
-"""
+"""Half traces of Hill's equation to more digits than doubles hold: :mod:`taylor_truth`."""
 
 from __future__ import annotations
 
 import numpy as np
 from elastolink.runtime.core.periodic_function import PeriodicFunction
-from numpy.typing import ArrayLike, NDArray
-
-Real = np.longdouble
-Reals = NDArray[np.longdouble]
-
-_TURN = Real("6.283185307179586476925286766559005768394")
-_ORDER = 34
+from numpy.typing import ArrayLike
+from taylor_truth import Equation, Reals, flows
 
 
 def half_traces(f: PeriodicFunction, lam2: ArrayLike, mu: ArrayLike, damping: float = 0.0) -> Reals:
@@ -36,44 +27,21 @@ def half_traces(f: PeriodicFunction, lam2: ArrayLike, mu: ArrayLike, damping: fl
         growth of the solutions; elsewhere no better than doubles.
     """
     x, y = np.broadcast_arrays(np.asarray(lam2, dtype=float), np.asarray(mu, dtype=float))
-    lam, amp = x.ravel().astype(Real) - Real(damping) ** 2, y.ravel().astype(Real)
-    size = float(np.abs(lam).max() + np.abs(amp).max() * f.amplitudes.sum())
-    steps = int(max(32, 4 * f.harmonics, 8 * np.sqrt(size)))
-    h = _TURN / steps
-    m = np.arange(f.harmonics + 1).astype(Real)
-    powers = np.arange(_ORDER)
-    factorials = np.cumprod(np.maximum(powers, 1).astype(Real))
-    falling = np.asarray((m * h)[:, None] ** powers / factorials, dtype=Real)
-    value = np.stack([np.ones_like(lam), np.zeros_like(lam)])
-    slope = value[::-1].copy()
-    for step in range(steps):
-        series = _taylor(f, m, h * step, falling)
-        value, slope = _advance(value, slope, lam, amp, series, h)
-    trace: Reals = value[0] + slope[1]
-    trace = 0.5 * trace * np.exp(-_TURN * Real(damping))
+    real, loss = np.longdouble, np.longdouble(damping)
+    # Of exp(K theta) y and its derivative, this over a rate.
+    lam, amp = x.ravel().astype(real) - loss**2, y.ravel().astype(real)
+    rate = np.sqrt(np.max(np.abs(lam)) + np.max(np.abs(amp)) * f.amplitudes.sum() + real(0.1))
+    a, b = (
+        np.zeros((f.harmonics + 1, lam.size, 2, 2), dtype=real)
+        - np.multiply.outer(np.multiply.outer(part, amp), [[0, 0], [1 / rate, 0]])
+        for part in (f.a, f.b)
+    )
+    a[0, :, 0, 1] += rate
+    a[0, :, 1, 0] -= lam / rate
+    none = np.zeros((1, 1))
+    equation = Equation(a, b, 2.0 * np.pi, 1, none, none, np.ones(2))
+    # Small steps: next to few harmonics a series in time grows as an exponential of one.
+    whole = flows(equation, 1.0, int(max(32, 4 * f.harmonics, 8 * rate)))[-1]
+    turn = 8 * np.arctan(real(1))
+    trace: Reals = np.trace(whole, axis1=-2, axis2=-1) / 2 * np.exp(-turn * loss)
     return trace.reshape(x.shape)
-
-
-def _taylor(f: PeriodicFunction, m: Reals, t: Real, falling: Reals) -> Reals:
-    """Return the Taylor coefficients of f at t, in units of the step."""
-    a, b = f.a.astype(Real), f.b.astype(Real)
-    cos, sin = np.cos(m * t), np.sin(m * t)
-    out = np.empty(_ORDER, dtype=Real)
-    turned = ((cos, sin), (-sin, cos), (-cos, -sin), (sin, -cos))
-    for k, (c, s) in enumerate(turned):
-        out[k::4] = ((a * c + b * s) @ falling)[k::4]
-    return out
-
-
-def _advance(
-    value: Reals, slope: Reals, lam2: Reals, mu: Reals, series: Reals, h: Real
-) -> tuple[Reals, Reals]:
-    """Advance y and y' of both unit starts, ``(2, n)``, by one step."""
-    terms = np.zeros((_ORDER, *value.shape), dtype=Real)
-    terms[0], terms[1] = value, slope * h
-    for k in range(_ORDER - 2):
-        total = lam2 * terms[k] + mu * np.tensordot(series[: k + 1], terms[k::-1], axes=1)
-        terms[k + 2] = -h * h * total / ((k + 1) * (k + 2))
-    powers = np.arange(_ORDER).astype(Real)
-    # The smallest terms first.
-    return terms[::-1].sum(axis=0), (powers[::-1, None, None] * terms[::-1]).sum(axis=0) / h

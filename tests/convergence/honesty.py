@@ -8,6 +8,10 @@ import inspect
 import numpy as np
 import pytest
 
+extended = pytest.mark.skipif(
+    np.finfo(np.longdouble).eps > 1e-18, reason="the reference needs a long double of 80 bits"
+)
+
 
 def covers(estimates, actual, least=1, floor=1e-300, median=1e3):
     """Estimate over actual error: at least 1 in 99 %, median no larger than 1000.

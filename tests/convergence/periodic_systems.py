@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.core.trigonometric import resampled
+from elastolink.runtime.core.trigonometric import even_angles, interpolated, resampled
 from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.periodic.equation import equation_of
 
@@ -96,3 +96,30 @@ def hamiltonian_gap(system, speed, angles):
     hamiltonian = unit @ flow
     odd = np.abs(hamiltonian - np.swapaxes(hamiltonian, -1, -2))
     return float(np.max(odd) / np.max(np.abs(hamiltonian)))
+
+
+def second_order(system, theta, speed, acceleration=0.0):
+    """Return at angles, ``(nt, ...)``, the matrices of q, qd and qdd and the force of a system.
+
+    ``M qdd + (C + w G) qd + (K + Kg + w D + w^2 H + a E) q = w^2 f + w h + a g + p`` with
+    G = M' + A - A^T, H = A' - B, E = A - S.  Speed w and acceleration a are numbers, or one for
+    each angle; derivatives by the crank angle are those of Fourier series.
+    """
+    theta = np.atleast_1d(theta)
+    w, a = (np.broadcast_to(v, theta.shape)[:, None] for v in (speed, acceleration))
+    f, h, g, p = (system.array(name, theta, w) for name in "fhgp")
+    force = w**2 * f + w * h + a * g + p
+    w, a = w[..., None], a[..., None]
+
+    def at(name):
+        return system.array(name, theta, w)
+
+    def slope(name):
+        angles = even_angles(system.period, 1024)
+        return interpolated(system.array(name, angles), system.period).derivative(theta)
+
+    drift = at("A")
+    stiffness = at("K") + at("Kg") + w * at("D")
+    stiffness += w**2 * (slope("A") - at("B")) + a * (drift - at("S"))
+    damping = at("C") + w * (slope("M") + drift - np.swapaxes(drift, 1, 2))
+    return stiffness, damping, at("M"), force

@@ -31,10 +31,7 @@ BASES: Mapping[str, Callable] = {
     "two_segment": TwoSegmentBasis,
     "free_free_linear": FreeFreeBasis,
 }
-RODS: Mapping[str, Callable[[], Rod]] = {
-    "flexible": lambda: flexible(0.01, 100.0),
-    "stiff": stiff,
-}
+RODS: Mapping[str, Callable[[], Rod]] = {"flexible": lambda: flexible(0.01, 100.0), "stiff": stiff}
 # Angles of the steady motion, and steps of the one from rest: twice as many change nothing here.
 _SAMPLES = 64
 STEPS = 512

@@ -25,6 +25,7 @@ from itertools import pairwise
 
 import numpy as np
 import scipy.sparse as sp
+from beam_energies import monomials
 from scipy.sparse.linalg import splu
 
 INCH, POUND, POUND_FORCE = 0.0254, 0.45359237, 4.4482216152605
@@ -76,31 +77,14 @@ def kinematics(rod: Rod, theta: float) -> tuple[float, float, float, float]:
     return place, place * first.real, first.imag, second.imag
 
 
-def hermite(degree: int) -> np.ndarray:
-    """Return coefficients (function, power) of the Hermite shapes of an element 0 <= s <= 1."""
-    half = (degree + 1) // 2
-    rows = []
-    for s in (0.0, 1.0):
-        for k in range(half):
-            powers = np.arange(degree + 1)
-            factor = np.array([np.prod(np.arange(p - k + 1, p + 1)) for p in powers], dtype=float)
-            rows.append(np.where(powers >= k, factor * s ** np.maximum(powers - k, 0), 0.0))
-    return np.linalg.inv(np.array(rows)).T
-
-
-def derivative(coefficients: np.ndarray, times: int) -> np.ndarray:
-    for _ in range(times):
-        coefficients = coefficients[:, 1:] * np.arange(1, coefficients.shape[1])
-    return coefficients
-
-
 class Mesh:
     """Hermite elements over 0 <= x <= 1, pinned at 0."""
 
     def __init__(self, nodes: np.ndarray, degree: int = 5) -> None:
         self.nodes, self.degree = nodes, degree
         self.half = (degree + 1) // 2
-        self.shapes = hermite(degree)
+        ends = [monomials([s], degree + 1, k)[0] for s in (0.0, 1.0) for k in range(self.half)]
+        self.powers = np.linalg.inv(np.array(ends))
         self.size = self.half * len(nodes) - 1
         point, weight = np.polynomial.legendre.leggauss(degree + 2)
         point, weight = 0.5 * (point + 1), 0.5 * weight
@@ -120,10 +104,7 @@ class Mesh:
     def _local(self, element: int, s: np.ndarray, times: int) -> np.ndarray:
         long = self.nodes[element + 1] - self.nodes[element]
         scale = np.tile(long ** np.arange(self.half), 2) / long**times
-        coefficients = derivative(self.shapes, times)
-        return scale[:, None] * (
-            coefficients @ np.power.outer(s, np.arange(coefficients.shape[1])).T
-        )
+        return scale[:, None] * (monomials(s, self.degree + 1, times) @ self.powers).T
 
     def row(self, x: float, times: int) -> sp.csr_matrix:
         """Return the shape functions, or a derivative, at a place as a sparse row."""

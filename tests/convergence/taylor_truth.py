@@ -73,8 +73,13 @@ class Equation:
         return len(self.a) - 1
 
     @property
+    def turns(self):
+        """The period over that of a revolution."""
+        return np.longdouble(self.period / (2.0 * np.pi))
+
+    @property
     def rate(self):
-        return float(np.max(np.abs(np.linalg.eigvals(self.a[0]))))
+        return float(np.max(np.abs(np.linalg.eigvals(self.a[0].astype(float)))))
 
     def at(self, theta):
         """Return L at an angle [rad]."""
@@ -111,12 +116,14 @@ def flows(equation: Equation, turn: float, count: int) -> Reals:
     count : int
         Intervals between them.
     """
-    length = np.longdouble(equation.period) * np.longdouble(turn)
+    length = 2.0 * _PI * equation.turns * np.longdouble(turn)
     wave = 2.0 * np.pi * equation.harmonics / equation.period
-    size = max(float(np.linalg.norm(equation.at(0.0), 2)), equation.rate)
+    first = np.linalg.norm(equation.at(0.0).astype(float), 2, axis=(-2, -1))
+    size = max(float(np.max(first)), equation.rate)
     steps = max(1, int(np.ceil(float(length) / count * max(size / _PHASE, wave * _WAVES))))
     h = length / (count * steps)
-    state: Reals = np.eye(equation.states, dtype=np.longdouble)
+    state: Reals = np.zeros(equation.a.shape[1:], dtype=np.longdouble)
+    state += np.eye(equation.states)
     found = [state]
     series = _Series(equation, h)
     for k in range(count * steps):
@@ -130,13 +137,11 @@ class _Series:
     """Taylor coefficients of h L at the beginnings of steps."""
 
     def __init__(self, equation: Equation, h: np.longdouble) -> None:
-        m = equation.states
-        k = np.arange(len(equation.a)).astype(np.longdouble)
-        k = k * (2.0 * _PI / np.longdouble(equation.period))
+        k = np.arange(len(equation.a)).astype(np.longdouble) / equation.turns
         powers = np.arange(_ORDER)
         factorials = np.cumprod(np.maximum(powers, 1).astype(np.longdouble))
         self.falling = ((k[:, None] * h) ** powers / factorials).T.copy()
-        self.waves, self.h, self.shape = k, h, (-1, m, m)
+        self.waves, self.h, self.shape = k, h, (-1, *equation.a.shape[1:])
         self.a, self.b = (
             v.reshape(len(k), -1).astype(np.longdouble) for v in (equation.a, equation.b)
         )

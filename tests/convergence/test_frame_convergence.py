@@ -6,11 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from elastolink.runtime.frequencies import (
-    dynamic_stiffness,
-    element_matrices,
-    wittrick_williams,
-)
+from elastolink.runtime.frequencies import dynamic_stiffness, element_matrices, wittrick_williams
 from frame_truth import portal
 from scipy.linalg import eigh
 

@@ -6,16 +6,7 @@ import numpy as np
 import pytest
 from documented import documented_rows, last_digit
 from elastolink.runtime.constrained import periodic_orbit
-from free_free_loads import (
-    about,
-    difference,
-    in_step,
-    linear,
-    loaded,
-    part_of_inertia,
-    phases,
-    rod,
-)
+from free_free_loads import about, difference, in_step, linear, loaded, part_of_inertia, phases, rod
 from orders import slope
 
 SPEED = 150.0

@@ -8,15 +8,7 @@ import pytest
 from documented import documented_rows
 from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis, TwoSegmentBasis
 from orders import slope
-from rod_bases import (
-    BASES,
-    REFERENCE,
-    RODS,
-    condition,
-    deflection_error,
-    frequency_error,
-    tongue,
-)
+from rod_bases import BASES, REFERENCE, RODS, condition, deflection_error, frequency_error, tongue
 
 PAGE, PLACES = "rod_convergence", (0.4, 0.6, 0.8)
 COUNTS = (2, 3, 4, 6, 8, 12, 16)

@@ -1,4 +1,4 @@
-"""The rotating, translating, inextensible beam with an end load, in variants."""
+"""Actions that tests share: a beam at rest, and a coupler with an end load, in variants."""
 
 from __future__ import annotations
 
@@ -27,33 +27,29 @@ def zero(expression: sp.Expr) -> bool:
     return sp.expand(expression.doit()) == 0
 
 
+def beam(**changes: object) -> ActionDensity:
+    """Return the action of Euler and Bernoulli's beam, its ends free."""
+    density = mu / 2 * y.diff(t) ** 2 - EI / 2 * y.diff(x, 2) ** 2
+    return ActionDensity(x, t, l3, (y,), density).with_(**changes)
+
+
 def coupler(
-    *,
-    crank: sp.Expr = l2,
-    foreshortening: bool = True,
-    gravity: sp.Expr = sp.S.Zero,
-    essential: tuple[Essential, ...] = PINNED,
-    out_of_plane: bool = False,
-    **changes: object,
+    *, crank: sp.Expr = l2, gravity: sp.Expr = sp.S.Zero, **changes: object
 ) -> ActionDensity:
-    """Return the action with the end load Fx; N keeps the beam from stretching."""
+    """Return that of a turning, moving beam with the end load Fx; N keeps it from stretching."""
     w2, w3 = th2.diff(t), th3.diff(t)
-    along = crank * w2 * sp.sin(th3 - th2) + u.diff(t)
-    across = crank * w2 * sp.cos(th3 - th2) + w3 * (x + u)
-    if not out_of_plane:
-        along, across = along - w3 * y, across + y.diff(t)
-    kinetic = along**2 + across**2 + (y.diff(t) ** 2 if out_of_plane else 0)
+    along = crank * w2 * sp.sin(th3 - th2) + u.diff(t) - w3 * y
+    across = crank * w2 * sp.cos(th3 - th2) + w3 * (x + u) + y.diff(t)
     height = (x + u) * sp.sin(th3) + y * sp.cos(th3)
-    shortening = y.diff(x) ** 2 / 2 if foreshortening else 0
-    density = mu / 2 * kinetic - mu * gravity * height - EI / 2 * y.diff(x, 2) ** 2
+    density = mu / 2 * (along**2 + across**2) - mu * gravity * height - EI / 2 * y.diff(x, 2) ** 2
     action = ActionDensity(
         x,
         t,
         l3,
         (u, y, N),
-        density - N * (u.diff(x) + shortening),
+        density - N * (u.diff(x) + y.diff(x) ** 2 / 2),
         end_forces=(EndForce(l3, u, 0, Fx),),
-        essential=(Essential(0, u, 0), *essential),
+        essential=(Essential(0, u, 0), *PINNED),
         orders={u: 2, y: 1, N: 0},
     )
     return action.with_(**changes)

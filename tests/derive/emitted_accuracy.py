@@ -17,12 +17,11 @@ from pathlib import Path
 
 from elastolink import generated
 from forces_truth import exact_points as exact_forces
-from free_free_truth import MODES_MODULE, ROD_MODULE, WithModes, exact_modes, exact_rod
+from free_free_truth import ROD_MODULE, WithModes, exact_rod
 from frequency_truth import MODULE as FREQUENCY_FUNCTIONS
 from frequency_truth import exact_frequency_functions
 from judging import Exact, Judgement, judge, worst
 from linkage_truth import exact_points
-from sensitivity_truth import EXACT as SENSITIVITIES
 from sliding_truth import EXACT as SLIDING
 from unlowered import exact_unlowered, judged_unlowered
 
@@ -80,10 +79,7 @@ def _exact(module: str, function: str) -> tuple[Exact, ...]:
         return exact_frequency_functions(function)
     if module.endswith("_forces"):
         return exact_forces(module, function)
-    if module == MODES_MODULE:
-        return exact_modes(function)
-    motions = {**SENSITIVITIES, **SLIDING}
-    return motions[module]() if module in motions else exact_points()
+    return SLIDING[module]() if module in SLIDING else exact_points()
 
 
 @cache

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import importlib
+import inspect
 
 import mpmath
 import numpy as np
-from forces_truth import LOADS, MOMENTS, links
+from elastolink.runtime.core.families.emitted import array_function
+from forces_truth import links, points
+
+LENGTHS = ("frame", "crank", "coupler", "follower", "offset")
 
 
 def emitted(name):
@@ -16,39 +20,17 @@ def emitted(name):
 def call(module, function, numbers):
     """Return what an emitted function returns, by name."""
     kernel = getattr(module, function)
-    wanted = kernel.__code__.co_varnames[: kernel.__code__.co_argcount]
-    values = kernel(**{name: numbers[name] for name in wanted})
+    values = kernel(**{name: numbers[name] for name in inspect.signature(kernel).parameters})
     values = values if isinstance(values, tuple) else (values,)
     return dict(zip(module.RETURNS[function], values, strict=True))
 
 
-def random_machine(mechanism, random):
-    """Return numbers of a linkage of any class and assembly, well inside its range."""
-    while True:
-        lengths = 10.0 ** random.uniform(-0.7, 0.7, 4)
-        numbers = dict(zip(("frame", "crank", "coupler", "follower"), lengths, strict=True))
-        numbers |= {
-            "theta2": random.uniform(-7.0, 7.0),
-            "assembly": random.choice([-1.0, 1.0]),
-            "offset": random.uniform(-0.5, 0.5),
-            "speed": random.uniform(0.5, 20.0),
-            "acceleration": random.uniform(-200.0, 200.0),
-        }
-        numbers |= {name: random.uniform(-2.0, 2.0) for name in (*MOMENTS, *LOADS)}
-        if _inside(mechanism, numbers):
-            return {name: float(value) for name, value in numbers.items()}
-
-
-def _inside(mechanism, n):
-    if mechanism == "quick_return":
-        return abs(n["frame"] + n["crank"] * np.exp(1j * n["theta2"])) > 0.1 * n["crank"]
-    if mechanism == "slider_crank":
-        return abs(n["offset"] - n["crank"] * np.sin(n["theta2"])) < 0.95 * n["coupler"]
-    diagonal = abs(n["frame"] - n["crank"] * np.exp(1j * n["theta2"]))
-    cosine = (n["coupler"] ** 2 + n["follower"] ** 2 - diagonal**2) / (
-        2 * n["coupler"] * n["follower"]
-    )
-    return abs(cosine) < 0.95 and diagonal > 0.1 * n["crank"]
+def random_machines(mechanism, *, loaded=False):
+    """Yield numbers of random linkages with cranks of 1 m, all masses or all loads at random."""
+    for point in points(mechanism, loaded=loaded)[:80:3]:
+        size = point.inputs["crank"]
+        lengths = {k: v / size for k, v in point.inputs.items() if k in LENGTHS}
+        yield dict(point.arguments) | lengths
 
 
 def state_of(mechanism, numbers):
@@ -88,14 +70,8 @@ def cartesian(mechanism, found, numbers):
 
 def eliminate(module, numbers):
     """Return accelerations and multipliers of an emitted module at one state, by elimination."""
-    kernel, table = module.dynamics, module.ARRAYS["dynamics"]
-    wanted = kernel.__code__.co_varnames[: kernel.__code__.co_argcount]
-    values = kernel(**{name: numbers.get(name, 0.0) for name in wanted})
-    filled = {}
-    for name, (shape, entries) in table.items():
-        filled[name] = np.zeros(shape)
-        for i, j, place in entries:
-            filled[name][i, j] = values[place]
+    names = inspect.signature(module.dynamics).parameters
+    filled = array_function(module, "dynamics")(**{name: numbers.get(name, 0.0) for name in names})
     jacobian = filled["jacobian"]
     rows = len(jacobian)
     whole = np.block([[filled["mass"], -jacobian.T], [jacobian, np.zeros((rows, rows))]])

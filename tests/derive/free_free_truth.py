@@ -9,7 +9,7 @@ from __future__ import annotations
 import importlib
 import inspect
 import itertools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
 
 import mpmath
@@ -19,6 +19,7 @@ from elastolink.derive.external import external_values
 from elastolink.derive.lagrange import euler_lagrange, variational_equations
 from elastolink.derive.models import free_free_rod as rod
 from elastolink.runtime.core.families import Constrained
+from frequency_truth import clamped_root
 from judging import Exact, Point, reference_of
 
 MODES_MODULE = "beam_free_free_modes"
@@ -35,8 +36,7 @@ def parity(i: int) -> int:
 def root(i: int):
     """Return the i-th positive root of ``cos b cosh b = 1``."""
     with mpmath.workdps(DIGITS):
-        start = (i + mpmath.mpf(1) / 2) * mpmath.pi
-        return mpmath.findroot(lambda b: mpmath.cos(b) - 1 / mpmath.cosh(b), start)
+        return clamped_root(i)
 
 
 @lru_cache(maxsize=64)
@@ -106,84 +106,39 @@ def fair(function: Callable, names: tuple[str, ...], point: Point) -> dict[str, 
     return dict(zip(names, total, strict=True))
 
 
-# ---------------------------------------------------------------- the modes
-
-
-def _at_modes(function: str):
-    """Yield points and exact values of one function of the module of modes."""
+def mode_points(function: str) -> Iterator[Point]:
+    """Yield points of one emitted function of the modes: theirs, to double precision."""
+    if function == "slope_products":
+        for i, j in itertools.permutations((1, 2, 3, 4, 11, 30, 59, 60), 2):
+            slopes = {"end_slope": _end_slope(i), "other_end_slope": _end_slope(j)}
+            inputs = {"root": float(root(i)), "other": float(root(j)), **slopes}
+            fixed = {"parity": float(parity(i)), "other_parity": float(parity(j))}
+            yield Point(f"modes {i}, {j}", inputs, fixed)
+        return
     for i in NUMBERS:
-        b, p = root(i), parity(i)
-        fixed = {"parity": float(p)}
-        start = float((i + mpmath.mpf(1) / 2) * mpmath.pi)
-        with mpmath.workdps(DIGITS):
-            if function == "root_defect":
-                for offset in (float(b - start), 0.1, -0.2):
-                    at = mpmath.mpf(start) + offset
-                    values = {
-                        "defect": mpmath.sin(offset) - p / mpmath.cosh(at),
-                        "defect_slope": mpmath.cos(offset)
-                        + p * mpmath.sinh(at) / mpmath.cosh(at) ** 2,
-                    }
-                    yield Point(f"mode {i}", {"offset": offset, "start": start}, fixed), values
-            elif function == "mode_constants":
-                waves = [mode(i, mpmath.mpf(0), k) for k in (0, 1, 2, 3)]
-                k = 0 if p > 0 else 1
-                swing = abs(waves[k] - waves[k + 2] / b**2) / (2 * b**k)
-                values = {
-                    "amplitude": swing,
-                    "weight": 1 / (1 + p * mpmath.exp(-b)),
-                    "end_slope": mode(i, mpmath.mpf(1) / 2, 1),
-                }
-                yield Point(f"mode {i}", {"root": float(b)}, fixed), values
-            elif function == "slope_squares":
-                whole = [integral(k, i, i, (1, 1)) for k in range(3)]
-                values = {"plain": whole[0], "second": whole[2], **_shortening(whole)}
-                slope = float(mode(i, mpmath.mpf(1) / 2, 1))
-                yield Point(f"mode {i}", {"end_slope": slope}), values
-            else:
-                yield from _shapes_at(i, fixed)
+        b, p, name = root(i), parity(i), f"mode {i}"
+        fixed, start = {"parity": float(p)}, float((i + mpmath.mpf(1) / 2) * mpmath.pi)
+        if function == "root_defect":
+            for offset in (float(b - start), 0.1, -0.2):
+                yield Point(name, {"offset": offset, "start": start}, fixed)
+        elif function == "mode_constants":
+            yield Point(name, {"root": float(b)}, fixed)
+        elif function == "slope_squares":
+            yield Point(name, {"end_slope": _end_slope(i)})
+        else:
+            rise = mpmath.cosh(b / 2) if p > 0 else mpmath.sinh(b / 2)
+            inputs = {
+                "root": float(b),
+                "amplitude": float(mpmath.sqrt(mpmath.cosh(b)) / rise),
+                "weight": float(1 / (1 + p * mpmath.exp(-b))),
+                "phase": float((i + 1) % 4 * mpmath.pi / 2),
+            }
+            for eta in (0.0, 1e-9, 0.11, 0.5, 0.77, 1.0 - 2.0**-40, 1.0):
+                yield Point(f"{name} at {eta:g}", {"eta": eta, **inputs}, fixed)
 
 
-def _shapes_at(i: int, fixed: dict[str, float]):
-    b, p = root(i), parity(i)
-    inputs = {
-        "root": float(b),
-        "amplitude": float(mpmath.sqrt(mpmath.cosh(b)) / _rise(b, p)),
-        "weight": float(1 / (1 + p * mpmath.exp(-b))),
-        "phase": float((i + 1) % 4 * mpmath.pi / 2),
-    }
-    for eta in (0.0, 1e-9, 0.11, 0.5, 0.77, 1.0 - 2.0**-40, 1.0):
-        s = mpmath.mpf(eta) - mpmath.mpf(1) / 2
-        names = ("value", "slope", "curvature", "third")
-        values = {name: mode(i, s, k) for k, name in enumerate(names)}
-        yield Point(f"mode {i} at {eta:g}", {"eta": eta, **inputs}, fixed), values
-
-
-def _rise(b, p: int):
-    return mpmath.cosh(b / 2) if p > 0 else mpmath.sinh(b / 2)
-
-
-def _shortening(w) -> dict:
-    """Return int s alpha ds and alpha(-1/2) for alpha' = -w/2 without mean, w by its moments."""
-    with mpmath.workdps(DIGITS):
-        return {"inward": w[2] / 4 - w[0] / 16, "retreat": w[0] / 4 - w[1] / 2}
-
-
-def _pairs():
-    names = ("plain", "first", "second")
-    for i, j in itertools.permutations((1, 2, 3, 4, 11, 30, 59, 60), 2):
-        inputs = {
-            "root": float(root(i)),
-            "other": float(root(j)),
-            "end_slope": float(mode(i, mpmath.mpf(1) / 2, 1)),
-            "other_end_slope": float(mode(j, mpmath.mpf(1) / 2, 1)),
-        }
-        fixed = {"parity": float(parity(i)), "other_parity": float(parity(j))}
-        whole = [integral(k, i, j, (1, 1)) for k in range(3)]
-        values = dict(zip(names, whole, strict=True)) | _shortening(whole)
-        # Zero by symmetry, but for the last of these digits.
-        chopped = {name: v if abs(v) > mpmath.mpf(10) ** -100 else 0 for name, v in values.items()}
-        yield Point(f"modes {i}, {j}", inputs, fixed), chopped
+def _end_slope(i: int) -> float:
+    return float(mode(i, mpmath.mpf(1) / 2, 1))
 
 
 # ---------------------------------------------------------------- the rod
@@ -298,20 +253,10 @@ def _rod_points(count: int) -> tuple[tuple[Point, dict], ...]:
     return tuple(made)
 
 
-def exact_modes(function: str) -> tuple[Exact, ...]:
-    """Return exact values of one emitted function of the modes."""
-    emitted = importlib.import_module(f"{generated.__name__}.{MODES_MODULE}")
-    points = tuple(_pairs() if function == "slope_products" else _at_modes(function))
-    return _judged_by(getattr(emitted, function), emitted.RETURNS[function], points)
-
-
 def exact_rod(function: WithModes) -> tuple[Exact, ...]:
     """Return exact values of one emitted function of the rod."""
-    return _judged_by(function, function.names, _rod_points(function.count))
 
-
-def _judged_by(called: Callable, names: tuple[str, ...], points) -> tuple[Exact, ...]:
     def compute(point: Point, values: dict) -> Callable:
-        return lambda: (values, fair(called, names, point))
+        return lambda: (values, fair(function, function.names, point))
 
-    return tuple(Exact(point, compute(point, values)) for point, values in points)
+    return tuple(Exact(point, compute(point, v)) for point, v in _rod_points(function.count))

@@ -72,9 +72,7 @@ class Judgement:
 
 
 def reference_of(
-    inputs: Sequence[sp.Symbol],
-    outputs: Sequence[tuple[str, sp.Expr]],
-    steps: Steps | None = None,
+    inputs: Sequence[sp.Symbol], outputs: Sequence[tuple[str, sp.Expr]], steps: Steps | None = None
 ) -> Reference:
     """Return a function of mpmath numbers by name: expressions before any lowering."""
     chain = [] if steps is None else list(steps.needed(e for _, e in outputs).steps)

@@ -11,7 +11,7 @@ from functools import cache
 
 import mpmath
 import numpy as np
-from beam_energies import slope as derivative
+import periodic_systems
 from numpy.polynomial.legendre import leggauss
 from sympy.integrals.quadrature import gauss_legendre
 
@@ -217,19 +217,5 @@ def linear_forces(rod, size, theta, rate, acceleration):
 
 
 def second_order(system, theta, rate, acceleration):
-    """Return the matrices of q, qd, qdd and the force at one angle, with M' by differences."""
-
-    def at(name, angle):
-        return system.array(name, np.array([angle]))[0]
-
-    def slope(name):
-        # Nine points: truncation and rounding are both below 1e-12 at this step.
-        return derivative(lambda angle: at(name, angle), theta, 0.005)
-
-    a = at("A", theta)
-    gyroscopic = slope("M") + a - a.T
-    stiffness = at("K", theta) + rate * at("D", theta)
-    stiffness = stiffness + rate**2 * (slope("A") - at("B", theta)) + acceleration * a
-    damping = at("C", theta) + rate * gyroscopic
-    force = rate**2 * at("f", theta) + acceleration * at("g", theta)
-    return stiffness, damping, at("M", theta), force
+    """Return the matrices of q, qd, qdd and the force of a system at one angle."""
+    return [part[0] for part in periodic_systems.second_order(system, theta, rate, acceleration)]

@@ -9,14 +9,7 @@ import itertools
 
 import numpy as np
 import pytest
-from derivations import (
-    CONTENT,
-    QUICK,
-    WHOLE,
-    lowered,
-    namespace_of,
-    system_of,
-)
+from derivations import CONTENT, QUICK, WHOLE, lowered, namespace_of, system_of
 from elastolink.derive.bloch import Recursion
 from elastolink.derive.catalogue import CATALOGUE, find
 from elastolink.derive.emission import emit

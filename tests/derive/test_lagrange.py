@@ -198,12 +198,7 @@ def test_constrained_equations_are_no_linear_system():
 
 
 @pytest.mark.parametrize(
-    ("term", "shown"),
-    [
-        (x**3, "x"),
-        (td**3 * x, "td"),
-        (x.diff(t) ** 2 * y, "x_dot"),
-    ],
+    ("term", "shown"), [(x**3, "x"), (td**3 * x, "td"), (x.diff(t) ** 2 * y, "x_dot")]
 )
 def test_what_has_no_place_is_refused(term, shown):
     with pytest.raises(NotRepresentable, match=shown):

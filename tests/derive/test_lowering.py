@@ -31,19 +31,7 @@ class _Exact(ast.NodeTransformer):
         return ast.Call(ast.Name("number", ast.Load()), [ast.Constant(repr(node.value))], [])
 
 
-MPMATH = SimpleNamespace(
-    sin=mpmath.sin,
-    cos=mpmath.cos,
-    tan=mpmath.tan,
-    exp=mpmath.exp,
-    sinh=mpmath.sinh,
-    cosh=mpmath.cosh,
-    atan=mpmath.atan,
-    sqrt=mpmath.sqrt,
-    atan2=mpmath.atan2,
-    abs=abs,
-    floor=mpmath.floor,
-)
+MPMATH = SimpleNamespace(**{**vars(mpmath), "abs": abs})
 
 
 def evaluate(line, values):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import mpmath
 import pytest
 import sympy as sp
 from coupler_action import (
@@ -9,19 +10,23 @@ from coupler_action import (
     EI,
     PINNED,
     Fx,
+    beam,
     coupler,
+    g,
     l2,
     l3,
     mu,
     reduced,
     t,
     td,
+    tension,
     th2,
     th3,
     theta,
     theta3,
     x,
     y,
+    zero,
 )
 from elastolink.derive.arrays import DiscreteSystem
 from elastolink.derive.lagrange import NotRepresentable, quadratic_form
@@ -75,10 +80,7 @@ def beam_with_everything() -> ActionDensity:
             PointTerm(l3 / 3, tip / 3 * y.diff(t) ** 2 - k / 5 * y**2),
         ),
         force_density={y: -c * y.diff(t) + push * th2.diff(t) ** 2},
-        end_forces=(
-            EndForce(l3, y, 1, load - c * y.diff(x, t)),
-            EndForce(l3 / 4, y, 0, Fx),
-        ),
+        end_forces=(EndForce(l3, y, 1, load - c * y.diff(x, t)), EndForce(l3 / 4, y, 0, Fx)),
         essential=(Essential(0, y, 0), Essential(0, y, 1)),
         supports=(Support(l3 / 2, y, R),),
         dissipation=c / 3 * y.diff(t) ** 2 + k / 7 * y.diff(x, 2, t) ** 2,
@@ -149,3 +151,41 @@ def test_mass_normalisation_needs_equal_modal_masses():
     system = project(hamilton(action), y, sine_basis(x, l3), CRANK)
     with pytest.raises(ValueError, match="not a multiple of the identity"):
         mass_normalised(system)
+
+
+def test_tip_mass_frequencies_against_the_transcendental_equation():
+    """1 + cos b cosh b + b (cos b sinh b - sin b cosh b) = 0, from the textbooks."""
+    clamped = (Essential(0, y, 0), Essential(0, y, 1))
+    action = beam(essential=clamped, point_terms=(PointTerm(l3, tip / 2 * y.diff(t) ** 2),))
+    basis = FiniteBasis(x, l3, tuple((x / l3) ** (i + 2) for i in range(9)))
+    system = project(hamilton(action), y, basis, CRANK)
+
+    def characteristic(b):
+        bend = mpmath.cos(b) * mpmath.sinh(b) - mpmath.sin(b) * mpmath.cosh(b)
+        return 1 + mpmath.cos(b) * mpmath.cosh(b) + b * bend
+
+    with mpmath.workdps(40):
+        inert, stiff = (
+            mpmath.matrix(system.matrix(name).subs({mu: 1, EI: 1, l3: 1, tip: 1}).evalf(40))
+            for name in "MK"
+        )
+        root = mpmath.inverse(mpmath.cholesky(inert))
+        squares = sorted(mpmath.eigsy(root * stiff * root.T, eigvals_only=True))
+        for guess, square in zip((1.248, 4.031), squares, strict=False):
+            exact = mpmath.findroot(characteristic, guess) ** 2
+            assert abs(mpmath.sqrt(square) - exact) < 1e-6 * exact
+
+
+def test_gravity_adds_a_load_and_a_tension_by_weight():
+    """A change of the action alone moves tension, equation and arrays to a hand case."""
+    plain, heavy = coupler(crank=0), coupler(crank=0, gravity=g)
+    pull = -mu * g * (l3 - x) * sp.sin(th3)
+    assert zero(tension(hamilton(heavy)) - tension(hamilton(plain)) - pull)
+    loaded = hamilton(reduced(heavy))
+    added = loaded.equations[y] - hamilton(reduced(plain)).equations[y]
+    assert zero(added + mu * g * sp.cos(th3) - sp.diff(pull * y.diff(x), x))
+    sines = sine_basis(x, l3, sp.S.One)
+    system = project(loaded, y, sines, CRANK, followers=FOLLOWERS, geometric=(g,))
+    assert sp.simplify(system.matrix("p", 1)[0] + 2 * mu * g * l3 * sp.cos(theta3) / sp.pi) == 0
+    sag = system.matrix("Kg", 1)[0, 0]
+    assert sp.simplify(sag + mu * g * sp.pi**2 * sp.sin(theta3) / 4) == 0

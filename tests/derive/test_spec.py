@@ -10,13 +10,7 @@ from pathlib import Path
 
 import pytest
 from elastolink.derive.manifest import manifest_text
-from elastolink.derive.spec import (
-    MANIFEST,
-    Entry,
-    ModelSpec,
-    cache_folder,
-    read_manifest,
-)
+from elastolink.derive.spec import MANIFEST, Entry, ModelSpec, cache_folder, read_manifest
 from hypothesis import given
 from hypothesis import strategies as st
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 import sympy as sp
-from coupler_action import EI, Fx, N, coupler, l2, l3, mu, t, tension, th2, th3, u, x, y, zero
+from coupler_action import EI, Fx, N, beam, coupler, l2, l3, mu, t, tension, th2, th3, u, x, y, zero
 from elastolink.derive.arrays import CrankMotion
 from elastolink.derive.records import ActionDensity, EndForce, Essential, PointTerm, Support
 from elastolink.derive.variational import (
@@ -30,8 +30,7 @@ def test_string_and_euler_bernoulli_beam():
     assert zero(result.equations[y] - (T * d(y, (x, 2)) - mu * d(y, (t, 2))))
     assert zero(result.condition(l3, y, 0) + T * d(y, x))
     assert zero(result.condition(0, y, 0) - T * d(y, x))
-    beam = string.with_(density=mu / 2 * y.diff(t) ** 2 - EI / 2 * y.diff(x, 2) ** 2)
-    result = hamilton(beam)
+    result = hamilton(beam())
     assert zero(result.equations[y] + mu * d(y, (t, 2)) + EI * d(y, (x, 4)))
     assert zero(result.condition(l3, y, 0) - EI * d(y, (x, 3)))
     assert zero(result.condition(l3, y, 1) + EI * d(y, (x, 2)))
@@ -46,12 +45,7 @@ def test_mixed_derivatives_of_rotary_inertia():
 
 def test_end_conditions_of_mass_spring_and_moment():
     moment = sp.Symbol("moment")
-    action = ActionDensity(
-        x,
-        t,
-        l3,
-        (y,),
-        mu / 2 * y.diff(t) ** 2 - EI / 2 * y.diff(x, 2) ** 2,
+    action = beam(
         point_terms=(
             PointTerm(l3, tip / 2 * y.diff(t) ** 2 + J / 2 * y.diff(x, t) ** 2 - k / 2 * y**2),
         ),
@@ -69,12 +63,7 @@ def test_end_conditions_of_mass_spring_and_moment():
 
 def test_interior_support_spring_and_mass_jump_conditions():
     a, b, R = sp.symbols("a b R")
-    action = ActionDensity(
-        x,
-        t,
-        l3,
-        (y,),
-        mu / 2 * y.diff(t) ** 2 - EI / 2 * y.diff(x, 2) ** 2,
+    action = beam(
         point_terms=(PointTerm(b, tip / 2 * y.diff(t) ** 2 - k / 2 * y**2),),
         supports=(Support(a, y, R),),
     )
@@ -108,14 +97,7 @@ def test_sliding_support_carries_the_momentum_flux():
 def test_mass_that_moves_along_a_string():
     a = sp.Function("a")(t)
     speed = y.diff(t) + a.diff(t) * y.diff(x)
-    action = ActionDensity(
-        x,
-        t,
-        l3,
-        (y,),
-        mu / 2 * y.diff(t) ** 2 - EI / 2 * y.diff(x, 2) ** 2,
-        point_terms=(PointTerm(a, tip / 2 * speed**2),),
-    )
+    action = beam(point_terms=(PointTerm(a, tip / 2 * speed**2),))
     jump = next(j for j in hamilton(action).jumps if j.order == 0)
     slope = next(j for j in hamilton(action).jumps if j.order == 1)
     # the mass feels the acceleration of its own path: y_tt + 2 a' y_xt + a'^2 y_xx + a'' y_x

@@ -20,7 +20,9 @@ from elastolink import generated
 from elastolink.derive import entries, lowering, separation
 from elastolink.derive.pipeline import lower
 from elastolink.derive.spec import ModelSpec
+from free_free_truth import MODES_MODULE, mode_points
 from judging import Exact, Point, Reference, exact_at, reference_of
+from linkage_truth import nasty_points, random_points
 from meissner_truth import meissner_points
 from overhang_truth import overhang_points
 from sliding_truth import nasty_rods, random_rods
@@ -30,7 +32,8 @@ MOVING_ROD = "quick_return_rod_moving_basis"
 MODES = (*range(1, 13), 30, 59, 60)
 OVERHANG, MEISSNER = "quick_return_overhang_modes", "hill_meissner"
 PREFIXES = ("beam_element_", "beam_shapes_", SANDWICH, ROD_POLYNOMIALS, MOVING_ROD)
-PREFIXES += (OVERHANG, MEISSNER)
+SENSITIVITIES, CLEARANCE = "four_bar_sensitivities", "four_bar_clearance"
+PREFIXES += (OVERHANG, MEISSNER, MODES_MODULE, SENSITIVITIES, CLEARANCE)
 
 
 def judged_unlowered(module: str, function: str) -> bool:
@@ -83,6 +86,14 @@ def _points(module: str, function: str) -> Iterator[Point]:
         return overhang_points(function)
     if module == MEISSNER:
         return meissner_points(function)
+    if module == MODES_MODULE:
+        return mode_points(function)
+    if module == SENSITIVITIES:
+        points = random_points(60, seed=27) + nasty_points()[::3]
+        # Some are in proportion to the angle, which then has no digits that could be kept.
+        return (p for p in points if not 0 < abs(p.inputs["theta2"]) < 1e-100)
+    if module == CLEARANCE:
+        return _clearance_points()
     if module.startswith("beam_element_"):
         return _element_points(names)
     if module.startswith("beam_shapes_"):
@@ -111,6 +122,16 @@ def _random_points(names, count) -> Iterator[Point]:
     if "core_loss" in names:
         for loss in (0.0, 1e-9):
             yield Point(f"loss {loss:g}", {**_draw(random, names, -1, 1), "core_loss": loss})
+
+
+def _clearance_points() -> Iterator[Point]:
+    """Yield plays from 1e-12 to half of a link."""
+    for i, point in enumerate(random_points(200, seed=28) + nasty_points()):
+        share = (1e-12, 1e-6, 1e-3, 1e-2, 0.1, 0.5)[i % 6]
+        inputs = {name: point.inputs[name] for name in ("theta2", "frame", "crank")}
+        links = {"turning": point.inputs["follower"], "opposite": point.inputs["coupler"]}
+        play = {"play": share * min(links.values())}
+        yield Point(f"{point.name}, play {share:g}", {**inputs, **links, **play})
 
 
 def _element_points(names) -> Iterator[Point]:

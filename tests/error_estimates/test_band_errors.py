@@ -11,14 +11,9 @@ import pytest
 from elastolink.runtime.periodic.decoupled import slow_system
 from elastolink.runtime.stability import resonances, stability_edges, tongue, tongue_curves
 from hill_pairs import HillPair
-from honesty import over_scenes
+from honesty import extended, over_scenes
 
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(
-        np.finfo(np.longdouble).eps > 1e-18, reason="the reference needs a long double of 80 bits"
-    ),
-]
+pytestmark = [pytest.mark.slow, extended]
 SPAN = (3.5, 9.5)
 ENDS = 60
 

@@ -28,6 +28,7 @@ from elastolink.runtime.recovery.beam_motion import quiet_steady_state
 from elastolink.runtime.recovery.finer_mesh import intervals_for, solved
 from elastolink.runtime.recovery.stresses import fibre_factors, largest_difference, stresses
 from elastolink.runtime.systems import with_modal_damping
+from honesty import covers
 
 BARS, SLIDER_CRANKS, FOUR_BARS = 92, 6, 2
 COUNT, PLACES = 32, 7
@@ -85,7 +86,8 @@ def fine(system, elements):
 def pairs_of(rng, kind, elements):
     """Return actual and estimated errors of one linkage, or of a rocking bar, by name."""
     if kind is None:
-        system, speed = rocking_bar(rng, elements)
+        system, first = rocking_bar(rng, elements)
+        speed = rng.uniform(0.03, 0.6) * first
     else:
         system, speed = elastic_linkage(rng, kind, elements)
     method = "equilibrium" if rng.integers(2) else "shape"
@@ -151,6 +153,5 @@ def test_actual_errors_stay_within_their_estimates(share):
             for name, pair in pairs_of(rng, kind, int(rng.integers(1, most + 1))).items():
                 pairs.setdefault(name, []).append(pair)
     for rows in pairs.values():
-        actual, estimate = np.transpose(rows)
-        assert np.mean(actual <= estimate) >= 0.99
-        assert np.median(estimate / np.maximum(actual, 1e-300)) <= 30.0
+        actual, estimate = zip(*rows, strict=True)
+        covers(estimate, actual, median=30.0)

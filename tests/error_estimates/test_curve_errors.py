@@ -23,7 +23,7 @@ def exact_place(linkage, theta, branch, place):
 
 @over_scenes(5, few=None, many=50)
 def test_positions_of_turning_cranks(rng):
-    linkage = random_linkage(rng)
+    linkage = random_linkage(rng, "four-bar", 3.0)
     if not linkage.crank_turns:
         return None
     place = complex(*rng.uniform(-2, 2, 2))
@@ -39,7 +39,7 @@ def test_positions_of_turning_cranks(rng):
 @over_scenes(6, few=5, many=40, median=np.inf)
 def test_lengths_and_areas(rng):
     """By the trapezoidal rule, which converges geometrically on a closed analytic path."""
-    linkage = random_linkage(rng)
+    linkage = random_linkage(rng, "four-bar", 3.0)
     if not linkage.crank_turns:
         return None
     curve = coupler_curve(linkage, *rng.uniform(-2, 2, 2), points=2**11)

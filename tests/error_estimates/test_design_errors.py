@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from beam_motions import of_history, periodic_motion, swinging, turning_bar
+from beam_motions import FIRST, of_history, periodic_motion, rocking_bar, turning_bar
 from elastolink.runtime.design import (
     Material,
     damping_effect,
@@ -29,18 +29,7 @@ from honesty import over_scenes
 # Angles of the reference's motion, and those at which its stresses are looked at.
 COUNT, FINE = 64, 4096
 STATIONS = 7
-# First frequency of the bar of 1 m, clamped at one end and pinned at both [rad/s].
-FIRST = {False: 3.516 * 14.93, True: 9.870 * 14.93}
 pytestmark = pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning")
-
-
-def rocking_bar(rng, drag=True):
-    """Return a random rocking bar and its first frequency."""
-    size, second = rng.uniform(0.02, 0.6), rng.uniform(-0.2, 0.2)
-    angle = swinging(size, second, int(rng.integers(2, 4)))
-    pinned = bool(rng.integers(2))
-    loss = 10.0 ** rng.uniform(-2.5, -0.7) * FIRST[pinned] if drag else 0.0
-    return turning_bar(angle, pinned=pinned, drag=loss, elements=1), FIRST[pinned]
 
 
 def rocker(rng):

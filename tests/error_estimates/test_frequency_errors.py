@@ -1,10 +1,16 @@
-"""Error estimates of held frequencies, of their means and of least gaps, over random systems."""
+"""Error estimates of frequencies: held ones, their means, least gaps, and bounds of frames'."""
 
 from __future__ import annotations
 
+import frame_truth
+import frequency_truth
 import mpmath
 import numpy as np
-from elastolink.runtime.frequencies import natural_frequencies
+from elastolink.runtime.frequencies import (
+    dynamic_stiffness,
+    natural_frequencies,
+    wittrick_williams,
+)
 from elastolink.runtime.frequencies.held import cycle_mean, held_frequencies
 from honesty import over_scenes
 from periodic_systems import system_of
@@ -72,3 +78,20 @@ def test_errors_of_least_gaps(rng):
     # sqrt(16 + c) - sqrt(16 - c), free of cancellation.
     exact = 2 * coupling / (np.sqrt(16 + coupling) + np.sqrt(16 - coupling))
     return [one.gap_error for one in found], [one.gap - exact for one in found]
+
+
+@over_scenes(2024, few=None, many=100)
+def test_bounds_of_frames(rng):
+    """Against determinants in 60 digits."""
+    structure = frame_truth.random_frame(rng)
+    number = int(rng.integers(1, 5))
+    found = wittrick_williams(dynamic_stiffness(structure), count=number)
+    assert found.passed
+    place = found.frequencies[-1]
+    if np.max(np.abs(found.vectors()[-1])) * place < 1e-12:
+        return None  # the nodes stand still: a pole of the determinant
+    frequency_truth.stiffness.cache_clear()
+    frequency_truth.amplitudes.cache_clear()
+    gap = abs(float(frame_truth.exact_frequency(structure, place) - float(place)))
+    assert gap <= found.error[-1]
+    return found.error[-1], gap

@@ -17,12 +17,9 @@ from elastolink.runtime.hill import (
 )
 from exact_hill import ExactHarmonics
 from half_trace_truth import half_traces
-from honesty import over_scenes
+from honesty import extended, over_scenes
 from omitted_orders import Curve
 
-extended = pytest.mark.skipif(
-    np.finfo(np.longdouble).eps > 1e-18, reason="the reference needs a long double of 80 bits"
-)
 PI = 4 * np.arctan(np.longdouble(1))
 # Errors below the references' own are not told apart from zero.
 LEAST = 1e-17

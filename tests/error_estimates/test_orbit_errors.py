@@ -2,27 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
-import pytest
 from cycloid_truth import Cycloid
-from elastolink.derive import regenerate
 from elastolink.derive.spec import ModelSpec
 from elastolink.runtime.constrained import orbit_multipliers, periodic_orbit
 from elastolink.runtime.core.families import Constrained
-from elastolink.runtime.systems import find_module
 from honesty import over_scenes
-
-MODEL = Path(__file__).parents[1] / "third_party_models" / "cycloid.py"
-
-
-@pytest.fixture(scope="module")
-def module(tmp_path_factory):
-    folder, spec = tmp_path_factory.mktemp("modules"), ModelSpec("cycloid", "multiplier")
-    arguments = ["--model", str(MODEL), "--out", str(folder), "--jobs", "1"]
-    assert regenerate.main([*arguments, spec.name()]) == 0
-    return find_module(spec, [folder]).module
 
 
 def random_bead(rng: np.random.Generator) -> Cycloid:
@@ -37,7 +22,8 @@ def random_bead(rng: np.random.Generator) -> Cycloid:
 
 
 @over_scenes(20)
-def test_estimates_hold_and_are_not_idle(rng, module):
+def test_estimates_hold_and_are_not_idle(rng, emit):
+    module = emit("cycloid", ModelSpec("cycloid", "multiplier")).module
     bead = random_bead(rng)
     system = Constrained.from_module(module, bead.numbers)
     guess = [0.9 * values for values in bead.state(np.arange(24) * (bead.period / 24))]

@@ -2,7 +2,7 @@
 
 Two routes: Taylor series in extended precision (``taylor_truth``: every kind of term, one to three
 coordinates, known to about 1e-15 of the flow, which the Fourier series of the terms lose), and
-springs seen in wavy coordinates, whose multipliers are known in closed form.
+springs seen in wavy coordinates, whose multipliers and boundary speeds are known in closed form.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from elastolink.runtime.periodic import (
     simulate,
     steady_state,
 )
+from elastolink.runtime.stability.boundary_speeds import speed_boundaries
 from honesty import over_scenes
 from manufactured import manufactured
 from wavy_springs import Wavy, tame
@@ -61,11 +62,7 @@ def _outcomes(seed):
         assert run.passed, run.checks
         out[f"simulate {rtol:g}"] = _of_motion(run, exact)
 
-    for method, rtol in (
-        ("auto", 1e-10),
-        ("auto", 1e-4),
-        ("harmonic_balance", 1e-9),
-    ):
+    for method, rtol in (("auto", 1e-10), ("auto", 1e-4), ("harmonic_balance", 1e-9)):
         steady = steady_state(system, speed, method=method, rtol=rtol)
         exact_steady = motion(steady.theta)
         out[f"{method} {rtol:g}"] = _of_motion(steady, exact_steady)
@@ -113,3 +110,18 @@ def test_estimates_of_multipliers(rng, repelling):
     assert result.passed, (result.checks, squares, speed)
     gaps = np.abs(scene.multipliers(speed)[:, None] - result.multipliers)
     return result.error, np.min(gaps, axis=0)
+
+
+@over_scenes(3, few=60, many=None)
+def test_boundary_estimate(rng):
+    scene = Wavy(rng, rng.uniform(1.0, 9.0, 2))
+    if not tame(scene):
+        return None
+    found = speed_boundaries(scene.system, speed_range=(0.9, 7.0))
+    # w = 2 Omega/k, k odd for -1; every one double, as nothing couples.
+    natural = np.sqrt(scene.squares)
+    exact = np.sort((2 * natural[:, None] / np.arange(1, 9)).ravel())
+    exact = np.repeat(exact[(exact > 0.9) & (exact < 7.0)], 2)
+    assert len(found.speed) == len(exact)
+    assert found.passed, found.checks
+    return found.error, found.speed - exact

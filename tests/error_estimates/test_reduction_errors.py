@@ -71,11 +71,7 @@ def exact_parts(scene, small, theta):
         "M": [across @ at["M"] @ phi],
         "K": [across @ at["K"] @ phi],
         "A": [across @ at["M"] @ slope, across @ at["A"] @ phi],
-        "B": [
-            turning @ at["M"] @ slope,
-            mixed + np.swapaxes(mixed, 1, 2),
-            across @ at["B"] @ phi,
-        ],
+        "B": [turning @ at["M"] @ slope, mixed + np.swapaxes(mixed, 1, 2), across @ at["B"] @ phi],
         "f": [(across @ at["f"][..., None])[..., 0]],
     }
     if scene.drag:

@@ -8,15 +8,20 @@ import elastolink as el
 import numpy as np
 import pytest
 from elastolink.runtime.recovery.stress_over_speed import Fibres
+from honesty import covers
 
 STATIONS = 5
-# Elements of each link, damping ratio, lowest and highest speed [rad/s].
-CASES = ((1, 0.02, 5.0, 70.0), (1, 0.005, 20.0, 60.0), (1, 0.05, 12.0, 90.0))
+# Elements of each link, damping ratio, lowest and highest speed [rad/s], way to the stresses.
+CASES = (
+    (1, 0.02, 5.0, 70.0, "shape"),
+    (1, 0.005, 20.0, 60.0, "equilibrium"),
+    (1, 0.05, 12.0, 90.0, "shape"),
+)
 
 pytestmark = pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.LinearRangeWarning")
 
 
-def compared(elements, ratio, low, high, count, method):
+def compared(elements, ratio, low, high, method, count):
     """Return actual relative errors and their estimates at random speeds."""
     overrides = {"mesh.elements": elements, "damping.ratio": ratio}
     system = el.load_scene("aannaque_1996_table_4_1", overrides=overrides).system()
@@ -30,18 +35,12 @@ def compared(elements, ratio, low, high, count, method):
 
 @pytest.mark.parametrize("count", [2, pytest.param(24, marks=pytest.mark.slow)])
 def test_estimates_cover_the_actual_errors_and_are_not_idle(count):
-    both = [
-        compared(*case, count, method)
-        for case, method in zip(CASES, ("shape", "equilibrium", "shape"), strict=True)
-    ]
-    actual, estimate = (np.concatenate(parts) for parts in zip(*both, strict=True))
-    assert np.mean(actual <= estimate) >= 0.99
-    # Round-off aside, the estimate is within a factor of a thousand.
-    assert np.median(estimate / np.maximum(actual, 1e-12)) <= 1e3
+    actual, estimate = zip(*(compared(*case, count) for case in CASES), strict=True)
+    covers(estimate, actual, floor=1e-12)
 
 
 @pytest.mark.slow
 def test_three_elements_meet_what_is_wanted():
     """27 freedoms."""
-    actual, estimate = compared(3, 0.02, 5.0, 70.0, 3, "shape")
+    actual, estimate = compared(3, 0.02, 5.0, 70.0, "shape", 3)
     assert np.all(actual <= np.minimum(estimate, 1e-4))

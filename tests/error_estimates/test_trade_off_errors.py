@@ -10,14 +10,11 @@ from __future__ import annotations
 from itertools import combinations
 
 import numpy as np
-import pytest
 from balancing_machines import nine_equations, random_machine
 from elastolink.runtime.rigid import Bounds, trade_off
-from honesty import over_scenes
+from honesty import extended, over_scenes
 
-pytestmark = pytest.mark.skipif(
-    np.finfo(np.longdouble).eps > 1e-18, reason="the reference needs a long double of 80 bits"
-)
+pytestmark = extended
 POINTS = 5  # of each curve: 210 estimates in all
 
 

@@ -80,17 +80,21 @@ def test_shapes_anywhere(data, kind, place, length):
     assert turned.shape == (1, len(across))
 
 
+def sandwich(drawn, name="frequency"):
+    return sandwich_section(
+        ElasticLayer(*drawn[:3]),
+        ViscoelasticLayer(*drawn[3:7]),
+        ElasticLayer(*drawn[7:10]),
+        width=drawn[10],
+        **{name: drawn[11]},
+    )
+
+
 @given(st.lists(ANY, min_size=12, max_size=12), st.sampled_from(["wave_number", "frequency"]))
 @SOME
 def test_layers_of_any_size_are_taken_or_refused(drawn, name):
     try:
-        found = sandwich_section(
-            ElasticLayer(*drawn[:3]),
-            ViscoelasticLayer(*drawn[3:7]),
-            ElasticLayer(*drawn[7:10]),
-            width=drawn[10],
-            **{name: drawn[11]},
-        )
+        found = sandwich(drawn, name)
     except BadInput as refusal:
         assert "\n" not in str(refusal)
         return
@@ -103,12 +107,6 @@ def test_layers_of_any_size_are_taken_or_refused(drawn, name):
 @given(st.lists(SANE, min_size=12, max_size=12))
 @SOME
 def test_free_waves_through_layers_of_any_ordinary_size(drawn):
-    found = sandwich_section(
-        ElasticLayer(*drawn[:3]),
-        ViscoelasticLayer(*drawn[3:7]),
-        ElasticLayer(*drawn[7:10]),
-        width=drawn[10],
-        frequency=drawn[11],
-    )
+    found = sandwich(drawn)
     load = found.mass_per_length * drawn[11] ** 2
     assert found.bending_stiffness * found.wave_number**4 == pytest.approx(load, rel=1e-10)

@@ -46,10 +46,7 @@ def _describe(spec: au.ModelSpec) -> au.Description:
 
 
 MODEL = au.Model(
-    mechanism="scotch_yoke",
-    formulations=("kinematics",),
-    energies=_closed_form,
-    describe=_describe,
+    mechanism="scotch_yoke", formulations=("kinematics",), energies=_closed_form, describe=_describe
 )
 _ALL = au.ModelSpec("scotch_yoke", "kinematics")
 SPECS = (_ALL, _ALL.with_(outputs=("position",)))

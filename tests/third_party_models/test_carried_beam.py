@@ -10,12 +10,7 @@ from elastolink.runtime.core.modules import find_module
 from elastolink.runtime.systems import assemble
 
 GEOMETRY = {"radius": 0.12, "rocking": 0.5, "length": 0.7}
-PARAMETERS = {
-    "bending_stiffness": 3.0,
-    "mass_per_length": 0.4,
-    "damping": 0.0,
-    "tip_mass": 0.05,
-}
+PARAMETERS = {"bending_stiffness": 3.0, "mass_per_length": 0.4, "damping": 0.0, "tip_mass": 0.05}
 
 
 def spec(modes: int, **changes) -> ModelSpec:

@@ -16,6 +16,7 @@ from scipy.integrate import solve_ivp
 GRAVITY, DRIVE = NUMBERS["gravity"], 6.1
 PERIOD = 2 * np.pi / DRIVE
 DRIVES = drives(DRIVE)
+START = [0.0, 0.0, -ROD], [STROKE * DRIVE, STROKE * DRIVE, 0.0]
 
 
 @pytest.fixture(scope="module")
@@ -62,8 +63,7 @@ def one_turn(angle, turning):
 
 
 def test_orbit_and_multipliers_are_those_of_the_angle(pendulum):
-    start = [0.0, 0.0, -ROD], [STROKE * DRIVE, STROKE * DRIVE, 0.0]
-    orbit = periodic_orbit(pendulum, PERIOD, *start)
+    orbit = periodic_orbit(pendulum, PERIOD, *START)
     orbit.require()
     angle, turning = beginning(orbit)
     end, matrix = one_turn(angle, turning)
@@ -93,12 +93,11 @@ def test_the_rod_upside_down_is_unstable(pendulum):
 
 
 def test_a_period_that_the_drive_has_not_is_refused(pendulum):
-    start = [0.0, 0.0, -ROD], [STROKE * DRIVE, STROKE * DRIVE, 0.0]
     with pytest.raises(BadInput, match="repeats after the period"):
-        periodic_orbit(pendulum, 0.5 * PERIOD, *start)
+        periodic_orbit(pendulum, 0.5 * PERIOD, *START)
     # Twice the period is a period too.
-    twice = orbit_multipliers(periodic_orbit(pendulum, 2 * PERIOD, *start))
-    once = orbit_multipliers(periodic_orbit(pendulum, PERIOD, *start))
+    twice = orbit_multipliers(periodic_orbit(pendulum, 2 * PERIOD, *START))
+    once = orbit_multipliers(periodic_orbit(pendulum, PERIOD, *START))
     np.testing.assert_allclose(
         np.sort_complex(twice.physical), np.sort_complex(once.physical**2), atol=1e-12
     )
@@ -159,9 +158,8 @@ def test_an_orbit_that_is_not_isolated_does_not_pass(emit):
 
 
 def test_results_can_be_drawn_and_saved(pendulum, tmp_path):
-    start = [0.0, 0.0, -ROD], [STROKE * DRIVE, STROKE * DRIVE, 0.0]
     watched = replace(pendulum, watch=lambda q, t: q[:, 0] / ROD)
-    orbit = periodic_orbit(watched, PERIOD, *start)
+    orbit = periodic_orbit(watched, PERIOD, *START)
     assert orbit.deflection == pytest.approx(STROKE / ROD, rel=1e-3)
     assert not orbit.checks["linear range"].passed
     assert len(orbit.plot().lines) == 3

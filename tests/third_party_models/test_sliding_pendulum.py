@@ -40,16 +40,6 @@ def textbook(state, m=NUMBERS):
     return np.linalg.solve(matrix, right)
 
 
-def test_rest_is_held_by_the_weight(systems):
-    system = systems("multiplier")
-    q, qd = cartesian(0.0, 0.0, 0.0, 0.0)
-    accelerations, multipliers = system.accelerations(q, qd)
-    # lam d/dpy ((px - s)^2 + py^2 - rod^2) = bob gravity at py = -rod
-    by_hand = -NUMBERS["bob"] * NUMBERS["gravity"] / (2 * NUMBERS["rod"])
-    np.testing.assert_allclose(accelerations, 0.0, atol=1e-14)
-    np.testing.assert_allclose(multipliers, [by_hand], rtol=1e-14)
-
-
 def test_redundant_and_minimal_coordinates_agree(systems):
     rng = np.random.default_rng(1)
     states = rng.normal(size=(4, 3, 50))
@@ -76,39 +66,6 @@ def test_redundant_and_minimal_coordinates_agree(systems):
     by_hand = textbook(one, {**NUMBERS, "damping": 2.0})
     emitted = systems("minimal", damping=2.0).accelerations(np.array(one[:2]), np.array(one[2:]))
     np.testing.assert_allclose(emitted[0], by_hand, rtol=1e-13)
-
-
-def test_variational_equations_are_the_derivative_of_the_motion(systems):
-    system = systems("multiplier", damping=1.3)
-    q, qd = cartesian(0.2, 0.9, -0.5, 1.4)
-    accelerations, multipliers = system.accelerations(q, qd)
-    found = system.variations(q, qd, accelerations, multipliers, 0.0)
-
-    def residual(q, qd):
-        a = system.dynamics(q, qd, 0.0)
-        side = a["mass"] @ accelerations[:, None] + a["rest"] - a["forces"]
-        return (side - a["jacobian"].T @ multipliers[:, None])[:, 0]
-
-    step = 1e-6
-    for k, unit in enumerate(np.eye(3) * step):
-        stiffness = (residual(q + unit, qd) - residual(q - unit, qd)) / (2 * step)
-        damping = (residual(q, qd + unit) - residual(q, qd - unit)) / (2 * step)
-        np.testing.assert_allclose(found["stiffness"][:, k], stiffness, atol=1e-8)
-        np.testing.assert_allclose(found["damping"][:, k], damping, atol=1e-8)
-
-
-def test_the_jacobian_is_differentiated_along_the_motion(systems):
-    system = systems("driven")
-    t, step = 0.3, 1e-4
-    q, qd = cartesian(STROKE * np.sin(DRIVE * t), 0.9, STROKE * DRIVE * np.cos(DRIVE * t), 1.4)
-    qdd, multipliers = system.accelerations(q, qd, t)
-    found = system.variations(q, qd, qdd, multipliers, t)
-    before, now, after = (
-        system.violation(q + s * qd + s**2 / 2 * qdd, t + s)["jacobian"] for s in (-step, 0.0, step)
-    )
-    np.testing.assert_allclose(found["jacobian_rate"], (after - before) / (2 * step), atol=1e-8)
-    second = (after - 2 * now + before) / step**2
-    np.testing.assert_allclose(found["jacobian_acceleration"], second, atol=1e-6)
 
 
 def test_names_and_parameters(systems, emit):

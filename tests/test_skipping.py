@@ -80,13 +80,13 @@ def machine():
 def counted(monkeypatch):
     """Count calls of emitted functions of forces, by module and function."""
     calls = Counter()
-    evaluate = evaluation._evaluate
+    add = evaluation.Evaluation._add
 
-    def counting(function, *arguments, **options):
-        calls[function.__module__.rpartition(".")[2], function.__name__] += 1
-        return evaluate(function, *arguments, **options)
+    def counting(self, function, *arguments, **options):
+        calls[self.kernels.__name__.rpartition(".")[2], function] += 1
+        return add(self, function, *arguments, **options)
 
-    monkeypatch.setattr(evaluation, "_evaluate", counting)
+    monkeypatch.setattr(evaluation.Evaluation, "_add", counting)
     return calls
 
 

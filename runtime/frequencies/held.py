@@ -163,12 +163,17 @@ def cycle_mean(
 
 
 def mean_frequencies(
-    system: LinearPeriodic, count: int, enough: float, speed: float = 0.0
+    system: LinearPeriodic,
+    count: int,
+    enough: float,
+    speed: float = 0.0,
+    parameters: Mapping[str, float] | None = None,
 ) -> tuple[Array, Array]:
     """Return the means of the lowest frequencies over the period and their errors [rad/s]."""
+    given = parameters or {}
 
     def lowest(theta: Array) -> tuple[Array, Array]:
-        frequency, error = held_frequencies(system, theta, {}, speed)
+        frequency, error = held_frequencies(system, theta, given, speed)
         return frequency[:, :count], error[:, :count]
 
     return cycle_mean(lowest, system.period, enough=enough)

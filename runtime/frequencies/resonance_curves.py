@@ -160,7 +160,7 @@ def resonance_curve(
     if speeds.ndim != 1 or len(speeds) < 3 or not np.all(np.diff(speeds) > 0):
         raise bad("speed", speed, "at least three rising speeds [rad/s]", "use numpy.linspace")
     require_shapes("resonance_curve", system)
-    mean, _ = mean_frequencies(system.with_parameters(**parameters), min(6, system.size), 1e-12)
+    mean, _ = mean_frequencies(system, min(6, system.size), 1e-12, parameters=parameters)
     state = quiet_state(system, speeds, rtol, parameters)
     peak = state.peak(x)
     tops = local_maxima(peak)

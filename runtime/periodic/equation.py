@@ -561,11 +561,13 @@ def fourier_series(system: LinearPeriodic, terms: Sequence[Term]) -> tuple[list[
     values = _rows(system, terms, system.period * angles)
     between, table = values[: len(_BETWEEN)], values[len(_BETWEEN) :]
     shapes = [(system.size,) * (1 if term.array in "fhp" else 2) for term in terms]
-    firsts = np.concatenate([[0], np.cumsum([int(np.prod(shape)) for shape in shapes])])
+    widths = np.array([int(np.prod(shape)) for shape in shapes])
+    done: dict[int, Array] = {}
+    reach, open_ = 0, np.arange(len(terms))
     while True:
-        count = len(table)
+        count, firsts = len(table), np.cumsum(widths[open_]) - widths[open_]
         spectrum = np.fft.rfft(table, axis=0) / count
-        amplitude = np.maximum.reduceat(np.abs(spectrum), firsts[:-1], axis=1)
+        amplitude = np.maximum.reduceat(np.abs(spectrum), firsts, axis=1)
         tops = np.max(amplitude, axis=0)
         tops = np.where(tops > 0.0, tops, 1.0)
         quarter = len(amplitude) // 4
@@ -573,35 +575,43 @@ def fourier_series(system: LinearPeriodic, terms: Sequence[Term]) -> tuple[list[
         tails = np.max(amplitude[3 * quarter :], axis=0) / tops
         last = 2 * count > _MOST
         ended = (tails <= _ENDED) | ((tails <= _ROUNDING) & ((tails > 0.1 * before) | last))
-        if np.all(ended):
+        if np.any(ended):
             noise = np.maximum(2.0 * tails, _ENDED / 8.0) * tops
-            harmonics = int(np.max(np.nonzero(amplitude > noise)[0], initial=0))
-            series = np.concatenate(
-                [
-                    spectrum[:1].real,
-                    2.0 * spectrum[1 : harmonics + 1].real,
-                    -2.0 * spectrum[1 : harmonics + 1].imag,
-                ]
-            )
+            seen = np.where(ended, amplitude > noise, False)
+            harmonics = int(np.max(np.nonzero(seen)[0], initial=0))
+            waved = spectrum[1 : harmonics + 1]
+            series = np.concatenate([spectrum[:1].real, 2.0 * waved.real, -2.0 * waved.imag])
             gaps = np.abs(waves(harmonics, 2 * np.pi * _BETWEEN) @ series - between)
-            gap = np.maximum.reduceat(np.max(gaps, axis=0), firsts[:-1])
-            if np.all(gap <= 1e-10 * tops):
-                parts = np.split(series, firsts[1:-1], axis=1)
-                made = [
-                    p.reshape(len(series), *shape) for p, shape in zip(parts, shapes, strict=True)
-                ]
-                return (
-                    made,
-                    harmonics,
-                    int(np.max(np.nonzero(amplitude > _SEEN * tops)[0], initial=0)),
-                )
+            ended &= np.maximum.reduceat(np.max(gaps, axis=0), firsts) <= 1e-10 * tops
+            far = np.nonzero(amplitude[:, ended] > _SEEN * tops[ended])[0]
+            reach = max(reach, int(np.max(far, initial=0)))
+            for k in np.flatnonzero(ended):
+                done[int(open_[k])] = series[:, firsts[k] : firsts[k] + widths[open_[k]]]
+        if len(done) == len(terms):
+            highest = max(len(part) for part in done.values()) // 2
+            made = [_extended(done[k], highest).reshape(-1, *shapes[k]) for k in range(len(terms))]
+            return made, highest, reach
+        # Terms whose series have not ended are sampled twice as densely, the others no more.
+        columns = np.repeat(~ended, widths[open_])
         if last:
             # The mean alone: units of the coordinates are chosen by it.
-            parts = np.split(spectrum[:1].real, firsts[1:-1], axis=1)
-            means = [part.reshape(1, *shape) for part, shape in zip(parts, shapes, strict=True)]
-            return means, -1, _MOST // 2
-        new = _rows(system, terms, system.period * (np.arange(float(count)) + 0.5) / count)
+            for k in np.flatnonzero(~ended):
+                done[int(open_[k])] = spectrum[:1, firsts[k] : firsts[k] + widths[open_[k]]].real
+            return [done[k][:1].reshape(1, *shapes[k]) for k in range(len(terms))], -1, _MOST // 2
+        open_, between, table = open_[~ended], between[:, columns], table[:, columns]
+        wanted = system.period * (np.arange(float(count)) + 0.5) / count
+        new = _rows(system, [terms[k] for k in open_], wanted)
         table = np.stack([table, new], axis=1).reshape(2 * count, -1)
+
+
+def _extended(series: Array, harmonics: int) -> Array:
+    """Return a series in the order of :func:`waves` with more harmonics, zero."""
+    own = len(series) // 2
+    if own == harmonics:
+        return series
+    out = np.zeros((2 * harmonics + 1, series.shape[1]))
+    out[: own + 1], out[harmonics + 1 : harmonics + own + 1] = series[: own + 1], series[own + 1 :]
+    return out
 
 
 def waves(harmonics: int, phase: Array) -> Array:

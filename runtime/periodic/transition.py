@@ -25,7 +25,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dgesv
 
 from ..core.collocation import gauss_tableau, radau_tableau
 from ..core.errors import BadInput, bad
@@ -261,6 +260,8 @@ def _solution(columns: Array, right: Array) -> Array:
     """
     if columns.shape[-1] < _LARGE:
         return np.ascontiguousarray(np.linalg.solve(columns.mT, right.mT).mT)
+    from scipy.linalg.lapack import dgesv
+
     for place in np.ndindex(columns.shape[:-2]):
         *_, failed = dgesv(columns[place].T, right[place].T, overwrite_a=1, overwrite_b=1)
         if failed:

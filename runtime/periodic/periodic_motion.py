@@ -396,8 +396,8 @@ def peaks(q: Array) -> Array:
 
     A coordinate that hardly moves beside the others has no peak of its own.
     """
-    size = np.max(np.abs(q), axis=1)
-    size = np.maximum(size, _EPS * np.max(size, axis=1, keepdims=True, initial=0.0))
+    size = np.abs(q).max(axis=1)
+    size = np.maximum(size, _EPS * size.max(axis=1, keepdims=True, initial=0.0))
     value: Array = np.where(size > 0.0, size, 1.0)
     return value
 

@@ -110,7 +110,7 @@ class Prepared:
         scale = self.scale[:m]
         scaled = self._whole(speeds.reshape(-1))[:, :m, :m]
         # What decays keeps the error of what it came from.
-        error = self.error * np.maximum(1.0, 1.0 / np.max(np.abs(scaled), axis=(1, 2)))
+        error = self.error * np.maximum(1.0, 1.0 / np.abs(scaled).max(axis=(1, 2)))
         matrix = scaled * scale[:, None] / scale
         return Monodromy(
             method=_METHOD,
@@ -122,7 +122,7 @@ class Prepared:
             speed=speeds,
             matrix=matrix.reshape(*speeds.shape, m, m),
             exponent=np.zeros(speeds.shape, dtype=np.int64),
-            scale=np.broadcast_to(scale, (*speeds.shape, m)),
+            scale=np.broadcast_to(scale, (*speeds.shape, m)) if speeds.ndim else scale.copy(),
             segments=np.full(speeds.shape, self.tables[0].groups.shape[1], dtype=np.int64),
         )
 
@@ -219,13 +219,14 @@ class Prepared:
         states, whole, reach = self._periodic(flat)
         q = states[..., :n] * self.scale[:n]
         slope = np.einsum("tij,stj->sti", self.readout, states)
-        norm = np.max(np.abs(states[:, 0]), axis=1)
-        sensitivity = reach * np.max(np.abs(whole), axis=(1, 2))
+        norm = np.abs(states[:, 0]).max(axis=1)
+        sensitivity = reach * np.abs(whole).max(axis=(1, 2))
         error = ((reach + 1.0) * norm)[:, None] * self.motion_error * self.scale[:n] / peaks(q)
-        wrong = np.max(error, axis=1)
+        wrong = error.max(axis=1)
         lost = ~(wrong < 1.0)
-        q[lost], slope[lost], error[lost] = np.nan, np.nan, np.inf
-        single = Check(float(np.max(wrong)), 1.0)
+        if lost.any():
+            q[lost], slope[lost], error[lost] = np.nan, np.nan, np.inf
+        single = Check(float(wrong.max()), 1.0)
         later = DeferredGroup(partial(self._stability, whole, batch))
         return SteadyState(
             method=_METHOD,
@@ -305,7 +306,8 @@ class Prepared:
     def _speeds(self, speed: ArrayLike, *, single: bool = False) -> Array:
         given = numbers("speed", speed)
         low, high = self.span
-        if (single and given.ndim) or not np.all((given >= low) & (given <= high)):
+        inside = np.all((given >= low) & (given <= high)) if given.ndim else low <= given <= high
+        if (single and given.ndim) or not inside:
             expected = f"{'one speed' if single else 'speeds'} from {low:.6g} to {high:.6g} rad/s"
             raise bad("speed", speed, expected, "prepare another range")
         return given

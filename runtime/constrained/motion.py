@@ -211,7 +211,7 @@ def march(
     start = equations.at(begin, q / columns, qd / columns)
     tolerance = _tolerance(rtol, start)
     for guard in guards:
-        if not _margin(equations, guard, start) > 0.0:
+        if not _margin(equations, guard, start.t, start.x, start.v) > 0.0:
             raise bad("guards", f"{guard[1]}, at the start", "a start inside", "move it")
     parts = [(times[:1], start.x[None], start.v[None])]
     count, steps, error = 1, 0, np.zeros(equations.n)
@@ -300,12 +300,12 @@ def _tolerance(rtol: float, start: State) -> Tolerance:
     return Tolerance(rtol, SMALL * place, speed)
 
 
-def _margin(equations: Equations, guard: Guard, state: State) -> float:
-    """Return the margin of a guard at a state."""
+def _margin(equations: Equations, guard: Guard, t: float, x: Array, v: Array) -> float:
+    """Return the margin of a guard at a state in scaled coordinates."""
     columns = equations.columns
-    value = np.asarray(guard[0](state.t, state.x * columns, state.v * columns), dtype=float)
+    value = np.asarray(guard[0](float(t), x * columns, v * columns), dtype=float)
     if value.shape != () or np.isnan(value):
-        raise bad("guards", f"{value} at t = {state.t:.6g}", "one number", "mend the margin")
+        raise bad("guards", f"{value} at t = {t:.6g}", "one number", "mend the margin")
     return float(value)
 
 
@@ -315,11 +315,20 @@ def _stop(
     """Return where and why a step stops the motion; None where it goes on."""
     if not guards and np.all(step.reach <= limit):
         return None
-    x, v = equations.nearest(step.inner, *step.at(step.inner))
+    x, v = step.at(step.inner)
+    # Mostly all is well by far: only what may stop the motion is carried onto the constraints.
+    passed = [(step.after.t, step.after.x, step.after.v), *zip(step.inner, x, v, strict=True)]
+    if all(
+        np.all(np.abs(at[1]) <= limit)
+        and all(_margin(equations, guard, *at) > 0.0 for guard in guards)
+        for at in passed
+    ):
+        return None
+    x, v = equations.nearest(step.inner, x, v)
     a, _ = equations.accelerations(step.inner, x, v)
     inner = [State(float(t), *at) for t, *at in zip(step.inner, x, v, a, strict=True)]
     for before, after in pairwise([step.before, *inner, step.after]):
-        met = [guard for guard in guards if not _margin(equations, guard, after) > 0.0]
+        met = [g for g in guards if not _margin(equations, g, after.t, after.x, after.v) > 0.0]
         stops = [(_crossing(equations, step, guard, before, after), guard) for guard in met]
         if stops:
             state, guard = min(stops, key=lambda stop: stop[0].t)
@@ -342,7 +351,7 @@ def _crossing(equations: Equations, step: Step, guard: Guard, before: State, aft
             state = equations.state(middle, x[0], v[0])
         except NoConvergence:
             break
-        if _margin(equations, guard, state) > 0.0:
+        if _margin(equations, guard, state.t, state.x, state.v) > 0.0:
             low = middle
         else:
             after = state

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -127,19 +128,28 @@ class FreeFreeRod(Constrained):
         eta = require_points(places, "places", alone=True)
         if np.shape(q)[-1:] != (self.size,):
             raise bad("q", f"shape {np.shape(q)}", f"(..., {self.size})", "give all coordinates")
+        return self._deflection(q, t, eta, self.modes(eta)[0])
+
+    def _deflection(self, q: Array, t: ArrayLike, eta: Array, shapes: Array) -> Array:
+        """Return the deflection at places at which the modes are known, ``(nx, m)``."""
         length = self.linkage.rod
         theta = self.speed * np.asarray(t, dtype=float)
         crank, frame = self.linkage.crank, self.linkage.frame
         line = np.arctan2(crank * np.sin(theta), frame + crank * np.cos(theta))
         lean = q[..., 2] - line
         centre = q[..., 1] * np.cos(line) - q[..., 0] * np.sin(line)
-        bent = length * q[..., 3:] @ self.modes(eta)[0].T
+        bent = length * q[..., 3:] @ shapes.T
         along = length * (eta - 0.5) * np.sin(lean)[..., None]
         return np.asarray(centre[..., None] + along + bent * np.cos(lean)[..., None])
 
+    @cached_property
+    def _shapes(self) -> Array:
+        """Modes at the stations, ``(21, m)``."""
+        return self.modes(_STATIONS)[0]
+
     def largest_deflection(self, q: Array, t: ArrayLike) -> Array:
         """Return the largest deflection at 21 places, over the length of the rod; shape batch."""
-        bent = np.abs(self.deflection(q, t, _STATIONS))
+        bent = np.abs(self._deflection(q, t, _STATIONS, self._shapes))
         return np.asarray(np.max(bent, axis=-1) / self.linkage.rod, dtype=np.float64)
 
     def _overhang(self, t: float, q: Array, qd: Array) -> float:

@@ -318,11 +318,8 @@ def _stop(
     x, v = step.at(step.inner)
     # Mostly all is well by far: only what may stop the motion is carried onto the constraints.
     passed = [(step.after.t, step.after.x, step.after.v), *zip(step.inner, x, v, strict=True)]
-    if all(
-        np.all(np.abs(at[1]) <= limit)
-        and all(_margin(equations, guard, *at) > 0.0 for guard in guards)
-        for at in passed
-    ):
+    bounded = np.all(np.abs(x) <= limit) and np.all(np.abs(step.after.x) <= limit)
+    if bounded and all(_margin(equations, guard, *at) > 0.0 for at in passed for guard in guards):
         return None
     x, v = equations.nearest(step.inner, x, v)
     a, _ = equations.accelerations(step.inner, x, v)

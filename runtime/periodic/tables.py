@@ -135,8 +135,8 @@ def table_of(
     low, high = ends
     if samples:
         count = samples * -(-count // samples)
-    size = equation_at(np.array([high])).size
     if nodes is None:
+        size = equation_at(np.array([high])).size
         nodes = _NODES if 2 * size < _SMALL else _NODES_OF_LARGE
     nodes = 1 if low == high else nodes
     while True:

@@ -215,7 +215,7 @@ def campbell(
     modes : int, optional
         Number of modes, 4 by default.
     progress : bool
-        Whether to show a progress bar (extra ``progress``).
+        Whether to show a progress bar.
 
     Returns
     -------

@@ -481,7 +481,7 @@ def critical_speeds(
         Number of speeds of the first scan, of ``response``; a maximum between two of them that
         shows at neither is missed.
     progress : bool
-        Whether to show a progress bar (extra ``progress``).
+        Whether to show a progress bar.
 
     Returns
     -------

@@ -199,7 +199,7 @@ def stability_chart(
         ``map``, or that of a pool of threads or processes, ``pool.map``, or of Dask's
         ``client.get_executor()``.  The answer does not depend on it.
     progress : bool
-        Whether to show a progress bar (extra ``progress``).
+        Whether to show a progress bar.
     frequency_name : str
         What the plot calls the natural frequency.
 

@@ -73,7 +73,7 @@ def sweep(
         a path ending in ``.npz``.  The same sweep goes on from there after it was killed, or
         gives what is complete there.
     progress : bool
-        Whether to show a progress bar with the time left (extra ``progress``).
+        Whether to show a progress bar with the time left.
 
     Returns
     -------

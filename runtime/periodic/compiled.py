@@ -39,6 +39,9 @@ class CompiledTable:
         groups, inner = (
             np.ascontiguousarray(np.swapaxes(part, 0, 1)) for part in (table.groups, table.inner)
         )
+        if not len(inner):
+            inner = np.zeros((len(table.within), *groups.shape[1:]))
+            inner[:, 0] = np.eye(groups.shape[-1])
         return cls(table.low, table.high, groups, inner, table.within)
 
     def whole(self, inverse: float) -> Array:

@@ -21,8 +21,9 @@ from .transition import Method, product, rung, segments_from, segments_of
 Array = NDArray[np.float64]
 
 _EPS = float(np.finfo(float).eps)
-# Chebyshev nodes to begin with, of small states and of large ones, and at the most.
-_NODES, _SMALL, _NODES_OF_LARGE, _MOST_NODES = 32, 12, 24, 72
+# Chebyshev nodes of small states: more than the segments need, so that their products can be
+# tables, too.  Of large ones as many as a few segments need; of any at the most.
+_SMALL, _NODES, _TRIED, _TRIAL_NODES, _MOST_NODES = 12, 32, 4, 24, 72
 # Numbers in a table: 320 MB.
 _MOST_FLOATS = 40_000_000
 # Values that are evaluated together, in numbers of their matrices.
@@ -40,7 +41,8 @@ class Table:
     groups : ndarray
         Chebyshev coefficients of the matrices of groups of segments, ``(nodes, count, m, m)``.
     inner : ndarray
-        Those from the left end of its group to each given angle, ``(nodes, nt, m, m)``.
+        Those from the left end of its group to each given angle, ``(nodes, nt, m, m)``; ``(nodes,
+        0, m, m)`` where each angle is a left end.
     within : ndarray of int
         The group of each given angle, ``(nt,)``.
     tail : float
@@ -86,7 +88,10 @@ class Table:
         running[:, 0] = np.eye(single.shape[-1])
         for k in range(single.shape[1]):
             running[:, k + 1] = single[:, k] @ running[:, k]
-        return _mixed(weights, self.inner) @ running[:, self.within], running[:, -1]
+        flows = running[:, self.within]
+        if self.inner.shape[1]:
+            flows = _mixed(weights, self.inner) @ flows
+        return flows, running[:, -1]
 
 
 def _mixed(weights: Array, table: Array) -> Array:
@@ -125,7 +130,7 @@ def table_of(
     half : bool
         Whether half of the period is enough.
     nodes : int, optional
-        Chebyshev nodes to begin with.
+        Chebyshev nodes to begin with; without it a few segments tell.
 
     Raises
     ------
@@ -135,14 +140,23 @@ def table_of(
     low, high = ends
     if samples:
         count = samples * -(-count // samples)
-    if nodes is None:
-        size = equation_at(np.array([high])).size
-        nodes = _NODES if 2 * size < _SMALL else _NODES_OF_LARGE
-    nodes = 1 if low == high else nodes
+    middle, reach = 0.5 * (low + high), 0.5 * (high - low)
+
+    def at_nodes(number: int) -> Equation:
+        return equation_at(np.asarray(middle + reach * chebyshev.nodes(number)))
+
+    one = equation_at(np.array([high]))
+    h, m = one.period / count, 2 * one.size + one.forced
+    left = h * np.arange(0.5 * count if half else float(count))
+    if low == high:
+        nodes = 1
+    elif nodes is None and 2 * one.size < _SMALL:
+        nodes = _NODES
+    elif nodes is None:
+        few = left[:: max(1, len(left) // _TRIED)]
+        trial = segments_from(at_nodes(_TRIAL_NODES), few, h, way).maps
+        nodes = _nodes_for(trial, 4.0 * rtol / count)
     while True:
-        middle, reach = 0.5 * (low + high), 0.5 * (high - low)
-        equation = equation_at(np.asarray(middle + reach * chebyshev.nodes(nodes)))
-        m = 2 * equation.size + equation.forced
         if nodes * (count + samples) * m**2 > _MOST_FLOATS:
             raise bad(
                 "prepare",
@@ -151,15 +165,29 @@ def table_of(
                 "raise the lowest speed or lower samples",
             )
         if half:
-            h = equation.period / count
-            maps = segments_from(equation, h * np.arange(0.5 * count), h, way).maps
+            maps = segments_from(at_nodes(nodes), left, h, way).maps
         else:
-            maps = segments_of(equation, count, way).maps
+            maps = segments_of(at_nodes(nodes), count, way).maps
         tail = _tail(maps)
         if tail <= max(rtol, 64.0 * _EPS) or nodes == 1 or 2 * nodes > _MOST_NODES:
             break
         nodes += nodes // 2
     return _grouped(maps, ends, samples, max(tail, 64.0 * _EPS))
+
+
+def _nodes_for(maps: Array, tolerance: float) -> int:
+    """Return the number of nodes whose last two Chebyshev coefficients are below a tolerance.
+
+    Told by some segments' matrices at fewer nodes; the tolerance is relative to their largest
+    coefficient.  Coefficients that are not there fall as those of the second half do.
+    """
+    sizes = _sizes(_series(maps))
+    logs = np.log(np.maximum(sizes / np.max(sizes), _EPS))
+    wanted, last = np.log(max(tolerance, 64.0 * _EPS)), float(np.max(logs[-2:]))
+    if last <= wanted:
+        return chebyshev.length(logs, wanted) + 2
+    fall = (logs[len(logs) // 2] - last) / (len(logs) // 2)
+    return min(len(logs) + int((last - wanted) / max(fall, 0.01)) + 1, _MOST_NODES)
 
 
 def flows_at(equation: Equation, count: int, way: Method, samples: int) -> tuple[Array, Array]:
@@ -179,12 +207,24 @@ def flows_at(equation: Equation, count: int, way: Method, samples: int) -> tuple
     return flows, running
 
 
+def _series(values: Array) -> Array:
+    """Return Chebyshev coefficients over the first axis."""
+    flat = chebyshev.analysis(len(values)) @ values.reshape(len(values), -1)
+    return np.asarray(flat.reshape(values.shape))
+
+
+def _sizes(series: Array) -> Array:
+    """Return the largest entry of each coefficient, without a copy of large tables."""
+    flat = series.reshape(len(series), int(np.prod(series.shape[1:])))
+    return np.asarray(np.maximum(flat.max(axis=1, initial=0.0), -flat.min(axis=1, initial=0.0)))
+
+
 def _tail(maps: Array) -> float:
     """Return the last two Chebyshev coefficients over the largest entry; 0 of one node."""
     if len(maps) == 1:
         return 0.0
     last = chebyshev.analysis(len(maps))[-2:] @ maps.reshape(len(maps), -1)
-    return float(np.max(np.abs(last)) / np.max(np.abs(maps)))
+    return float(np.max(_sizes(last)) / np.max(_sizes(maps)))
 
 
 def _grouped(maps: Array, ends: tuple[float, float], samples: int, tail: float) -> Table:
@@ -196,14 +236,13 @@ def _grouped(maps: Array, ends: tuple[float, float], samples: int, tail: float) 
     merged = maps
     while merged.shape[1] % 2 == 0 and size < 8:
         pairs = merged[:, 1::2] @ merged[:, 0::2]
-        if _tail(pairs) > 4.0 * tail or np.max(np.abs(pairs)) > 1e3:
+        if _tail(pairs) > 4.0 * tail or np.max(_sizes(pairs)) > 1e3:
             break
         merged, size = pairs, 2 * size
-    within = np.zeros(0, dtype=np.intp)
+    at = np.arange(samples) * (count // max(samples, 1))
+    within, rest = at // size, at % size
     inner = maps[:, :0]
-    if samples:
-        at = np.arange(samples) * (count // samples)
-        within, rest = at // size, at % size
+    if np.any(rest):
         inner = np.empty((len(maps), samples, *maps.shape[2:]))
         running = np.broadcast_to(
             np.eye(maps.shape[-1]), (len(maps), count // size, *maps.shape[2:])
@@ -213,15 +252,9 @@ def _grouped(maps: Array, ends: tuple[float, float], samples: int, tail: float) 
             if place + 1 < size:
                 running = maps[:, place::size] @ running
     series = [_series(merged), _series(inner)]
-    sizes = np.maximum(*(np.max(np.abs(part), axis=(1, 2, 3), initial=0.0) for part in series))
+    sizes = np.maximum(*(_sizes(part) for part in series))
     used = chebyshev.length(sizes, _EPS * float(np.max(sizes)))
     return Table(*ends, series[0][:used], series[1][:used], within, tail * (count // size))
-
-
-def _series(values: Array) -> Array:
-    """Return Chebyshev coefficients over the first axis."""
-    flat = chebyshev.analysis(len(values)) @ values.reshape(len(values), -1)
-    return np.asarray(flat.reshape(values.shape))
 
 
 def next_rung(count: int) -> int:

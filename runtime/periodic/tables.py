@@ -110,6 +110,7 @@ def table_of(
     samples: int = 0,
     half: bool = False,
     nodes: int | None = None,
+    first: Equation | None = None,
 ) -> Table:
     """Return the table of a range.
 
@@ -131,6 +132,8 @@ def table_of(
         Whether half of the period is enough.
     nodes : int, optional
         Chebyshev nodes to begin with; without it a few segments tell.
+    first : Equation, optional
+        The equation at :func:`places` of these nodes, where it is at hand.
 
     Raises
     ------
@@ -140,23 +143,14 @@ def table_of(
     low, high = ends
     if samples:
         count = samples * -(-count // samples)
-    middle, reach = 0.5 * (low + high), 0.5 * (high - low)
-
-    def at_nodes(number: int) -> Equation:
-        return equation_at(np.asarray(middle + reach * chebyshev.nodes(number)))
-
-    one = equation_at(np.array([high]))
-    h, m = one.period / count, 2 * one.size + one.forced
-    left = h * np.arange(0.5 * count if half else float(count))
     if low == high:
         nodes = 1
-    elif nodes is None and 2 * one.size < _SMALL:
-        nodes = _NODES
     elif nodes is None:
-        few = left[:: max(1, len(left) // _TRIED)]
-        trial = segments_from(at_nodes(_TRIAL_NODES), few, h, way).maps
-        nodes = _nodes_for(trial, 4.0 * rtol / count)
+        trial = equation_at(places(ends, _TRIAL_NODES))
+        nodes = _nodes_for(trial, count, way, 4.0 * rtol / count)
+    equation = equation_at(places(ends, nodes)) if first is None else first
     while True:
+        m = 2 * equation.size + equation.forced
         if nodes * (count + samples) * m**2 > _MOST_FLOATS:
             raise bad(
                 "prepare",
@@ -165,23 +159,36 @@ def table_of(
                 "raise the lowest speed or lower samples",
             )
         if half:
-            maps = segments_from(at_nodes(nodes), left, h, way).maps
+            h = equation.period / count
+            maps = segments_from(equation, h * np.arange(0.5 * count), h, way).maps
         else:
-            maps = segments_of(at_nodes(nodes), count, way).maps
+            maps = segments_of(equation, count, way).maps
         tail = _tail(maps)
         if tail <= max(rtol, 64.0 * _EPS) or nodes == 1 or 2 * nodes > _MOST_NODES:
             break
         nodes += nodes // 2
+        equation = equation_at(places(ends, nodes))
     return _grouped(maps, ends, samples, max(tail, 64.0 * _EPS))
 
 
-def _nodes_for(maps: Array, tolerance: float) -> int:
+def places(ends: tuple[float, float], nodes: int) -> Array:
+    """Return the values of the variable at Chebyshev nodes, shape ``(nodes,)``."""
+    low, high = ends
+    return np.asarray(0.5 * (low + high) + 0.5 * (high - low) * chebyshev.nodes(nodes))
+
+
+def _nodes_for(equation: Equation, count: int, way: Method, tolerance: float) -> int:
     """Return the number of nodes whose last two Chebyshev coefficients are below a tolerance.
 
-    Told by some segments' matrices at fewer nodes; the tolerance is relative to their largest
-    coefficient.  Coefficients that are not there fall as those of the second half do.
+    The equation is that at a trial number of nodes, the tolerance relative to the largest
+    coefficient.  Coefficients beyond the trial's fall as those of its second half do.
     """
-    sizes = _sizes(_series(maps))
+    if 2 * equation.size < _SMALL:
+        return _NODES
+    h = equation.period / count
+    sizes = _sizes(
+        _series(segments_from(equation, h * np.arange(0.0, count, count / _TRIED), h, way).maps)
+    )
     logs = np.log(np.maximum(sizes / np.max(sizes), _EPS))
     wanted, last = np.log(max(tolerance, 64.0 * _EPS)), float(np.max(logs[-2:]))
     if last <= wanted:

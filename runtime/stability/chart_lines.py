@@ -19,7 +19,7 @@ from ..core.periodic_function import PeriodicFunction
 from ..core.progress import bar
 from ..hill import HillForm, discriminant
 from ..periodic.equation import Equation, at_geometry, equation_of, sampled
-from ..periodic.tables import Table, table_of
+from ..periodic.tables import Table, places, table_of
 from ..periodic.transition import levels_for, method, rung
 from .chart_axes import leaves_function_alone
 from .chart_sampling import Map, Sampler, Series, relative_error
@@ -192,8 +192,8 @@ class Lines:
             speed = np.broadcast_to(point.pop("speed", self.speed), values.shape)
             return equation_of(known, speed, point)
 
-        # Places along a line at which the number of segments is judged.
-        judged = plain(np.linspace(low, high, 5 if high > low else 1))
+        ends, nodes = (low, high), _NODES if high > low else 1
+        judged = plain(places(ends, nodes))
         unit = judged.scale[len(judged.scale) // 2]
         # Stages among which the cheapest are taken.  transition.cheapest, which bounds what modes
         # that no segment resolves make of waves, doubles a chart's time for no smaller error.
@@ -207,12 +207,20 @@ class Lines:
         # A multiple of 16 can be multiplied by pairs, of half a period too.
         count = 16 * int(np.ceil(fineness * count / 16))
 
-        def equation_at(values: Array) -> Equation:
-            made = plain(values)
+        def scaled(made: Equation) -> Equation:
             return replace(made, scale=np.broadcast_to(unit, made.scale.shape))
 
         half = self.reduced and is_mirrored(judged)
-        table = table_of(equation_at, (low, high), count, way, _RTOL, half=half, nodes=_NODES)
+        table = table_of(
+            lambda values: scaled(plain(values)),
+            ends,
+            count,
+            way,
+            _RTOL,
+            half=half,
+            nodes=nodes,
+            first=scaled(judged),
+        )
         return Line(table, half, self.reduced)
 
 

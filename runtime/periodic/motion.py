@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
-from math import ceil
+from math import ceil, fmod
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -189,8 +189,9 @@ def simulate(
     """
     _check_arguments(method, revolutions, rtol, samples, bound, start)
     equation = equation_of(system, _number("speed", speed), parameters, forcing=forcing)
-    state = _start(equation, initial, start)
-    grid = _Grid(equation.period, float(start), float(revolutions), int(samples))
+    begin = _within(equation.period, float(start))
+    state = _start(equation, initial, begin)
+    grid = _Grid(equation.period, begin, float(revolutions), int(samples))
     with bar(progress, grid.intervals) as tick:
         if method == "auto":
             run, error, allowed = _converged(equation, grid, state, rtol, bound, tick)
@@ -210,8 +211,8 @@ def simulate(
         error_norm="largest error of a coordinate over its peak",
         checks=DeferredChecks(checks),
         provenance=provenance(system.changed_provenance(**parameters)),
-        theta=theta,
-        time=(theta - grid.start) / value,
+        theta=theta if begin == start else start + (theta - begin),
+        time=(theta - begin) / value,
         q=q,
         qd=value * slope,
         speed=value,
@@ -220,6 +221,16 @@ def simulate(
         message=run.message,
         labels=system.labels,
     )
+
+
+def _within(period: float, start: float) -> float:
+    """Return a start within a period of zero: a large angle keeps no digits for what is added."""
+    if abs(start) <= max(period, 2.0 * np.pi):
+        return start
+    if (2.0 * np.pi / period).is_integer():
+        # The sine knows the remainder of any angle by pi itself, not by its nearest float.
+        return float(np.arctan2(np.sin(start), np.cos(start)))
+    return fmod(start, period)
 
 
 class _Grid:

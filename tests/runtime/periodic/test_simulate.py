@@ -5,6 +5,7 @@ from __future__ import annotations
 import pickle
 from dataclasses import replace
 
+import mpmath
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput, LinearRangeWarning
@@ -102,6 +103,18 @@ def test_going_on_from_the_end_equals_one_run(start):
     rest = simulate(system, 2.0, 1.25, initial=first.at_end, start=first.theta[-1])
     assert whole.theta[0] == start and len(first.q) + len(rest.q) == len(whole.q) + 1
     np.testing.assert_allclose(rest.q, whole.q[len(first.q) - 1 :], atol=1e-12)
+
+
+@pytest.mark.parametrize("start", [1e6, -1e12, 1e18])
+def test_a_large_start_keeps_its_digits(start):
+    """The remainder comes from mpmath with 60 digits; SciPy marches from there."""
+    with mpmath.workdps(60):
+        remainder = float(mpmath.fmod(mpmath.mpf(start), 2 * mpmath.pi))
+    system = _driven(depth=10.0)
+    found = simulate(system, 2.0, 1.0, initial=(0.1, 0.0), start=start)
+    other = simulate(system, 2.0, 1.0, "DOP853", initial=(0.1, 0.0), start=remainder, rtol=1e-12)
+    assert found.passed and found.theta[0] == start
+    np.testing.assert_allclose(found.q, other.q, atol=1e-10 * np.max(np.abs(other.q)))
 
 
 @pytest.mark.parametrize("period", [np.pi, 4 * np.pi, 2.3])

@@ -16,13 +16,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..core.families import LinearPeriodic
+from ..core.families import LinearPeriodic, require_system
 from ..core.inputs import numbers, require_whole
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
 from ..periodic.decoupled.slow_modes import SlowModes, SlowMonodromy
-from .held import HeldModes, buckling_speed, held_modes, mean_frequencies, require_system
+from .held import HeldModes, buckling_speed, held_modes, mean_frequencies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import BadInput, bad
-from ..core.families import DAMPING, LinearPeriodic
+from ..core.families import DAMPING, LinearPeriodic, require_system
 from ..core.inputs import require_whole, speed_span
 from ..core.maxima import local_maxima
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
-from .held import buckling_speed, held_frequencies, mean_frequencies, require_system
+from .held import buckling_speed, held_frequencies, mean_frequencies
 from .multiplier_maxima import Maxima, meissner_maxima, multiplier_maxima
 
 if TYPE_CHECKING:

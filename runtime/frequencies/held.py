@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import BadInput, bad
-from ..core.families import LinearPeriodic
-from ..core.inputs import numbers_in_a_row, require_kind
+from ..core.families import LinearPeriodic, require_system
+from ..core.inputs import numbers_in_a_row
 from ..core.maxima import narrowed
 from ..core.trigonometric import even_angles
 from ..periodic.moving_basis import flexible_modes
@@ -101,11 +101,6 @@ def _indefinite(mass: Array, stiffness: Array, theta: Array) -> BadInput:
         "a positive definite matrix at every angle",
         "check the parameters; a rigid or buckled motion has no natural frequency",
     )
-
-
-def require_system(system: object) -> None:
-    """Refuse what is no linear periodic system."""
-    require_kind("system", system, LinearPeriodic, "take one from linkage_system or a scene")
 
 
 def crank_angles(system: LinearPeriodic, theta: ArrayLike | None) -> Array:

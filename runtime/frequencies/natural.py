@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..core.families import LinearPeriodic
+from ..core.families import LinearPeriodic, require_system
 from ..core.inputs import require_whole
 from ..core.results import Check, Result, provenance
 from .held import (
@@ -21,7 +21,6 @@ from .held import (
     held_arrays,
     held_frequencies,
     held_modes,
-    require_system,
 )
 from .tracking import CLEAR, Arrays, Curves, Encounter, Modes, Walk, followed_shapes, walk
 

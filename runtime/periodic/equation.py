@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import BadInput, bad
-from ..core.families import LinearPeriodic, Term
+from ..core.families import LinearPeriodic, Term, require_system
 from ..core.inputs import numbers
 
 Array = NDArray[np.float64]
@@ -522,8 +522,9 @@ def at_geometry(
     Raises
     ------
     BadInput
-        If a geometry value is not one number.
+        If it is no linear periodic system, or a geometry value is not one number.
     """
+    require_system(system)
     rest = {name: value for name, value in values.items() if name not in system.geometry}
     changes = {}
     for name in values.keys() - rest.keys():

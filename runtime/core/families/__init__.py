@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .constrained import Constrained, Guard
 from .emitted import array_function
-from .linear_periodic import DAMPING, MATRICES, VECTORS, Array, LinearPeriodic, Term
+from .linear_periodic import DAMPING, MATRICES, VECTORS, Array, LinearPeriodic, Term, require_system
 from .transcendental import Transcendental
 
 __all__ = [
@@ -18,4 +18,5 @@ __all__ = [
     "Term",
     "Transcendental",
     "array_function",
+    "require_system",
 ]

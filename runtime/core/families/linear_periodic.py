@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
-from ..inputs import as_numpy
+from ..inputs import as_numpy, require_kind
 from .spectrum import term_spectrum
 
 if TYPE_CHECKING:
@@ -547,3 +547,8 @@ def _told(value: ArrayLike) -> str:
     if values.size == 0:
         return "none"
     return f"{values.size} values from {float(values.min())!r} to {float(values.max())!r}"
+
+
+def require_system(system: object) -> None:
+    """Refuse what is no linear periodic system."""
+    require_kind("system", system, LinearPeriodic, "take the .system() of a linear scene")

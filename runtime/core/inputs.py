@@ -45,8 +45,10 @@ def numbers(name: str, value: object) -> NDArray[np.float64]:
     """Return an argument as an array of floats; refuse what is not made of real numbers.
 
     Arrays of other namespaces become NumPy's, wherever NumPy can read them; text that spells a
-    number is none.
+    number is none, nor is what an array masks.
     """
+    if np.ma.is_masked(value):
+        raise bad(name, "masked entries", "numbers", "leave them out, or fill them with NaN")
     try:
         given = np.asarray(as_numpy(value))
     except ValueError as ragged:

@@ -24,6 +24,7 @@ def test_the_full_form_is_hamiltonian_and_the_instantaneous_is_not():
     angles = np.linspace(0.0, 6.0, 7)
     # A high speed keeps the elastic forces from hiding the gyroscopic ones.
     assert hamiltonian_gap(four_bar(2), 1e5, angles) < 1e-14
+    assert hamiltonian_gap(sliding(), 1e5, angles) < 1e-13
     assert hamiltonian_gap(four_bar(2, form="instantaneous"), 1e5, angles) > 1e-3
 
 
@@ -46,6 +47,23 @@ def test_a_frame_that_stands_still_keeps_its_frequencies_of_closed_form():
     root = 1.875104068711961
     exact = root**2 * np.sqrt(bar.bending_stiffness / bar.mass_per_length)
     assert abs(found / exact - 1.0) < 1e-7
+
+
+def test_a_torsion_damper_bends_the_end_of_a_beam():
+    # Its moment needs a curvature at the end: without damper, spring or inertia there is none.
+    bare, damped = (
+        frame(
+            {"A": (0.0, 0.0), "B": (0.0, 1.0)},
+            {"a": ("A", "B")},
+            SECTIONS["crank"],
+            supports={"A": ("x", "y", "rotation")},
+            kind="curvature",
+            elements=1,
+            nodes={"B": values},
+        )
+        for values in ({}, {"damping": {"rotation": 0.1}})
+    )
+    assert set(damped.labels) - set(bare.labels) == {"B.a.curvature"}
 
 
 @pytest.mark.parametrize(

@@ -121,14 +121,6 @@ def test_free_waves_and_frequencies_belong_together():
     assert first.frequency == pytest.approx(np.sqrt(square), rel=1e-13)
 
 
-@pytest.mark.parametrize("frequency", [1e-3, 1.0, 1e4, 1e9])
-def test_free_waves_at_any_frequency(frequency):
-    found = section(wave_number=None, frequency=frequency)
-    load = found.mass_per_length * frequency**2
-    assert found.bending_stiffness * found.wave_number**4 == pytest.approx(load, rel=1e-12)
-    assert found.slack <= found.bending_stiffness <= found.bonded
-
-
 @pytest.mark.smoke
 def test_equivalent_section_keeps_stiffness_mass_and_loss():
     found = section(frequency=100.0)

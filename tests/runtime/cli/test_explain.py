@@ -30,11 +30,6 @@ def slider():
     return explain("slider_crank_example")
 
 
-@pytest.fixture(scope="module")
-def rod():
-    return explain("beale_1992_flexible_rod", ROD)
-
-
 def skipped_arrays(found):
     """Return the arrays that are absent or zero, and never added up."""
     return {name for name, kind in found.array_kinds.items() if kind in {"absent", "zero"}}
@@ -86,23 +81,21 @@ def test_what_a_sweep_shares_is_every_term_that_acts_at_constant_speed(coupler):
     assert coupler.angles > 2 * coupler.harmonics > 0
 
 
-def test_nothing_of_the_symbolic_side_loads(coupler, slider):
+def test_nothing_of_the_symbolic_side_loads_and_nothing_twice(coupler, slider):
     for found in (coupler, slider):
         assert found.passed
         loaded = {name for stage in found.stages.values() for name in stage.heavy}
         assert not loaded & {"sympy", "matplotlib", "mpmath"}
     assert not any(stage.heavy for stage in coupler.stages.values())
     assert not slider.stages["scene"].heavy
-
-
-def test_a_question_loads_only_what_the_ones_before_it_did_not(coupler, slider):
+    # And a question only what the ones before it did not.
     assert list(coupler.stages) == ["scene", "system", "floquet_multipliers", "steady_state"]
     asked = [stage for name, stage in slider.stages.items() if name.startswith("rigid_forces")]
     assert asked[0].modules > 0 and not any(stage.modules for stage in asked[1:])
     assert slider.stages["scene"].scipy < 20 and slider.stages["motion"].scipy == 0
 
 
-def test_each_force_alone_calls_its_own_function_and_costs_less_than_all(slider):
+def test_each_force_alone_calls_its_own_function(slider):
     functions = {
         "pins": "pin_forces",
         "torque": "driving_torque",
@@ -117,7 +110,6 @@ def test_each_force_alone_calls_its_own_function_and_costs_less_than_all(slider)
         assert stage.calls == {f"{used}.{function}": 1}
         assert stage.points == {f"{used}.{function}": 64}
         assert stage.operations == 64 * slider.emitted[used].functions[function]
-        assert stage.operations < whole.operations
     # One module serves every machine at every speed.
     use = slider.emitted[used]
     assert use.dropped == () and use.kept == ("across", "crank_acceleration")
@@ -125,7 +117,8 @@ def test_each_force_alone_calls_its_own_function_and_costs_less_than_all(slider)
 
 
 @pytest.mark.slow
-def test_a_general_module_says_which_terms_the_scene_drops(rod):
+def test_a_general_module_says_which_terms_the_scene_drops():
+    rod = explain("beale_1992_flexible_rod", ROD)
     use = rod.emitted["quick_return_rod_free_free"]
     assert rod.terms == {"tension": "dropped"}
     assert use.dropped == ("tension",) and use.kept == ()

@@ -16,6 +16,7 @@ from beam_motions import (
     steadily,
     turning_bar,
 )
+from command_runs import shown
 from elastolink.runtime.core.errors import BadInput, LinearRangeWarning
 from elastolink.runtime.periodic import simulate, steady_state
 from elastolink.runtime.recovery import stress
@@ -44,6 +45,20 @@ def test_cantilever_stress_by_hand():
     np.testing.assert_allclose(found.at("bar", 0.0)[0], axial - bending, rtol=1e-7)
     np.testing.assert_allclose(found.fibre("positive", "dynamic"), 0.0, atol=1e-7 * bending)
     assert found.plot().get_xlabel() == "place x/length"
+
+
+def test_stress_of_a_frame_needs_no_speed(capsys):
+    portal = ("stress", "aannaque_1996_portal_frame", "--set", "frame.axial=elastic")
+    force = ("--set", 'nodes.B.force=["100 N", "0 N"]')
+    # Built-in portal of equal bars, force F along the beam: Kleinlogel's base moment 2 F L/7 for
+    # k = 1, half on each side, over the section's modulus b t^2/6; the axial parts are below 1 %.
+    moment, modulus = 2.0 / 7.0 * 100.0, 0.02 * 0.01183**2 / 6.0
+    lines = shown(capsys, *portal, *force, "--limit", "250 MPa").splitlines()
+    first = next(line for line in lines if line.startswith("left")).split()
+    assert float(first[1]) == pytest.approx(moment / modulus / 1e6, rel=0.02)
+    # Pushed to the right, the left column is drawn on its left, the positive side of A to B.
+    assert first[4] == "positive"
+    shown(capsys, *portal)
 
 
 def test_turning_bar_has_the_stress_of_the_centrifugal_force():

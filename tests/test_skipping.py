@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib.util
 import itertools
-import json
 import pickle
 from collections import Counter
 from pathlib import Path
@@ -41,33 +40,6 @@ def test_a_function_of_a_module_costs_less_than_the_module():
             for part in parts:
                 if whole in cost.functions and part in cost.functions:
                     assert cost.functions[part] < cost.functions[whole], (name, part)
-
-
-MEASURE = """
-import json, os, sys
-start = set(sys.modules)
-import elastolink
-root = sorted(set(sys.modules) - start)
-import importlib, elastolink.generated, numpy
-loaded = {}
-for name in sys.argv[1:]:
-    before = set(sys.modules)
-    importlib.import_module(f"elastolink.generated.{name}")
-    new = sorted(set(sys.modules) - before)
-    loaded[name] = [new, sum(os.path.getsize(sys.modules[n].__file__) for n in new)]
-print(json.dumps([root, loaded]))
-"""
-
-
-def test_the_package_loads_itself_alone_and_so_does_each_emitted_module():
-    """Beside NumPy, which all but the recursion need; that none imports more: test_layers."""
-    root, loaded = json.loads(python(MEASURE, *sorted(SPECS)))
-    assert [name for name in root if name.startswith("elastolink")] == ["elastolink"]
-    # The standard library's importing machinery and no numerics.
-    assert not {name.partition(".")[0] for name in root} & {"numpy", "scipy"}
-    for name, (new, size) in loaded.items():
-        assert new == [f"elastolink.generated.{name}"]
-        assert size == COSTS[name].size
 
 
 def machine():
@@ -111,58 +83,37 @@ def test_every_set_of_outputs_costs_no_more_than_a_larger_one(counted, accelerat
         assert all(cost <= costs[other] for other in larger)
 
 
-def test_checks_and_error_figure_of_forces_cost_nothing_until_they_are_read(counted):
-    found = el.rigid_forces(machine(), [0.3, 1.0], 10.0)
-    assert sum(counted.values()) == 1
-    assert found.passed
-    assert np.all(np.asarray(found.error) >= 0.0)
-
-
 RIG = "smith_1972_5152_sixteenth_inch"
 FAMILY = "four_bar_coupler_complete"
+STABILITY = {"angle_functions"}
+FORCED = {"angle_functions", "forcing_functions"}
 
 
-class _Calls:
-    """Counts of the emitted functions of angle, where the assembly calls them."""
-
-    def __init__(self, monkeypatch):
-        self.of = Counter()
-        shared = assembly._Remembered
-        evaluate = shared.__call__
-
-        def counting(kernel, theta):
-            self.of[kernel._function.args[0].__name__] += 1
-            return evaluate(kernel, theta)
-
-        monkeypatch.setattr(shared, "__call__", counting)
-
-
+AXES = {"x": ("speed", [30.0, 40.0]), "y": ("follower_inertia", [1e-3, 2e-3])}
 QUESTIONS = {
-    "floquet_multipliers": {"angle_functions"},
-    "stability_chart": {"angle_functions"},
-    "steady_state": {"angle_functions", "forcing_functions"},
-    "resonance_curve": {"angle_functions", "forcing_functions"},
+    "multipliers": (lambda system: el.floquet_multipliers(system, 34.0), STABILITY),
+    "chart": (lambda system: el.stability_chart(system, **AXES), STABILITY),
+    "steady state": (lambda system: el.steady_state(system, 34.0), FORCED),
+    "resonance": (lambda system: el.resonance_curve(system, [30.0, 35.0, 40.0]), FORCED),
 }
 
 
 @pytest.mark.parametrize("question", QUESTIONS)
 def test_a_question_evaluates_the_functions_that_it_needs_alone(question, monkeypatch):
     """Stability takes no forcing; a constant speed, nothing of the crank's acceleration."""
+    ask, needed = QUESTIONS[question]
     system = el.load_scene(RIG, {"coupler.damping_ratio": 0.01}).system()
     kernels = {name for name in COSTS[FAMILY].functions if name.endswith("_functions")}
-    assert kernels > QUESTIONS[question] | {"acceleration_functions"}
-    calls = _Calls(monkeypatch)
-    if question == "stability_chart":
-        el.stability_chart(
-            system,
-            x=("speed", np.linspace(30.0, 60.0, 4)),
-            y=("follower_inertia", np.linspace(1e-3, 2e-3, 3)),
-        )
-    elif question == "resonance_curve":
-        el.resonance_curve(system, np.linspace(30.0, 40.0, 3))
-    else:
-        getattr(el, question)(system, 34.0)
-    assert set(calls.of) == QUESTIONS[question]
+    assert kernels > needed | {"acceleration_functions"}
+    called, evaluate = set(), assembly._Remembered.__call__
+
+    def noting(kernel, theta):
+        called.add(kernel._function.args[0].__name__)
+        return evaluate(kernel, theta)
+
+    monkeypatch.setattr(assembly._Remembered, "__call__", noting)
+    ask(system)
+    assert called == needed
 
 
 def test_a_term_that_nobody_asks_about_is_never_sampled():

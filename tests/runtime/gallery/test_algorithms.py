@@ -103,12 +103,6 @@ def test_de_vogelaere_equals_the_recurrence_of_the_listing(start):
     np.testing.assert_allclose(found, listed, rtol=0, atol=1e-12 * np.max(np.abs(listed)))
 
 
-def test_de_vogelaere_is_of_fourth_order():
-    ends = [march(hill, 0.3, np.pi / n, n, 0.3, 0.1)[-1] for n in (1024, 2048, 4096, 32768)]
-    errors = np.abs(np.array(ends[:3]) - ends[3])
-    np.testing.assert_allclose(np.log2(errors[:2] / errors[1:]), 4.0, atol=0.1)
-
-
 # Newmark ----------------------------------------------------------------------------------------
 
 

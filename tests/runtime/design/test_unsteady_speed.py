@@ -8,89 +8,65 @@ from elastolink import BadInput, load_scene, steady_state
 from elastolink.runtime.design import SpeedProfile, run_through
 from elastolink.runtime.design.changing_length import ChangingLength
 from elastolink.runtime.design.unsteady import Drive, arrays_of, generator_of, march
-from periodic_systems import system_of
+from periodic_systems import second_order, system_of, wave
 from scipy.integrate import solve_ivp
 
-
-def matrix(constant, cosine, sine):
-    """Return a function of the angle and its derivative: c0 + c1 cos + c2 sin."""
-    c0, c1, c2 = (np.asarray(part, dtype=float) for part in (constant, cosine, sine))
-
-    def value(theta):
-        shape = (-1, *(1,) * c0.ndim)
-        return c0 + c1 * np.cos(theta).reshape(shape) + c2 * np.sin(theta).reshape(shape)
-
-    def slope(theta):
-        shape = (-1, *(1,) * c0.ndim)
-        return -c1 * np.sin(theta).reshape(shape) + c2 * np.cos(theta).reshape(shape)
-
-    return value, slope
-
-
-MASS, MASS_SLOPE = matrix([[2, 0.3], [0.3, 1]], [[0.3, 0.1], [0.1, 0]], [[0, 0.2], [0.2, 0.1]])
-DRIFT, DRIFT_SLOPE = matrix([[0.1, 0.4], [-0.2, 0.0]], [[0, 0.3], [0.1, 0]], np.zeros((2, 2)))
-CENTRIPETAL, _ = matrix([[0.5, 0.1], [0.1, 0.3]], [[0.1, 0], [0, 0.2]], np.zeros((2, 2)))
-EULER, _ = matrix([[0.2, 0.05], [0.05, 0.1]], np.zeros((2, 2)), [[0.1, 0], [0, 0]])
-FORCE, _ = matrix([1.0, 0.2], [0.3, -0.4], [0.1, 0.6])
-IMPULSE, _ = matrix([0.3, -0.2], [0.2, 0.1], [0.0, 0.5])
 STIFFNESS = np.array([[30.0, -8.0], [-8.0, 50.0]])
-DAMPING = np.array([[0.3, 0.1], [0.1, 0.2]])
-CARRIED = np.array([[0.05, 0.0], [0.02, 0.04]])
+
+
+def summed(constant, cosine, sine=0.0):
+    """Return the parts of an array: c0 + c1 cos + c2 sin of the crank angle."""
+    parts = (np.broadcast_to(part, np.shape(constant)) for part in (cosine, sine))
+    return [np.array(constant), *map(wave, parts, (1, 1), (0.0, -np.pi / 2))]
+
+
 SYSTEM = system_of(
-    M=MASS,
-    A=DRIFT,
-    B=CENTRIPETAL,
-    S=EULER,
+    M=summed([[2, 0.3], [0.3, 1]], [[0.3, 0.1], [0.1, 0]], [[0, 0.2], [0.2, 0.1]]),
+    A=summed([[0.1, 0.4], [-0.2, 0.0]], [[0, 0.3], [0.1, 0]]),
+    B=summed([[0.5, 0.1], [0.1, 0.3]], [[0.1, 0], [0, 0.2]]),
+    S=summed([[0.2, 0.05], [0.05, 0.1]], 0.0, [[0.1, 0], [0, 0]]),
     K=STIFFNESS,
-    C=DAMPING,
-    D=CARRIED,
+    C=np.array([[0.3, 0.1], [0.1, 0.2]]),
+    D=np.array([[0.05, 0.0], [0.02, 0.04]]),
     Kg=(None, 0.1 * STIFFNESS, 2),
-    f=FORCE,
-    g=IMPULSE,
+    f=summed([1.0, 0.2], [0.3, -0.4], [0.1, 0.6]),
+    g=summed([0.3, -0.2], [0.2, 0.1], [0.0, 0.5]),
 )
+START = np.array([0.05, -0.02, 0.1, 0.03])
 TABLE = "aannaque_1996_table_4_1"
 PROFILE = SpeedProfile(times=(0.0, 1.0, 2.5, 4.0), speeds=(0.5, 3.0, 2.0, 4.0))
 
 
 def by_second_order(time):
-    """Integrate the family's second-order equation by SciPy, written from its documentation."""
+    """Integrate the family's second-order equation by SciPy."""
 
     def slope(t, y):
         at = np.array([t])
-        theta, w, a = PROFILE.angle(at), PROFILE.speed(at)[0], PROFILE.acceleration(at)[0]
-        q, qd = y[:2], y[2:]
-        drift = DRIFT(theta)[0]
-        g = MASS_SLOPE(theta)[0] + drift - drift.T
-        h = DRIFT_SLOPE(theta)[0] - CENTRIPETAL(theta)[0]
-        e = drift - EULER(theta)[0]
-        stiff = STIFFNESS * (1 + 0.1 * w**2) + w * CARRIED + w**2 * h + a * e
-        right = w**2 * FORCE(theta)[0] + a * IMPULSE(theta)[0]
-        rest = right - (DAMPING + w * g) @ qd - stiff @ q
-        return np.concatenate([qd, np.linalg.solve(MASS(theta)[0], rest)])
+        drive = PROFILE.speed(at), PROFILE.acceleration(at)
+        parts = second_order(SYSTEM, PROFILE.angle(at), *drive)
+        stiffness, damping, mass, force = (part[0] for part in parts)
+        rest = force - damping @ y[2:] - stiffness @ y[:2]
+        return np.concatenate([y[2:], np.linalg.solve(mass, rest)])
 
-    start = np.array([0.05, -0.02, 0.1, 0.03])
-    found = solve_ivp(slope, (0, 4), start, "DOP853", rtol=1e-12, atol=1e-14, t_eval=time)
-    return start, found.y.T
+    return solve_ivp(slope, (0, 4), START, "DOP853", rtol=1e-12, atol=1e-14, t_eval=time).y.T
 
 
 def marched(steps, stages):
-    start, _ = by_second_order([0.0])
-    drive = Drive.of(PROFILE, np.zeros(1))
-    arrays = arrays_of(SYSTEM, drive)
-    momentum = arrays["M"][0] @ start[2:] + drive.speed[0] * arrays["A"][0] @ start[:2]
-    time = np.linspace(0.0, 4.0, steps + 1)
-
     def generator(time):
         drive = Drive.of(PROFILE, time)
         return generator_of(arrays_of(SYSTEM, drive), drive)
 
-    return time, march(generator, time, np.concatenate([start[:2], momentum, [1.0]]), stages)
+    drive = Drive.of(PROFILE, np.zeros(1))
+    arrays = arrays_of(SYSTEM, drive)
+    momentum = arrays["M"][0] @ START[2:] + drive.speed[0] * arrays["A"][0] @ START[:2]
+    time = np.linspace(0.0, 4.0, steps + 1)
+    return time, march(generator, time, np.concatenate([START[:2], momentum, [1.0]]), stages)
 
 
 def test_marching_solves_the_second_order_equation_with_order_six():
     # DOP853 at 1e-12; steps end where the profile's cubics meet: 4, 2.5 and 1 s are halves.
     time, states = marched(128, 3)
-    _, truth = by_second_order(time)
+    truth = by_second_order(time)
     gap = np.abs(states[:, :2] - truth[:, :2])
     assert np.max(gap) < 2e-7 * np.max(np.abs(truth))
     errors = [np.max(np.abs(marched(n, 3)[1][-1, :2] - truth[-1, :2])) for n in (32, 64)]

@@ -313,7 +313,6 @@ def test_frames_and_bytes_of_a_moving_picture(tmp_path):
         (CRANK_ROCKER, "missing/a.gif", {}, "writable"),
         (CRANK_ROCKER, "a.gif", {"frames": 1}, "frames"),
         (CRANK_ROCKER, "a.gif", {"fps": 0}, "fps"),
-        (CRANK_ROCKER, "a.gif", {"circuit": 2}, "circuit"),
         (CRANK_ROCKER, "a.gif", {"curves": ["x"]}, "curves"),
         (CRANK_ROCKER, "a.gif", {"curves": [coupler_curve(SLIDER, 1.0)]}, "another linkage"),
     ],

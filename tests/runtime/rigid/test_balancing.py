@@ -221,15 +221,6 @@ def test_limits_are_kept_and_cost_something_and_one_force_alone_can_be_removed()
     assert alone.error < 1e-9
 
 
-def test_given_angles_count_alone():
-    machine = Machine(FourBar(1.0, 0.9, 0.5, 0.5), smith().masses)  # a rocking crank
-    theta = np.linspace(0.6, 0.9, 21)
-    found = balance(machine, SPEED, angles=theta, bounds=Bounds(mass=1.0, offset=0.5))
-    base, after = (sampled_peaks(one, theta, SPEED) for one in (machine, found.machine))
-    assert sum(after[t] / base[t] for t in found.weights) == pytest.approx(found.value, abs=1e-9)
-    assert found.value < 3.0
-
-
 def test_cylinders_have_the_radius_of_their_mass():
     cylinders = Bounds(mass=HEAVIEST, offset=OFFSET, density=2700.0, thickness=0.003)
     heavy = balance(smith(), SPEED, bounds=cylinders)

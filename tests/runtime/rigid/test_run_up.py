@@ -230,13 +230,6 @@ def test_a_line_of_no_motor_is_refused(speed) -> None:
         TorqueLine(3.0, speed)
 
 
-def test_a_torque_law_is_refused_on_a_rocking_crank_too() -> None:
-    linkage = FourBar(0.3, 0.25, 0.1, 0.3)
-    middle = float(np.mean(linkage.crank_ranges()[-1]))
-    with pytest.raises(BadInput, match="torque law"):
-        run_up(machine_on(linkage), lambda w: None if w else 1.0, theta0=middle, duration=5.0)
-
-
 @pytest.mark.parametrize(("theta0", "offset"), [(0.0, 0.0), (0.5, 0.0123)])
 def test_a_massless_crank_has_no_inertia_at_its_dead_centres(theta0, offset) -> None:
     machine = Machine(SliderCrank(0.1, 0.3, offset), {"slider": MassDistribution(1.0)})

@@ -92,19 +92,6 @@ def test_the_emitted_arrays_are_those_of_the_hand_derivation(folder, monkeypatch
     )
 
 
-def test_a_stability_only_scene_needs_no_forcing(folder, monkeypatch, tmp_path):
-    modules = tmp_path / "modules"
-    table = '{"mechanism": "slider_crank", "formulation": "complete", "flexible": ["rod"]'
-    table += ', "outputs": ["stability"]}'
-    assert main(["--model", str(folder / FILES[0]), "--spec", table, "--out", str(modules)]) == 0
-    monkeypatch.setenv("ELASTOLINK_GENERATED", str(modules))
-    overrides = {"model.outputs": ["stability"]}
-    system = el.load_scene(folder / FILES[1], overrides=overrides).system()
-    assert not any(system.has(name) for name in ("f", "g", "h", "p"))
-    assert "forcing" not in (modules / "slider_crank_rod_complete_for_stability.py").read_text()
-    assert el.floquet_multipliers(system, speed=SPEED).stable
-
-
 def _blocks(language):
     return re.findall(rf"```{language}\n(.*?)```", (DOCS / "own_model.md").read_text(), re.S)
 

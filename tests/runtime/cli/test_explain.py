@@ -61,14 +61,6 @@ def test_arrays_are_told_apart_as_the_system_has_them(coupler):
     assert skipped_arrays(coupler) >= {"A", "Kg", "C"}
 
 
-@pytest.mark.slow
-def test_damping_is_zero_until_there_is_some(coupler):
-    damped = explain(el.load_scene(RIG, {"coupler.damping_ratio": 0.01}))
-    assert coupler.array_kinds["C"] == "zero" and damped.array_kinds["C"] == "constant"
-    assert "1" in damped.powers and "1" not in coupler.powers
-    assert damped.samples == coupler.samples + 1
-
-
 def test_what_a_sweep_shares_is_every_term_that_acts_at_constant_speed(coupler):
     system = el.load_scene(RIG).system()
     acting = [term for row, term in enumerate(system.terms) if np.any(system.spectrum(row))]
@@ -171,22 +163,6 @@ def test_a_machine_without_masses_is_explained_as_far_as_it_goes():
     assert "no mass" in found.stages["machine"].refused
     assert list(found.emitted) == ["four_bar_kinematics"]
     assert found.stages["motion"].points == {"four_bar_kinematics.motion": 64}
-
-
-def test_the_counter_sees_calls_points_and_modules(monkeypatch):
-    """The guard of the counts: known calls of an emitted function, in this process."""
-    emitted = import_module("elastolink.generated.four_bar_kinematics")
-    counter = probe.Counter()
-    with counter.stage("first"):
-        emitted.motion(np.zeros((3, 5)), 3.0, 1.0, 3.0, 3.0, 1.0, 0.0)
-        emitted.motion(0.2, 3.0, 1.0, 3.0, 3.0, 1.0, 0.0)
-    with counter.stage("second"):
-        raise el.BadInput
-    first, second = counter.stages.values()
-    assert first["calls"] == {"four_bar_kinematics.motion": 2}
-    assert first["points"] == {"four_bar_kinematics.motion": 16}
-    assert "four_bar_kinematics" in first["emitted"] and first["modules"] > len(first["emitted"])
-    assert second["calls"] == {} and second["modules"] == 0 and second["emitted"] == ()
 
 
 def test_what_the_command_loads_is_not_counted_as_the_scene_s():

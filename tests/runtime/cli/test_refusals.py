@@ -9,6 +9,14 @@ FREE = "--set model.formulation=free_free --set model.modes=1"
 WIDTHS = "--tolerance 'crank=0.05 mm' --tolerance 'coupler=0.1 mm'"
 # Command line | words of the complaint.
 REFUSED = """
+ | --help
+chrt | --help
+show | --help
+show smith_1972_5152_sixteenth_inch --nope | --help
+show smith_1972_5152_sixteenth_inch --set links.crank | found
+show smith_1972_5152_sixteenth_inch --set =3 | found
+show smith_1972_5152_sixteenth_inch --set links.crnk=3 | found
+show smith_1972_5152_sixteenth_inch --set crank=3 | found
 show nothing.toml |
 kinematics mathieu |
 kinematics smith_1972_2122 --angles 0:360 |
@@ -92,7 +100,7 @@ balance smith_1972_12_6_12_12 --speed 10 --trade-off shaking_force,torque --case
 """
 
 
-@pytest.mark.parametrize("line", REFUSED.strip().splitlines())
+@pytest.mark.parametrize("line", REFUSED.strip("\n").splitlines())
 def test_refusal_is_one_line(capsys, line):
     command, _, words = line.replace("{free}", FREE).replace("{widths}", WIDTHS).rpartition("|")
     assert words.strip() in refused(capsys, *shlex.split(command))

@@ -74,14 +74,6 @@ def test_marching_solves_the_second_order_equation_with_order_six():
     assert np.all(slopes > 5.5), (slopes, errors)
 
 
-def test_the_generator_is_hamiltonian_without_damping():
-    drive = Drive(np.array([0.7]), np.array([2.0]), np.array([1.5]))
-    generator = generator_of(arrays_of(SYSTEM.without("C", "D"), drive), drive)
-    skew = np.block([[np.zeros((2, 2)), np.eye(2)], [-np.eye(2), np.zeros((2, 2))]])
-    product = skew @ generator[0, :4, :4]
-    np.testing.assert_allclose(product, product.T, atol=1e-12 * np.max(np.abs(product)))
-
-
 @pytest.mark.parametrize(
     ("values", "words"),
     [

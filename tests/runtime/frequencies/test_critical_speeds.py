@@ -10,7 +10,6 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic
 from elastolink.runtime.frequencies import critical_speeds
-from elastolink.runtime.frequencies.critical import label_speeds
 from periodic_systems import system_of, wave
 
 FREQUENCY = np.array([30.0, 71.0])
@@ -105,14 +104,6 @@ def test_a_varying_frequency_parts_the_methods():
     assert len(by_step.speed) and abs(by_step.speed[0] - by_mean.speed[0]) > 0.05
     # 64 intervals leave out little; the damping, which Meissner's way leaves out, moves it more.
     assert by_step.speed == pytest.approx(by_multiplier.speed, rel=2e-3)
-
-
-def test_labels_are_given_once_and_best_first():
-    mode, order = label_speeds(np.array([30.0, 70.0]), np.array([10.1, 9.9, 35.2]))
-    # Of two as good ones either comes first.
-    first, last = [(2, 7), (1, 3)], (2, 2)
-    assert list(zip(mode, order, strict=True)) in ([*first, last], [*first[::-1], last])
-    assert label_speeds(np.array([30.0]), np.array([29.0, 31.0]))[0].tolist() == [1, 1]
 
 
 @pytest.mark.parametrize(

@@ -74,13 +74,21 @@ def test_the_linkage_has_a_veering_of_modes_two_and_three(linkage):
 
 
 def test_a_standing_frame_has_the_same_frequencies_at_every_angle():
-    bar = Section(area=1e-4, second_moment=1e-9, modulus=2e11, density=7800.0)
-    held = {"A": ("x", "y", "rotation"), "B": ("x", "y", "rotation")}
-    beam = frame({"A": (0, 0), "B": (1, 0)}, {"beam": ("A", "B")}, bar, supports=held)
-    found = natural_frequencies(linear_system(beam), np.array([0.0, 1.0]), 2)
-    # First root of cos x cosh x = 1, 4.730041; cubic elements are above it, by 0.5 % at most here.
-    exact = 4.730040744862704**2 * np.sqrt(bar.bending_stiffness / bar.mass_per_length)
-    assert exact <= found.mean[0] <= 1.005 * exact
+    bar = Section.rectangle(0.02, 0.01, modulus=210e9, density=7850.0)
+    beam = frame(
+        {"A": (0.2, 0.1), "B": (0.2 + 0.6, 0.1 + 0.8)},
+        {"bar": ("A", "B")},
+        bar,
+        supports={"A": ("x", "y", "rotation")},
+        elements=6,
+        kind="internal_node",
+    )
+    system = linear_system(beam)
+    assert all(term.constant for term in system.terms)
+    found = natural_frequencies(system, np.array([0.0, 1.0]), 2)
+    # First root of cos x cosh x = -1, to 16 digits.
+    exact = 1.875104068711961**2 * np.sqrt(bar.bending_stiffness / bar.mass_per_length)
+    assert found.mean[0] == pytest.approx(exact, rel=1e-7)
     np.testing.assert_allclose(found.frequency[0], found.frequency[1], rtol=1e-14)
     assert np.all(found.mean_error <= 1e-9 * found.mean) and not found.encounters
 

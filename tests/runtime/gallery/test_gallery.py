@@ -10,9 +10,8 @@ from elastolink.runtime.cli import main
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.plotting import new_figure
 from elastolink.runtime.gallery import Drawn, FigureEntry, Quoted, figures, registry, reproduce
-from elastolink.runtime.gallery.rendering import render, write_together
+from elastolink.runtime.gallery.rendering import write_together
 from elastolink.runtime.gallery.sketch import arrow, turning_arrow
-from fresh_process import python
 
 # Figures that are drawn within a second, of every kind.
 QUICK = {
@@ -22,7 +21,6 @@ QUICK = {
 }
 # Comparisons by kind, and how many of them are known to differ.
 ROWS = {"printed": (164, 37), "words": (300, 37), "check": (15, 3)}
-WORDS = ("share", "left1", "left2", "right1", "right2")
 DOCS = Path(__file__).parents[3] / "docs"
 NUMBER = re.compile(r"[+-]?\d+(?:\.\d+)?")
 
@@ -257,13 +255,6 @@ def test_the_command_reports_rows_and_fails_with_them(tmp_path, monkeypatch, cap
     assert found["passed"] is True
 
 
-def test_the_gallery_loads_without_matplotlib():
-    python(
-        "import sys; sys.modules['matplotlib'] = None\n"
-        "from elastolink.runtime.gallery import figures; assert figures('smith', '84')"
-    )
-
-
 def test_the_notes_of_a_record_take_up_computed_words():
     entry = replace(
         entry_with(quoted(1.0, 0.0)),
@@ -288,15 +279,3 @@ def test_forces_have_the_scale_of_the_axes_and_couples_turn_with_their_sign(valu
     turning_arrow(ax, (0.0, 0.0), 1.0, value, "T", "k")
     (x, y), (u, v) = ax.texts[0].xy, ax.texts[0].xyann
     assert (u * y - v * x) * turn > 0.0
-
-
-def test_a_picture_in_space_has_axes_in_space():
-    (entry,) = figures("smith", "38")
-    seen = []
-
-    def draw(axes):
-        seen.extend(axes)
-        return Drawn([0.0] * len(entry.quoted), dict.fromkeys(WORDS, 0.0))
-
-    _, picture = render(replace(entry, draw=draw), picture=False)
-    assert picture is None and seen[0].name == "3d"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pickle
+from dataclasses import replace
 
 import mpmath
 import numpy as np
@@ -149,9 +150,8 @@ def test_shapes_and_scales_do_not_matter(linkage):
     shaped, listed = linkage.motion(angle.reshape(3, 2, 2)), linkage.motion(list(angle))
     single = linkage.motion(6.0)
     assert linkage.motion([]).error.shape == (0,)
-    more = [linkage.assembly] if hasattr(linkage, "assembly") else []
     scaled = {
-        scale: type(linkage)(*(scale * v for v in linkage.lengths.values()), *more).motion(angle)
+        scale: replace(linkage, **{k: scale * v for k, v in linkage.lengths.items()}).motion(angle)
         for scale in (2.0**-900, 2.0**-30, 2.0**1000)
     }
     for name in (*outputs(linkage), "error"):
@@ -296,10 +296,8 @@ def test_round_off_of_sums_decides_nothing():
         (FourBar, (10.0, 1.0, 2.0, 3.0), r"frame: found 10; expected less than 6, the sum"),
         (FourBar, (1.0, 4.0, 1.0, 2.0), r"crank: found 4; expected less than 4"),
         (FourBar, (1.0, -1.0, 1.0, 1.0), r"crank: found -1.0; expected a positive finite length"),
-        (FourBar, (np.nan, 1.0, 1.0, 1.0), r"frame: found nan"),
         (FourBar, ("5 in", 1.0, 1.0, 1.0), r"frame: found '5 in'"),
         (SliderCrank, (1.0, 2.0, 3.0), r"offset: found 3; expected less than 3 in magnitude"),
-        (SliderCrank, (1.0, -2.0), r"coupler: found -2.0"),
         (SliderCrank, (1.0, 2.0, np.nan), r"offset: found nan; expected a finite length"),
         (SliderCrank, (1.0, 2.0, 0.0, "upside"), r"found 'upside'; expected 'open' or 'crossed'"),
         (QuickReturn, (2.0, 1.0, 0.9), "the rod never reaches the block"),

@@ -73,12 +73,9 @@ def exact(machine, theta, speed, acceleration):
             for name in vars(machine.mass(link)):
                 given[f"{name}{place}"] = values[f"{link}.{name}"]
         given |= {"speed": mpmath.mpf(speed), "acceleration": mpmath.mpf(acceleration)}
-        pairs = (("omega3", "alpha3"), ("omega4", "alpha4"))
-        pairs += (("slider_velocity", "slider_acceleration"),)
-        pairs += (("slide_velocity", "slide_acceleration"),)
-        for w, a in pairs:
-            if w in m:
-                m[w], m[a] = m[w] * speed, m[a] * speed**2 + m[w] * acceleration
+        for w in {"omega3", "omega4", "slider_velocity", "slide_velocity"} & set(m):
+            a = w.replace("omega", "alpha").replace("velocity", "acceleration")
+            m[w], m[a] = m[w] * speed, m[a] * speed**2 + m[w] * acceleration
         return m | exact_forces(mechanism)(given)
 
     return numbers, outputs
@@ -118,7 +115,7 @@ def test_values_and_slopes_are_those_of_motion_and_forces(linkage):
     )
 
     def built(crank):
-        moved = type(linkage)(**{**linkage.lengths, "crank": crank}, **_branch(linkage))
+        moved = replace(linkage, crank=crank)
         springs = springs_of(linkage)
         return machine_of(moved, gravity=(0.3, -9.81), loads=loads, springs=springs)
 
@@ -173,7 +170,7 @@ def test_the_error_holds_at_every_corner(linkage):
         moved = dict(linkage.lengths)
         for (name, width), sign in zip(widths.items(), signs, strict=True):
             moved[name] += sign * width
-        other = type(linkage)(**moved, **_branch(linkage))
+        other = replace(linkage, **moved)
         there = tolerances(machine_of(other), {}, THETA, 5.0).nominal
         largest = np.maximum(largest, np.abs(there - found.nominal))
     off = np.abs(largest - found.worst_case)
@@ -181,10 +178,6 @@ def test_the_error_holds_at_every_corner(linkage):
     # The estimate is not idle.
     used = found.worst_case > 1e-9 * np.abs(found.nominal).max(axis=1, keepdims=True)
     assert np.median(found.error[used] / np.maximum(off[used], 1e-300)) < 50.0
-
-
-def _branch(linkage):
-    return {"assembly": linkage.assembly} if hasattr(linkage, "assembly") else {}
 
 
 def test_a_wrong_sensitivity_does_not_pass_the_trial():

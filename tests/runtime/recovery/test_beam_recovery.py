@@ -10,8 +10,6 @@ from beam_motions import (
     BAR,
     cantilever,
     damped_four_bar,
-    four_bar,
-    fourier_derivative,
     periodic_motion,
     rocking,
     steadily,
@@ -21,7 +19,7 @@ from elastolink.runtime.beams import KINDS
 from elastolink.runtime.beams.element_forms import ElementForms
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.recovery import recover, stress_operator
-from elastolink.runtime.recovery.beam_forces import recovery, stations_of
+from elastolink.runtime.recovery.beam_forces import stations_of
 from periodic_systems import second_order
 
 # Round-off of forces that are differences of stiffness times displacement.
@@ -125,25 +123,6 @@ def test_forces_jump_nowhere_between_elements():
             size = np.max(np.abs(values))
             # What 2e-9 of the length changes, beside round-off.
             assert np.max(np.abs(values[:, 1] - values[:, 0])) <= 1e-7 * size
-
-
-def test_accelerations_from_the_series_and_from_the_equation_agree():
-    system = four_bar()
-    motion = periodic_motion(system, 17.0)
-    forms = ElementForms(system, motion.theta)
-    made = recovery(forms, stations_of(system.structure, 5))
-    by_series = fourier_derivative(len(motion.theta)) @ motion.slope
-    by_equation = forms.acceleration.values(17.0, motion.q, motion.slope) / 17.0**2
-    for name in ("axial", "shear", "moment"):
-        series = made[name].values(17.0, motion.q, motion.slope, by_series)
-        equation = made[name].values(17.0, motion.q, motion.slope, by_equation)
-        short = made[name].eliminated(forms.acceleration)
-        size = np.max(np.abs(series))
-        # The highest harmonic of an even number of samples has no derivative.
-        np.testing.assert_allclose(equation, series, atol=1e-5 * size)
-        np.testing.assert_allclose(
-            short.values(17.0, motion.q, motion.slope), equation, atol=1e-10 * size
-        )
 
 
 def test_stations_keep_their_order_and_picture_has_the_links():

@@ -67,7 +67,6 @@ def test_stability_is_that_of_the_multipliers(system):
     ("change", "match"),
     [
         ({"speeds": [0.0, 10.0]}, "speeds"),
-        ({"speeds": [[10.0]]}, "speeds"),
         ({"speeds": []}, "speeds"),
         ({"speeds": ["fast"]}, "speeds"),
         ({"rtol": 0.5}, "rtol"),
@@ -82,18 +81,3 @@ def test_bad_input_is_one_clear_line(system, change, match):
         stress_curve(**given)
     with pytest.raises(BadInput, match="damping"):
         stress_curve(system.with_parameters(damping_ratio=0.0), [20.0])
-
-
-@pytest.mark.slow
-def test_three_elements_and_usual_damping_have_an_unstable_range():
-    """27 freedoms at 2 %: unstable from 66.3 to 67.3 rad/s, by the whole system too."""
-    whole = el.load_scene("aannaque_1996_table_4_1").system()
-    speeds = np.linspace(60.0, 70.0, 101)
-    curve = stress_curve(whole, speeds, stations=3, rtol=1e-3)
-    ((low, high),) = curve.unstable_ranges
-    assert 66.1 < low < 66.35 and 67.25 < high < 67.45
-    picked = [0, 61, 68, 74, 100]
-    truth = el.floquet_multipliers(whole, speeds[picked], rtol=1e-8)
-    largest = np.max(np.abs(truth.multipliers), axis=1)
-    assert np.all(np.abs(curve.multiplier[picked] - largest) <= curve.multiplier_error[picked])
-    assert np.any(largest > 1.0) and np.any(largest < 1.0)

@@ -300,7 +300,6 @@ def test_bad_input_is_one_line(options):
     "call",
     [
         lambda: Counterweight("crank", -1.0, 0.1),
-        lambda: Counterweight("crank", 1.0, 0.1, radius=-0.1),
         lambda: Counterweight("crank", 1.0, 0.1, density=7800.0),
         lambda: Counterweight("crank", 1.0, 0.1, radius=0.1, density=7800.0, thickness=0.1),
         lambda: Counterweight("crank", 1.0, 0.1, density=-1.0, thickness=0.1),

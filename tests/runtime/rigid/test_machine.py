@@ -170,10 +170,9 @@ def test_two_angles_may_have_two_components(given) -> None:
 
     pair = Load("coupler", lambda theta: (np.cos(theta), 2.0 + theta))
     expected = Machine(LINKAGE, loads=(pair,)).power(THETA[3:5], 1.0)
-    found = Machine(LINKAGE, loads=(Load("coupler", law, given=given),)).power(THETA[3:5], 1.0)
-    np.testing.assert_array_equal(found, expected)
-    square = Machine(LINKAGE, loads=(Load("coupler", law, given=given),))
-    both = square.power(THETA[3:7].reshape(2, 2), np.array([[1.0], [2.0]]))
+    machine = Machine(LINKAGE, loads=(Load("coupler", law, given=given),))
+    np.testing.assert_array_equal(machine.power(THETA[3:5], 1.0), expected)
+    both = machine.power(THETA[3:7].reshape(2, 2), np.array([[1.0], [2.0]]))
     assert both.shape == (2, 2)
     # A force that depends on no angle, for two angles.
     constant = Load("coupler", lambda theta: np.array([3.0, -1.0]))

@@ -207,9 +207,7 @@ def test_copies_and_pictures() -> None:
         ({"duration": 1.0, "flywheel": -1.0}, "flywheel"),
         ({"duration": 1.0, "samples": 1}, "samples"),
         ({"duration": 1.0, "torque": "much"}, "torque"),
-        ({"duration": 1.0, "torque": math.nan}, "torque"),
         ({"duration": 1.0, "torque": lambda: 1.0}, "torque"),
-        ({"revolutions": "x"}, "revolutions"),
         ({"duration": 1.0, "max_steps": 0}, "max_steps"),
         ({"duration": 1.0, "torque": lambda w: None}, "None from the torque law"),
         ({"duration": 1.0, "torque": lambda w: math.nan if w > 3 else 5.0}, "nan from the torque"),
@@ -222,12 +220,9 @@ def test_copies_and_pictures() -> None:
 def test_refusals(given, named) -> None:
     with pytest.raises(BadInput, match=named):
         run_up(**{"machine": disc(), "torque": 1.0, "tolerance": 1e-6, **given})
-
-
-@pytest.mark.parametrize("speed", [-20.0, math.inf])
-def test_a_line_of_no_motor_is_refused(speed) -> None:
-    with pytest.raises(BadInput, match="TorqueLine"):
-        TorqueLine(3.0, speed)
+    for speed in (-20.0, math.inf):
+        with pytest.raises(BadInput, match="TorqueLine"):
+            TorqueLine(3.0, speed)
 
 
 @pytest.mark.parametrize(("theta0", "offset"), [(0.0, 0.0), (0.5, 0.0123)])

@@ -106,7 +106,6 @@ def test_loads_and_springs_by_name():
         (ENGINE, {"slider.mass": None, "slider.centre_along": 0.1}, "mass, weight or density"),
         (SMITH, {"coupler.first_moment": 0.2}, "no body has these three"),
         (ENGINE, {"model.balanced": ["coupler"]}, "0, since model.balanced names this link"),
-        (ENGINE, {"operation.acceleration": "3 rpm"}, "operation.acceleration"),
     ],
 )
 def test_refusals_say_what_is_wrong(name, overrides, said):

@@ -126,21 +126,6 @@ def test_overrides_replace_keys_and_rivals():
     assert ranged.get("operation.speed_range") == (10.0, 20.0) and ranged.model["modes"] == 2
 
 
-def test_units_do_not_change_a_scene():
-    metric = {
-        "links.frame": 0.381,
-        "links.crank": "76.2 mm",
-        "links.coupler": "38.1 cm",
-        "links.follower": "0.5 ft",
-        "coupler.natural_frequency": "1560 rpm",
-    }
-    ours, theirs = load_scene(RIG), load_scene(RIG, metric)
-    for table in ("links", "coupler"):
-        for key, value in ours[table].items():
-            expected = value if key == "assembly" else pytest.approx(value, rel=1e-14)
-            assert theirs[table][key] == expected
-
-
 def test_tables_cannot_be_changed_and_wrong_keys_name_the_right_one():
     scene = load_scene(RIG)
     with pytest.raises(TypeError):

@@ -16,7 +16,7 @@ import elastolink as el
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.sweeps import Sweep, WorkersLost, estimate_sweep
+from elastolink.runtime.sweeps import Sweep, WorkersLost, estimate_sweep, sweeping
 from elastolink.runtime.sweeps.pieces import grid_of
 from elastolink.runtime.sweeps.requests import digest
 from fresh_process import python
@@ -116,40 +116,31 @@ def test_a_store_gives_the_same_bytes_and_is_found_again(tmp_path, mathieu, char
 
 
 @pytest.mark.parametrize("name", ["whole.npz", "folder"])
-def test_a_resumed_sweep_ends_with_the_same_bytes(tmp_path, mathieu, name):
+def test_a_resumed_sweep_ends_with_the_same_bytes(tmp_path, mathieu, name, monkeypatch):
     """Pieces missing, cut short, and a file that a killed process had begun."""
     store, other = tmp_path / name, tmp_path / "other" / name
     other.parent.mkdir()
     el.sweep("stability_chart", mathieu, VALUES, chunk=150, store=other)
     grid = grid_of(VALUES, 150, rows=True)
-    stopped = _Stopping(after=3)
-    with pytest.raises(KeyboardInterrupt):
-        el.sweep("stability_chart", mathieu, VALUES, chunk=150, store=store, executor=stopped)
+    write, left = sweeping.Store.write, iter(range(3))
+
+    def stopping(store, number, piece):
+        """Write three pieces; then the user stops the program."""
+        if next(left, None) is None:
+            raise KeyboardInterrupt
+        write(store, number, piece)
+
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(sweeping.Store, "write", stopping)
+        el.sweep("stability_chart", mathieu, VALUES, chunk=150, store=store)
     folder = (store if name == "folder" else tmp_path / f"{name}.parts") / "pieces"
     pieces = sorted(folder.iterdir())
-    # What was done and not yet fetched when the program was stopped is done again.
-    assert 2 <= len(pieces) <= 3 < grid.pieces
+    assert len(pieces) == 3 < grid.pieces
     pieces[1].write_bytes(pieces[1].read_bytes()[:-100])
     (folder / ".00000004.npz.abcd1234").write_bytes(b"half")
     found = el.sweep("stability_chart", mathieu, VALUES, chunk=150, store=store)
     assert found.resumed == len(pieces) - 1
     assert contents(store) == contents(other)
-
-
-class _Stopping(ThreadPoolExecutor):
-    """An executor under which the user stops the program."""
-
-    def __init__(self, after: int) -> None:
-        super().__init__(1)
-        self.left = after
-
-    def submit(self, fn, /, *args, **kwargs):
-        if not self.left:
-            raise KeyboardInterrupt
-        self.left -= 1
-        future = super().submit(fn, *args, **kwargs)
-        future.result()
-        return future
 
 
 KILLED = """
@@ -305,7 +296,6 @@ CHART = "stability_chart"
         ("nothing_such", {"a": [1.0]}, {}, "name of a public function"),
         (3, {"a": [1.0]}, {}, "a name or a function"),
         (square_sum, {}, {}, "at least one named axis"),
-        (square_sum, {"a": []}, {}, "at least one finite value"),
         (square_sum, {"a": [1.0, np.nan]}, {}, "at least one finite value"),
         (square_sum, {"a": "x"}, {}, "numbers"),
         (square_sum, {"a": [1.0], "c": [1.0]}, {}, "axes"),
@@ -315,7 +305,6 @@ CHART = "stability_chart"
         (CHART, {"mu": MU, "lam": LAM2}, {}, "correct the names"),
         ("floquet_multipliers", {"mu": MU}, {}, "a crank speed"),
         (CHART, VALUES, {"chunk": 0}, "chunk"),
-        (CHART, VALUES, {"chunk": 2.5}, "chunk"),
         (CHART, VALUES, {"executor": 4}, "executor"),
         (CHART, VALUES, {"outputs": ()}, "outputs"),
         (CHART, VALUES, {"outputs": ("stabel",)}, "outputs"),

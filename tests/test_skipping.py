@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib.util
 import itertools
 import pickle
-from collections import Counter
 from pathlib import Path
 from unittest.mock import Mock
 
@@ -49,34 +48,22 @@ def machine():
     return el.Machine(linkage, {"crank": link, "coupler": link, "follower": link})
 
 
-@pytest.fixture
-def counted(monkeypatch):
-    """Count calls of emitted functions of forces, by module and function."""
-    calls = Counter()
-    add = evaluation.Evaluation._add
+@pytest.mark.parametrize("acceleration", [0.0, 3.0])
+def test_every_set_of_outputs_costs_no_more_than_a_larger_one(monkeypatch, acceleration):
+    costs, calls, add = {}, [], evaluation.Evaluation._add
 
-    def counting(self, function, *arguments, **options):
-        calls[self.kernels.__name__.rpartition(".")[2], function] += 1
+    def noting(self, function, *arguments, **options):
+        calls.append((self.kernels.__name__.rpartition(".")[2], function))
         return add(self, function, *arguments, **options)
 
-    monkeypatch.setattr(evaluation.Evaluation, "_add", counting)
-    return calls
-
-
-def operations(calls):
-    return sum(COSTS[module].functions[name] * n for (module, name), n in calls.items())
-
-
-@pytest.mark.parametrize("acceleration", [0.0, 3.0])
-def test_every_set_of_outputs_costs_no_more_than_a_larger_one(counted, acceleration):
-    costs = {}
+    monkeypatch.setattr(evaluation.Evaluation, "_add", noting)
     for count in range(1, len(forces.OUTPUTS) + 1):
         for wanted in itertools.combinations(forces.OUTPUTS, count):
-            counted.clear()
-            found = el.rigid_forces(machine(), [0.3, 1.0], 10.0, acceleration, outputs=wanted)
-            assert sum(counted.values()) == 1
-            costs[wanted] = operations(counted)
-            assert np.all(np.isfinite(next(iter(found.values.values()))))
+            el.rigid_forces(machine(), [0.3, 1.0], 10.0, acceleration, outputs=wanted)
+            # One call of an emitted function.
+            ((module, function),) = calls
+            costs[wanted] = COSTS[module].functions[function]
+            calls.clear()
     for wanted, cost in costs.items():
         assert len(wanted) > 1 or cost < costs[forces.OUTPUTS]
         assert all(cost <= costs[other] for other in costs if set(wanted) <= set(other))

@@ -5,6 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 from elastolink import BadInput, load_scene, steady_state
+from elastolink.runtime.core.trigonometric import interpolated
 from elastolink.runtime.design import SpeedProfile, run_through
 from elastolink.runtime.design.changing_length import ChangingLength
 from elastolink.runtime.design.unsteady import Drive, arrays_of, generator_of, march
@@ -116,19 +117,11 @@ def test_what_cannot_be_run_through_is_refused(geometry, given, words):
         run_through(given.pop("system"), given.pop("profile"), **given)
 
 
-def at_angles(steady, theta):
-    """Return a steady motion at any crank angles, by its Fourier series."""
-    series = steady.coefficients
-    n = np.arange(len(series))
-    weights = np.where((n == 0) | (n == len(n) - 1), 1.0, 2.0)
-    return np.real((np.exp(1j * np.outer(theta, n)) * weights) @ series)
-
-
 def test_at_constant_speed_the_steady_motion_stays():
     profile = SpeedProfile(times=(0.0, 0.1), speeds=(20.0, 20.0))
     found = run_through(system(), profile, modes=None, rtol=1e-3)
     steady = steady_state(system(), 20.0, method="harmonic_balance")
-    expected = at_angles(steady, found.angle)
+    expected = interpolated(steady.q, steady.period)(found.angle)
     peak = np.max(np.abs(expected), axis=0)
     assert np.max(np.abs(found.q - expected) / peak) < 1e-3
     assert found.passed
@@ -155,7 +148,7 @@ def test_the_length_at_the_end_is_the_one_that_acts():
     steady = steady_state(damped, 20.0, method="harmonic_balance")
     assert found.passed
     late = found.time > 0.9
-    expected = at_angles(steady, found.angle[late])
+    expected = interpolated(steady.q, steady.period)(found.angle[late])
     peak = np.max(np.abs(steady.q), axis=0)
     # With 30 % of damping what the change left has gone down by exp(-0.3 * 184 * 0.6).
     assert np.max(np.abs(found.q[late] - expected) / peak) < 5e-3

@@ -21,23 +21,6 @@ LINKAGES = [
 ]
 
 
-def test_kinetic_energy_of_points_is_theirs() -> None:
-    points = {
-        "crank": (0.7, 0.06, 0.01),
-        "coupler": (1.1, 0.2, -0.05),
-        "follower": (0.4, 0.3, 0.02),
-    }
-    masses = {link: MassDistribution.point(*place) for link, place in points.items()}
-    machine = Machine(LINKAGE, masses)
-    motion = LINKAGE.motion(THETA, 7.0)
-    expected = 0.0
-    for link, (mass, along, across) in points.items():
-        velocity = motion.point(link, along, across).velocity
-        expected = expected + mass / 2 * np.sum(velocity**2, axis=-1)
-    found = machine.kinetic_energy(THETA, 7.0)
-    np.testing.assert_allclose(found, expected, rtol=1e-13)
-
-
 @pytest.mark.parametrize("linkage", LINKAGES, ids=lambda item: type(item).__name__)
 def test_weights_and_springs_pull_down_their_potential(linkage) -> None:
     _, second, third = linkage.links

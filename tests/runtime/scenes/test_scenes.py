@@ -179,21 +179,19 @@ OWN = {
 }
 
 
-def test_a_default_that_is_declared_is_read_like_a_given_value():
-    links = {"crank": "length", "rod": {"dimension": "length", "default": "30 cm"}}
-    change = {"schema.links": links, "links.rod": None}
-    assert scene_from_document("own", OWN, change).get("links.rod") == 0.3
-    links["rod"]["default"] = "3 kg"
-    with pytest.raises(BadInput, match=r"links\.rod: found '3 kg'"):
-        scene_from_document("own", OWN, change)
-
-
 def test_a_mechanism_of_ones_own_declares_its_tables():
     scene = scene_from_document("own", OWN)
     assert scene.get("links.crank") == 0.1 and scene.get("rod.count") == 3
     assert scene.get("chart.x_range") == pytest.approx((10 * RPM, 20 * RPM))
     assert scene.model_spec() == ModelSpec("slider_crank_rod", "linear", flexible=("rod",))
     assert scene.dimension("links.rod") == "length"
+    # A default that is declared is read like a given value.
+    links = {"crank": "length", "rod": {"dimension": "length", "default": "30 cm"}}
+    change = {"schema.links": links, "links.rod": None}
+    assert scene_from_document("own", OWN, change).get("links.rod") == 0.3
+    links["rod"]["default"] = "3 kg"
+    with pytest.raises(BadInput, match=r"links\.rod: found '3 kg'"):
+        scene_from_document("own", OWN, change)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Machines: refusals, energies by hand, and springs and loads against their own potentials."""
+"""Machines: refusals, and springs, dampers and loads against their own potentials and powers."""
 
 from __future__ import annotations
 

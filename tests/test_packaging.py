@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import re
 import shutil
@@ -68,9 +67,7 @@ def test_the_listed_packages_are_the_folders():
         parent = max((p for p in mapped if f"{package}.".startswith(f"{p}.")), key=len)
         rest = package.removeprefix(parent).replace(".", "/")
         assert mapped[parent] + rest == folder
-
-
-def test_every_folder_with_code_is_a_package():
+    # Every folder with code is a package.
     holding = {path.parent.as_posix() for path in TRACKED if path.suffix == ".py"}
     code = {name for name in holding if name.split("/")[0] in FOLDERS - {"docs", "tests"}}
     assert code == set(source_packages().values())
@@ -90,10 +87,9 @@ def test_versions_agree():
 
 
 def test_the_lock_file_pins_what_bytes_depend_on():
-    locked = (ROOT / ".ci" / "lock.txt").read_text() if (ROOT / ".ci").exists() else None
-    if locked is None:
+    if not (ROOT / ".ci").exists():
         pytest.skip("a source distribution holds no .ci")
-    pins = dict(line.split("==") for line in locked.split())
+    pins = dict(line.split("==") for line in (ROOT / ".ci" / "lock.txt").read_text().split())
     for name in ("sympy", "mpmath", "numpy", "scipy", "Jinja2", "pytest", "ruff", "mypy"):
         assert re.fullmatch(r"[\d.]+", pins[name])
 
@@ -156,17 +152,8 @@ def _backend(call: str, source: Path, out: Path) -> Path:
 
 
 @pytest.fixture(scope="module")
-def setuptools():
-    if importlib.util.find_spec("setuptools") is None:
-        pytest.skip("needs setuptools")
-    import setuptools
-
-    if int(setuptools.__version__.partition(".")[0]) < 77:
-        pytest.skip("needs setuptools 77, as pyproject.toml says")
-
-
-@pytest.fixture(scope="module")
-def sdist(clean, setuptools):
+def sdist(clean):
+    pytest.importorskip("setuptools", "77", "pyproject.toml needs setuptools 77")
     return _backend("build_sdist", clean, clean.parent / "dist")
 
 

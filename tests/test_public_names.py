@@ -6,14 +6,13 @@ import ast
 import importlib
 import inspect
 import pkgutil
-import subprocess
-import sys
 from pathlib import Path
 
 import elastolink as el
 import elastolink.derive.authoring
 import elastolink.runtime
 import pytest
+from fresh_process import python
 
 ROOT = Path(__file__).parents[1]
 RUNTIME = ["elastolink.runtime"] + [
@@ -47,8 +46,7 @@ def test_a_name_loads_its_own_module_alone():
         "import sys, elastolink as el; el.BadInput\n"
         "print(sorted(n for n in sys.modules if n.startswith('elastolink.runtime.')))"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "['elastolink.runtime.core', 'elastolink.runtime.core.errors']"
+    assert python(code) == "['elastolink.runtime.core', 'elastolink.runtime.core.errors']\n"
 
 
 @pytest.mark.parametrize("package", PACKAGES)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from itertools import product
 
 import numpy as np
 import pytest
@@ -72,22 +73,19 @@ def made(name, kind, seed, elements=2):
     )
 
 
-CASES = [
+def cases(*quick, slow):
+    return [*quick, *(pytest.param(*case, marks=pytest.mark.slow) for case in slow)]
+
+
+CASES = cases(
     ("open", "cubic"),
     ("slider", "internal_node"),
-    *(
-        pytest.param(*case, marks=pytest.mark.slow)
-        for case in (("open", "timoshenko"), ("open", "curvature"), ("crossed", "cubic"))
-    ),
-]
-
-
-ALL = [
-    *CASES,
+    slow=[("open", "timoshenko"), ("open", "curvature"), ("crossed", "cubic")],
+)
+ALL = CASES + cases(
     ("quick-return", "cubic"),
-    *(pytest.param("quick-return", kind, marks=pytest.mark.slow) for kind in KINDS[1:]),
-    pytest.param("Whitworth", "internal_node", marks=pytest.mark.slow),
-]
+    slow=[*product(["quick-return"], KINDS[1:]), ("Whitworth", "internal_node")],
+)
 
 
 def energies_of(name, structure):

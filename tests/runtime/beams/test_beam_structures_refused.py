@@ -28,6 +28,7 @@ PLACES = {"A": (0.0, 0.0), "B": (0.0, 1.0), "C": (1.0, 1.0), "D": (1.0, 0.0)}
 MEMBERS = {"left": ("A", "B"), "beam": ("B", "C"), "right": ("D", "C")}
 SUPPORTS = {"A": CLAMP, "D": CLAMP}
 HINGED = {"supports": {"A": PIN, "D": PIN}, "pins": ("B", "C")}
+HELD = {"supports": dict.fromkeys("ABCD", CLAMP), "elements": 1}
 FAR = {**MEMBERS, "far": ("E", "F")}
 UNCONNECTED = {"members": FAR, "places": {**PLACES, "E": (3.0, 0.0), "F": (4.0, 0.0)}}
 
@@ -64,13 +65,6 @@ def system(**options):
     return linkage_system(FOUR_BAR, BARS, elements=1, **options)
 
 
-def held_everywhere():
-    places = {name: PLACES[name] for name in "AB"}
-    return frame(
-        places, {"bar": ("A", "B")}, BAR, supports={"A": CLAMP, "B": CLAMP}, elements=1
-    ).size
-
-
 def structure(beams, nodes):
     """Return beams, each "name start end", between nodes; bar and tail lie at the origin."""
 
@@ -92,16 +86,13 @@ def on_a_sliding_pin():
 # What makes it, from which values, and the words of the refusal.
 REFUSED = [
     *(
-        (section, {name: value}, f"{name}.*positive")
+        (section, {name: 0.0}, f"{name}.*positive")
         for name in ("area", "second_moment", "modulus", "density", "thickness")
-        for value in (0.0, np.nan)
     ),
     (beam, {"length": 0.0}, "bar.*length"),
     (beam, {"end": "A"}, "bar.*both ends"),
-    (beam, {"kind": "quartic"}, "bar.*kind"),
     (beam, {"kind": "timoshenko"}, "bar.*shear stiffness"),
     (beam, {"elements": 0}, "bar.*elements"),
-    (beam, {"elements": 2.5}, "bar.*elements"),
     (beam, {"elements": (0.5, 0.0, 0.5)}, "bar.*empty element"),
     (beam, {"elements": (0.5, 0.6)}, "bar.*1.1"),
     (node, {"mass": -0.1}, "node B.*mass"),
@@ -117,7 +108,6 @@ REFUSED = [
     (portal, {"places": {**PLACES, "C": PLACES["B"]}}, "no length"),
     (portal, {"places": {**PLACES, "C": (np.nan, 1.0)}}, "place of C"),
     (portal, {"supports": {"Q": CLAMP}}, "Q"),
-    (portal, {"supports": {"A": ("z",)}}, "z"),
     (portal, {"sections": {"left": BAR}}, "beam"),
     (portal, {"nodes": {"B": {"joined": ("right",)}}}, "right"),
     (portal, {"nodes": {"B": {"carried_by": "right"}}}, "right"),
@@ -127,14 +117,12 @@ REFUSED = [
     (standing_portal, {"supports": {"A": PIN}}, "nothing resists"),
     (standing_portal, HINGED, "nothing resists"),
     (standing_portal, {"pins": ("B", "C"), "nodes": {"B": {"inertia": 1e-3}}}, "carried_by"),
-    (held_everywhere, {}, "every coordinate held"),
+    (lambda: portal(**HELD).size, {}, "every coordinate held"),
     (linkage, {"sections": {"crank": BAR}}, "coupler, follower"),
     (linkage, {"sections": {**BARS, "rod": BAR}}, "rod"),
     (linkage, {"joint_masses": {"Q": 1.0}}, "Q"),
-    (linkage, {"joint_masses": {"B": -1.0}}, "mass"),
     (linkage, {"nodes": {"Q": {}}}, "Q"),
     (linkage, {"elements": {"crank": 1}}, "elements"),
-    (linkage, {"elements": 0}, "elements"),
     (linkage, {"kind": "quintic"}, "kind"),
     (linkage, {"linkage": ROCKER}, "crank"),
     (system, {"nodes": {"A": {"held": PIN}}}, "A.crank.*nothing resists"),
@@ -151,11 +139,7 @@ REFUSED = [
     (structure, {"beams": ("bar A B", "bar B A"), "nodes": "AB"}, "bar"),
     (structure, {"beams": ("bar A B",), "nodes": "AAB"}, "A"),
     (structure, {"beams": ("bar A B",), "nodes": "A"}, "end at B"),
-    (
-        structure,
-        {"beams": ("bar A B", "bar2 B C"), "nodes": "ABC"},
-        "motion of beam bar2",
-    ),
+    (structure, {"beams": ("bar A B", "bar2 B C"), "nodes": "ABC"}, "motion of beam bar2"),
     (structure, {"beams": ("bar A B", "bar2 A B"), "nodes": "AB"}, "bar2"),
     (structure, {"beams": ("bar A B", "tail B C"), "nodes": "ABC"}, "1 m away"),
     (on_a_sliding_pin, {}, "slides along beam rod"),

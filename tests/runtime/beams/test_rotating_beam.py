@@ -7,6 +7,7 @@ import pytest
 from beam_reference import rotating
 from elastolink.runtime.beams import KINDS, Beam, Node, Section, Structure, linear_system
 from elastolink.runtime.linkages.linkage import LinkMotion
+from periodic_systems import second_order
 
 SECOND = 1e-8  # m^4
 # Wright, Smith, Thresher and Wang, J. Appl. Mech. 49 (1982): the lowest frequency across the plane
@@ -37,30 +38,18 @@ def arm(kind, elements):
 
 def exponents(system, speed):
     """Return the eigenvalues as seen by one who turns with the beam."""
-    at = {name: system.array(name, 0.0, speed=speed)[0] for name in ("M", "A", "B", "K", "Kg")}
-    # q = T(theta)^T y: at theta = 0 the two are one, and qd = yd + speed P y.
-    turning = np.zeros_like(at["M"])
+    stiffness, damping, mass, _ = (part[0] for part in second_order(system, 0.0, speed))
+    # q = T(theta) y: at theta = 0 the two are one, and qd = yd + speed P y.
+    turning = np.zeros_like(mass)
     for i, label in enumerate(system.labels):
         stem, part = label.rsplit(".", 1)
         if part == "x":
             j = system.labels.index(f"{stem}.y")
             turning[i, j], turning[j, i] = -1.0, 1.0
-    mass = at["M"]
-    coupling = at["A"] + mass @ turning
-    mixed = turning.T @ at["A"]
-    centripetal = at["B"] + turning.T @ mass @ turning + mixed + mixed.T
-    stiffness = at["K"] + at["Kg"] - speed**2 * centripetal
+    seen = stiffness + speed * damping @ turning + speed**2 * mass @ turning @ turning
+    rates = np.hstack([seen, damping + 2 * speed * mass @ turning])
     n = len(mass)
-    flow = np.block(
-        [
-            [np.zeros((n, n)), np.eye(n)],
-            [
-                -np.linalg.solve(mass, stiffness),
-                -speed * np.linalg.solve(mass, coupling - coupling.T),
-            ],
-        ]
-    )
-    return np.linalg.eigvals(flow)
+    return np.linalg.eigvals(np.vstack([np.eye(2 * n)[n:], -np.linalg.solve(mass, rates)]))
 
 
 def frequencies(structure, speed):

@@ -46,13 +46,7 @@ def test_help_and_scenes_load_nothing_heavy():
 def test_the_version_also_without_the_script(capsys):
     assert shown(capsys, "--version").startswith("elastolink ")
     called = [sys.executable, "-m", "elastolink", "--version"]
-    done = subprocess.run(called, capture_output=True, text=True, check=False)
-    assert done.returncode == 0 and done.stdout.startswith("elastolink ")
-
-
-@pytest.mark.parametrize("arguments", [[], ["chrt"], ["show"], ["show", RIG, "--nope"]])
-def test_a_wrong_command_line_is_one_line_and_status_2(capsys, arguments):
-    assert "--help" in refused(capsys, *arguments)
+    assert subprocess.check_output(called, text=True).startswith("elastolink ")
 
 
 def test_scenes_lists_every_scene(capsys):
@@ -64,38 +58,22 @@ def test_scenes_lists_every_scene(capsys):
     assert len(shown(capsys, "scenes", "--long").splitlines()) == 2 * len(names)
 
 
-def test_show_prints_si_values_and_json(capsys):
-    out = shown(capsys, "show", RIG, "--set", "links.crank=75 mm")
+def test_show_prints_si_values_and_json_with_what_is_set(capsys):
+    pairs = ["links.crank=75 mm", "operation.speed_range=['1 rpm', '2 rpm']", "title=a = b"]
+    given = [part for pair in [*pairs, "model.modes=2"] for part in ("--set", pair)]
+    out = shown(capsys, "show", RIG, *given)
     assert "crank = 0.075 m" in out and "(1560 rpm)" in out
-    table = told(capsys, "show", RIG, "--set", "links.crank=75 mm")
+    table = told(capsys, "show", RIG, *given)
     assert table["links"]["crank"] == 0.075 and list(table) == sorted(table)
-
-
-def test_set_takes_numbers_lists_and_text(capsys):
-    pairs = [
-        "links.crank=0.07",
-        "operation.speed_range=['1 rpm', '2 rpm']",
-        "title=a = b",
-        "model.modes=2",
-    ]
-    arguments = [part for pair in pairs for part in ("--set", pair)]
-    table = told(capsys, "show", RIG, *arguments)
-    assert table["links"]["crank"] == 0.07 and table["model"]["modes"] == 2
-    assert table["title"] == "a = b"
+    assert table["title"] == "a = b" and table["model"]["modes"] == 2
     assert table["operation"]["speed_range"] == pytest.approx([np.pi / 30, np.pi / 15])
-
-
-@pytest.mark.parametrize(
-    "pair", ["links.crank", "=3", "links.crnk=3", "crank=3", "links.crank=3\nx=1"]
-)
-def test_a_wrong_setting_is_refused(capsys, pair):
-    assert "found" in refused(capsys, "show", RIG, "--set", pair)
 
 
 def test_every_problem_is_one_line(capsys):
     sets = ["--set", "links.crank=-1", "--set", "links.frame=3 kg", "--set", "model.modes=0"]
     status, out, err = run(capsys, "show", RIG, *sets)
     assert (status, out, len(err.splitlines())) == (2, "", 3)
+    refused(capsys, "show", RIG, "--set", "links.crank=3\nx=1")
 
 
 @pytest.mark.parametrize("ending", [".png", ".svg", ".pdf"])
@@ -125,27 +103,34 @@ def test_an_unwritable_picture_is_refused_before_any_work(capsys, tmp_path, monk
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("where", ["before", "after"])
 @pytest.mark.parametrize(
     ("error", "status", "words"),
     [
         (KeyboardInterrupt(), 130, "elastolink show: interrupted; no file is left half written\n"),
         (OSError(28, "No space left on device"), 2, "No space left"),
+        (PermissionError(13, "Permission denied", "gallery"), 2, "Permission denied"),
+        (SelfCheckFailed("the balance is off"), 2, "the balance is off"),
+        (MemoryError(), 2, "memory"),
     ],
 )
-def test_what_stops_the_drawing_leaves_nothing_behind(
-    capsys, tmp_path, monkeypatch, error, status, words
+def test_what_stops_the_work_is_one_line_and_leaves_nothing_behind(
+    capsys, tmp_path, monkeypatch, where, error, status, words
 ):
-    monkeypatch.setattr(Path, "replace", _raising(error))
+    def fail(*_):
+        raise error
+
+    target = (options, "load") if where == "before" else (Path, "replace")
+    monkeypatch.setattr(*target, fail)
     found, out, err = run(capsys, "show", RIG, "--plot", tmp_path / "linkage.png")
     assert found == status and out == "" and words in err and len(err.splitlines()) == 1
     assert list(tmp_path.iterdir()) == []
 
 
-def _raising(error):
-    def fail(*_):
-        raise error
-
-    return fail
+def test_a_bug_keeps_its_traceback(monkeypatch):
+    monkeypatch.setattr(options, "load", lambda _: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        main(["show", RIG])
 
 
 def _result(value):
@@ -164,34 +149,10 @@ def test_a_failed_self_check_gives_status_1(capsys, value, status):
     out, err = capsys.readouterr()
     assert "error:  1e-12 (estimate; absolute)" in out and out.startswith("found\n")
     assert bool(err) == bool(status)
-
-
-def test_json_of_what_is_not_finite_is_null(capsys):
-    given = SimpleNamespace(command="chart", plot=None, json=True)
-    options.finish(given, _result(float("inf")), [])
+    given.json = True
+    assert options.finish(given, _result(value), []) == status
     content = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
-    assert content["error"] == [1e-12, None] and content["passed"] is False
-
-
-@pytest.mark.parametrize(
-    ("error", "status"),
-    [
-        (SelfCheckFailed("the balance is off"), 2),
-        (PermissionError(13, "Permission denied", "gallery"), 2),
-        (KeyboardInterrupt(), 130),
-        (MemoryError(), 2),
-    ],
-)
-def test_errors_of_the_work_become_one_line(capsys, monkeypatch, error, status):
-    monkeypatch.setattr(options, "load", _raising(error))
-    found, out, err = run(capsys, "show", RIG)
-    assert found == status and out == "" and len(err.splitlines()) == 1
-
-
-def test_a_bug_keeps_its_traceback(monkeypatch):
-    monkeypatch.setattr(options, "load", _raising(ZeroDivisionError("a bug")))
-    with pytest.raises(ZeroDivisionError):
-        main(["show", RIG])
+    assert content["error"] == [1e-12, None] and content["passed"] is (status == 0)
 
 
 def test_warnings_are_one_line_each(capsys, monkeypatch):
@@ -217,14 +178,8 @@ def test_the_module_folder_holds_for_one_command_only(capsys, monkeypatch, tmp_p
 
 
 def test_a_reader_that_leaves_early_is_no_error():
-    command = (
-        f"{sys.executable} -c 'from elastolink.runtime.cli import main; raise SystemExit(main())'"
-    )
-    done = subprocess.run(
-        ["bash", "-c", f"set -o pipefail; {command} show {RIG} | true"],
-        capture_output=True,
-        text=True,
-    )
+    piped = f"set -o pipefail; {sys.executable} -m elastolink show {RIG} | true"
+    done = subprocess.run(["bash", "-c", piped], capture_output=True, text=True)
     assert "Traceback" not in done.stderr and "Exception" not in done.stderr
 
 
@@ -233,7 +188,6 @@ def test_a_reader_that_leaves_early_is_no_error():
     [
         ("0:1:3", "dimensionless", [0.0, 0.5, 1.0]),
         ("0:90:3deg", "angle", [0.0, np.pi / 4, np.pi / 2]),
-        ("-1:1:3", "dimensionless", [-1.0, 0.0, 1.0]),
         ("60rpm:120rpm:2", "frequency", [2 * np.pi, 4 * np.pi]),
         ("1:2:2 Hz", "frequency", [2 * np.pi, 4 * np.pi]),
     ],
@@ -283,12 +237,9 @@ def test_simulate_from_rest_and_from_a_start(capsys, tmp_path):
     start = ("--initial", "1,0", "--revolutions", "1")
     assert told(capsys, "simulate", "mathieu", *start)["q"][0] == [1.0]
     refused(capsys, "simulate", RIG, "--method", "rk5")
-
-
-@pytest.mark.parametrize("text", ["1", "a,b", "1,nan", "1,2,3", ""])
-def test_a_wrong_start_says_what_is_wanted(capsys, text):
-    err = refused(capsys, "simulate", "mathieu", "--initial", text)
-    assert "expected two finite numbers, such as 0.001,0" in err
+    for text in ("1", "a,b", "1,nan", "1,2,3", ""):
+        err = refused(capsys, "simulate", "mathieu", "--initial", text)
+        assert "expected two finite numbers, such as 0.001,0" in err
 
 
 def test_one_thread_unless_the_user_says_otherwise_and_the_time_taken(tmp_path):

@@ -17,7 +17,6 @@ from fresh_process import python
 
 GENERATED = Path(elastolink.generated.__path__[0])
 RIG = "smith_1972_5152_sixteenth_inch"
-ROD = {"model.formulation": "free_free", "model.modes": 2, "model.drop": ["as_printed"]}
 
 
 @pytest.fixture(scope="module")
@@ -28,11 +27,6 @@ def coupler():
 @pytest.fixture(scope="module")
 def slider():
     return explain("slider_crank_example")
-
-
-@pytest.fixture(scope="module")
-def rod():
-    return explain("beale_1992_flexible_rod", ROD)
 
 
 def skipped_arrays(found):
@@ -67,14 +61,6 @@ def test_arrays_are_told_apart_as_the_system_has_them(coupler):
     assert skipped_arrays(coupler) >= {"A", "Kg", "C"}
 
 
-@pytest.mark.slow
-def test_damping_is_zero_until_there_is_some(coupler):
-    damped = explain(el.load_scene(RIG, {"coupler.damping_ratio": 0.01}))
-    assert coupler.array_kinds["C"] == "zero" and damped.array_kinds["C"] == "constant"
-    assert "1" in damped.powers and "1" not in coupler.powers
-    assert damped.samples == coupler.samples + 1
-
-
 def test_what_a_sweep_shares_is_every_term_that_acts_at_constant_speed(coupler):
     system = el.load_scene(RIG).system()
     acting = [term for row, term in enumerate(system.terms) if np.any(system.spectrum(row))]
@@ -86,23 +72,21 @@ def test_what_a_sweep_shares_is_every_term_that_acts_at_constant_speed(coupler):
     assert coupler.angles > 2 * coupler.harmonics > 0
 
 
-def test_nothing_of_the_symbolic_side_loads(coupler, slider):
+def test_nothing_of_the_symbolic_side_loads_and_nothing_twice(coupler, slider):
     for found in (coupler, slider):
         assert found.passed
         loaded = {name for stage in found.stages.values() for name in stage.heavy}
         assert not loaded & {"sympy", "matplotlib", "mpmath"}
     assert not any(stage.heavy for stage in coupler.stages.values())
     assert not slider.stages["scene"].heavy
-
-
-def test_a_question_loads_only_what_the_ones_before_it_did_not(coupler, slider):
+    # And a question only what the ones before it did not.
     assert list(coupler.stages) == ["scene", "system", "floquet_multipliers", "steady_state"]
     asked = [stage for name, stage in slider.stages.items() if name.startswith("rigid_forces")]
     assert asked[0].modules > 0 and not any(stage.modules for stage in asked[1:])
     assert slider.stages["scene"].scipy < 20 and slider.stages["motion"].scipy == 0
 
 
-def test_each_force_alone_calls_its_own_function_and_costs_less_than_all(slider):
+def test_each_force_alone_calls_its_own_function(slider):
     functions = {
         "pins": "pin_forces",
         "torque": "driving_torque",
@@ -117,7 +101,6 @@ def test_each_force_alone_calls_its_own_function_and_costs_less_than_all(slider)
         assert stage.calls == {f"{used}.{function}": 1}
         assert stage.points == {f"{used}.{function}": 64}
         assert stage.operations == 64 * slider.emitted[used].functions[function]
-        assert stage.operations < whole.operations
     # One module serves every machine at every speed.
     use = slider.emitted[used]
     assert use.dropped == () and use.kept == ("across", "crank_acceleration")
@@ -125,7 +108,9 @@ def test_each_force_alone_calls_its_own_function_and_costs_less_than_all(slider)
 
 
 @pytest.mark.slow
-def test_a_general_module_says_which_terms_the_scene_drops(rod):
+def test_a_general_module_says_which_terms_the_scene_drops():
+    changes = {"model.formulation": "free_free", "model.modes": 2, "model.drop": ["as_printed"]}
+    rod = explain("beale_1992_flexible_rod", changes)
     use = rod.emitted["quick_return_rod_free_free"]
     assert rod.terms == {"tension": "dropped"}
     assert use.dropped == ("tension",) and use.kept == ()
@@ -146,19 +131,6 @@ def test_the_formulation_tells_what_it_leaves_out():
     assert any("left out by the formulation" in line for line in found.lines())
 
 
-def test_lines_have_the_four_parts_and_every_module(coupler):
-    lines = coupler.lines()
-    parts = [line for line in lines if not line.startswith(" ")][1:]
-    assert [part.partition(",")[0] for part in parts] == [
-        "derivation",
-        "emission",
-        "import",
-        "evaluation",
-    ]
-    assert all(any(name in line for line in lines) for name in coupler.emitted)
-    assert all(len(line) < 1000 for line in lines)
-
-
 def test_the_command_prints_text_json_and_a_picture(capsys, tmp_path):
     picture = tmp_path / "explained.svg"
     assert main(["explain", "mathieu", "--json", "--plot", str(picture)]) == 0
@@ -169,7 +141,8 @@ def test_the_command_prints_text_json_and_a_picture(capsys, tmp_path):
     assert picture.read_text().startswith("<?xml")
     assert main(["explain", "mathieu", "--set", "parameters.damping=0.1"]) == 0
     out = capsys.readouterr().out
-    assert "derivation" in out and "speed^1: C: damping" in out
+    assert all(f"\n{part}" in out for part in ("derivation", "emission", "import", "evaluation"))
+    assert "speed^1: C: damping" in out and max(map(len, out.splitlines())) < 1000
 
 
 def test_what_cannot_be_explained_is_refused():
@@ -190,22 +163,6 @@ def test_a_machine_without_masses_is_explained_as_far_as_it_goes():
     assert "no mass" in found.stages["machine"].refused
     assert list(found.emitted) == ["four_bar_kinematics"]
     assert found.stages["motion"].points == {"four_bar_kinematics.motion": 64}
-
-
-def test_the_counter_sees_calls_points_and_modules(monkeypatch):
-    """The guard of the counts: known calls of an emitted function, in this process."""
-    emitted = import_module("elastolink.generated.four_bar_kinematics")
-    counter = probe.Counter()
-    with counter.stage("first"):
-        emitted.motion(np.zeros((3, 5)), 3.0, 1.0, 3.0, 3.0, 1.0, 0.0)
-        emitted.motion(0.2, 3.0, 1.0, 3.0, 3.0, 1.0, 0.0)
-    with counter.stage("second"):
-        raise el.BadInput
-    first, second = counter.stages.values()
-    assert first["calls"] == {"four_bar_kinematics.motion": 2}
-    assert first["points"] == {"four_bar_kinematics.motion": 16}
-    assert "four_bar_kinematics" in first["emitted"] and first["modules"] > len(first["emitted"])
-    assert second["calls"] == {} and second["modules"] == 0 and second["emitted"] == ()
 
 
 def test_what_the_command_loads_is_not_counted_as_the_scene_s():

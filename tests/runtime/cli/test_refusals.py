@@ -9,24 +9,31 @@ FREE = "--set model.formulation=free_free --set model.modes=1"
 WIDTHS = "--tolerance 'crank=0.05 mm' --tolerance 'coupler=0.1 mm'"
 # Command line | words of the complaint.
 REFUSED = """
-show smith_1972 |
+ | --help
+chrt | --help
+show | --help
+show smith_1972_5152_sixteenth_inch --nope | --help
+show smith_1972_5152_sixteenth_inch --set links.crank | found
+show smith_1972_5152_sixteenth_inch --set =3 | found
+show smith_1972_5152_sixteenth_inch --set links.crnk=3 | found
+show smith_1972_5152_sixteenth_inch --set crank=3 | found
 show nothing.toml |
 kinematics mathieu |
 kinematics smith_1972_2122 --angles 0:360 |
-kinematics smith_1972_2122 --angles 0:360:0deg |
 kinematics smith_1972_2122 --angles 0:360:13kg |
 kinematics smith_1972_2122 --angles 360:0:13 |
-kinematics smith_1972_2122 --angles 0:1:9999999 |
-kinematics smith_1972_2122 --angles 1:2:3:4 |
 critical-speeds aannaque_1996_table_4_1 --range 70:20 | two rising speeds
+critical-speeds aannaque_1996_portal_frame --range 3:4 | no crank
+campbell aannaque_1996_portal_frame --range 3:4 | no crank
+steady-state aannaque_1996_portal_frame --speed '3 rad/s' | no crank
+stress aannaque_1996_portal_frame --set frame.axial=elastic --speed '3 rad/s' | no crank
+running-speed aannaque_1996_portal_frame --range 3:4 --limit '250 MPa' | no crank
+run-through aannaque_1996_portal_frame --from '1 rad/s' --to '2 rad/s' --time '1 s' | no crank
 simulate smith_1972_5152_sixteenth_inch --speed '0 rpm' |
-simulate smith_1972_5152_sixteenth_inch --speed '3 kg' |
 simulate smith_1972_5152_sixteenth_inch --revolutions -1 |
-simulate smith_1972_5152_sixteenth_inch --revolutions nan |
 simulate mathieu | --initial Q,QD
 simulate smith_1972_2122 --speed '3 rpm' |
 stability smith_1972_5152_sixteenth_inch --speed=-100:100:5rpm |
-stability smith_1972_2122 --speed '3 rpm' |
 chart smith_1972_2122 |
 show smith_1972_5152_sixteenth_inch --modules no_such_folder |
 reproduce --out /dev/null/gallery |
@@ -39,35 +46,22 @@ boundaries mathieu --regions 1-3 | 1,3,5 or 1:6
 boundaries mathieu --speed 1:2 | a scene of a linkage
 boundaries smith_1972_101104_sixteenth_inch --mu 0.3 | a scene of Hill's equation
 boundaries smith_1972_101104_sixteenth_inch --set model.modes=2 --order 2 | one undamped mode
-boundaries smith_1972_101104_sixteenth_inch --speed 900rpm | two rising speeds
 perturb smith_1972_101104_sixteenth_inch --set model.modes=2 | one mode
 perturb mathieu --latex --plot x.png | without --latex
 clearance smith_1972_10_8_10_10 | --clearance
-clearance smith_1972_10_8_10_10 --clearance '-0.1 in' | clearances
 clearance smith_1972_10_8_10_10 --clearance '0.1 s' | --clearance
 clearance smith_1972_10_8_10_10 --at '55=0.1 in' | --at
 clearance smith_1972_10_8_10_10 --at 34 | --at
 clearance smith_1972_10_8_10_10 --at '34=0.1 in' --clearance '0.1 in' | --at
-clearance smith_1972_10_8_10_10 --clearance '0.1 in' --link wheel | link
 forces smith_1972_12_6_12_12 --speed 0 --fluctuation 0.02 | --fluctuation
-forces smith_1972_12_6_12_12 --speed 10 --fluctuation 2 | fluctuation
 kinematics slider_crank_example --speed fast | --speed
-kinematics slider_crank_example --speed '3 kg' | --speed
 kinematics slider_crank_example --acceleration '9.81 m/s**2' | --acceleration
 kinematics slider_crank_example --animate moving.mp4 | the ending '.gif'
 kinematics slider_crank_example --animate nowhere/at/all.gif | a writable folder
-kinematics slider_crank_example --set 'links.coupler=0.03 m' | theta: found
-kinematics slider_crank_example --set 'links.offset=1 m' | offset
 classify --lengths 12,6,12 | 4 lengths
-classify --lengths 100,6,12,12 | cannot close
 classify | --lengths
 curve smith_1972_12_6_12_12 --point 0.5 | --point
-curve smith_1972_12_6_12_12 --point a,b | --point
-curve smith_1972_12_6_12_12 --point 0.5,0.3 --link rod | link
-harmonics smith_1972_12_6_12_12 --of theta9 | theta9
-harmonics smith_1972_12_6_12_12 --of theta4 --order 0 | order
 harmonics mathieu --of theta4 | a linkage
-balance smith_1972_12_6_12_12 --links rod | rod
 balance smith_1972_10_8_10_10 --speed 10 | no mass
 balance smith_1972_12_6_12_12 --speed 0 | --speed
 balance smith_1972_12_6_12_12 --case b --weights torque=1 | --weights
@@ -90,32 +84,23 @@ run-up smith_1972_12_6_12_12 | --stall-torque
 run-up smith_1972_12_6_12_12 --stall-torque '5 N*m' | --no-load-speed
 run-up slider_crank_example --torque '5 N*m' --no-load-speed 90 | --torque
 run-up slider_crank_example --torque '5 kg' | --torque
-run-up slider_crank_example --revolutions -1 | revolutions
 run-up slider_crank_example --duration 'nan s' | duration
 tolerances smith_1972_12_6_12_12 | NAME=WIDTH
 tolerances smith_1972_12_6_12_12 --tolerance crank | NAME=WIDTH
 tolerances smith_1972_12_6_12_12 --tolerance 'crank=3 s' | a length
 tolerances smith_1972_12_6_12_12 --tolerance 'coupler.inertia=3 mm' --forces --speed 3 | inertia
-tolerances smith_1972_12_6_12_12 --tolerance 'krank=3 mm' | expected one of frame
 tolerances smith_1972_12_6_12_12 {widths} --output x12 | forces need a machine
 tolerances smith_1972_12_6_12_12 {widths} --acceleration 3 | --speed
-tolerances smith_1972_12_6_12_12 {widths} --monte-carlo 1 | samples
 tolerances smith_1972_12_6_12_12 {widths} --plot band.txt | txt
-balance smith_1972_12_6_12_12 --speed 10 --weights torque |
 balance smith_1972_12_6_12_12 --speed 10 --weights torque=x |
-balance smith_1972_12_6_12_12 --speed 10 --weights noise=1 |
 balance smith_1972_12_6_12_12 --speed 10 --offset '-1 in' |
 balance smith_1972_12_6_12_12 --speed 10 --offset '3 kg' |
-balance smith_1972_12_6_12_12 --speed 10 --mass '0 kg' |
 balance smith_1972_12_6_12_12 --speed 10 --trade-off torque |
-balance smith_1972_12_6_12_12 --speed 10 --trade-off torque,torque |
 balance smith_1972_12_6_12_12 --speed 10 --trade-off shaking_force,torque --case b |
-balance smith_1972_12_6_12_12 --speed 10 --trade-off shaking_force,torque --points 1 |
-balance smith_1972_12_6_12_12 --speed 10 --limits shaking_force=0.000001 --mass '1 g' |
 """
 
 
-@pytest.mark.parametrize("line", REFUSED.strip().splitlines())
+@pytest.mark.parametrize("line", REFUSED.strip("\n").splitlines())
 def test_refusal_is_one_line(capsys, line):
     command, _, words = line.replace("{free}", FREE).replace("{widths}", WIDTHS).rpartition("|")
     assert words.strip() in refused(capsys, *shlex.split(command))

@@ -17,13 +17,10 @@ def system(**model):
     return load_scene(SCENE, {f"model.{k}": v for k, v in model.items()}).linear_system()
 
 
-def test_steady_state_at_one_speed(capsys):
+def test_steady_state_at_one_speed_and_over_speeds(capsys, tmp_path):
     printed = shown(capsys, "steady-state", SCENE, "--set", "model.modes=2")
     peak = float(steady_state(system(modes=2), 100.0).peak())
     assert f"{peak:.6g}" in printed and "stable" in printed
-
-
-def test_steady_state_over_speeds(capsys, tmp_path):
     target = tmp_path / "r.png"
     given = (*ONE, "--speed", "300:330:4", "--at", "1", "--plot", target)
     found = told(capsys, "steady-state", SCENE, *given)

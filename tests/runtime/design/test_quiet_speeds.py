@@ -31,38 +31,30 @@ def system():
     return load_scene(TABLE, overrides={"mesh.elements": 1}).system()
 
 
-def test_maxima_are_found_between_the_speeds():
-    speed = np.linspace(1.0, 10.0, 181)
-    values = 0.5 + 2.0 / (1 + 9 * (speed - 3.02) ** 2) + 1.0 / (1 + 16 * (speed - 7.51) ** 2)
-    found = _maxima(speed, values)
-    fine = np.linspace(1.0, 10.0, 900001)
-    exact = 0.5 + 2.0 / (1 + 9 * (fine - 3.02) ** 2) + 1.0 / (1 + 16 * (fine - 7.51) ** 2)
-    tops = fine[1:-1][(exact[1:-1] > exact[:-2]) & (exact[1:-1] > exact[2:])]
-    # A parabola through neighbours 0.05 apart: off by a few per cent of that.
-    np.testing.assert_allclose([w for w, _ in found], tops, atol=2e-3)
+PI = np.pi
+UNSTABLE = ((3.0, 3.5), (4.0, 4.5), (6.0, 7.0), (9.9, 10.0))
 
 
-def test_bands_end_where_the_limit_is_met():
+@pytest.mark.parametrize(
+    ("unstable", "ends", "best", "above"),
+    [
+        ((), [(PI, 2 * PI), (3 * PI, 10.0)], [1.5 * PI, 10.0], [0.5 * PI, 2.5 * PI]),
+        (
+            UNSTABLE,
+            [(3.5, 4.0), (4.5, 6.0), (3 * PI, 9.9)],
+            [4.0, 1.5 * PI, 9.9],
+            [3.5, 4.5, 3 * PI],
+        ),
+    ],
+)
+def test_bands_end_where_the_limit_is_met_or_it_is_unstable(unstable, ends, best, above):
     speed = np.linspace(0.5, 10.0, 1901)
     worst = np.exp(np.sin(speed))
     limiting = np.array([w for w, height in _maxima(speed, worst) if height > 1])
-    bands = _bands(speed, worst, limiting)
-    assert [round(band.low, 3) for band in bands] == [round(np.pi, 3), round(3 * np.pi, 3)]
-    np.testing.assert_allclose(bands[0].high, 2 * np.pi, atol=1e-5)
-    np.testing.assert_allclose(bands[0].best, 1.5 * np.pi, atol=5e-3)
-    np.testing.assert_allclose(bands[0].above, 0.5 * np.pi, atol=1e-4)
-    np.testing.assert_allclose(bands[1].above, 2.5 * np.pi, atol=1e-4)
-
-
-def test_bands_leave_out_what_is_unstable():
-    speed = np.linspace(0.5, 10.0, 1901)
-    worst, none = np.exp(np.sin(speed)), np.array([])
-    unstable = ((3.0, 3.5), (4.0, 4.5), (6.0, 7.0), (9.9, 10.0))
-    bands = _bands(speed, worst, none, unstable)
-    ends = [(round(band.low, 3), round(band.high, 3)) for band in bands]
-    assert ends == [(3.5, 4.0), (4.5, 6.0), (round(3 * np.pi, 3), 9.9)]
-    assert [band.best for band in bands] == pytest.approx([4.0, 1.5 * np.pi, 9.9], abs=5e-3)
-    assert [band.above for band in bands] == pytest.approx([3.5, 4.5, 3 * np.pi], abs=1e-4)
+    bands = _bands(speed, worst, np.array([]) if unstable else limiting, unstable)
+    assert [(band.low, band.high) for band in bands] == [pytest.approx(e, abs=1e-5) for e in ends]
+    assert [band.best for band in bands] == pytest.approx(best, abs=5e-3)
+    assert [band.above for band in bands] == pytest.approx(above, abs=1e-4)
 
 
 def test_an_unstable_speed_is_never_quiet():
@@ -80,18 +72,29 @@ def test_a_range_within_the_limits_is_one_band():
     assert not found.limiting.size and not found.quiet
 
 
-def test_unusable_limits_and_speeds_are_refused():
-    with pytest.raises(BadInput, match="limits of crank"):
-        quiet_speeds(system(), (5.0, 20.0), {"crank": -1.0})
-    with pytest.raises(BadInput, match="limits: found rod"):
-        quiet_speeds(system(), (5.0, 20.0), {"rod": 1e8})
-    for speeds in ((0.0, 20.0), ("a", 20.0)):
-        with pytest.raises(BadInput, match="speeds"):
-            quiet_speeds(system(), speeds, 1e8)
-    with pytest.raises(BadInput, match="without beams"):
-        quiet_speeds(None, (5.0, 20.0), 1e8)
-    with pytest.raises(BadInput, match="increasing crank speeds"):
-        quiet_speeds(system(), [5.0, 4.0, 3.0], 1e8)
+@pytest.mark.parametrize(
+    ("call", "given", "words"),
+    [
+        (quiet_speeds, {"limit": {"crank": -1.0}}, "limits of crank"),
+        (quiet_speeds, {"limit": {"rod": 1e8}}, "limits: found rod"),
+        (quiet_speeds, {"speeds": ("a", 20.0)}, "speeds"),
+        (quiet_speeds, {"speeds": [5.0, 4.0, 3.0]}, "increasing crank speeds"),
+        (quiet_speeds, {"system": None}, "without beams"),
+        # Refused before the work, and after it.
+        (running_speed, {"length": "crankk"}, "length"),
+        (running_speed, {"values": []}, "values"),
+        (
+            running_speed,
+            {"speeds": np.linspace(40.0, 45.0, 8), "limit": 1e6, "rtol": 1e-2},
+            "beyond their limits everywhere",
+        ),
+    ],
+)
+def test_what_cannot_be_quiet_is_refused(call, given, words):
+    given = {"system": system(), "speeds": (5.0, 20.0), "limit": 1e8, **given}
+    first = [given.pop(name) for name in ("system", "speeds", "limit")]
+    with pytest.raises(BadInput, match=words):
+        call(*first, **given)
 
 
 def test_damping_helps_at_a_critical_speed_and_hurts_a_link_at_a_quiet_one():
@@ -129,17 +132,6 @@ def test_the_design_method_finds_a_quiet_speed_and_a_way_up(monkeypatch):
     assert found.passed and 0.0 < found.checks["stable"].value < 1.0
     ratio = found.checks["within limits"].value
     assert found.band.ratio < ratio < found.band.ratio * 1.01
-
-
-def test_lengths_are_refused_before_the_work():
-    for more, words in (({"length": "crankk"}, "length"), ({"values": []}, "values")):
-        with pytest.raises(BadInput, match=words):
-            running_speed(system(), (25.0, 45.0), 1e6, **more)
-
-
-def test_nothing_within_the_limits_is_said():
-    with pytest.raises(BadInput, match="beyond their limits everywhere"):
-        running_speed(system(), np.linspace(40.0, 45.0, 8), 1e6, rtol=1e-2)
 
 
 def test_the_screen_is_quasi_static_at_low_speed_and_peaks_at_the_fractions_of_the_mean():
@@ -198,26 +190,15 @@ def test_the_error_of_the_safety_covers_that_of_amplitude_and_mean():
         fatigue(of_history(np.full(64, np.nan)), STEEL)
     with pytest.raises(BadInput, match="StressResult"):
         fatigue(None, STEEL)
+    with pytest.raises(BadInput, match="positive number"):
+        Material(tensile_strength=-1.0, endurance_limit=1.0)
+    with pytest.raises(BadInput, match="less than tensile_strength"):
+        Material(tensile_strength=1.0, endurance_limit=2.0)
 
 
-def test_compression_counts_as_no_mean_and_small_cycles_do_no_damage():
+def test_compression_counts_as_no_mean_and_a_cycle_to_the_strength_is_no_life():
     found = fatigue(of_history(-300e6 + 150e6 * WAVE), STEEL)
     np.testing.assert_allclose(found.amplitude, 150e6, rtol=1e-12)
     assert np.all(found.damage == 0) and found.revolutions == np.inf
-
-
-def test_a_cycle_that_reaches_the_strength_is_no_life():
     found = fatigue(of_history(650e6 + 10e6 * WAVE), STEEL)
     assert np.all(found.safety == 0) and found.revolutions == 0.0
-
-
-@pytest.mark.parametrize(
-    ("values", "words"),
-    [
-        ({"tensile_strength": -1.0, "endurance_limit": 1.0}, "positive number"),
-        ({"tensile_strength": 1.0, "endurance_limit": 2.0}, "less than tensile_strength"),
-    ],
-)
-def test_impossible_materials_are_refused(values, words):
-    with pytest.raises(BadInput, match=words):
-        Material(**values)

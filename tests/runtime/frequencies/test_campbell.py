@@ -7,7 +7,6 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.frequencies import campbell
-from elastolink.runtime.scenes import load_scene
 from periodic_systems import system_of, wave
 
 
@@ -76,20 +75,6 @@ def test_modes_are_told_by_their_shapes_where_others_are_nearer():
     assert np.all(found.share > 0.6) and found.passed
 
 
-@pytest.mark.slow
-def test_coarse_rows_name_the_modes_as_dense_ones_do():
-    overrides = {"mesh.elements": 1}
-    system = load_scene("aannaque_1996_table_4_1", overrides=overrides).system()
-    dense = campbell(system, np.linspace(50.0, 62.0, 13))
-    coarse = campbell(system, np.linspace(50.0, 62.0, 4))
-    np.testing.assert_allclose(coarse.running, dense.running[::4], rtol=1e-8)
-    # From row to row no line jumps where its name is clear; elsewhere two trade places.
-    clear = np.minimum(dense.share[1:], dense.share[:-1]) > 0.6
-    step = np.abs(np.diff(dense.running, axis=0))
-    assert np.mean(clear) > 0.5
-    assert np.max(step[clear]) < 1.5 < 5.0 < np.max(step[~clear])
-
-
 def test_a_parametric_resonance_grows_and_locks():
     # q'' + (900 + 200 cos(w t)) q = 0 at w = 60: growth 200/(4 * 30) to first order.
     speeds = np.array([50.0, 55.0, 60.0, 65.0])
@@ -97,18 +82,13 @@ def test_a_parametric_resonance_grows_and_locks():
     assert found.growth[2, 0] == pytest.approx(200 / 120, rel=0.02)
     assert found.running[2, 0] == pytest.approx(30.0, rel=1e-6)
     assert np.max(np.abs(found.growth[[0, 3], 0])) < 1e-5
-
-
-def test_the_picture_is_drawn():
-    assert campbell(_system(), np.linspace(10.0, 40.0, 8)).plot().get_xlabel().startswith("crank")
-    assert campbell(_system(0.0, 200.0), np.linspace(55.0, 65.0, 5)).plot().get_ylabel()
+    assert found.plot().get_xlabel().startswith("crank")
 
 
 @pytest.mark.parametrize(
     ("speed", "changes", "message"),
     [
         ([1.0, 2.0, 3.0], {}, "four rising"),
-        ([1.0, 2.0, 2.0, 3.0], {}, "four rising"),
         ([0.0, 1.0, 2.0, 3.0], {}, "four rising"),
         ([1.0, 2.0, 3.0, 4.0], {"modes": 3}, "from 1 to 2"),
     ],

@@ -5,11 +5,10 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.gallery import smith_equation, smith_responses, smith_speeds
-from elastolink.runtime.gallery.sketch import free_bodies, round_force
+from elastolink.runtime.gallery.sketch import free_bodies
 from elastolink.runtime.gallery.smith_balancing import (
     INCH,
     TURN,
-    density_number,
     example,
     offset_function,
     optimal_offset,
@@ -37,8 +36,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.
 
 MP = mpmath.mp.clone()
 MP.dps = 400
-# Figs. 62 and 79.
-FIRST = Response("85", 0.0058, 300.0, 420.0)
+# Fig. 79.
 LAST = Response("84", 0.0058, 200.0, 600.0)
 
 
@@ -101,13 +99,6 @@ def test_all_that_acts_on_a_free_body_is_in_balance(link):
     assert abs(moments.sum()) < 1e-11 * np.abs(moments).max()
 
 
-@pytest.mark.parametrize(
-    ("largest", "size"), [(7.0, 2.0), (10.0, 5.0), (3.9, 1.0), (0.05, 0.02), (4.0, 2.0)]
-)
-def test_the_measure_of_forces_is_round_and_at_most_half_of_the_largest(largest, size):
-    assert round_force(largest) == pytest.approx(size, rel=1e-12)
-
-
 def test_point_masses_alone_would_have_no_best_offset():
     # What the note on Fig. 23(d) says: without a size of its own the nearest weight is the best.
     machine, speed = example()
@@ -149,11 +140,6 @@ def test_extremes_are_those_of_the_steady_peaks():
         assert smith_responses.resonance(LAST, speed) == pytest.approx(place, abs=2.0)
 
 
-def test_more_damping_lowers_a_resonance():
-    heights = [np.max(envelope(FIRST, value).greatest) for value in FIRST.rig.decrements]
-    assert heights[0] > heights[1] > heights[2]
-
-
 @pytest.mark.parametrize("k", [0.0, 0.02, 0.3, 0.5, 2.0])
 def test_inertia_is_that_of_rod_extension_and_cylinder(k):
     """In 400 digits: bars from -delta to 1, a disc of radius^2 = 2 K m at -delta."""
@@ -169,17 +155,6 @@ def test_inertia_is_that_of_rod_extension_and_cylinder(k):
         )
 
 
-@pytest.mark.parametrize("exponent", [-300, -61, -59, -20, -6, -1])
-def test_optimal_offset_has_every_digit(exponent):
-    for mantissa in (1.0, 2.7, 4.9):
-        k = MP.mpf(float(mantissa * 10.0**exponent))
-        offset = MP.mpf(float(optimal_offset(float(k))))
-        # One Newton step from a double doubles its digits: the root to 30 of them.
-        residual = offset**3 - k * (1 + offset**2)
-        exact = offset - residual / (3 * offset**2 - 2 * k * offset)
-        assert abs(offset / exact - 1) < 4 * np.finfo(float).eps
-
-
 @pytest.mark.parametrize("k", [1e-4, 0.0199, 0.1, 0.3183, 0.45, 0.7, 3.0])
 def test_root_is_the_least_inertia_of_all_offsets(k):
     delta, best = np.linspace(0.01, 1.0, 20001), optimal_offset(k)
@@ -189,9 +164,3 @@ def test_root_is_the_least_inertia_of_all_offsets(k):
     # From K = 1/2 on no counterweight at all is best.
     assert (best == 1.0) == (k >= 0.5)
     assert k >= 0.5 or offset_function(best) == pytest.approx(k, rel=1e-14)
-
-
-def test_smith_densities_all_have_their_minimum_inside():
-    # Of Smith's Figs. 23 (b), (c).
-    offsets = optimal_offset([density_number(rho) for rho in (5.0, 10.0, 20.0, 40.0, 80.0)])
-    assert np.all(np.diff(offsets) < 0) and np.all((offsets > 0.2) & (offsets < 0.9))

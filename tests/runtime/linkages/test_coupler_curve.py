@@ -1,6 +1,7 @@
 """Coupler curves and their moving pictures: place, length, cusps, double points, cognates."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from PIL import Image
 from random_linkages import KINDS, random_linkage
 
 CRANK_ROCKER = FourBar(2.0, 1.0, 2.0, 2.0)
-CROSSED = FourBar(2.0, 1.0, 2.0, 2.0, assembly="crossed")
+CROSSED = FourBar(2.0, 1.0, 2.0, 2.0, "crossed")
 DRAG_LINK = FourBar(2.0, 4.0, 4.5, 3.9)
 TRIPLE_ROCKER = FourBar(2.0, 1.7, 1.0, 1.2)
 DOUBLE_ROCKER = FourBar(2.0, 1.7, 1.0, 1.5)
@@ -33,13 +34,6 @@ ALL = [
 ]
 
 
-def assembled(linkage, branch):
-    """The same lengths in the assembly of a sign."""
-    if isinstance(linkage, QuickReturn):
-        return linkage
-    return type(linkage)(*linkage.lengths.values(), assembly="open" if branch > 0 else "crossed")
-
-
 def complex_of(places):
     return np.asarray(places)[..., 0] + 1j * np.asarray(places)[..., 1]
 
@@ -55,7 +49,10 @@ def test_agrees_with_the_motion_of_each_assembly(linkage, link):
         assert curve.passed
         for branch in set(curve.branch):
             of = curve.branch == branch
-            motion = assembled(linkage, branch).motion(curve.theta2[of])
+            own = linkage
+            if not isinstance(linkage, QuickReturn):
+                own = replace(linkage, assembly="open" if branch > 0 else "crossed")
+            motion = own.motion(curve.theta2[of])
             point = motion.point(link, 0.7, 0.4)
             # Towards a dead centre the emitted motion amplifies its round-off.
             loose = (1e-13 + 20 * motion.error)[:, None]
@@ -249,7 +246,6 @@ def test_tacnode_of_a_symmetric_curve(detuned, crossings):
     [
         ((CRANK_ROCKER, 1.0), {"link": "rod"}, "link"),
         ((CRANK_ROCKER, float("nan")), {}, "along"),
-        ((CRANK_ROCKER, "x"), {}, "along"),
         ((CRANK_ROCKER, 1.0), {"points": 3}, "points"),
         ((CRANK_ROCKER, 1.0), {"circuit": 2}, "circuit"),
         ((TRIPLE_ROCKER, 1.0), {"circuit": 1}, "circuit"),
@@ -259,29 +255,29 @@ def test_tacnode_of_a_symmetric_curve(detuned, crossings):
     ],
 )
 def test_refusals(arguments, options, word):
-    with pytest.raises(BadInput, match=word) as refusal:
+    with pytest.raises(BadInput, match=word):
         coupler_curve(*arguments, **options)
-    assert "\n" not in str(refusal.value)
 
 
-def test_refusals_of_cognates():
-    for linkage, along, link in ((SLIDER, 1.0, "coupler"), (CRANK_ROCKER, 1.0, "follower")):
-        with pytest.raises(BadInput, match=r"four-bar|FourBar|coupler"):
-            coupler_curve(linkage, along, link=link).cognates()
-    for along in (0.0, 2.0):
-        with pytest.raises(BadInput, match="joint"):
-            coupler_curve(CRANK_ROCKER, along).cognates()
+@pytest.mark.parametrize(
+    ("linkage", "along", "link", "word"),
+    [
+        (SLIDER, 1.0, "coupler", "four-bar|FourBar"),
+        (CRANK_ROCKER, 1.0, "follower", "coupler"),
+        (CRANK_ROCKER, 0.0, "coupler", "joint"),
+        (CRANK_ROCKER, 2.0, "coupler", "joint"),
+    ],
+)
+def test_refusals_of_cognates(linkage, along, link, word):
+    with pytest.raises(BadInput, match=word):
+        coupler_curve(linkage, along, link=link).cognates()
 
 
-def test_saving(tmp_path):
+def test_file_and_picture_have_the_double_points(tmp_path):
     curve = coupler_curve(INWARD_ROCKER, 0.7, 0.6, points=32)
     saved = json.loads(curve.save(tmp_path / "curve.json").read_text())
     assert len(saved["double_position"]) == 2 and saved["passed"]
-
-
-def test_picture_marks_double_points():
-    ax = coupler_curve(INWARD_ROCKER, 0.7, 0.6).plot()
-    labels = [text.get_text() for text in ax.get_legend().get_texts()]
+    labels = [text.get_text() for text in curve.plot().get_legend().get_texts()]
     assert labels == ["point of the coupler", "double point"]
 
 
@@ -302,12 +298,8 @@ def test_frames_and_bytes_of_a_moving_picture(tmp_path):
             stills.append(np.asarray(picture.convert("RGB")))
     assert all(np.any(stills[0] != still) for still in stills[1:])
     assert sorted(path.name for path in tmp_path.iterdir()) == ["one.gif", "two.gif"]
-
-
-def test_quick_return_with_two_paths(tmp_path):
     curves = [coupler_curve(ROD, 0.5, 0.2, link="block"), coupler_curve(ROD, 4.0, link="rod")]
-    path = animate(ROD, tmp_path / "rod.gif", curves=curves, frames=2)
-    assert path.read_bytes()[:6] == b"GIF89a"
+    animate(ROD, tmp_path / "rod.gif", curves=curves, frames=2)
 
 
 @pytest.mark.parametrize(
@@ -318,7 +310,6 @@ def test_quick_return_with_two_paths(tmp_path):
         (CRANK_ROCKER, "missing/a.gif", {}, "writable"),
         (CRANK_ROCKER, "a.gif", {"frames": 1}, "frames"),
         (CRANK_ROCKER, "a.gif", {"fps": 0}, "fps"),
-        (CRANK_ROCKER, "a.gif", {"circuit": 2}, "circuit"),
         (CRANK_ROCKER, "a.gif", {"curves": ["x"]}, "curves"),
         (CRANK_ROCKER, "a.gif", {"curves": [coupler_curve(SLIDER, 1.0)]}, "another linkage"),
     ],

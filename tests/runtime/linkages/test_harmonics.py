@@ -80,11 +80,7 @@ def test_amplitude_phase_and_series():
     assert found.series(np.array([0.2])) == pytest.approx([5.0], abs=1e-13)
     assert found.series.error == found.remainder
     assert found.to_dict()["amplitude"][2] == pytest.approx(3.0)
-
-
-def test_plot():
-    ax = harmonics((CRANK_ROCKER, "theta4"), order=5).plot()
-    assert len(ax.patches) == 10
+    assert len(found.plot().patches) == 6
 
 
 @pytest.mark.parametrize(
@@ -92,11 +88,8 @@ def test_plot():
     [
         (3.0, {}, "source"),
         ((CRANK_ROCKER, "theta9"), {}, "theta9"),
-        (("x", "theta4"), {}, "source"),
-        (("x", "torque", 1.0), {}, "source"),
         ((FourBar(2.0, 1.7, 1.0, 1.5), "theta4"), {}, "crank"),
         (np.sin, {"order": 0}, "order"),
-        (np.sin, {"order": 2.5}, "order"),
         (np.sin, {"accuracy": 0.0}, "accuracy"),
         (lambda t: 0.3 * t, {}, "change of"),
         (lambda t: np.where(t > 3, np.nan, 1.0), {}, "not finite"),

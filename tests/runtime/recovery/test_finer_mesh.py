@@ -34,10 +34,8 @@ APART = "apart"
     [
         (1, "cubic", (2, "internal_node")),
         (2, "cubic", (3, "cubic")),
-        (3, "cubic", (4, "cubic")),
         (4, "cubic", (6, "cubic")),
         (1, "curvature", (2, "curvature")),
-        (1, "timoshenko", (2, "timoshenko")),
         ((1.0,), "cubic", (2, "internal_node")),
         ((0.25, 0.75), "cubic", ((0.125, 0.125, 0.375, 0.375), "cubic")),
     ],

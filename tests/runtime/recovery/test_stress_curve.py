@@ -21,11 +21,14 @@ def curve(system):
     return stress_curve(system, SPEEDS, stations=5)
 
 
-def test_it_passes_its_own_checks_whatever_the_order(system, curve):
+def test_it_passes_its_own_checks_whatever_the_order(system, curve, tmp_path):
     assert set(curve.checks) == {"converged", "equation", "linear range"}
     assert curve.checks["equation"].passed
     assert curve.maximum.shape == curve.error.shape == (60, 3)
     assert curve.links == ("crank", "coupler", "follower")
+    assert len(curve.plot().lines) == 3
+    text = curve.save(tmp_path / "curve.csv").read_text()
+    assert text.startswith("link,") and len(text.splitlines()) > 180
     given = [*SPEEDS[::-3], SPEEDS[0], SPEEDS[-1]]
     turned = stress_curve(system, given, stations=5, stability=False)
     assert np.array_equal(turned.maximum[0], turned.maximum[-1])
@@ -64,45 +67,17 @@ def test_stability_is_that_of_the_multipliers(system):
     ("change", "match"),
     [
         ({"speeds": [0.0, 10.0]}, "speeds"),
-        ({"speeds": [[10.0]]}, "speeds"),
         ({"speeds": []}, "speeds"),
         ({"speeds": ["fast"]}, "speeds"),
         ({"rtol": 0.5}, "rtol"),
         ({"method": "guess"}, "method"),
         ({"stations": {"crank": [2.0]}}, "crank"),
+        ({"system": el.load_scene("smith_1972_5152_sixteenth_inch").system()}, "beams"),
     ],
 )
 def test_bad_input_is_one_clear_line(system, change, match):
-    given = {"speeds": [20.0, 30.0], **change}
+    given = {"system": system, "speeds": [20.0, 30.0], **change}
     with pytest.raises(BadInput, match=match):
-        stress_curve(system, **given)
-
-
-def test_no_damping_and_no_beams_are_refused(system):
+        stress_curve(**given)
     with pytest.raises(BadInput, match="damping"):
         stress_curve(system.with_parameters(damping_ratio=0.0), [20.0])
-    with pytest.raises(BadInput):
-        stress_curve(el.load_scene("smith_1972_5152_sixteenth_inch").system(), [20.0])
-
-
-@pytest.mark.slow
-def test_three_elements_and_usual_damping_have_an_unstable_range():
-    """27 freedoms at 2 %: unstable from 66.3 to 67.3 rad/s, by the whole system too."""
-    whole = el.load_scene("aannaque_1996_table_4_1").system()
-    speeds = np.linspace(60.0, 70.0, 101)
-    curve = stress_curve(whole, speeds, stations=3, rtol=1e-3)
-    ((low, high),) = curve.unstable_ranges
-    assert 66.1 < low < 66.35 and 67.25 < high < 67.45
-    picked = [0, 61, 68, 74, 100]
-    truth = el.floquet_multipliers(whole, speeds[picked], rtol=1e-8)
-    largest = np.max(np.abs(truth.multipliers), axis=1)
-    assert np.all(np.abs(curve.multiplier[picked] - largest) <= curve.multiplier_error[picked])
-    assert np.any(largest > 1.0) and np.any(largest < 1.0)
-
-
-def test_it_draws_itself_and_leaves_as_csv(curve, tmp_path):
-    ax = curve.plot()
-    assert len(ax.lines) == 3
-    text = curve.save(tmp_path / "curve.csv").read_text()
-    assert text.startswith("link,")
-    assert len(text.splitlines()) > 180

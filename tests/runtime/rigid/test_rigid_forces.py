@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -103,16 +105,10 @@ def test_each_output_alone_is_the_same(linkage) -> None:
 @pytest.mark.parametrize(("length", "mass"), [(2.0**-90, 8.0), (1e30, 1e-5)])
 def test_unit_systems(linkage, length, mass) -> None:
     """Forces scale as mass times length, moments as mass times length squared."""
-    sizes = {name: value * length for name, value in linkage.lengths.items()}
-    assembly = {"assembly": linkage.assembly} if hasattr(linkage, "assembly") else {}
-    other = type(linkage)(**sizes, **assembly)
+    other = replace(linkage, **{name: size * length for name, size in linkage.lengths.items()})
+    units = mass * length ** np.array([0, 1, 1, 2])
     scaled = {
-        link: MassDistribution(
-            own.mass * mass,
-            own.along * mass * length,
-            own.across * mass * length,
-            own.inertia * mass * length**2,
-        )
+        link: MassDistribution(*(units * [own.mass, own.along, own.across, own.inertia]))
         for link, own in crooked_bodies(linkage).items()
     }
     one = rigid_forces(Machine(linkage, crooked_bodies(linkage)), THETA, 4.0, 3.0)
@@ -125,41 +121,28 @@ def test_unit_systems(linkage, length, mass) -> None:
     assert two.passed
 
 
-def test_broadcasting_of_speeds_and_accelerations() -> None:
+@pytest.mark.parametrize("count", [7, 10_001])
+def test_broadcasting_of_speeds_and_accelerations(count) -> None:
+    """Of long arrays too, which are computed in parts."""
     machine = loaded(LINKAGES["crank rocker"])
-    theta, speed = np.linspace(0.0, 6.0, 7), np.array([[3.0], [-5.0]])
+    theta, speed = np.linspace(0.0, 6.0, count), np.array([[3.0], [-5.0]])
     acceleration = np.array([0.0, 4.0])[:, np.newaxis, np.newaxis]
     whole = rigid_forces(machine, theta, speed, acceleration)
-    assert whole.f23.shape == (2, 2, 7, 2)
-    assert whole.torque.shape == np.shape(whole.error) == (2, 2, 7)
-    for place in np.ndindex(2, 2, 7):
-        single = rigid_forces(
-            machine, theta[place[2]], speed[place[1], 0], acceleration[place[0], 0, 0]
-        )
+    assert whole.f23.shape == (2, 2, count, 2)
+    assert whole.torque.shape == np.shape(whole.error) == (2, 2, count)
+    for i, j, k in itertools.product((0, 1), (0, 1), range(0, count, count // 7)):
+        place = i, j, k
+        single = rigid_forces(machine, theta[k], speed[j, 0], acceleration[i, 0, 0])
         assert single.f23.shape == (2,)
         np.testing.assert_allclose(whole.torque[place], single.torque, rtol=1e-12)
         np.testing.assert_allclose(whole.f41[place], single.f41, rtol=1e-12, atol=1e-11)
     assert whole.passed
 
 
-def test_long_arrays_are_those_of_their_parts() -> None:
-    machine = Machine(LINKAGES["crank rocker"], crooked_bodies(LINKAGES["crank rocker"]))
-    theta = np.linspace(0.0, 50.0, 10_001)
-    whole = rigid_forces(machine, theta, 3.0)
-    part = rigid_forces(machine, theta[8000:], 3.0)
-    for name, values in whole.values.items():
-        np.testing.assert_allclose(values[8000:], part[name], rtol=1e-13, atol=1e-13)
-    tall = rigid_forces(machine, theta[:, np.newaxis], np.array([3.0, 4.0]))
-    np.testing.assert_allclose(tall.torque[:, 0], whole.torque, rtol=1e-13, atol=1e-13)
-
-
 @pytest.mark.parametrize(
     ("given", "named"),
     [
         ({"theta": [0.0, 3.0]}, "0.72"),
-        ({"theta": np.nan}, "theta"),
-        ({"theta": "abc"}, "theta"),
-        ({"speed": np.inf}, "speed"),
         ({"acceleration": np.nan}, "acceleration"),
         ({"speed": np.ones(3), "theta": np.ones(2)}, "broadcast"),
         ({"outputs": ("pin",)}, "outputs"),
@@ -188,8 +171,10 @@ def test_what_was_not_asked_for_is_refused() -> None:
 
 def test_files_and_copies(tmp_path) -> None:
     found = rigid_forces(smith(), THETA[:6], 10.0)
-    told = json.loads(found.save(tmp_path / "f.json").read_text())
-    assert told["x34"] == found["x34"].tolist()
+    single = rigid_forces(smith(), 1.0, 10.0, 2.0)
+    told = json.loads(single.save(tmp_path / "f.json").read_text())
+    assert told["torque"] == float(single.torque)
+    assert told["passed"] and "values" not in told
     rows = found.save(tmp_path / "f.csv").read_text().splitlines()
     assert len(rows) == 7
     assert {"theta2", "x12", "torque", "shaking_moment", "error"} <= set(rows[0].split(","))
@@ -210,15 +195,11 @@ def test_pictures() -> None:
     torque = found.plot(joint="torque")
     np.testing.assert_array_equal(torque.lines[0].get_ydata(), found.torque)
     assert found.plot().get_title() == "force on the frame"
-
-
-@EVERY
-def test_a_single_angle_has_checks_and_a_file(linkage, tmp_path) -> None:
-    found = rigid_forces(loaded(linkage), 1.0, 5.0, 2.0)
-    assert found.passed
-    saved = json.loads(found.save(tmp_path / "f.json").read_text())
-    assert saved["torque"] == float(found.torque)
-    assert saved["passed"] and "values" not in saved
+    # A force along one axis, over the turn.
+    found = rigid_forces(loaded(LINKAGES["slider-crank"]), np.linspace(0.0, 6.0, 61), 5.0)
+    axes = found.plot(joint="41")
+    np.testing.assert_array_equal(axes.lines[0].get_ydata(), found["y41"])
+    assert axes.get_ylabel() == "pin force 41, Y [N]"
 
 
 @EVERY
@@ -240,11 +221,3 @@ def test_a_peak_between_the_places_is_looked_at() -> None:
     theta[517] = np.nextafter(high, low)
     coupler = MassDistribution.uniform_bar(1.0, 0.1)
     assert not driving_torque(Machine(linkage, {"coupler": coupler}), theta, 1.0).passed
-
-
-def test_a_force_along_one_axis_is_drawn_over_the_turn() -> None:
-    linkage = LINKAGES["slider-crank"]
-    found = rigid_forces(Machine(linkage, crooked_bodies(linkage)), np.linspace(0.0, 6.0, 61), 5.0)
-    axes = found.plot(joint="41")
-    np.testing.assert_array_equal(axes.lines[0].get_ydata(), found["y41"])
-    assert axes.get_ylabel() == "pin force 41, Y [N]"

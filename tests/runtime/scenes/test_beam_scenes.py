@@ -6,27 +6,19 @@ from elastolink import BadInput, load_scene
 from elastolink.derive.spec import ModelSpec
 
 TABLE = "aannaque_1996_table_4_1"
-LONG = "aannaque_1996_long_coupler"
 
 
-@pytest.mark.parametrize("name", [TABLE, LONG])
-def test_three_elements_a_link_have_27_freedoms(name):
-    system = load_scene(name).system()
-    assert system.size == 27
-    assert system.structure.size == 27
-    assert system.parameters["damping_ratio"] == 0.02
-
-
-@pytest.mark.parametrize(("kind", "freedoms"), [("cubic", 9), ("curvature", 10), ("timoshenko", 9)])
-def test_one_element_a_link_has_the_freedoms_of_the_document(kind, freedoms):
+@pytest.mark.parametrize(
+    ("elements", "kind", "freedoms"),
+    [(3, "cubic", 27), (1, "cubic", 9), (1, "curvature", 10), (1, "timoshenko", 9)],
+)
+def test_the_freedoms_are_those_of_the_document_and_the_element_the_model(elements, kind, freedoms):
     # Aannaque section 4.3: 27 degrees of freedom against 10 of p-version 2.
-    changes = {"model.formulation": f"{kind}_beams", "mesh.elements": 1, "material.poisson": 0.3}
-    assert load_scene(TABLE, overrides=changes).system().size == freedoms
-
-
-def test_the_model_is_served_by_the_element():
-    scene = load_scene(TABLE, overrides={"model.formulation": "internal_node_beams"})
-    assert scene.model_spec() == ModelSpec("beam_element", "internal_node")
+    changes = {"model.formulation": f"{kind}_beams", "mesh.elements": elements}
+    scene = load_scene(TABLE, overrides={**changes, "material.poisson": 0.3})
+    assert scene.model_spec() == ModelSpec("beam_element", kind)
+    assert scene.system().size == scene.system().structure.size == freedoms
+    assert scene.system().parameters["damping_ratio"] == 0.02
 
 
 def test_lengths_are_geometry_and_damping_follows():
@@ -55,14 +47,9 @@ def test_joints_take_springs_and_masses():
     system = load_scene(TABLE, overrides=changes).system()
     assert "D.x" in system.labels
     place = system.labels.index("D.x")
-    theta = np.zeros(1)
-    spring = system.array("K", theta)[0] - _of_beams(system, theta)
-    assert spring[place, place] == 2e6
-
-
-def _of_beams(system, theta):
-    """Return the stiffness of the beams alone."""
-    return next(t for t in system.terms if t.array == "K" and t.scale == "elasticity")(theta)[0]
+    of_beams = next(t for t in system.terms if t.array == "K" and t.scale == "elasticity")
+    spring = system.array("K", np.zeros(1)) - of_beams(np.zeros(1))
+    assert spring[0, place, place] == 2e6
 
 
 @pytest.mark.parametrize(
@@ -72,10 +59,7 @@ def _of_beams(system, theta):
         ("model.flexible", ["coupler"], "model.flexible"),
         ("crank.area", -1.0, "crank.area: found -1.0; expected a positive value"),
         ("mesh.elements", 0, "mesh.elements"),
-        ("damping.ratio", -0.01, "damping.ratio"),
-        ("joints.C.mass", -0.1, "joints.C.mass"),
         ("links.crank", "0.6 m", "crank cannot turn fully"),
-        ("material.modulus", "210 m", "material.modulus"),
         ("joints.E.mass", 0.1, "nodes: found E; expected some of"),
         ("model.formulation", "timoshenko_beams", "crank.shear_stiffness: found nothing"),
     ],

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.rigid import Load, Spring, TorsionSpring
-from elastolink.runtime.scenes import list_scenes, load_scene
+from elastolink.runtime.scenes import load_scene
 
 SMITH = "smith_1972_12_6_12_12"
 STEEL = "aannaque_1996_table_3_2"
@@ -15,10 +15,17 @@ ENGINE = "slider_crank_example"
 SHAPER = "quick_return_example"
 
 
-def test_a_section_and_a_density_give_the_mass():
+def test_masses_of_a_section_of_a_slider_and_of_a_rig():
     bar = load_scene(STEEL).machine().masses["follower"]
     assert bar.mass == pytest.approx(7850 * 0.025 * 0.00315 * 0.525, rel=1e-14)
     assert bar.inertia == pytest.approx(bar.mass * 0.525**2 / 3, rel=1e-14)
+    # A slider has its mass at the pin.
+    slider = load_scene(ENGINE).machine().masses["slider"]
+    assert (slider.mass, slider.along, slider.inertia) == (0.45, 0.0, 0.0)
+    rig = load_scene("smith_1972_5152_sixteenth_inch").machine()
+    assert set(rig.masses) == {"coupler", "follower"} and rig.masses["coupler"].mass > 0
+    with pytest.raises(BadInput, match="no mass"):
+        load_scene("smith_1972_10_8_10_10").machine()
 
 
 @pytest.mark.parametrize("name", [SMITH, STEEL, ENGINE, SHAPER])
@@ -44,14 +51,7 @@ def test_centre_and_inertia_about_it_move_to_the_first_joint():
     assert (bar.along, bar.across) == pytest.approx((0.06, -0.02), rel=1e-14)
     assert bar.inertia == pytest.approx(0.004 + 2 * (0.03**2 + 0.01**2), rel=1e-14)
     assert bar.inertia_about_centre == pytest.approx(0.004, rel=1e-13)
-
-
-def test_a_slider_has_its_mass_at_the_pin():
-    slider = load_scene(ENGINE).machine().masses["slider"]
-    assert (slider.mass, slider.along, slider.inertia) == (0.45, 0.0, 0.0)
-
-
-def test_an_override_replaces_what_says_the_same():
+    # An override replaces what says the same.
     scene = load_scene(ENGINE, {"coupler.first_moment": 0.01})
     assert "centre_along" not in scene["coupler"]
     assert scene.machine().masses["coupler"].along == 0.01
@@ -88,9 +88,7 @@ def test_loads_and_springs_by_name():
     assert scene.dimension("loads.tool.couple") == "moment"
     json.dumps(scene.to_dict())
     assert scene.digest() != load_scene(SHAPER).digest()
-
-
-def test_overrides_leave_the_document_as_it_was():
+    # Overrides leave the document as it was.
     load_scene(SHAPER, {"loads.tool.couple": -1.0})
     assert load_scene(SHAPER).get("loads.tool.couple") == -20.0
 
@@ -102,38 +100,15 @@ def test_overrides_leave_the_document_as_it_was():
         (SHAPER, {"loads.tool.link": "coupler"}, "loads.tool.link: found 'coupler'"),
         (SHAPER, {"loads.tool": 3.0}, "write [loads.NAME] above the keys"),
         (SHAPER, {"springs.back.stiffness": 3.0}, "springs.back.first: found nothing"),
-        (SHAPER, {"links.rod": "0.3 m"}, "the block would leave the rod"),
         (SHAPER, {"links.crank": "0.25 m"}, "would pass the rod's pivot"),
         (ENGINE, {"links.offset": "0.3 m"}, "the slider's line is out of reach"),
         (ENGINE, {"coupler.density": 7850}, "width and thickness beside it"),
         (ENGINE, {"slider.mass": None, "slider.centre_along": 0.1}, "mass, weight or density"),
-        (ENGINE, {"coupler.mass": -1.0}, "coupler.mass"),
         (SMITH, {"coupler.first_moment": 0.2}, "no body has these three"),
         (ENGINE, {"model.balanced": ["coupler"]}, "0, since model.balanced names this link"),
-        (ENGINE, {"operation.acceleration": "3 rpm"}, "operation.acceleration"),
     ],
 )
 def test_refusals_say_what_is_wrong(name, overrides, said):
     with pytest.raises(BadInput) as refusal:
         load_scene(name, overrides)
     assert said in str(refusal.value)
-
-
-def test_a_linkage_without_masses_is_no_machine():
-    with pytest.raises(BadInput, match="no mass"):
-        load_scene("smith_1972_10_8_10_10").machine()
-
-
-def test_the_rigs_with_a_flexible_coupler_are_machines_too():
-    machine = load_scene("smith_1972_5152_sixteenth_inch").machine()
-    assert set(machine.masses) == {"coupler", "follower"}
-    assert machine.masses["coupler"].mass > 0
-
-
-@pytest.mark.slow
-def test_every_scene_with_a_linkage_can_be_drawn():
-    from elastolink.runtime.cli.scenes import draw_scene
-    from elastolink.runtime.core.plotting import new_figure
-
-    for name in list_scenes():
-        assert draw_scene(load_scene(name), new_figure().add_subplot()).has_data()

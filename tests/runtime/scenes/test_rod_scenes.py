@@ -32,11 +32,9 @@ def test_both_readings_of_the_stiff_rods_mass():
     light, heavy = (load_scene(name)["rod"] for name in (STIFF, f"{STIFF}_heavy"))
     assert light["bending_stiffness"] == pytest.approx(2.91992e6 * POUND_FORCE * INCH**2, rel=1e-12)
     assert light["mass_per_length"] == pytest.approx(0.1268 * POUND / INCH, rel=1e-12)
+    # The other is that times standard gravity in in/s^2.
     heavier = 0.1268 * POUND_FORCE / INCH**2
     assert heavy["mass_per_length"] == pytest.approx(heavier, rel=1e-12)
-    # One is the other times standard gravity in in/s^2.
-    ratio = heavy["mass_per_length"] / light["mass_per_length"]
-    assert ratio == pytest.approx(9.80665 / INCH, rel=1e-12)
 
 
 @pytest.mark.parametrize("formulation", LINEAR)
@@ -129,9 +127,7 @@ def test_stiffness_and_section_take_each_others_place():
     section = load_scene(FLEXIBLE, {"rod.second_moment": "1e-6 m**4"})
     np.testing.assert_allclose(section["rod"]["bending_stiffness"], 0.7e11 * 1e-6, rtol=1e-14)
     both = {"rod.modulus": "2e11 Pa", "rod.second_moment": "1e-6 m**4"}
-    for scene in (FLEXIBLE, STIFF):
-        found = load_scene(scene, both)["rod"]["bending_stiffness"]
-        np.testing.assert_allclose(found, 2e5, rtol=1e-14)
+    assert load_scene(STIFF, both)["rod"]["bending_stiffness"] == pytest.approx(2e5, rel=1e-14)
     # A section alone says no stiffness.
     with pytest.raises(BadInput, match="bending_stiffness"):
         load_scene(STIFF, {"rod.second_moment": "1e-6 m**4"})

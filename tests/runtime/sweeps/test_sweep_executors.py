@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 
@@ -13,6 +12,7 @@ import pytest
 from elastolink.runtime.cli import main
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.workers import in_order
+from fresh_process import python
 
 FIELDS = ("invariants", "stable", "largest", "slack", "undecided", "kind")
 # What a chart of 1e7 points may take [bytes], issue 7.
@@ -147,7 +147,5 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 @pytest.mark.parametrize("way", ["store", "memory"])
 def test_ten_million_points_within_two_gigabytes(tmp_path, way):
     pytest.importorskip("resource")
-    command = [sys.executable, "-c", TEN_MILLION, way, str(tmp_path / "store")]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
     unit = 1 if sys.platform == "darwin" else 1024
-    assert int(done.stdout) * unit < MOST_MEMORY
+    assert int(python(TEN_MILLION, way, str(tmp_path / "store"))) * unit < MOST_MEMORY

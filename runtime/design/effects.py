@@ -88,21 +88,9 @@ def damping_effect(
 ) -> StressEffect:
     """Return the largest stresses for several ratios of modal damping (Aannaque 7.4.2).
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a linkage of beams with modal damping: ``with_modal_damping``.
-    speeds : array_like
-        Crank speeds [rad/s].
-    ratios : sequence of float
-        Damping ratios, positive.
-    rtol : float
-        Wanted error of the stresses, relative.
-
-    Raises
-    ------
-    BadInput
-        If the system has no modal damping, or a value is unusable.
+    The system is a linkage of beams with modal damping, the speeds are those of the crank [rad/s],
+    the ratios positive, and ``rtol`` is the wanted relative error of the stresses.  A system
+    without modal damping is refused.
     """
     required_structure(system)
     if "damping_ratio" not in system.parameters:
@@ -119,25 +107,10 @@ def length_effect(
     *,
     rtol: float = 1e-3,
 ) -> StressEffect:
-    """Return the largest stresses for several values of a length (Aannaque 7.3, 7.5, 8.5).
+    """Return the largest stresses for several values [m] of a length (Aannaque 7.3, 7.5, 8.5).
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a linkage of beams with geometry to vary.
-    name : str
-        The length: ``frame`` is the distance of the ground pivots, L4.
-    values : sequence of float
-        Its values [m].
-    speeds : array_like
-        Crank speeds [rad/s].
-    rtol : float
-        Wanted error of the stresses, relative.
-
-    Raises
-    ------
-    BadInput
-        If the system has no such length, or the crank cannot turn at a value.
+    The length is one of the system's geometry: ``frame`` is the distance of the ground pivots, L4.
+    A length that the system has not, and a value with which the crank cannot turn, are refused.
     """
     required_structure(system)
     return effect_of(system, name, _values("values", values), speeds, rtol)

@@ -56,31 +56,13 @@ class Screening(Result):
 
 
 def screen(system: LinearPeriodic, speeds: ArrayLike, *, damping: float) -> Screening:
-    """Return estimated largest stresses without solving the equations of motion.
+    """Return estimated largest stresses over crank speeds [rad/s], without solving equations.
 
     The quasi-static stress is a function of the crank angle times the squared speed, found once,
-    and another of the constant loads.  Its n-th
-    harmonic is taken to be carried by the lowest mode alone, as a single mass of the mean natural
-    frequency W: it grows by ``1 / (1 - (n w/W)^2 + 2 i z n w/W)``.  Resonances at W/n are in it,
-    infinite without damping; parametric terms and the other modes are not.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a linkage of beams whose sections have a thickness.
-    speeds : array_like
-        Crank speeds [rad/s], positive.
-    damping : float
-        Damping ratio z.
-
-    Returns
-    -------
-    Screening
-
-    Raises
-    ------
-    BadInput
-        If an argument is unusable.
+    and another of the constant loads.  Its n-th harmonic is taken to be carried by the lowest mode
+    alone, as a single mass of the mean natural frequency W: it grows by ``1 / (1 - (n w/W)^2 + 2 i
+    z n w/W)``, z the damping ratio.  Resonances at W/n are in it, infinite without damping;
+    parametric terms and the other modes are not.
     """
     given = np.atleast_1d(numbers("speeds", speeds))
     problems = []

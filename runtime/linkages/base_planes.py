@@ -102,18 +102,9 @@ class BasePlane(Result):
 def base_plane(lam: float, points: int = 201) -> BasePlane:
     """Return one base plane of Barker's solution space (Aannaque 3.4).
 
-    Parameters
-    ----------
-    lam : float
-        (coupler + output + frame)/(sqrt(3) input); above 1/sqrt(3), where the input link would
-        be as long as the other three together.
-    points : int
-        Points of the region map in each direction, at least 2.
-
-    Raises
-    ------
-    BadInput
-        If no linkage lies in the plane, or there are too few points.
+    ``lam`` is (coupler + output + frame)/(sqrt(3) input), above 1/sqrt(3), where the input link
+    would be as long as the other three together; the region map has at least 2 ``points`` in each
+    direction.  A plane in which no linkage lies is refused.
     """
     least = 3.0**-0.5
     if not (is_finite(lam) and least < lam < 1e100):

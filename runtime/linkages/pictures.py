@@ -105,13 +105,7 @@ def animate(
 
 
 def check_animation_path(path: str | Path) -> Path:
-    """Return the path of a GIF that can be written; refuse it before any work starts.
-
-    Raises
-    ------
-    BadInput
-        If the ending is another one, or the folder does not exist or is read-only.
-    """
+    """Return the path of a GIF; refuse another ending and a folder that is missing or read-only."""
     target = Path(path)
     if target.suffix != ".gif":
         raise bad(str(target), repr(target.suffix), "the ending '.gif'", "rename the file")

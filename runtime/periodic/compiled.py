@@ -83,13 +83,7 @@ class CompiledTable:
 
 
 def require_numba() -> None:
-    """Compile, or refuse.
-
-    Raises
-    ------
-    BadInput
-        If numba is not installed.
-    """
+    """Compile; refuse where numba is not installed."""
     try:
         import numba  # noqa: F401 - looked for
     except ImportError as missing:

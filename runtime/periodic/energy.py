@@ -25,17 +25,8 @@ def energy_balance(
 
     With v = dq/dtheta the energy is ``E = v^T M v/2 - q^T N_s q/2``, N_s the symmetric part of N,
     and ``dE/dtheta = v^T (N - N_s) q - v^T C v/w + v^T F - v^T A' q - v^T M' v/2 - q^T N_s' q/2``.
-
-    Parameters
-    ----------
-    equation : Equation
-        Its first member moves.
-    theta : ndarray
-        Crank angles [rad], evenly spaced but for the last, ``(nt,)``.
-    q, slope : ndarray
-        Coordinates and dq/dtheta, ``(nt, n)``.
-    error : float
-        Error of the motion over its peak.
+    The angles ``theta`` [rad], ``(nt,)``, are even but for the last; q and ``slope``, which is v,
+    have shape ``(nt, n)``, and ``error`` is that of the motion over its peak.
     """
     if len(theta) < 10 or equation.harmonics < 0:
         return None

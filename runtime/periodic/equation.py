@@ -81,15 +81,10 @@ class Field:
         return replace(self, constant=constant, factors=self.factors[members])
 
     def at(self, table: Array | None, angles: Array) -> Array:
-        """Return the field at angles, shape ``(nb, nt, ...)``; nt is 1 where it is constant.
+        """Return the field at angles [rad], shape ``(nb, nt, ...)``; nt is 1 where it is constant.
 
-        Parameters
-        ----------
-        table : ndarray or None
-            :func:`waves` at the angles, ``(nt, 2 H + 1)``; None where the terms are not smooth and
-            are evaluated anew.
-        angles : ndarray
-            The wanted angles [rad], shape ``(nt,)``.
+        ``table`` holds :func:`waves` at the angles, ``(nt, 2 H + 1)``; without it the terms, which
+        are not smooth, are evaluated anew.
         """
         if not self.terms:
             return cast(Array, self.constant)[:, None]
@@ -220,16 +215,9 @@ class Equation:
         return self.period * np.arange(float(count)) / count
 
     def at(self, name: str, angles: Array, table: Array | None = None) -> Array:
-        """Return a field in scaled coordinates at angles, ``(nb, nt, n, n)`` or ``(nb, nt, n)``.
+        """Return a scaled field at angles [rad], shape ``(nb, nt, n, n)`` or ``(nb, nt, n)``.
 
-        Parameters
-        ----------
-        name : str
-            One of :attr:`fields`.
-        angles : ndarray
-            Crank angles [rad], shape ``(nt,)``.
-        table : ndarray, optional
-            :func:`waves` at these angles, where it is at hand.
+        ``table`` holds :func:`waves` at these angles, where it is at hand.
         """
         if table is None and self.harmonics >= 0 and self.fields[name].terms:
             table = waves(self.harmonics, angles * (2 * np.pi / self.period))
@@ -275,10 +263,7 @@ class Equation:
     def cholesky_of_mass(self, angles: Array) -> Array:
         """Return the Cholesky factors of the scaled mass at angles, ``(nb, nt, n, n)``.
 
-        Raises
-        ------
-        BadInput
-            If a mass matrix is not symmetric and positive definite.
+        A mass matrix that is not symmetric and positive definite is refused.
         """
         mass = self.at("mass", angles)
         gap = np.max(np.abs(mass - np.swapaxes(mass, -1, -2)), initial=0.0)
@@ -291,16 +276,11 @@ class Equation:
             raise _bad_mass(f"smallest eigenvalue {lowest:.3g}") from None
 
     def frozen_modes(self, angles: Array) -> tuple[Array, Array]:
-        """Return the modes at angles as if the crank were held, ``(nb, nt, ...)``.
+        """Return the modes at angles as if the crank were held, in scaled coordinates.
 
-        Of the mass and the symmetric part of the stiffness field, in scaled coordinates.
-
-        Returns
-        -------
-        squares : ndarray, shape (nb, nt, n)
-            Squared frequencies [1/rad^2], rising; nt is 1 where the two arrays are constant.
-        modes : ndarray, shape (nb, nt, n, n)
-            In columns, of unit mass.
+        Of the mass and the symmetric part of the stiffness field: squared frequencies [1/rad^2],
+        rising, ``(nb, nt, n)``, and modes of unit mass in columns, ``(nb, nt, n, n)``; nt is 1
+        where the two arrays are constant.
         """
         return _modes(self.cholesky_of_mass(angles), -self.stiffness(angles))
 
@@ -313,15 +293,7 @@ class Equation:
     def generator(self, angles: Array) -> Array:
         """Return L of y' = L y in the scaled state (q/scale, p scale), and 1 where forced.
 
-        Parameters
-        ----------
-        angles : ndarray
-            Crank angles [rad], shape ``(nt,)``.
-
-        Returns
-        -------
-        ndarray
-            Shape ``(nb, nt, m, m)``, m = 2n or 2n + 1.
+        At angles [rad], ``(nt,)``; shape ``(nb, nt, m, m)``, m = 2n or 2n + 1.
         """
         n, count, places = self.size, len(self.speed), len(angles)
         mass = np.broadcast_to(self.at("mass", angles), (count, places, n, n))
@@ -403,13 +375,7 @@ class SampledSystem:
 
 
 def sampled(system: LinearPeriodic, *, forcing: bool = False) -> SampledSystem:
-    """Return a system with its terms sampled.
-
-    Raises
-    ------
-    BadInput
-        If a term is not finite or has a wrong shape.
-    """
+    """Return a system with its terms sampled; a term of wrong shape or not finite is refused."""
     varying = [place for place, term in enumerate(system.terms) if _varies(term, forcing)]
     return _sampled(system, forcing, varying)
 
@@ -438,26 +404,15 @@ def equation_of(
     *,
     forcing: bool = False,
 ) -> Equation:
-    """Return the equation of a system at speeds and parameter values that broadcast.
+    """Return the equation of a system at positive speeds [rad/s] and parameters that broadcast.
 
-    Parameters
-    ----------
-    system : LinearPeriodic or SampledSystem
-        The system; a sampled one is not evaluated again.
-    speed : array_like
-        Crank speeds [rad/s], positive.
-    parameters : mapping, optional
-        Parameter values that replace the system's; geometry too, one number each, where the system
-        can be made anew for it, but not of a sampled one.
-    forcing : bool
-        Whether the force is taken along, where the system has one; a sampled one knows.
+    A sampled system is not evaluated again and knows whether forces act.  Parameters replace the
+    system's own; geometry too, one number each, where the system can be made anew for it, but not
+    of a sampled one.  ``forcing`` takes the force along, where the system has one.
 
-    Raises
-    ------
-    BadInput
-        If a speed is not positive and finite, a parameter is unknown or not finite, shapes do not
-        broadcast, a term is not finite or has a wrong shape, or a mass matrix is not symmetric and
-        positive definite.
+    Refused are speeds that are not positive and finite, parameters that are unknown or not finite,
+    shapes that do not broadcast, terms that are not finite or of wrong shape, and mass matrices
+    that are not symmetric and positive definite.
     """
     if isinstance(system, SampledSystem):
         known, changes = system, dict(parameters or {})
@@ -519,10 +474,7 @@ def at_geometry(
 ) -> tuple[LinearPeriodic, dict[str, ArrayLike]]:
     """Return the system made for the geometry among some values, and the other values.
 
-    Raises
-    ------
-    BadInput
-        If it is no linear periodic system, or a geometry value is not one number.
+    What is no linear periodic system is refused, and geometry that is not one number.
     """
     require_system(system)
     rest = {name: value for name, value in values.items() if name not in system.geometry}
@@ -543,17 +495,10 @@ def at_geometry(
 def fourier_series(system: LinearPeriodic, terms: Sequence[Term]) -> tuple[list[Array], int, int]:
     """Return the Fourier series of terms, and how many harmonics they have; -1 where not smooth.
 
-    The terms are sampled at even angles, doubled until every series has ended and gives the term
-    at angles between: no wave was mistaken for another.
-
-    Returns
-    -------
-    series : list of ndarray
-        Coefficients in the order of :func:`waves`, shape ``(2 H + 1, n, n)`` or ``(2 H + 1, n)``.
-    harmonics : int
-        H, the same for all.
-    reach : int
-        The highest that has a millionth of the largest amplitude of its term.
+    The terms are sampled at even angles, doubled until every series has ended and gives the term at
+    angles between: no wave was mistaken for another.  The coefficients are in the order of
+    :func:`waves`, ``(2 H + 1, n, n)`` or ``(2 H + 1, n)``, H the same for all; the last number is
+    the highest harmonic that has a millionth of the largest amplitude of its term.
     """
     if not terms:
         return [], 0, 0

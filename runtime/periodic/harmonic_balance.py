@@ -28,17 +28,12 @@ _MOST_UNKNOWNS = 5000
 def balanced_motion(
     equation: Equation, rtol: float, samples: int
 ) -> tuple[Array, Array, Array, float]:
-    """Return the periodic motion of the first member at even angles.
+    """Return the periodic motion of the first member at even angles, its error and condition.
 
-    Returns
-    -------
-    q, slope : ndarray
-        Coordinates and dq/dtheta, shape ``(samples, n)``.
-    error : ndarray
-        Of each coordinate over its peak, shape ``(n,)``: the difference to a motion of two thirds
-        of the harmonics, and round-off.
-    sensitivity : float
-        Condition number of the equations, in scaled coordinates; inf where singular.
+    q and dq/dtheta have shape ``(samples, n)``.  The error of each coordinate over its peak,
+    ``(n,)``, is the difference to a motion of two thirds of the harmonics, and round-off; the
+    condition number is that of the equations in scaled coordinates, infinite where they are
+    singular.
     """
     harmonics = _FIRST
     before = _series(equation, 2 * harmonics // 3)[0]

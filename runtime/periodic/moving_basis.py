@@ -116,24 +116,13 @@ class StillModes:
 def moving_basis(system: LinearPeriodic, modes: int, *, angles: int | None = None) -> MovingBasis:
     """Return a smooth periodic basis of the lowest modes of M and K held still at each angle.
 
-    From angle to angle the basis is carried along with the least rotation within the subspace
-    (the orthogonal factor of ``Phi(theta_k)^T M Phi(theta_k-1)``); the rotation that is left after
-    a period is spread evenly over it.
+    From angle to angle the basis is carried along with the least rotation within the subspace (the
+    orthogonal factor of ``Phi(theta_k)^T M Phi(theta_k-1)``); the rotation that is left after a
+    period is spread evenly over it.  By default it is fixed at as many even angles as it needs, 64
+    to 2048.
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        With M and K positive definite.
-    modes : int
-        Number m of modes, 1 to n.
-    angles : int, optional
-        Even angles to fix it at; by default as many as it needs, 64 to 2048.
-
-    Raises
-    ------
-    BadInput
-        If the number is unusable, or the subspace is not smooth or not periodic: the frequencies
-        of modes m and m + 1 come too close.
+    Refused where M or K is not positive definite, the number of modes is none of 1 to n, or the
+    subspace is not smooth and periodic: the frequencies of modes m and m + 1 come too close.
     """
     modes = require_whole("modes", modes, 1, system.size)
     if system.is_constant("M") and system.is_constant("K"):
@@ -160,13 +149,7 @@ def _fixed_basis(system: LinearPeriodic, modes: int) -> MovingBasis:
 
 
 def carried_basis(period: float, modes: int, still: StillModes) -> MovingBasis:
-    """Return the basis of the lowest of modes at even angles of a period.
-
-    Raises
-    ------
-    BadInput
-        If their subspace is not periodic.
-    """
+    """Return the basis of the lowest modes at even angles; refuse a span that is not periodic."""
     theta, squares, shapes, mass = still.theta, still.squares, still.shapes, still.mass
     values = shapes[:, :, :modes]
     carried = mass @ values
@@ -220,10 +203,7 @@ def _lowest(system: LinearPeriodic, theta: Array) -> tuple[Array, Array, Array]:
 def natural_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
     """Return squared natural frequencies, rising, and M-orthonormal modes at angles.
 
-    Raises
-    ------
-    LinAlgError
-        If a matrix is not positive definite.
+    NumPy's ``LinAlgError`` says that a matrix is not positive definite.
     """
     values, shapes = flexible_modes(mass, stiffness)
     return 1.0 / values, shapes / np.sqrt(values)[:, None, :]
@@ -232,12 +212,8 @@ def natural_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
 def flexible_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
     """Return one over squared natural frequencies, falling, and K-orthonormal modes at angles.
 
-    Where the matrices are ill-conditioned the last values are round-off, of either sign.
-
-    Raises
-    ------
-    LinAlgError
-        If a matrix is not positive definite.
+    Where the matrices are ill-conditioned the last values are round-off, of either sign.  NumPy's
+    ``LinAlgError`` says that a matrix is not positive definite.
     """
     np.linalg.cholesky(mass)
     root = np.linalg.inv(np.linalg.cholesky(stiffness))

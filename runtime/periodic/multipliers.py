@@ -444,22 +444,12 @@ _SWEEPS, _MOST_SWEEPS, _FAR_APART = 8, 64, float(np.log(1e4))
 
 
 def graded_multipliers(maps: Array) -> tuple[Array, Array]:
-    """Return the multipliers of a product of matrices that is never formed.
+    """Return the multipliers of a product of ``(nb, segments, m, m)`` that is never formed.
 
     An orthogonal basis is carried round the period (``Phi_k Q_k = Q_{k+1} R_k``) until it returns
     to itself in blocks; each block of the triangular factors then holds multipliers of like
-    modulus, whatever the others do, and keeps its relative digits.
-
-    Parameters
-    ----------
-    maps : ndarray
-        Transition matrices of the segments, shape ``(nb, segments, m, m)``.
-
-    Returns
-    -------
-    logarithm, angle : ndarray
-        log |multiplier| and its argument in the order of :func:`multiplier_order`, shape
-        ``(nb, m)``; -inf where a multiplier is zero.
+    modulus, whatever the others do, and keeps its relative digits.  Returned are log |multiplier|,
+    -inf where it is zero, and its argument, ``(nb, m)``, in the order of :func:`multiplier_order`.
     """
     maps = _merged(maps)
     count, m = len(maps), maps.shape[-1]
@@ -600,30 +590,13 @@ def _reciprocal(logarithm: Array, angle: Array, error: Array) -> Check:
 def cycles_to_settle(
     multiplier: ArrayLike, tolerance: float, *, norm: str = "change"
 ) -> NDArray[np.int64]:
-    """Return how many periods a march from rest takes, by the slowest multiplier alone.
+    """Return how many periods a march from rest takes, with the last; -1 where it never settles.
 
-    After k periods the motion from rest is ``y_s - rho^k y_s`` where y_s lies along the mode of
-    the multiplier rho; what else the start holds has died away before.
-
-    Parameters
-    ----------
-    multiplier : array_like of complex
-        The Floquet multiplier nearest to the unit circle.
-    tolerance : float
-        Where it has settled, over the size of the motion.
-    norm : str
-        ``"change"``: of the last period from the one before, ``abs(1 - rho) abs(rho)^(k - 2)``.
-        ``"remaining"``: the rest of the start in the last period, ``abs(rho)^(k - 1)``.
-
-    Returns
-    -------
-    ndarray of int
-        Periods, the last one included; -1 where the motion does not settle.
-
-    Raises
-    ------
-    BadInput
-        If the tolerance is not between 0 and 1, or the norm is unknown.
+    After k periods the motion from rest is ``y_s - rho^k y_s``, where y_s lies along the mode of
+    rho, the multiplier nearest to the unit circle; what else the start holds has died away before.
+    The tolerance, between 0 and 1, is over the size of the motion: by ``norm="change"`` of the last
+    period from the one before, ``abs(1 - rho) abs(rho)^(k - 2)``; by ``"remaining"`` of the rest of
+    the start in the last period, ``abs(rho)^(k - 1)``.
     """
     if not 0.0 < tolerance < 1.0:
         raise bad("tolerance", tolerance, "a number between 0 and 1", "choose 1e-4")

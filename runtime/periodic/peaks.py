@@ -192,14 +192,9 @@ def _badness(check: Check) -> float:
 
 
 def peak_error(state: SteadyState, places: Array) -> Array:
-    """Return the error of the peak deflection over itself, of each motion at its place.
+    """Return the error of the peak deflection over itself, of a row of motions.
 
-    Parameters
-    ----------
-    state : SteadyState
-        A row of motions.
-    places : ndarray
-        Place x/length for each, shape ``(ns,)``.
+    ``places`` has the place x/length for each, shape ``(ns,)``.
     """
     out = np.full(len(state.speed), np.inf)
     shapes = None if state.shapes is None else state.shapes(np.unique(places), state.theta)

@@ -340,26 +340,11 @@ def ring_motion(way: Method, samples: int, equation: Equation, count: int) -> tu
 def along_segments(
     way: Method, period: float, starts: Array, slopes: Array, samples: int
 ) -> tuple[Array, Array]:
-    """Return coordinates and slopes at even angles of the period.
+    """Return coordinates and slopes at even angles of the period from 0, ``(nb, samples, n)`` each.
 
-    Parameters
-    ----------
-    way : Method
-        The method.
-    period : float
-        Period [rad].
-    starts : ndarray
-        Coordinates at the left ends of the segments, shape ``(nb, segments, n)``.
-    slopes : ndarray
-        dq/dtheta at the nodes, shape ``(nb, segments, s, n)``, the last at the right end; that of
-        the segment before is the slope at the left end, one node more.
-    samples : int
-        Number of angles, from 0.
-
-    Returns
-    -------
-    q, slope : ndarray
-        Shape ``(nb, samples, n)``.
+    ``starts`` holds the coordinates at the left ends of the segments, ``(nb, segments, n)``, and
+    ``slopes`` dq/dtheta at the nodes, ``(nb, segments, s, n)``, the last at the right end; that of
+    the segment before is the slope at the left end, one node more.
     """
     count = starts.shape[1]
     places, rise, values = _dense_output(way, count, samples)

@@ -66,19 +66,9 @@ class ReducedSystem(LinearPeriodic):
         return _ELSEWHERE * worst + _EPS * self.full.size
 
     def lift(self, eta: Array, theta: Array) -> Array:
-        """Return the coordinates ``Phi eta`` of the full system.
+        """Return the full system's coordinates ``Phi eta``, ``(..., nt, n)``, at angles [rad].
 
-        Parameters
-        ----------
-        eta : ndarray, shape (..., nt, m)
-            Reduced coordinates.
-        theta : ndarray, shape (nt,)
-            Crank angles [rad].
-
-        Returns
-        -------
-        ndarray, shape (..., nt, n)
-            What the modes left out would add is missing.
+        What the modes left out would add is missing.
         """
         assert self.basis is not None
         return np.asarray(np.einsum("tnm,...tm->...tn", self.basis(theta), eta))
@@ -154,14 +144,8 @@ def _reduced_anew(
 def projections(array: str, values: Array, phi: Array, slope: Array) -> Iterator[tuple[str, Array]]:
     """Yield the arrays that one array of a system gives on a basis and its derivative.
 
-    Parameters
-    ----------
-    array : str
-        ``M A B S C D K Kg f h g p``.
-    values : ndarray, shape (nt, n, n) or (nt, n)
-        Its samples.
-    phi, slope : ndarray, shape (nt, n, m)
-        Phi and Phi' there.
+    The array is one of ``M A B S C D K Kg f h g p``, its samples ``(nt, n, n)`` or ``(nt, n)``;
+    ``phi`` and ``slope`` are Phi and Phi' there, ``(nt, n, m)``.
     """
     across = np.swapaxes(phi, -1, -2)
     if values.ndim == 2:

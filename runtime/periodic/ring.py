@@ -14,24 +14,13 @@ def solve_ring(maps: Array, loads: Array) -> tuple[Array, Array]:
     """Solve ``y[k+1] = maps[k] y[k] + loads[k]`` round a ring, ``y[ns] = y[0]``.
 
     Neighbouring equations are joined by Householder reflections that eliminate the node between
-    them, level by level, until one equation for the first node is left.  The product of the maps
-    is never formed: growth within the ring and decay do no harm, only a ring that is nearly free
-    to move as a whole (a multiplier near 1) does.
+    them, level by level, until one equation for the first node is left.  The product of the maps is
+    never formed: growth within the ring and decay do no harm, only a ring that is nearly free to
+    move as a whole (a multiplier near 1) does.
 
-    Parameters
-    ----------
-    maps : ndarray
-        Shape ``(nb, ns, m, m)``.
-    loads : ndarray
-        Shape ``(nb, ns, m)``.
-
-    Returns
-    -------
-    nodes : ndarray
-        Shape ``(nb, ns, m)``; NaN where the ring is singular.
-    sensitivity : ndarray
-        Estimate, shape ``(nb,)``, of the largest relative change of the nodes over a relative
-        change of the maps; inf where the ring is singular.
+    Of maps ``(nb, ns, m, m)`` and loads ``(nb, ns, m)`` come nodes ``(nb, ns, m)``, NaN where the
+    ring is singular, and an estimate ``(nb,)`` of the largest relative change of the nodes over a
+    relative change of the maps, infinite there.
     """
     count, _, m = loads.shape
     left = -maps

@@ -30,20 +30,9 @@ def form_matrix(vectors: ComplexArray) -> ComplexArray:
 def signatures_of(vectors: ComplexArray, multipliers: ComplexArray, error: Array) -> Signs:
     """Return the signature of each multiplier of symplectic matrices, shape ``(nb, 2n)``.
 
-    Parameters
-    ----------
-    vectors : ndarray of complex
-        Unit eigenvectors of the multipliers, shape ``(nb, 2n, 2n)``.
-    multipliers : ndarray of complex
-        Shape ``(nb, 2n)``.
-    error : ndarray
-        Absolute error of each, shape ``(nb, 2n)``.
-
-    Returns
-    -------
-    ndarray of int8
-        0 off the circle, where errors leave the sign open, and where multipliers that errors do
-        not tell apart have a form that is not definite.
+    Of unit eigenvectors, ``(nb, 2n, 2n)``, multipliers and their absolute errors, ``(nb, 2n)``.  It
+    is 0 off the circle, where errors leave the sign open, and where multipliers that errors do not
+    tell apart have a form that is not definite.
     """
     out = np.zeros(multipliers.shape, dtype=np.int8)
     for row, values in enumerate(multipliers):

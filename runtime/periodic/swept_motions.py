@@ -173,13 +173,7 @@ class Truncations:
     def motions(
         self, modes: int, angles: int, span: tuple[float, float], rtol: float
     ) -> SweptMotions:
-        """Return the motions over a range of speeds [rad/s]; its ends may be equal.
-
-        Raises
-        ------
-        BadInput
-            If the modes do not stay smooth.
-        """
+        """Return motions over speeds [rad/s]; refuse modes that do not stay smooth."""
         truncated, known = self._required(modes, angles)
         low, high = span
         maker = TableMaker(known, (low * high) ** 0.5, {}, stiff=False)

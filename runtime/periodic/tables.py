@@ -112,33 +112,14 @@ def table_of(
     nodes: int | None = None,
     first: Equation | None = None,
 ) -> Table:
-    """Return the table of a range.
+    """Return the table of a range, whose ends are equal for one value alone.
 
-    Parameters
-    ----------
-    equation_at : callable
-        From values of the variable to the equation there, all members in the same scale.
-    ends : pair of float
-        Lowest and highest value of the variable; equal for one value alone.
-    count : int
-        Segments of the period.
-    way : Method
-        The method.
-    rtol : float
-        What the series may leave out of a matrix, relative to it.
-    samples : int
-        Even angles of the period, from 0, at which matrices are wanted too; 0 for none.
-    half : bool
-        Whether half of the period is enough.
-    nodes : int, optional
-        Chebyshev nodes to begin with; without it a few segments tell.
-    first : Equation, optional
-        The equation at :func:`places` of these nodes, where it is at hand.
-
-    Raises
-    ------
-    BadInput
-        If the table would not fit.
+    ``equation_at`` goes from values of the variable to the equation there, all members in the same
+    scale; ``count`` is the number of segments of the period, ``rtol`` what the series may leave out
+    of a matrix, relative to it.  Matrices are wanted at ``samples`` even angles of the period from
+    0, too.  With ``half`` half of the period is enough.  A few segments tell how many Chebyshev
+    nodes there are to begin with, where ``nodes`` does not; ``first`` is the equation at
+    :func:`places` of these, where it is at hand.  Tables beyond 320 MB are refused.
     """
     low, high = ends
     if samples:

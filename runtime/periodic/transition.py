@@ -149,22 +149,10 @@ def segments_from(
     *,
     slopes: bool = False,
 ) -> Segments:
-    """Return the transition matrices of segments of one length.
+    """Return the transition matrices of segments of one length h [rad].
 
-    Parameters
-    ----------
-    equation : Equation
-        The members.
-    left : ndarray
-        Left ends [rad], shape ``(ns,)``.
-    h : float
-        Length [rad].
-    way : Method
-        The method.
-    table : ndarray, optional
-        :func:`~.equation.waves` at all nodes, ``(ns s, 2 H + 1)``, where it is at hand.
-    slopes : bool
-        Whether the slopes at the nodes are wanted too.
+    ``left`` has their left ends [rad], ``(ns,)``; ``table`` :func:`~.equation.waves` at all nodes,
+    ``(ns s, 2 H + 1)``, where it is at hand; ``slopes`` asks for the slopes at the nodes too.
     """
     s = way.stages
     nb, n, ns = len(equation.speed), equation.size, len(left)
@@ -272,16 +260,8 @@ def _solution(columns: Array, right: Array) -> Array:
 def product(maps: Array) -> tuple[Array, Whole]:
     """Return ``maps[:, -1] @ ... @ maps[:, 0]`` by pairs, powers of two taken out.
 
-    Parameters
-    ----------
-    maps : ndarray
-        Shape ``(nb, segments, m, m)``.
-
-    Returns
-    -------
-    matrix : ndarray, shape (nb, m, m)
-    exponent : ndarray of int, shape (nb,)
-        The product is ``matrix * 2**exponent``; 0 unless entries passed 1e60 or 1e-60.
+    Of maps ``(nb, segments, m, m)`` the product is ``matrix * 2**exponent``, ``(nb, m, m)`` and
+    ``(nb,)``; the exponent is 0 unless entries passed 1e60 or 1e-60.
     """
     exponent = np.zeros(len(maps), dtype=np.int64)
     while maps.shape[1] > 1:
@@ -310,21 +290,8 @@ def predicted_error(equation: Equation, way: Method, segments: NDArray[Any]) -> 
     A mode of frequency w, whose amplitude falls by exp(-d) in a period, gets over S segments of
     phase x = 2 pi w/S a relative error of S k x^(order + 1), ``k = (s!)^2/((2s)! (2s+1)!)`` being
     the constant of Pade's approximation of the exponential, at most 1; it enters a multiplier with
-    exp(-d).
-
-    Parameters
-    ----------
-    equation : Equation
-        The members.
-    way : Method
-        The method.
-    segments : ndarray
-        Shape ``(nb,)``, or ``(nb, k)`` for several numbers at once.
-
-    Returns
-    -------
-    ndarray
-        Of the same shape.
+    exp(-d).  The segments are ``(nb,)``, or ``(nb, k)`` for several numbers at once, and so is the
+    error.
     """
     s, power = way.stages, way.order + 1
     constant = 2 * lgamma(s + 1) - lgamma(2 * s + 1) - lgamma(2 * s + 2)
@@ -369,10 +336,7 @@ def share(equation: Equation, way: Method, coarse: int, fine: int, order: Array)
 def levels_for(equation: Equation, way: Method, rtol: float) -> NDArray[np.intp]:
     """Return the rung on which each member is likely solved, and known to be, to a wanted error.
 
-    Raises
-    ------
-    BadInput
-        If a mode asks for more than a million segments.
+    A mode that asks for more than a million segments is refused.
     """
     counts = np.array([rung(level) for level in range(_RUNGS)])
     errors = predicted_error(equation, way, np.tile(counts, (len(equation.speed), 1)))
@@ -392,24 +356,10 @@ def cheapest(
 ) -> tuple[Method, int]:
     """Return method and number of segments that likely solve all members with the least work.
 
-    Modes that no segment resolves follow what the polynomial through the s nodes makes of their
-    load: of its highest wave R that misses ``2 (R h/4)^s / s!``.
-
-    Parameters
-    ----------
-    equation : Equation
-        The members.
-    rtol : float
-        Wanted error.
-    multiple : int
-        What the number of segments has to be a multiple of.
-    stiff : bool
-        Whether there are such modes; of a truncated system there are none.
-
-    Raises
-    ------
-    BadInput
-        If a mode asks for more than a million segments.
+    The number is a multiple of a given one.  Modes that no segment resolves follow what the
+    polynomial through the s nodes makes of their load: of its highest wave R that misses ``2 (R
+    h/4)^s / s!``.  Of a truncated system, ``stiff`` False, there are none.  A mode that asks for
+    more than a million segments is refused.
     """
     kind = "radau" if equation.damped else "gauss"
     counts = multiple * np.array([1, *(rung(level) // 4 for level in range(_RUNGS))])
@@ -455,29 +405,11 @@ def refined(
 ) -> tuple[list[tuple[Array, ...]], Array, Whole]:
     """Solve every member on two neighbouring rungs, and on finer ones until they agree.
 
-    Parameters
-    ----------
-    equation : Equation
-        The members, ``nb`` of them.
-    way : Method
-        The method.
-    rtol : float
-        Wanted error.
-    solve : callable
-        From the equation of some members and a number of segments to arrays with one row each.
-    distance : callable
-        From two solutions of some members, coarse and fine, and the :func:`share` of their
-        difference, to the errors of the fine ones, ``(nb, k)``.
-    tick : callable, optional
-        Called with how many members are done.
-
-    Returns
-    -------
-    solutions : list of tuple of ndarray
-        One solution for each member.
-    error : ndarray, shape (nb, k)
-    segments : ndarray of int, shape (nb,)
-        Number of segments that each solution has.
+    ``solve`` goes from the equation of some members and a number of segments to arrays with one row
+    each; ``distance`` from two solutions of some members, coarse and fine, and the :func:`share` of
+    their difference, to the errors of the fine ones, ``(nb, k)``; ``tick`` is called with how many
+    members are done.  Returned are one solution for each member, the errors, ``(nb, k)``, and the
+    number of segments that each solution has, ``(nb,)``.
     """
     nb = len(equation.speed)
     solutions: list[tuple[Array, ...]] = [()] * nb

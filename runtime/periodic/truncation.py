@@ -67,23 +67,12 @@ class TruncatedSystem(LinearPeriodic):
     lowest_left_out: float = np.inf
 
     def lift(self, z: Array, speed: ArrayLike) -> tuple[Array, Array]:
-        """Return periodic motions of the whole system.
+        """Return periodic motions of the whole system, ``(ns, nt, n)``, and how sure they are.
 
-        What the modes leave of the whole equation is answered statically by the others, twice.
-
-        Parameters
-        ----------
-        z : ndarray
-            Periodic motions of the truncated system at even angles, ``(ns, any, m)``.
-        speed : array_like
-            Their crank speeds [rad/s], shape ``(ns,)``.
-
-        Returns
-        -------
-        q : ndarray
-            Coordinates of the whole system at ``theta``, shape ``(ns, nt, n)``.
-        change : ndarray
-            The last correction over the motion, by the largest of each coordinate, ``(ns,)``.
+        What the modes leave of the whole equation is answered statically by the others, twice.  The
+        motions ``z`` of the truncated system are at even angles, ``(ns, any, m)``, at crank speeds
+        [rad/s], ``(ns,)``; the second number is the last correction over the motion, by the largest
+        of each coordinate, ``(ns,)``.
         """
         speeds = np.atleast_1d(np.asarray(speed, dtype=float))
         # Arrays are applied to all motions at once: the motions are the last axis.
@@ -104,26 +93,10 @@ def modal_truncation(
 ) -> TruncatedSystem:
     """Return a system on its lowest modes, the others following in equilibrium.
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        With positive definite M and K; damping and all.
-    modes : int, optional
-        Number m of modes; by default the first, from four on, that leaves a gap to the next
-        frequency at every angle.
-    angles : int
-        Even angles of the period at which the modes are carried, a power of two, or more where
-        the modes need them.
-
-    Returns
-    -------
-    TruncatedSystem
-        Of size m, without parameters of its own.
-
-    Raises
-    ------
-    BadInput
-        If ``modes`` is no number from 1 to n, or the modes span no smooth periodic subspace.
+    M and K are positive definite.  By default the modes are the first, from four on, that leave a
+    gap to the next frequency at every angle.  They are carried at ``angles`` even angles of the
+    period, a power of two, or more where they need them.  Refused is a number of modes that is none
+    of 1 to n, and modes that span no smooth periodic subspace.
     """
     candidates = modes_offered(system) if modes is None else [modes]
     number = require_whole("modes", candidates[0], 1, system.size)
@@ -147,12 +120,8 @@ def smooth_basis(
 ) -> MovingBasis:
     """Return the lowest modes, carried smoothly round the period, at that many angles or more.
 
-    ``held`` gives the modes of the mechanism held still at a number of even angles.
-
-    Raises
-    ------
-    BadInput
-        If their subspace is not smooth or not periodic.
+    ``held`` gives the modes of the mechanism held still at a number of even angles.  A subspace
+    that is not smooth or not periodic is refused.
     """
     count = angles
     while True:

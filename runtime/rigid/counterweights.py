@@ -119,19 +119,9 @@ class Bounds:
 
 
 def with_counterweights(machine: Machine, counterweights: Iterable[Counterweight]) -> Machine:
-    """Return the machine with counterweights added to its links.
+    """Return the machine with counterweights added to its links, several on one link too.
 
-    Parameters
-    ----------
-    machine : Machine
-        Stays as it is.
-    counterweights : iterable of Counterweight
-        Any number, several on one link too.
-
-    Raises
-    ------
-    BadInput
-        If a counterweight sits on a link that the linkage has not.
+    A counterweight on a link that the linkage has not is refused.
     """
     require_machine(machine)
     masses = dict(machine.masses)

@@ -79,30 +79,12 @@ class TorqueFluctuation(Result):
 
 
 def torque_fluctuation(machine: Machine, speed: float) -> TorqueFluctuation:
-    """Return how the driving torque varies over a revolution at constant crank speed.
+    """Return how the driving torque varies over a revolution at constant crank speed [rad/s].
 
-    Parameters
-    ----------
-    machine : Machine
-        Linkage, masses, gravity, loads, springs.
-    speed : float
-        Crank speed [rad/s].
-
-    Returns
-    -------
-    TorqueFluctuation
-        The integral is taken harmonic by harmonic; samples are doubled until the harmonics end in
-        round-off.  Where a load jumps they do not, and ``error`` says what is left.
-
-    Raises
-    ------
-    BadInput
-        If the crank cannot turn fully, the speed is zero or not finite, or the torque does not
-        repeat after a revolution.
-
-    Notes
-    -----
-    Aannaque section 3.7: with a flywheel the motor need give the mean torque only.
+    The integral is taken harmonic by harmonic; samples are doubled until the harmonics end in
+    round-off.  Where a load jumps they do not, and ``error`` says what is left.  With a flywheel
+    the motor need give the mean torque only (Aannaque 3.7).  Refused are a crank that cannot turn
+    fully, a speed that is zero or not finite, and a torque that does not repeat after a revolution.
     """
     _require(machine, speed)
     theta, torque, tail = _sampled(machine, speed)

@@ -73,13 +73,7 @@ class RigidForces(Result):
     )
 
     def __getitem__(self, name: str) -> Array:
-        """Return one array of ``values``.
-
-        Raises
-        ------
-        BadInput
-            If it was not requested.
-        """
+        """Return one array of ``values``; refuse one that was not requested."""
         if name not in self.values:
             fix = "ask for it in outputs"
             raise bad("RigidForces", f"no {name}", f"one of {sorted(self.values)}", fix)

@@ -52,26 +52,9 @@ def force_peaks(
 
     The samples are doubled until no peak changes any more.  Between samples each is the summit of
     an interpolating polynomial of degree 12, twice, the second time in an eighth of the interval.
-
-    Parameters
-    ----------
-    machine : Machine
-        Whose forces.
-    speed, acceleration : float
-        Of the crank [rad/s, rad/s^2].
-    span : tuple of 2 floats
-        First and last crank angle [rad]; the ends count.
-
-    Returns
-    -------
-    mapping of str to ForcePeak
-        ``f12`` ... ``f41``, ``torque``, ``shaking_force``, ``shaking_moment`` and, where a joint
-        slides, ``couple34`` or ``couple41``.
-
-    Raises
-    ------
-    BadInput
-        As :func:`~elastolink.runtime.rigid.rigid_forces`.
+    Speed and acceleration are the crank's [rad/s, rad/s^2], the ends of ``span`` [rad] count; the
+    names are ``f12`` ...  ``f41``, ``torque``, ``shaking_force``, ``shaking_moment`` and, where a
+    joint slides, ``couple34`` or ``couple41``.
     """
 
     def forces(theta: Array) -> dict[str, Array]:

@@ -70,11 +70,8 @@ class Frames:
 def moving_frames(equation: Equation, modes: int) -> Frames:
     """Return smooth bases of the lowest modes of one equation, and of the rest.
 
-    Raises
-    ------
-    BadInput
-        If a span is not periodic, or no number of angles resolves its basis: the frequency of mode
-        k + 1 comes too near to that of mode k.
+    Refused where a span is not periodic, or no number of angles resolves its basis: the frequency
+    of mode k + 1 comes too near to that of mode k.
     """
     n, period, count = equation.size, equation.period, _FEWEST
     while count < 4 * equation.reach:

@@ -13,6 +13,7 @@ from elastolink.runtime.hill.boundaries import hill_boundaries
 from elastolink.runtime.hill.form import hill_form
 from elastolink.runtime.hill.perturbation import perturbation_boundaries
 from elastolink.runtime.stability.invariants import instability_kind, weighed_characteristic
+from periodic_systems import wave
 
 SPEEDS = ("speed", np.linspace(40.0, 99.0, 31))
 INERTIAS = ("follower_inertia", np.linspace(1e-4, 9e-4, 9))
@@ -20,21 +21,6 @@ INERTIAS = ("follower_inertia", np.linspace(1e-4, 9e-4, 9))
 
 def mathieu():
     return el.load_scene("mathieu").system()
-
-
-@pytest.mark.parametrize("order", [1, 2, 3, 4])
-def test_error_of_the_overlay_falls_with_the_order(order):
-    """Halving mu divides the error of order N by 2^(N + 1) (even functions of mu: more)."""
-    mu = np.array([0.05, 0.1])
-    chart = el.stability_chart(
-        mathieu(), ("lam2", np.linspace(0.1, 0.6, 11)), ("mu", mu), order=order
-    )
-    at = chart.exact.regions.index(1)
-    gap = np.abs(chart.exact.lower[at] - chart.perturbation.lower[at])
-    # Mathieu's series of region 1 holds every power of mu.
-    assert gap[1] / gap[0] == pytest.approx(2.0 ** (order + 1), rel=0.15)
-    assert np.all(gap <= chart.perturbation.error[at] + chart.exact.error[at])
-    assert chart.order == order
 
 
 @pytest.mark.parametrize(("ratio", "rtol", "fewest"), [(0.0, 1e-12, 20), (0.0004, 1e-8, 4)])
@@ -85,14 +71,9 @@ def test_heavy_loads_leave_gaps_not_lines():
 def test_three_independent_parts_go_row_by_row():
     """More parts than are done together: each row is its own function all the same."""
     values = {"a": 0.02, "k": 1.0}
-    terms = (
-        Term("M", None, np.eye(1)),
-        Term("K", "k", np.eye(1)),
-        *(
-            Term("Kg", name, lambda theta, m=m: np.cos(m * theta)[:, None, None])
-            for m, name in ((1, "a"), (2, "square"), (3, "cube"))
-        ),
-    )
+    names = {"a": 1, "square": 2, "cube": 3}
+    waves = [Term("Kg", name, wave(np.eye(1), m)) for name, m in names.items()]
+    terms = (Term("M", None, np.eye(1)), Term("K", "k", np.eye(1)), *waves)
 
     def scales(given):
         a = np.asarray(given["a"], dtype=float)
@@ -106,11 +87,10 @@ def test_three_independent_parts_go_row_by_row():
         f = PeriodicFunction(a=[0.0, a, a**2, a**3], b=[0.0] * 4)
         row = hill_boundaries(f, 1.0, chart.exact.regions)
         near = perturbation_boundaries(f, 1.0, chart.exact.regions, 3)
-        # Region 0 has no lower end.
-        lower = np.where(np.isfinite(row.lower), row.lower, np.nan)
-        np.testing.assert_allclose(chart.exact.lower[:, j], lower, rtol=1e-10)
-        lower = np.where(np.isfinite(near.lower), near.lower, np.nan)
-        np.testing.assert_allclose(chart.perturbation.lower[:, j], lower, rtol=1e-10)
+        for curves, other in ((chart.exact, row), (chart.perturbation, near)):
+            # Region 0 has no lower end.
+            lower = np.where(np.isfinite(other.lower), other.lower, np.nan)
+            np.testing.assert_allclose(curves.lower[:, j], lower, rtol=1e-10)
 
 
 # Kinds of instability ----------------------------------------------------------------------------
@@ -125,6 +105,8 @@ def test_kinds_are_those_of_the_largest_multiplier():
         system, speeds[None], follower_inertia=np.array([6.55e-4, 7e-4])[:, None]
     )
     top = direct.multipliers[..., 0]
+    clear = np.abs(np.abs(top) - 1.0) > 1e-5
+    np.testing.assert_allclose(chart.largest[clear], np.abs(top)[clear], rtol=1e-5)
     seen = set()
     for place in np.ndindex(chart.stable.shape):
         if chart.stable[place]:
@@ -205,9 +187,7 @@ def test_picture_labels_combinations(traced):
 @pytest.mark.parametrize(
     ("options", "word"),
     [
-        ({"order": 0}, "order"),
         ({"order": 9}, "order"),
-        ({"order": 1.5}, "order"),
         ({"order": True}, "order"),
         ({"edges": True}, "edges"),
         ({"rtol": 0.5}, "rtol"),
@@ -218,9 +198,6 @@ def test_bad_options_are_one_clear_line(options, word):
     with pytest.raises(el.BadInput, match=word) as caught:
         el.stability_chart(mathieu(), *axes, **options)
     assert "\n" not in str(caught.value)
-
-
-def test_order_of_several_modes_is_refused():
     with pytest.raises(el.BadInput, match="order"):
         el.stability_chart(rig(**{"model.modes": 2}), SPEEDS, INERTIAS, order=3)
 
@@ -239,17 +216,6 @@ def test_command_takes_the_order(tmp_path, capsys):
 
 
 def test_command_lists_traced_combinations(capsys):
-    line = [
-        "chart",
-        RIG,
-        "--set",
-        "model.modes=2",
-        "--x",
-        "speed=79:83:9rad/s",
-        "--y",
-        "follower_inertia=0.0006:0.0008:2",
-        "--edges",
-    ]
-    assert main(line) == 0
-    out = capsys.readouterr().out
-    assert "sum of 1 and 2" in out
+    axes = ["--x", "speed=79:83:9rad/s", "--y", "follower_inertia=0.0006:0.0008:2"]
+    assert main(["chart", RIG, "--set", "model.modes=2", *axes, "--edges"]) == 0
+    assert "sum of 1 and 2" in capsys.readouterr().out

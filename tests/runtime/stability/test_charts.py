@@ -73,19 +73,6 @@ def test_damped_boundaries_lie_where_a_multiplier_is_one(undamped):
     assert chart.stable.mean() > undamped.stable.mean()
 
 
-def test_two_modes_agree_with_multipliers():
-    system = rig(**{"model.modes": 2})
-    speeds = np.linspace(55.0, 99.0, 23)
-    chart = el.stability_chart(system, ("speed", speeds), ("follower_inertia", INERTIAS[::10]))
-    direct = el.floquet_multipliers(
-        system, speeds[None, :], follower_inertia=INERTIAS[::10][:, None]
-    )
-    largest = np.max(np.abs(direct.multipliers), axis=-1)
-    clear = np.abs(largest - 1.0) > 1e-5
-    assert np.array_equal(chart.stable[clear], largest[clear] < 1.0 + 1e-5)
-    assert np.allclose(chart.largest[clear], largest[clear], rtol=1e-5)
-
-
 @pytest.mark.parametrize(
     ("x", "y", "words"),
     [

@@ -69,9 +69,7 @@ def test_no_values_no_ends():
 @pytest.mark.parametrize(
     ("span", "changes", "words"),
     [
-        ((0.0, 5.0), {}, "speed_range"),
         ((5.0, 2.0), {}, "speed_range"),
-        ((1.0, np.inf), {}, "speed_range"),
         ((1.0, 5.0), {"highest": 0}, "highest"),
         ((1.0, 5.0), {"kinds": ("sums",)}, "sums"),
         ((1.0, 5.0), {"kinds": None}, "kinds"),

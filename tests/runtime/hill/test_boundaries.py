@@ -46,29 +46,6 @@ def test_shapes_and_independence_of_the_batch(shape, regions, seed):
             assert np.all(found.lower[i] <= found.upper[i] + found.error[i])
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ((np.nan,), "mu"),
-        ((1.0, (1.5,)), "regions"),
-        ((1.0, (-1,)), "regions"),
-        ((1.0, 3), "regions"),
-        ((1.0, (1,), -0.1), "damping"),
-        ((1.0, (1,), np.inf), "damping"),
-        ((np.ones(2), (1,), np.ones(3)), "broadcast"),
-        ((1e9, (1,)), "2048 harmonics"),
-        ((1e301, (1,)), "2048 harmonics"),
-        ((1.0, (5000,)), "at most 2048"),
-        ((1.0, (1,), 0.0, "no"), "certified"),
-    ],
-)
-def test_bad_input(arguments, message):
-    given = dict(zip(("mu", "regions", "damping", "certified"), arguments, strict=False))
-    for certified in (False, True):
-        with pytest.raises(BadInput, match=message):
-            hill_boundaries(COSINE, **{"certified": certified, **given})
-
-
 def test_plot_and_export():
     import matplotlib.pyplot as plt
 

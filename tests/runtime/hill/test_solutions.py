@@ -86,26 +86,6 @@ def test_a_deep_well_needs_many_harmonics():
     assert np.abs(found(theta)).max() > 2.0
 
 
-@pytest.mark.parametrize(
-    ("arguments", "where"),
-    [
-        ({"n": 0, "end": "lower"}, "end"),
-        ({"n": 1, "end": "middle"}, "end"),
-        ({"n": 1, "mu": [0.1, 0.2]}, "mu"),
-        ({"n": 1, "order": 9}, "order"),
-        ({"n": 1, "damping": -1.0}, "damping"),
-        ({"n": 1, "damping": 1.0}, "closed by damping"),
-        ({"n": 1, "damping": 1.0, "order": 3}, "closed by damping|converge"),
-        ({"n": 1, "mu": 30.0, "order": 3}, "converge"),
-        ({"n": 1, "mu": 1e200}, "mu"),
-        ({"n": -1}, "regions"),
-    ],
-)
-def test_bad_input(arguments, where):
-    with pytest.raises(BadInput, match=where):
-        boundary_solution(**{"f": COSINE, "mu": 0.1, **arguments})
-
-
 def test_bad_angles_and_picture():
     found = boundary_solution(COSINE, 0.1, 1)
     with pytest.raises(BadInput, match="theta"):

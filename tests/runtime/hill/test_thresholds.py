@@ -80,22 +80,6 @@ def test_shapes_and_pictures():
         found.plot()
 
 
-@pytest.mark.parametrize(
-    ("call", "arguments"),
-    [
-        (critical_damping, {"mu": np.nan}),
-        (critical_damping, {"mu": 0.1, "regions": (0, 1)}),
-        (least_parameter, {"damping": -0.1}),
-        (least_parameter, {"damping": 0.1, "regions": (1.5,)}),
-        (critical_damping, {}),
-        (critical_damping, {"mu": 0.1, "damping": 0.1}),
-    ],
-)
-def test_bad_input(call, arguments):
-    with pytest.raises(BadInput):
-        call(COSINE, **arguments)
-
-
 @pytest.mark.slow
 def test_half_traces_beyond_the_range_of_doubles():
     """Deep wells, by WKB: the exponent is the mean of ``sqrt(-lam2 - mu cos)`` over the turn."""

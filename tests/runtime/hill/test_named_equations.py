@@ -60,7 +60,7 @@ def test_mathieus_notation():
             case = Mathieu(a, 5.0)
             half = discriminant(case.function(), case.lam2, case.mu).value
             assert half == pytest.approx((-1.0) ** m, abs=1e-12)
-    with pytest.raises(BadInput, match="^a: "):
+    with pytest.raises(BadInput, match=r"^a: "):
         _ = Mathieu(np.nan, 1.0).lam2
 
 

@@ -181,36 +181,6 @@ def test_results_bear_pickling_and_know_their_origin() -> None:
     assert found.provenance == el.simulate(system, 80.0, 2, initial=(1e-4, 0.0)).provenance
 
 
-@pytest.mark.parametrize(
-    ("call", "name"),
-    [
-        (lambda s: el.prepare(s, (90.0, 70.0)), "speeds"),
-        (lambda s: el.prepare(s, -1.0), "speeds"),
-        (lambda s: el.prepare(s, "fast"), "speeds"),
-        (lambda s: el.prepare(s, 80.0, samples=0), "samples"),
-        (lambda s: el.prepare(s, 80.0, follower_inertia=[1e-3, 2e-3]), "follower_inertia"),
-        (lambda s: el.prepare(s, 80.0, weight=1.0), "weight"),
-        (lambda s: el.prepare(s, (70.0, 90.0)).monodromy(91.0), "speed"),
-        (lambda s: el.prepare(s, 80.0).monodromy(np.nan), "speed"),
-        (lambda s: el.prepare(s, (70.0, 90.0)).simulate([80.0, 81.0], 1, (0, 1)), "speed"),
-        (lambda s: el.prepare(s, 80.0).simulate(80.0, 1.5, (0, 1)), "revolutions"),
-        (lambda s: el.prepare(s, 80.0).simulate(80.0, 1, 1.0), "initial"),
-        (lambda s: el.prepare(s, 80.0).simulate(80.0, 1, (np.nan, 0.0)), "initial"),
-        (lambda s: el.prepare(s, 80.0, forcing=False).steady_state(80.0), "steady_state"),
-    ],
-)
-def test_bad_input_is_refused_in_one_line(call, name) -> None:
-    """Object, found, expected, fix."""
-    with pytest.raises(BadInput, match=name):
-        call(el.load_scene(SCENE).system())
-
-
-def test_inertia_that_depends_on_the_speed_is_refused() -> None:
-    """Rates would be those of another speed."""
-    with pytest.raises(BadInput, match="power of the speed"):
-        el.prepare(system_of(M=(None, np.eye(1), 1), K=np.eye(1)), (1.0, 2.0))
-
-
 def test_a_start_that_shakes_a_dying_mode_is_followed_too() -> None:
     """Two oscillators by themselves; the fast one dies within a sixth of a revolution."""
     rate, drag = np.array([30.0, 3e4]), np.array([1.0, 4e3])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.periodic import floquet_multipliers, steady_state
 from elastolink.runtime.periodic.truncation import modal_truncation
 from elastolink.runtime.scenes import load_scene
@@ -88,9 +87,3 @@ def test_all_modes_are_the_whole_system():
     few = floquet_multipliers(modal_truncation(system, 4), 0.6, rtol=1e-10)
     whole = floquet_multipliers(system, 0.6, rtol=1e-10)
     assert np.max(apart(few.multipliers, whole.multipliers)) < 1e-7
-
-
-def test_modes_that_are_no_number_of_modes_are_refused():
-    for modes in (0, 5):
-        with pytest.raises(BadInput, match="modes"):
-            modal_truncation(stiff_chain(), modes)

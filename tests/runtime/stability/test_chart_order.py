@@ -184,24 +184,6 @@ def test_picture_labels_combinations(traced):
     assert "sum" in table["edges"]["kind"]
 
 
-@pytest.mark.parametrize(
-    ("options", "word"),
-    [
-        ({"order": 9}, "order"),
-        ({"order": True}, "order"),
-        ({"edges": True}, "edges"),
-        ({"rtol": 0.5}, "rtol"),
-    ],
-)
-def test_bad_options_are_one_clear_line(options, word):
-    axes = ("lam2", np.linspace(0.1, 0.6, 5)), ("mu", np.array([0.01, 0.02]))
-    with pytest.raises(el.BadInput, match=word) as caught:
-        el.stability_chart(mathieu(), *axes, **options)
-    assert "\n" not in str(caught.value)
-    with pytest.raises(el.BadInput, match="order"):
-        el.stability_chart(rig(**{"model.modes": 2}), SPEEDS, INERTIAS, order=3)
-
-
 # Command line ------------------------------------------------------------------------------------
 
 LINE = ["chart", "mathieu", "--x", "lam2=0.1:1.4:21", "--y", "mu=0:0.5:9"]

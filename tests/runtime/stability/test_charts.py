@@ -73,22 +73,6 @@ def test_damped_boundaries_lie_where_a_multiplier_is_one(undamped):
     assert chart.stable.mean() > undamped.stable.mean()
 
 
-@pytest.mark.parametrize(
-    ("x", "y", "words"),
-    [
-        (("speeed", SPEEDS), ("follower_inertia", INERTIAS), "speeed"),
-        (("speed", SPEEDS), ("speed", SPEEDS), "another parameter"),
-        (("speed", SPEEDS - 50.0), ("follower_inertia", INERTIAS), "positive speeds"),
-        (("speed", SPEEDS[::-1]), ("follower_inertia", INERTIAS), "rising"),
-        (("speed", [np.nan, 2.0]), ("follower_inertia", INERTIAS), "finite"),
-        (("speed", [2.0]), ("follower_inertia", INERTIAS), "at least two"),
-    ],
-)
-def test_bad_axes_are_refused(x, y, words):
-    with pytest.raises(el.BadInput, match=words):
-        el.stability_chart(rig(), x, y)
-
-
 def test_picture_shows_what_it_promises(undamped, tmp_path):
     axes = undamped.plot()
     labels = {text.get_text() for text in axes.get_legend().get_texts()}

@@ -66,21 +66,6 @@ def test_no_values_no_ends():
     assert found.passed
 
 
-@pytest.mark.parametrize(
-    ("span", "changes", "words"),
-    [
-        ((5.0, 2.0), {}, "speed_range"),
-        ((1.0, 5.0), {"highest": 0}, "highest"),
-        ((1.0, 5.0), {"kinds": ("sums",)}, "sums"),
-        ((1.0, 5.0), {"kinds": None}, "kinds"),
-        ((1.0, 5.0), {"push": 1.0}, "push"),
-    ],
-)
-def test_bad_input(span, changes, words):
-    with pytest.raises(BadInput, match=words):
-        resonances(_beam(), span, **changes)
-
-
 def test_a_mean_system_at_divergence_is_refused():
     # A mode without stiffness has an exponent of zero twice, with one eigenvector.
     pull = ("load", wave(np.ones((2, 2))))

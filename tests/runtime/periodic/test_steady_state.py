@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -45,16 +44,6 @@ def test_harmonic_balance_gives_the_same_motion_and_coefficients():
         coefficients = _harmonic_balance(speed)[1][60:90]
         off = np.abs(state.coefficients[index, :30, 0] - coefficients)
         assert np.max(off) <= np.max(state.error[index]) * size
-
-
-def test_a_long_damped_march_ends_in_it():
-    state = steady_state(forced_mathieu(), 2.0, rtol=1e-12)
-    # exp(-0.2/2 2 pi 120/2) of the start is left after 120 turns.
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        run = simulate(forced_mathieu(), 2.0, 120, samples=len(state.theta))
-    last = run.q[-len(state.theta) - 1 : -1, 0]
-    assert np.max(np.abs(last - state.q[:, 0])) <= 1e-12 * np.max(np.abs(last))
 
 
 @pytest.mark.parametrize("method", METHODS)

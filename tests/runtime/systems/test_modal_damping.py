@@ -68,19 +68,6 @@ def test_geometry_then_ratio_then_geometry_again():
     np.testing.assert_allclose(_ratios(doubled, 1.0), 2 * RATIO, rtol=1e-9)
 
 
-def test_chart_and_multipliers_take_the_geometry():
-    """Multipliers by a geometry name are those of the system made for it."""
-    damped = with_modal_damping(_rod(0.1), 0.002)
-    at = floquet(damped.with_geometry(crank_ratio=0.2))
-    np.testing.assert_allclose(floquet(with_modal_damping(_rod(0.2), 0.002)), at, rtol=1e-10)
-    assert np.all(at < 1.0)
-
-
-def floquet(system):
-    """Return the moduli of the multipliers at one stable speed."""
-    return np.sort(np.abs(el.floquet_multipliers(system, 1000.0).multipliers))
-
-
 def test_a_constant_system_gets_a_constant_matrix():
     system = system_of(M=np.diag([1.0, 4.0]), K=np.array([[5.0, -1.0], [-1.0, 8.0]]))
     damped = with_modal_damping(system, 0.1)

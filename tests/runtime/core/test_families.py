@@ -64,11 +64,6 @@ def test_absent_arrays_are_zero_and_declared_so():
     assert not found.is_constant("Kg")
 
 
-def test_a_constant_term_is_not_copied():
-    term = Term("K", None, np.eye(2))
-    assert term(np.zeros(1000)).strides[0] == 0
-
-
 def test_parameters_and_terms_are_exchanged_by_copy():
     one = system()
     other = one.with_parameters(load=2.0)

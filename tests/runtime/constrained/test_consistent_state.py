@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import elastolink as el
 import numpy as np
 import pytest
-from constrained_truth import LENGTHS, Circle, driven_four_bar
+from constrained_truth import Circle
 from elastolink.runtime.constrained import consistent_state
 from elastolink.runtime.core.errors import BadInput, RedundantConstraints
 from elastolink.runtime.core.families import Constrained
@@ -59,19 +58,6 @@ def test_a_batch_is_as_each_alone():
         alone = consistent_state(CIRCLE.system, q[i], qd[i], t[i])
         np.testing.assert_allclose(together.q[i], alone.q, rtol=1e-10, atol=1e-12)
         np.testing.assert_allclose(together.qd[i], alone.qd, rtol=1e-9, atol=1e-10)
-
-
-def test_a_driven_linkage_finds_its_position():
-    linkage = el.FourBar(**LENGTHS)
-    exact = linkage.motion(0.8, 5.0)
-    t, turning = 0.16, 5.0
-    guess = np.zeros(9)
-    guess[[2, 5, 8]] = 0.8, float(exact.theta3) + 0.3, float(exact.theta4) - 0.2
-    found = consistent_state(driven_four_bar(turning), guess, np.zeros(9), t)
-    np.testing.assert_allclose(found.q[5], exact.theta3, rtol=1e-13)
-    np.testing.assert_allclose(found.q[8], exact.theta4, rtol=1e-13)
-    np.testing.assert_allclose(found.qd[[5, 8]], [exact.omega3, exact.omega4], rtol=1e-12)
-    np.testing.assert_allclose(found.qdd[[5, 8]], [exact.alpha3, exact.alpha4], rtol=1e-12)
 
 
 def twice(other: float = 1.0, offset: float = 0.0) -> Constrained:

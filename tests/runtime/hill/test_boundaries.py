@@ -161,14 +161,3 @@ def test_region_zero_under_huge_damping(k):
     assert np.isnan(found.upper[1])
     gap = abs(found.upper[0] + 0.01 / (8.0 * k * k))
     assert gap <= found.error[0] + 1e-3 * 0.01 / (8.0 * k * k)
-
-
-def test_sparse_harmonics():
-    """Only the tenth harmonic: Mathieu's equation at a tenth of the angle."""
-    f = PeriodicFunction(np.eye(11)[10])
-    same = hill_boundaries(COSINE, 0.02, (1, 2))
-    found = hill_boundaries(f, 2.0, (10, 20))
-    np.testing.assert_allclose(found.lower, 100 * same.lower, rtol=0, atol=1e-11)
-    np.testing.assert_allclose(found.upper, 100 * same.upper, rtol=0, atol=1e-11)
-    others = hill_boundaries(f, 2.0, (1, 2, 3, 11, 19))
-    assert np.all(np.abs(others.width) <= 2 * others.error)

@@ -12,7 +12,6 @@ from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.boundaries import hill_boundaries
 from elastolink.runtime.hill.form import hill_form
 from elastolink.runtime.hill.perturbation import perturbation_boundaries
-from elastolink.runtime.stability.invariants import instability_kind, weighed_characteristic
 from periodic_systems import wave
 
 SPEEDS = ("speed", np.linspace(40.0, 99.0, 31))
@@ -96,8 +95,10 @@ def test_three_independent_parts_go_row_by_row():
 # Kinds of instability ----------------------------------------------------------------------------
 
 
-def test_kinds_are_those_of_the_largest_multiplier():
-    system = rig(**{"model.modes": 2})
+@pytest.mark.parametrize("ratio", [0.0, 1e-5])
+def test_kinds_are_those_of_the_largest_multiplier(ratio):
+    """Undamped by the reduced polynomial, damped by the whole one."""
+    system = rig(**{"model.modes": 2, "coupler.damping_ratio": ratio})
     speeds = np.concatenate([np.linspace(78.0, 82.0, 12), [81.4000, 81.4005], [96.5, 99.0]])
     speeds = np.sort(speeds)
     chart = el.stability_chart(system, ("speed", speeds), ("follower_inertia", [6.55e-4, 7e-4]))
@@ -129,26 +130,6 @@ def test_kind_of_one_mode_is_the_sign_of_the_half_trace():
     labels = [text.get_text() for text in chart.plot().get_legend().get_texts()]
     assert "unstable: odd regions (multiplier below -1)" in labels
     assert not any("combination" in label for label in labels)
-
-
-@pytest.mark.parametrize("reduced", [True, False])
-def test_kind_by_hand(reduced):
-    """Block matrices with a quadruple 1.2 exp(+-0.7 i), and with real pairs 1.3 and -1.4."""
-    turn = np.array([[np.cos(0.7), np.sin(0.7)], [-np.sin(0.7), np.cos(0.7)]])
-    quadruple = np.zeros((4, 4))
-    quadruple[:2, :2], quadruple[2:, 2:] = 1.2 * turn, turn / 1.2
-    pairs = np.diag([1.3, 1 / 1.3, np.cos(1.0), np.cos(1.0)])
-    pairs[2, 3], pairs[3, 2] = np.sin(1.0), -np.sin(1.0)
-    below = np.diag([1.3, 1 / 1.3, -1.4, -1 / 1.4])
-    matrices = np.stack([quadruple, pairs, below, np.eye(4)])
-    stable = np.array([False, False, False, True])
-    found = instability_kind(
-        weighed_characteristic(matrices, 2 if reduced else 4)[0],
-        stable,
-        hill=False,
-        reduced=reduced,
-    )
-    assert found.tolist() == [2, 1, -1, 0]
 
 
 # Traced regions --------------------------------------------------------------------------------

@@ -84,20 +84,6 @@ def test_damped_chart_agrees_with_multipliers():
     assert chart.passed
 
 
-@pytest.mark.slow
-def test_edges_are_traced_row_by_row():
-    """A region traced at one crank ratio is where the chart's row is unstable."""
-    system = rod(PolynomialBasis(1))
-    speeds = np.linspace(1200.0, 2600.0, 201)
-    chart = el.stability_chart(system, ("speed", speeds), ("crank_ratio", [0.1, 0.2]), edges=True)
-    assert chart.checks["edges"].passed
-    for column in range(2):
-        lower, upper = chart.edges.lower[:, column], chart.edges.upper[:, column]
-        inside = (speeds > lower[:, None]) & (speeds < upper[:, None])
-        assert np.array_equal(np.any(inside, axis=0), ~chart.stable[column])
-    assert np.any(~chart.stable)
-
-
 @pytest.mark.parametrize("modes", [1, 2, 3, 4])
 def test_signs_prove_only_what_is_true(modes):
     """Random roots about the ends: the roots themselves tell."""

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from edge_truth import rig
 from elastolink.runtime.core.families import Term
-from elastolink.runtime.stability import resonances, speed_boundaries, stability_edges, tongue
+from elastolink.runtime.stability import resonances, stability_edges, tongue
 from periodic_systems import is_growing, system_of, wave
 
 matplotlib.use("Agg")
@@ -415,17 +415,3 @@ def test_four_exponents_of_the_rig_that_nearly_meet_are_treated_together(rig, tr
     hidden = tongue(rig, resonance, order=2)
     assert np.isnan(hidden.lower)
     assert not hidden.checks["told apart"].passed
-
-
-@pytest.mark.slow
-def test_tongues_over_the_follower_inertia_of_the_rig(rig):
-    resonance = _resonance(rig, "2 w1 = 8 w", RANGE, highest=16)
-    inertia = rig.parameters["follower_inertia"] * np.array([1.0, 2.0])
-    found = tongue(rig, resonance, parameter=("follower_inertia", inertia), order=5)
-    for k, value in enumerate(inertia):
-        edges = speed_boundaries(rig, 1, speed_range=(40.6, 41.2), follower_inertia=value).speed
-        # The only region here that has a width to speak of.
-        widest = int(np.argmax(np.diff(edges)[::2])) * 2
-        assert abs(found.lower[k] - edges[widest]) <= found.error[k] < 0.02
-        assert abs(found.upper[k] - edges[widest + 1]) <= found.error[k]
-    assert np.all(np.diff(found.width) > 0)

@@ -131,22 +131,6 @@ def test_closed_forms_against_quadrature(place):
         assert np.max(np.abs(found - exact) / size) < 1e-12, name
 
 
-def test_integrals_agree_where_the_block_is_at_the_tip():
-    """On two pins: sqrt 2 sin(n pi eta), positive in front of the tip; textbook integrals."""
-    basis, xi = OverhangBasis(5), np.array([1.0])
-    n = np.arange(1, 6)
-    sign = (-1.0) ** n
-    x = np.linspace(0.0, 1.0, 7)
-    exact = np.sqrt(2) * sign * np.sin(np.pi * np.outer(x, n))
-    np.testing.assert_allclose(basis.shapes(x, xi)[0], exact, atol=4e-15)
-    moment = sign * np.sqrt(2) * -sign / (n * np.pi)
-    np.testing.assert_allclose(basis.array("moment", xi)[0], moment, rtol=1e-14)
-    mean = sign * np.sqrt(2) * (1 - sign) / (n * np.pi)
-    np.testing.assert_allclose(basis.array("mean", xi)[0], mean, atol=1e-15)
-    rates = basis.roots(xi) * basis.end_values(xi)["rate"]
-    np.testing.assert_allclose(rates[0], -n * np.pi, rtol=1e-14)
-
-
 def test_drift_rate_is_the_derivative_of_the_drift():
     """Chebyshev interpolation of the drift over a stretch of places, differentiated."""
     basis = OverhangBasis(6)

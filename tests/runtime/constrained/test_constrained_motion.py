@@ -227,33 +227,6 @@ def test_an_escape_in_finite_time_ends_with_a_reason():
 # Refusals ------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("named", "message"),
-    [
-        ({"span": -1.0}, "span: found -1.0"),
-        ({"span": (0.0, np.inf)}, "span: found"),
-        ({"span": "long"}, "span: found 'long'"),
-        ({"span": None}, "the system has no period"),
-        ({"q": None}, "the system has no reference motion"),
-        ({"rtol": 0.0}, "rtol: found 0.0"),
-        ({"rtol": "x"}, "rtol: found 'x'"),
-        ({"samples": 0}, "samples: found 0"),
-        ({"samples": 2.5}, "samples: found 2.5"),
-        ({"samples": [0.5, 0.2]}, "samples: found times"),
-        ({"bound": 0.5}, "bound: found 0.5"),
-        ({"q": [0.0, -1.1]}, "off the constraints"),
-        ({"qd": [1.0, 1.0]}, "qd: found a start 1 off"),
-        ({"q": [[0.0, -1.0]]}, "one motion at a time"),
-        ({"q": [np.nan, -1.0]}, "q: found a number that is not finite"),
-    ],
-)
-def test_bad_input_is_refused_in_one_line(named, message):
-    given = {"q": [0.0, -1.0], "qd": [1.0, 0.0], "span": 1.0} | named
-    with pytest.raises(BadInput, match=message) as refusal:
-        constrained_motion(Circle().system, **given)
-    assert "\n" not in str(refusal.value)
-
-
 def test_the_picture_names_the_coordinates():
     axes = constrained_motion(CIRCLE.system, *CIRCLE.state, 1.0, samples=20).plot()
     assert [line.get_label() for line in axes.get_lines()] == ["a", "b"]

@@ -51,15 +51,6 @@ def test_steps_are_exponentials_where_coefficients_are_constant(stages):
     np.testing.assert_allclose(step, scipy.linalg.expm(0.2 * matrix), rtol=0, atol=1e-15)
 
 
-@pytest.mark.parametrize("stages", [2, 6])
-def test_a_batch_gives_the_same_steps_as_its_members(stages):
-    theta = np.array([0.0, 0.5, 1.0])
-    maps = gauss_maps(stages, lambda at: np.stack([wavy(at), 2 * wavy(at)]), theta, 0.1)
-    for index, factor in enumerate((1, 2)):
-        alone = gauss_maps(stages, lambda at, f=factor: f * wavy(at), theta, 0.1)
-        np.testing.assert_allclose(maps[index], alone, rtol=1e-14, atol=1e-16)
-
-
 @pytest.mark.parametrize("stages", [2, 6, 8])
 def test_steps_are_symplectic_and_undo_themselves(stages):
     # y' = J S(theta) y with symmetric S: two freedoms, undamped.

@@ -20,7 +20,7 @@ extended = pytest.mark.skipif(
 
 
 @given(
-    lam2=st.floats(-100, 1000),
+    lam2=st.floats(-100, 1e6),
     mean=st.floats(-2, 2),
     mu=st.floats(-5, 5),
     k=st.floats(0, 1),
@@ -161,12 +161,3 @@ def test_strong_damping_brings_the_growth_back_into_range():
     assert found.value == pytest.approx(exact, rel=1e-9)
     assert found.error < 1e-9 * exact
     assert found.level == pytest.approx(0.5)
-
-
-def test_thousands_of_oscillations_per_turn():
-    lam2 = np.array([1e4, 1e6])
-    found = discriminant(PeriodicFunction([0.0]), lam2 + 0.3, 0.0)
-    exact = np.cos(2 * np.pi * np.sqrt(lam2 + 0.3))
-    slack = 2 * np.pi * np.sqrt(lam2) * 4e-16
-    assert np.all(np.abs(found.value - exact) <= found.error + slack)
-    assert found.error.max() < 1e-7

@@ -18,29 +18,9 @@ from elastolink.runtime.hill import (
 from elastolink.runtime.hill.bloch import effective_operator
 from exact_hill import ExactHarmonics, exact_operator
 from hill_functions import ANOTHER as GENERAL
-from hill_functions import COSINE, functions, general
+from hill_functions import COSINE, general
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-FUNCTIONS = functions()
-
-
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_the_formula(name):
-    """Smith (7.46), (7.49), written out once more."""
-    f, mu, k = FUNCTIONS[name], np.array([[-1.0, 0.3], [2.0, 0.05]]), 0.01
-    found = perturbation_boundaries(f, mu, (1, 2, 3), damping=k, outside="value")
-    for i, n in enumerate((1, 2, 3)):
-        square = mu**2 * (f.a[n] ** 2 + f.b[n] ** 2) - 4 * k**2 * n**2
-        closed = square < 0
-        np.testing.assert_array_equal(np.isnan(found.lower[i]), closed)
-        np.testing.assert_array_equal(np.isnan(found.error[i]), closed)
-        np.testing.assert_array_equal(found.closed[i], closed & ~found.outside[i])
-        assert np.all(np.isinf(found.error[i][found.outside[i] & ~closed]))
-        half = 0.5 * np.sqrt(square[~closed])
-        middle = (n**2 / 4 - f.a[0] * mu)[~closed]
-        np.testing.assert_allclose(found.lower[i][~closed], middle - half, rtol=1e-14, atol=1e-15)
-        np.testing.assert_allclose(found.upper[i][~closed], middle + half, rtol=1e-14, atol=1e-15)
 
 
 def test_an_error_beyond_half_the_width_fails_the_check():

@@ -57,17 +57,6 @@ def test_monodromy_matrices_are_within_their_figure(pair) -> None:
     assert found.passed
 
 
-def test_one_speed_gives_what_many_give(pair) -> None:
-    """And the ends of the range belong to it."""
-    _, ready = pair
-    speeds = np.array([*_speeds(ready, 5), *ready.span])
-    many = ready.monodromy(speeds).matrix
-    for speed, matrix in zip(speeds, many, strict=True):
-        one = ready.monodromy(speed).matrix
-        assert one.shape == matrix.shape
-        np.testing.assert_allclose(one, matrix, rtol=1e-11, atol=1e-12 * np.max(np.abs(matrix)))
-
-
 def test_steady_states_are_within_their_error(pair) -> None:
     """Against shooting, which closes a ring of segments; stability by its multipliers."""
     system, ready = pair

@@ -205,15 +205,6 @@ def test_the_crank_gives_the_energy(drop):
 # ---------------------------------------------------------------- deflections and refusals
 
 
-def test_the_block_stays_where_the_linkage_puts_it():
-    rod = made(1)
-    theta = np.linspace(0.0, 6.0, 20)
-    q, _ = rod.undeformed(theta / rod.speed)
-    slide = rod.linkage.motion(theta).slide
-    found = rod.place_of_block(q, theta / SPEED)
-    np.testing.assert_allclose(found * ROD["length"], slide, rtol=1e-14)
-
-
 def test_deflection_is_measured_from_the_line_of_the_block():
     rod, t = made(3, ("tension",)), 0.017
     for size in (1e-3, 1e-4):

@@ -6,7 +6,6 @@ import mpmath
 import numpy as np
 import pytest
 from elastolink.runtime.systems.rod import (
-    MovingBasis,
     OverhangBasis,
     overhang_roots,
 )
@@ -145,22 +144,11 @@ def test_drift_rate_is_the_derivative_of_the_drift():
         np.testing.assert_allclose(found[:, entry], exact, rtol=0, atol=3e-9)
 
 
-# ---------------------------------------------------------------- the protocol
-
-
-def test_the_protocol_is_kept():
-    basis = OverhangBasis(3)
-    assert isinstance(basis, MovingBasis)
-    assert basis.size == len(basis.labels) == 3
-    places = np.linspace(0.4, 0.8, 5)
-    for name in (*PRODUCTS, "moment", "mean"):
-        found = basis.array(name, places)
-        assert found.shape == ((5, 3) if name in ("moment", "mean") else (5, 3, 3))
+def test_an_array_is_remembered_and_not_to_be_changed():
+    basis, places = OverhangBasis(3), np.linspace(0.4, 0.8, 5)
     assert basis.array("drift", places) is basis.array("drift", places.copy())
     with pytest.raises(ValueError, match="read-only"):
         basis.array("drift", places)[...] = 0.0
-    assert basis.shapes(np.array([0.2]), places, 3).shape == (5, 1, 3)
-    assert OverhangBasis(1).array("drift", places).shape == (5, 1, 1)
 
 
 def test_frequencies_of_the_flexible_rod():

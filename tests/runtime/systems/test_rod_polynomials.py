@@ -7,6 +7,7 @@ import pytest
 import sympy as sp
 from elastolink.runtime.systems.rod import (
     MovingBasis,
+    OverhangBasis,
     PolynomialBasis,
     TwoSegmentBasis,
 )
@@ -99,13 +100,13 @@ def test_derivatives_along_the_rod(basis, shapes, order):
         assert row == pytest.approx([float(value) for value in truth], rel=1e-13, abs=1e-13)
 
 
-def test_bases_are_what_the_equations_ask_for():
-    for basis in BASES:
-        assert isinstance(basis, MovingBasis)
-        assert len(basis.labels) == basis.size == len(set(basis.labels))
-        assert basis.shapes(np.linspace(0, 1, 7), PLACES).shape == (5, 7, basis.size)
-        assert basis.array("drift", PLACES).shape == (5, basis.size, basis.size)
-        assert basis.array("moment", PLACES).shape == (5, basis.size)
+@pytest.mark.parametrize("basis", [*BASES, OverhangBasis(3), OverhangBasis(1)], ids=repr)
+def test_bases_are_what_the_equations_ask_for(basis):
+    assert isinstance(basis, MovingBasis)
+    assert len(basis.labels) == basis.size == len(set(basis.labels))
+    assert basis.shapes(np.linspace(0, 1, 7), PLACES).shape == (5, 7, basis.size)
+    assert basis.array("moment", PLACES).shape == (5, basis.size)
+    assert basis.array("drift", PLACES).shape == (5, basis.size, basis.size)
 
 
 def test_block_at_the_tip():

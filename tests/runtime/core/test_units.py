@@ -116,18 +116,13 @@ def test_an_unknown_dimension_is_refused():
         to_si(1.0, "lenght")
 
 
-@given(st.text(max_size=40), st.sampled_from(sorted(DIMENSIONS)))
+ALMOST = st.text(alphabet="0123456789.eE+- */()^minskgHzrpadlbf", max_size=25)
+
+
+@given(st.one_of(st.text(max_size=40), ALMOST), st.sampled_from(sorted(DIMENSIONS)))
 def test_any_text_gives_a_finite_number_or_bad_input(text, dimension):
     try:
         assert math.isfinite(to_si(text, dimension))
-    except BadInput as error:
-        assert error.problems
-
-
-@given(st.text(alphabet="0123456789.eE+- */()^minskgHzrpadlbf", max_size=25))
-def test_text_close_to_a_quantity_is_as_safe(text):
-    try:
-        assert math.isfinite(to_si(text, "length"))
     except BadInput as error:
         assert error.problems
 

@@ -52,7 +52,8 @@ def test_plot_and_export():
     found = hill_boundaries(COSINE, np.linspace(0, 1, 5), (1, 2))
     assert len(found.plot().lines) == 4
     plt.close("all")
-    assert found.to_dict()["regions"] == [1, 2]
+    assert found.to_dict()["regions"] == [1, 2] and found.to_dict()["checks"][CHECK]["passed"]
+    assert len(hill_boundaries(COSINE, 0.0, (1,), damping=0.1).checks) == 0
     with pytest.raises(BadInput, match="slice"):
         hill_boundaries(COSINE, 1.0).plot()
 
@@ -89,16 +90,6 @@ def test_a_wrong_end_fails_the_check(damping):
         for off in (0.0, 1e-9)
     )
     assert good.passed and not wrong.passed
-
-
-def test_checks_are_made_late_once_and_survive_pickling():
-    import pickle
-
-    found = pickle.loads(pickle.dumps(hill_boundaries(PeriodicFunction([0.0, 1.0]), 1.0)))
-    assert found.checks[CHECK] is found.checks[CHECK]
-    assert found.to_dict()["checks"][CHECK]["passed"]
-    nothing = hill_boundaries(PeriodicFunction([0.0, 1.0]), 0.0, (1,), damping=0.1)
-    assert len(nothing.checks) == 0
 
 
 def test_no_damping_in_some_entries():

@@ -195,12 +195,10 @@ def test_progress_is_shown_only_when_wanted(capsys):
 # The record ----------------------------------------------------------------------------------
 
 
-def test_record_plots_saves_and_repeats(tmp_path):
+def test_record_plots_and_saves(tmp_path):
     xarray = pytest.importorskip("xarray")
     run = simulate(_beam(0.4), 1.0, 1.0, initial=([0.01, 0.0], 0.0), samples=24)
-    again = simulate(_beam(0.4), 1.0, 1.0, initial=([0.01, 0.0], 0.0), samples=24)
     assert isinstance(run, Trajectory)
-    assert run.q.tobytes() == again.q.tobytes()
     data = run.to_xarray()
     assert isinstance(data, xarray.Dataset)
     assert data["q"].dims == ("sample", "coordinate")

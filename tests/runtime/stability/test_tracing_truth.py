@@ -8,7 +8,7 @@ from edge_truth import contradictions, rig
 from elastolink.runtime.core.families import LinearPeriodic
 from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.stability import stability_edges
-from periodic_systems import system_of
+from periodic_systems import system_of, wave
 
 SWAP = np.array([[0.0, 1.0], [1.0, 0.0]])
 NONE = np.zeros((2, 2))
@@ -16,17 +16,10 @@ NONE = np.zeros((2, 2))
 
 def _system(stiffness, waves, damping=None) -> LinearPeriodic:
     """Return unit masses on springs with a sum of waves (harmonic, cosine, sine matrices)."""
-    n = len(stiffness)
-
-    def pull(theta):
-        out = np.zeros((len(theta), n, n))
-        for harmonic, cosine, sine in waves:
-            out += np.cos(harmonic * theta)[:, None, None] * cosine
-            out += np.sin(harmonic * theta)[:, None, None] * sine
-        return out
-
+    pull = [wave(cosine, harmonic) for harmonic, cosine, _ in waves]
+    pull += [wave(sine, harmonic, -np.pi / 2) for harmonic, _, sine in waves]
     drag = {} if damping is None else {"C": damping}
-    return system_of(M=np.eye(n), K=np.diag(stiffness), Kg=pull, **drag)
+    return system_of(M=np.eye(len(stiffness)), K=np.diag(stiffness), Kg=pull, **drag)
 
 
 def _busy(strength, damping):
@@ -53,9 +46,9 @@ def test_damped_regions_leave_stable_gaps_open(strength):
 
 
 def test_tiny_damping_changes_next_to_nothing():
-    wave = [(1, 0.1 * SWAP, NONE)]
-    sharp = stability_edges(_system([1.0, 5.29], wave), (3.0, 3.6))
-    found = stability_edges(_system([1.0, 5.29], wave, 1e-15 * np.eye(2)), (3.0, 3.6))
+    pull = [(1, 0.1 * SWAP, NONE)]
+    sharp = stability_edges(_system([1.0, 5.29], pull), (3.0, 3.6))
+    found = stability_edges(_system([1.0, 5.29], pull, 1e-15 * np.eye(2)), (3.0, 3.6))
     i, j = (e.labels.index("sum of 1 and 2, n = 1") for e in (sharp, found))
     assert abs(found.lower[j] - sharp.lower[i]) < 1e-11
     assert abs(found.upper[j] - sharp.upper[i]) < 1e-11

@@ -1,4 +1,4 @@
-"""Helpers of the tests of unstable regions: systems, find a region, where multipliers meet."""
+"""Helpers of the tests of unstable regions: systems, a region, a line of multipliers."""
 
 import elastolink as el
 import numpy as np
@@ -33,8 +33,11 @@ def region_of(found, kind, harmonic):
     raise AssertionError((kind, harmonic, found.labels))
 
 
-def discriminant(matrix):
-    """Of the reduced polynomial z^2 - a z + b - 2: a^2 - 4 (b - 2), zero at a double z."""
-    a = np.trace(matrix)
-    b = 0.5 * (a**2 - np.trace(matrix @ matrix))
-    return a**2 - 4 * (b - 2)
+def contradictions(system, found, speeds):
+    """Return how many speeds of a line lie within a region and are stable, or the other way."""
+    direct = el.floquet_multipliers(system, speeds)
+    grows = np.any(np.abs(direct.multipliers) > 1 + 4 * direct.error, axis=-1)
+    begin = np.where(np.isnan(found.lower), -np.inf, found.lower) - found.error
+    end = np.where(np.isnan(found.upper), np.inf, found.upper) + found.error
+    inside = np.any((speeds[:, None] >= begin) & (speeds[:, None] <= end), axis=1)
+    return int(np.sum(grows != inside))

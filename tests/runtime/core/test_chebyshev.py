@@ -12,12 +12,6 @@ def test_values_at_nodes_give_the_coefficients_back(count, seed):
     np.testing.assert_allclose(chebyshev.coefficients2(values), c, rtol=0, atol=1e-13)
 
 
-def test_the_basis_is_cos_n_arccos():
-    x = np.linspace(-1, 1, 101)
-    n = np.arange(40)[:, None]
-    np.testing.assert_allclose(chebyshev.basis(x, 40), np.cos(n * np.arccos(x)), atol=1e-13)
-
-
 @pytest.mark.parametrize("shape", [(1, 1), (1, 7), (9, 1), (9, 4), (4, 9)])
 def test_points_and_tensor_agree(shape):
     rng = np.random.default_rng(0)

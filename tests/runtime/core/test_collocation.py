@@ -51,15 +51,6 @@ def test_steps_are_exponentials_where_coefficients_are_constant(stages):
     np.testing.assert_allclose(step, scipy.linalg.expm(0.2 * matrix), rtol=0, atol=1e-15)
 
 
-@pytest.mark.parametrize("stages", [2, 6])
-def test_a_batch_gives_the_same_steps_as_its_members(stages):
-    theta = np.array([0.0, 0.5, 1.0])
-    maps = gauss_maps(stages, lambda at: np.stack([wavy(at), 2 * wavy(at)]), theta, 0.1)
-    for index, factor in enumerate((1, 2)):
-        alone = gauss_maps(stages, lambda at, f=factor: f * wavy(at), theta, 0.1)
-        np.testing.assert_allclose(maps[index], alone, rtol=1e-14, atol=1e-16)
-
-
 @pytest.mark.parametrize("stages", [2, 6, 8])
 def test_steps_are_symplectic_and_undo_themselves(stages):
     # y' = J S(theta) y with symmetric S: two freedoms, undamped.
@@ -77,29 +68,3 @@ def test_steps_are_symplectic_and_undo_themselves(stages):
     defect = np.swapaxes(steps, -1, -2) @ unit @ steps - unit
     assert np.max(np.abs(defect)) < 1e-14 * size**2
     assert np.max(np.abs(back @ steps - np.eye(4))) < 1e-13 * size**2
-
-
-@pytest.mark.parametrize("stages", [6, 8])
-@pytest.mark.parametrize("phase", [3.0, 3000.0])
-def test_slow_modes_survive_steps_long_beside_a_fast_one(stages, phase):
-    count = 40
-    step = 2 * np.pi / count
-    frequency = phase / step
-
-    def stiff(theta):
-        """A fast and a slow mode, weakly coupled by a term that varies with the angle."""
-        out = np.zeros((len(theta), 4, 4))
-        out[:, 0, 2] = out[:, 1, 3] = 1.0
-        out[:, 2, 0], out[:, 3, 1] = -(frequency**2), -4.0 - np.cos(theta)
-        out[:, 2, 1] = out[:, 3, 0] = 0.5 * np.sin(theta)
-        return out
-
-    theta = step * np.arange(count)
-    state, alone = np.array([0.0, 1.0, 0.0, 0.0]), np.array([1.0, 0.0])
-    slow = gauss_maps(8, lambda at: stiff(at)[:, 1::2, 1::2], theta, step)
-    for matrix, single in zip(gauss_maps(stages, stiff, theta, step), slow, strict=True):
-        state, alone = matrix @ state, single @ alone
-        # The fast mode is not driven beyond the static deflection by the coupling.
-        assert np.max(np.abs(state * [frequency, 1.0, 1.0, 1.0])) < 50.0
-    # The coupling bends the slow mode by its square over the fast stiffness.
-    assert np.max(np.abs(state[1::2] - alone)) < 20.0 * 0.25 / frequency**2 + 2e-4

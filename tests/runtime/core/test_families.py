@@ -7,7 +7,6 @@ import types
 import numpy as np
 import pytest
 import scipy.linalg
-from constrained_truth import Circle
 from elastolink.generated import hill_plain
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import (
@@ -64,11 +63,6 @@ def test_absent_arrays_are_zero_and_declared_so():
     assert not found.is_constant("Kg")
 
 
-def test_a_constant_term_is_not_copied():
-    term = Term("K", None, np.eye(2))
-    assert term(np.zeros(1000)).strides[0] == 0
-
-
 def test_parameters_and_terms_are_exchanged_by_copy():
     one = system()
     other = one.with_parameters(load=2.0)
@@ -100,21 +94,6 @@ def test_unusable_terms_are_refused(term, message):
 def test_unknown_parameters_are_refused():
     with pytest.raises(BadInput, match="weight"):
         system().with_parameters(weight=1.0)
-
-
-# Constrained ---------------------------------------------------------------------------------
-
-
-def test_pendulum_by_hand():
-    angle, turning = np.linspace(-3.0, 3.0, 7), 1.7
-    q = np.stack([np.sin(angle), -np.cos(angle)], axis=-1)
-    qd = turning * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    qdd, multipliers = Circle().system.accelerations(q, qd)
-    along = np.sum(qdd * qd, axis=-1) / turning
-    np.testing.assert_allclose(along, -10.0 * np.sin(angle), atol=1e-13)
-    # tension = m (g cos a + omega^2) pulls inwards
-    pull = 2.0 * (10.0 * np.cos(angle) + turning**2)
-    np.testing.assert_allclose(multipliers, -pull[:, None], rtol=1e-13)
 
 
 # Transcendental ------------------------------------------------------------------------------

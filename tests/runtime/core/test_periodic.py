@@ -61,45 +61,47 @@ def test_a_known_series(eccentricity):
     np.testing.assert_allclose(f.b, 0, rtol=0, atol=1e-14)
 
 
-@pytest.mark.parametrize("lengths", [(5, 1, 5, 2), (10, 1, 10, 4), (2, 1, 2, 2)])
-def test_coefficients_of_the_linkages_against_quadrature_at_fifty_digits(lengths):
-    """The trapezoidal rule on 512 points, each value from loop closure in 50 digits."""
-    from mpmath import mp, mpf
-
-    f = PeriodicFunction.from_callable(end_load(*lengths))
-    count = 256
-    with mp.workdps(50):
-        l1, l2, l3, l4 = map(mpf, lengths)
-        values, angles = [], [2 * mp.pi * j / count for j in range(count)]
-        for t in angles:
-            gap = l1 - l2 * mp.expjpi(t / mp.pi)
-            distance = abs(gap)
-            t3 = mp.arg(gap) + mp.acos((l3**2 + distance**2 - l4**2) / (2 * l3 * distance))
-            t4 = mp.arg(l3 * mp.expj(t3) - gap)
-            w3 = -l2 * mp.sin(t - t4) / (l3 * mp.sin(t3 - t4))
-            w4 = -l2 * mp.sin(t - t3) / (l4 * mp.sin(t3 - t4))
-            right = l2 * mp.cos(t - t3) + l3 * w3**2 - l4 * w4**2 * mp.cos(t4 - t3)
-            alpha4 = right / (l4 * mp.sin(t4 - t3))
-            values.append(-alpha4 / mp.sin(t3 - t4))
-        for m in (0, 1, 2, 5, 20):
-            if m > f.harmonics:
-                continue
-            factor = mpf(1 if m == 0 else 2) / count
-            a = factor * mp.fsum(v * mp.cos(m * t) for v, t in zip(values, angles, strict=True))
-            b = factor * mp.fsum(v * mp.sin(m * t) for v, t in zip(values, angles, strict=True))
-            assert abs(f.a[m] - a) < 1e-13
-            assert abs(f.b[m] - b) < 1e-13
+def peak(width, place):
+    return lambda theta: np.cos(theta) + 0.5 * np.exp(-(((theta - place) / width) ** 2))
 
 
-@pytest.mark.parametrize("lengths", [(5, 1, 5, 2), (10, 1, 10, 4), (2, 1, 2, 2)])
-def test_the_error_covers_the_function(lengths):
-    f3 = end_load(*lengths)
-    f = PeriodicFunction.from_callable(f3)
-    theta = np.linspace(0.0, 2 * np.pi, 1000)
-    gap = np.abs(f(theta) - f3(theta)).max()
-    assert f.error < 1e-12
-    # The two evaluations differ by their own round-off besides.
-    assert gap < f.error + 1e-14
+def noisy(theta):
+    return np.cos(theta) + 1e-13 * np.sin(1e9 * theta)
+
+
+def jumping(theta):
+    return np.cos(theta) + 1e-12 * np.sign(np.sin(theta - 0.3))
+
+
+def square(theta):
+    return np.sign(np.sin(theta))
+
+
+def rectified(theta):
+    return np.abs(np.sin(theta))
+
+
+def pole(theta):
+    return 1 / (1.0001 - np.cos(theta))
+
+
+@pytest.mark.parametrize(
+    ("meant", "tol", "most"),
+    [
+        *((end_load(*lengths), None, 1e-12) for lengths in ((5, 1, 5, 2), (10, 1, 10, 4))),
+        *((peak(*given), None, 1e-12) for given in ((0.01, 1.05), (0.02, 1.0), (0.004, 4.2))),
+        (noisy, None, 1e-10),
+        (jumping, None, 1e-11),
+        *((square, tol, None) for tol in (0.1, 0.01)),
+        *((rectified, tol, None) for tol in (1e-2, 1e-4)),
+        *((pole, tol, None) for tol in (1e-2, 1e-4, 1e-8, None)),
+    ],
+)
+def test_the_error_covers_the_function(meant, tol, most):
+    f = PeriodicFunction.from_callable(meant, tol=tol)
+    theta = np.concatenate([np.linspace(-0.1, 0.1, 2001), np.linspace(0.0, 2 * np.pi, 20_001)])
+    gap = np.abs(f(theta) - meant(theta)).max()
+    assert gap <= f.error < (most or 10 * gap)
 
 
 @pytest.mark.parametrize("order", [7, 31, 32, 40, 64, 500])
@@ -109,35 +111,20 @@ def test_high_harmonics_are_not_mistaken_for_low_ones(order):
     assert f.a[order] == pytest.approx(1.0, abs=1e-13)
 
 
-def test_a_noisy_function_is_accepted_with_its_noise_in_the_error():
-    rng = np.random.default_rng(3)
-    f = PeriodicFunction.from_callable(
-        lambda theta: np.cos(theta) + 1e-13 * rng.standard_normal(theta.shape)
-    )
-    assert 1e-14 < f.error < 1e-10
-    assert f.a[1] == pytest.approx(1.0, abs=1e-12)
-
-
-def test_a_function_that_jumps_is_refused_by_name():
+def test_unusable_functions_are_refused_by_name():
     def saw(theta):
         return np.asarray(theta) % (2 * np.pi)
 
-    with pytest.raises(BadInput, match="saw"):
-        PeriodicFunction.from_callable(saw)
-    rough = PeriodicFunction.from_callable(lambda theta: np.abs(np.sin(theta)), tol=1e-4)
-    assert rough.a[0] == pytest.approx(2 / np.pi, abs=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("f", "message"),
-    [
-        (lambda theta: np.where(theta > 3, np.nan, 1.0), "not finite"),
-        (lambda theta: theta[:3], "one value per angle"),
-    ],
-)
-def test_unusable_functions_are_refused(f, message):
-    with pytest.raises(BadInput, match=message):
-        PeriodicFunction.from_callable(f)
+    unusable = {
+        "saw": saw,
+        "not finite": lambda theta: np.where(theta > 3, np.nan, 1.0),
+        "one value per angle": lambda theta: theta[:3],
+    }
+    for words, f in unusable.items():
+        with pytest.raises(BadInput, match=words):
+            PeriodicFunction.from_callable(f)
+    with pytest.raises(BadInput):
+        PeriodicFunction([1.0])(np.inf)
 
 
 @pytest.mark.parametrize(
@@ -203,63 +190,6 @@ def test_values_on_segments(harmonics):
     nodes = (-0.5, 0.0, 1.0)
     theta = 2 * np.pi * (np.arange(4)[:, None] + 0.5 * (1 + np.array(nodes))) / 4
     np.testing.assert_allclose(segment_values(f, 4, nodes), f(theta), rtol=0, atol=1e-12)
-
-
-def test_angles_that_are_not_finite_are_refused():
-    with pytest.raises(BadInput):
-        PeriodicFunction([1.0])(np.inf)
-
-
-@pytest.mark.parametrize(("width", "place"), [(0.01, 1.05), (0.02, 1.0), (0.004, 4.2)])
-def test_a_narrow_peak_is_not_missed(width, place):
-    def peaked(theta):
-        return np.cos(theta) + 0.5 * np.exp(-(((theta - place) / width) ** 2))
-
-    f = PeriodicFunction.from_callable(peaked)
-    theta = np.linspace(0.0, 2 * np.pi, 20_001)
-    assert f.harmonics > 100
-    assert np.abs(f(theta) - peaked(theta)).max() <= f.error < 1e-12
-
-
-def square(theta):
-    return np.sign(np.sin(theta))
-
-
-def rectified(theta):
-    return np.abs(np.sin(theta))
-
-
-def pole(theta):
-    return 1 / (1.0001 - np.cos(theta))
-
-
-@pytest.mark.parametrize(
-    ("meant", "tol"),
-    [
-        (square, 0.1),
-        (square, 0.01),
-        (rectified, 1e-2),
-        (rectified, 1e-4),
-        (pole, 1e-2),
-        (pole, 1e-4),
-        (pole, 1e-8),
-        (pole, None),
-    ],
-)
-def test_with_a_tolerance_the_figure_still_covers_the_function(meant, tol):
-    f = PeriodicFunction.from_callable(meant, tol=tol)
-    theta = np.concatenate([np.linspace(-0.1, 0.1, 2001), np.linspace(0.0, 6.28, 5000)])
-    gap = np.abs(f(theta) - meant(theta)).max()
-    assert gap <= f.error < 10 * gap
-
-
-def test_a_jump_of_the_size_of_noise_stays_in_the_figure():
-    def jumping(theta):
-        return np.cos(theta) + 1e-12 * np.sign(np.sin(theta - 0.3))
-
-    f = PeriodicFunction.from_callable(jumping)
-    theta = np.linspace(0.0, 2 * np.pi, 10_001)
-    assert np.abs(f(theta) - jumping(theta)).max() <= f.error < 1e-11
 
 
 def test_huge_values_do_not_overflow():

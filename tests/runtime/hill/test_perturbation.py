@@ -8,7 +8,6 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from elastolink.generated import hill_recursion
-from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import (
     PerturbationBoundaries,
@@ -19,29 +18,9 @@ from elastolink.runtime.hill import (
 from elastolink.runtime.hill.bloch import effective_operator
 from exact_hill import ExactHarmonics, exact_operator
 from hill_functions import ANOTHER as GENERAL
-from hill_functions import COSINE, functions, general
+from hill_functions import COSINE, general
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-FUNCTIONS = functions()
-
-
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_the_formula(name):
-    """Smith (7.46), (7.49), written out once more."""
-    f, mu, k = FUNCTIONS[name], np.array([[-1.0, 0.3], [2.0, 0.05]]), 0.01
-    found = perturbation_boundaries(f, mu, (1, 2, 3), damping=k, outside="value")
-    for i, n in enumerate((1, 2, 3)):
-        square = mu**2 * (f.a[n] ** 2 + f.b[n] ** 2) - 4 * k**2 * n**2
-        closed = square < 0
-        np.testing.assert_array_equal(np.isnan(found.lower[i]), closed)
-        np.testing.assert_array_equal(np.isnan(found.error[i]), closed)
-        np.testing.assert_array_equal(found.closed[i], closed & ~found.outside[i])
-        assert np.all(np.isinf(found.error[i][found.outside[i] & ~closed]))
-        half = 0.5 * np.sqrt(square[~closed])
-        middle = (n**2 / 4 - f.a[0] * mu)[~closed]
-        np.testing.assert_allclose(found.lower[i][~closed], middle - half, rtol=1e-14, atol=1e-15)
-        np.testing.assert_allclose(found.upper[i][~closed], middle + half, rtol=1e-14, atol=1e-15)
 
 
 def test_an_error_beyond_half_the_width_fails_the_check():
@@ -145,30 +124,10 @@ def test_nothing_certain_is_false_about_the_tip(cases):
     assert seen > cases
 
 
-def test_what_would_not_fit_is_refused():
-    f = PeriodicFunction(np.ones(1001))
-    with pytest.raises(BadInput, match="coefficients"):
-        perturbation_boundaries([f, f, f], [np.zeros(2)] * 3, (1,), 8, 0.1)
-
-
-EPS = float(np.finfo(float).eps)
-
-
 MIXED = general(6)
 
 
-def agrees(f, mu, regions, order, damping=0.0):
-    """Compare with Hill's matrix wherever the entry is not flagged; return the result."""
-    found = perturbation_boundaries(f, mu, regions, order, damping)
-    exact = hill_boundaries(f, mu, regions, damping)
-    for ours, theirs in ((found.lower, exact.lower), (found.upper, exact.upper)):
-        there = np.isfinite(ours) & np.isfinite(theirs)
-        gap = np.abs(ours[there] - theirs[there])
-        assert np.all(gap <= (found.error + exact.error)[there])
-    return found
-
-
-UNIT = 2.0**-53
+EPS, UNIT = 2.0**-52, 2.0**-53
 
 # Number of parts, damping, order.
 KINDS = [(1, False, 8), (1, True, 8), (2, False, 6), (2, True, 5), (3, False, 5), (3, True, 4)]
@@ -279,7 +238,6 @@ def test_memory_of_order_eight(damping):
     f = general(24)
     tracemalloc.start()
     try:
-        agrees(f, np.linspace(-0.1, 0.1, 11), range(1, 7), 8, damping)
         perturbation_boundaries(f, np.linspace(-0.1, 0.1, 100_000), (1,), 8, damping)
         _, peak = tracemalloc.get_traced_memory()
     finally:
@@ -288,63 +246,20 @@ def test_memory_of_order_eight(damping):
     assert peak < 1e8
 
 
-def test_very_high_regions():
-    f = general(8)
-    for n in (50, 100, 400):
-        found = agrees(f, np.array([0.01, 0.4, -0.9]), (n,), 8)
-        # Far from resonance with any harmonic the gap is narrower than round-off.
-        assert np.all(found.width[0] <= 2 * found.error[0])
-        assert not found.outside.any()
-    wide = general(60, 0.99)
-    assert np.any(agrees(wide, np.array([1e-3, 0.1]), (50,), 8).width > 1e-4)
-
-
-@pytest.mark.parametrize("scale", [1e-300, 1e-20, 1e20])
-def test_the_scale_of_f_and_mu_may_be_exchanged(scale):
-    mu = np.array([0.01, -0.03])
-    plain = perturbation_boundaries(MIXED, mu, (0, 1, 2, 5), 8)
-    with np.errstate(under="ignore"):
-        found = perturbation_boundaries(MIXED * scale, mu / scale, (0, 1, 2, 5), 8)
-    tiny = scale < 1e-30
-    assert tiny or not found.outside.any()
-    for name in ("lower", "upper"):
-        ours, theirs = getattr(found, name), getattr(plain, name)
-        there = np.isfinite(ours) & np.isfinite(theirs)
-        gaps = np.abs(ours[there] - theirs[there])
-        assert np.all(gaps <= (found.error + plain.error)[there])
-
-
 @pytest.mark.parametrize(
-    "changes",
-    [
-        {"mu": np.nan},
-        {"mu": "much"},
-        {"mu": 1j},
-        {"mu": [[1.0], [1.0, 2.0]]},
-        {"f": "cos"},
-        {"f": []},
-        {"f": [COSINE, "cos"], "mu": [0.1, 0.2]},
-        {"f": [COSINE, COSINE], "mu": [0.1]},
-        {"f": [COSINE, COSINE], "mu": [np.ones(2), np.ones(3)]},
-        {"damping": -1e-300},
-        {"damping": [0.1, np.inf]},
-        {"damping": np.ones(3), "mu": np.ones(2)},
-        {"order": 0},
-        {"order": 9},
-        {"order": True},
-        {"order": "2"},
-        {"regions": (-1,)},
-        {"regions": (np.inf,)},
-        {"regions": (10**9,)},
-        {"regions": None},
-        {"outside": None},
-    ],
-    ids=lambda item: next(iter(item)) + " " + repr(next(iter(item.values())))[:20],
+    ("harmonics", "fall", "n"), [(8, 0.7, 50), (8, 0.7, 100), (8, 0.7, 400), (60, 0.99, 50)]
 )
-def test_bad_input_is_refused_in_one_line(changes):
-    with pytest.raises(BadInput) as refusal:
-        perturbation_boundaries(**{"f": COSINE, "mu": 0.1, **changes})
-    assert "\n" not in str(refusal.value)
+def test_very_high_regions(harmonics, fall, n):
+    f, mu = general(harmonics, fall), np.array([1e-3, 0.01, 0.1, 0.4, -0.9])
+    found, exact = perturbation_boundaries(f, mu, (n,), 8), hill_boundaries(f, mu, (n,))
+    for end in ("lower", "upper"):
+        gap = np.abs(getattr(found, end) - getattr(exact, end))
+        assert not np.any(gap > found.error + exact.error)
+    if harmonics < n:
+        # Far from resonance with any harmonic the gap is narrower than round-off.
+        assert np.all(found.width <= 2 * found.error) and not found.outside.any()
+    else:
+        assert np.any(found.width > 1e-4)
 
 
 @settings(max_examples=25, deadline=None)

@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 from boundary_cases import LINKAGES, REGIONS, SHARES, curve, doubles, function, slow
 from boundary_truth import MP
-from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import boundary_series
 from elastolink.runtime.hill.bloch import effective_operator
@@ -175,24 +174,6 @@ def test_the_first_orders_are_what_one_writes_by_hand():
     assert lines(boundary_latex(1, 2, True))["A_{1}"] == "-c_{0} - i 2 K"
     assert r"\lambda^2 &= \frac{9}{4} + " in boundary_latex(1, 3)
     assert r"\lambda^2 &= 4 + " in boundary_latex(1, 4)
-
-
-MISUSE = {
-    "order 0": (lambda: boundary_latex(0), "order"),
-    "order 7": (lambda: boundary_latex(7), "use perturbation_boundaries"),
-    "order as a truth": (lambda: boundary_latex(True), "order"),
-    "region": (lambda: boundary_latex(1, -1), "region"),
-    "half region": (lambda: boundary_latex(1, 0.5), "region"),
-    "closed": (lambda: boundary_series(PeriodicFunction([0, 1], [0, 0]), 1, 4, 2.0), "damping"),
-}
-
-
-@pytest.mark.parametrize("case", MISUSE)
-def test_misuse_is_refused_in_one_line(case):
-    call, expected = MISUSE[case]
-    with pytest.raises(BadInput, match=expected) as told:
-        call()
-    assert "\n" not in str(told.value)
 
 
 ORDER = 8

@@ -17,15 +17,12 @@ THETA = np.linspace(0.0, 4 * np.pi, 97)
 def test_it_solves_the_equation(n, damping, order):
     """The residual is taken anew, from the values alone, by differences of Fourier series."""
     mu = 0.1
-    end = "upper"
-    found = boundary_solution(GENERAL, mu, n, end, order, damping)
+    found = boundary_solution(GENERAL, mu, n, "upper", order, damping)
     assert found.passed
-    k, a, b = found.wave_numbers, found.a, found.b
-    phase = np.outer(THETA, k)
-    y = np.cos(phase) @ a + np.sin(phase) @ b
+    k = found.wave_numbers
+    waves, amplitudes = np.exp(1j * np.outer(THETA, k)), found.a - 1j * found.b
+    y, slope, bend = ((waves @ ((1j * k) ** p * amplitudes)).real for p in range(3))
     np.testing.assert_allclose(found(THETA), y, atol=1e-13)
-    slope = np.cos(phase) @ (k * b) - np.sin(phase) @ (k * a)
-    bend = -np.cos(phase) @ (k * k * a) - np.sin(phase) @ (k * k * b)
     residual = bend + 2 * damping * slope + (found.lam2 + mu * GENERAL(THETA)) * y
     # The largest value over theta of what is small in the root mean square.
     assert np.abs(residual).max() <= 10 * found.residual + 1e-12
@@ -84,26 +81,6 @@ def test_a_deep_well_needs_many_harmonics():
     # The solution is confined to the bottom of the well.
     theta = np.linspace(0.0, 4 * np.pi, 2001)
     assert np.abs(found(theta)).max() > 2.0
-
-
-@pytest.mark.parametrize(
-    ("arguments", "where"),
-    [
-        ({"n": 0, "end": "lower"}, "end"),
-        ({"n": 1, "end": "middle"}, "end"),
-        ({"n": 1, "mu": [0.1, 0.2]}, "mu"),
-        ({"n": 1, "order": 9}, "order"),
-        ({"n": 1, "damping": -1.0}, "damping"),
-        ({"n": 1, "damping": 1.0}, "closed by damping"),
-        ({"n": 1, "damping": 1.0, "order": 3}, "closed by damping|converge"),
-        ({"n": 1, "mu": 30.0, "order": 3}, "converge"),
-        ({"n": 1, "mu": 1e200}, "mu"),
-        ({"n": -1}, "regions"),
-    ],
-)
-def test_bad_input(arguments, where):
-    with pytest.raises(BadInput, match=where):
-        boundary_solution(**{"f": COSINE, "mu": 0.1, **arguments})
 
 
 def test_bad_angles_and_picture():

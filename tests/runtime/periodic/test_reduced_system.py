@@ -6,7 +6,6 @@ Its arrays and their errors: ``error_estimates/test_reduction_errors.py``.
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.periodic import reduced_system
 from elastolink.runtime.periodic.moving_basis import moving_basis
 
@@ -28,12 +27,6 @@ def test_the_basis_is_smooth_periodic_and_orthonormal(damped):
     step = 1e-5
     slope = (basis(theta + step) - basis(theta - step)) / (2.0 * step)
     assert np.max(np.abs(slope - basis.derivative(theta))) < 1e-8 * np.max(np.abs(phi))
-
-
-def test_what_cannot_be_reduced_is_refused(damped):
-    for modes in (0, 10, 2.5, True):
-        with pytest.raises(BadInput, match="modes"):
-            reduced_system(damped, modes)
 
 
 def test_another_geometry_gets_modes_of_its_own(damped):

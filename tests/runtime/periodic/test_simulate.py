@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import pickle
 from dataclasses import replace
 
 import mpmath
 import numpy as np
 import pytest
-from elastolink.runtime.core.errors import BadInput, LinearRangeWarning
+from elastolink.runtime.core.errors import LinearRangeWarning
 from elastolink.runtime.core.families import LinearPeriodic
 from elastolink.runtime.periodic import Trajectory, simulate
 from elastolink.runtime.periodic.motion import SCIPY_METHODS
-from elastolink.runtime.scenes import load_scene
 from periodic_systems import system_of, wave
 
 ALL = ("auto", *SCIPY_METHODS)
@@ -76,8 +74,6 @@ def test_a_wanted_error_is_reached_down_to_round_off():
 def test_forcing_can_be_left_out():
     run = simulate(_driven(), 2.0, 1.0, initial=(0.1, 0.0), forcing=False)
     np.testing.assert_allclose(run.q[:, 0], 0.1 * np.cos(2.5 * run.theta), atol=1e-14)
-    with pytest.raises(BadInput, match="no forcing acts"):
-        simulate(_driven(), 2.0, 1.0, forcing=False)
 
 
 def test_against_heyoka():
@@ -91,8 +87,8 @@ def test_against_heyoka():
     ta = hy.taylor_adaptive(system, [0.1, -0.3 / w], tol=1e-18)
     run = simulate(_driven(damping=0.6, depth=20.0), w, 5.0, initial=(0.1, -0.3))
     _, states = ta.propagate_grid(run.theta)[-2:]
-    assert np.max(np.abs(run.q[:, 0] - states[:, 0])) < 1e-11 * np.max(np.abs(states[:, 0]))
-    assert np.max(np.abs(run.qd[:, 0] / w - states[:, 1])) < 1e-11 * np.max(np.abs(states[:, 1]))
+    for found, exact in ((run.q, states[:, :1]), (run.qd / w, states[:, 1:])):
+        assert np.max(np.abs(found - exact)) < 1e-11 * np.max(np.abs(exact))
 
 
 @pytest.mark.parametrize("start", [0.0, 0.3, -2.0, 1000.3])
@@ -212,12 +208,10 @@ def test_progress_is_shown_only_when_wanted(capsys):
 # The record ----------------------------------------------------------------------------------
 
 
-def test_record_plots_saves_and_repeats(tmp_path):
+def test_record_plots_and_saves(tmp_path):
     xarray = pytest.importorskip("xarray")
     run = simulate(_beam(0.4), 1.0, 1.0, initial=([0.01, 0.0], 0.0), samples=24)
-    again = simulate(_beam(0.4), 1.0, 1.0, initial=([0.01, 0.0], 0.0), samples=24)
     assert isinstance(run, Trajectory)
-    assert run.q.tobytes() == again.q.tobytes()
     data = run.to_xarray()
     assert isinstance(data, xarray.Dataset)
     assert data["q"].dims == ("sample", "coordinate")
@@ -226,55 +220,3 @@ def test_record_plots_saves_and_repeats(tmp_path):
     assert len(ax.lines) == 2
     saved = np.load(run.save(tmp_path / "run.npz"))
     np.testing.assert_array_equal(saved["q"], run.q)
-
-
-def test_a_trajectory_is_pickled_with_its_checks():
-    system = load_scene("smith_1972_5152_sixteenth_inch").system()
-    run = simulate(system, 34.0, 1.0, samples=24)
-    twin = pickle.loads(pickle.dumps(run))
-    assert twin.q.tobytes() == run.q.tobytes() and dict(twin.checks) == dict(run.checks)
-
-
-@pytest.mark.parametrize(
-    ("changes", "word"),
-    [
-        ({"method": "rk5"}, "method"),
-        ({"speed": 0.0}, "speed"),
-        ({"speed": -3.0}, "speed"),
-        ({"speed": np.array([1.0, 2.0])}, "speed"),
-        ({"speed": "2"}, "speed"),
-        ({"revolutions": 0.0}, "revolutions"),
-        ({"revolutions": np.nan}, "revolutions"),
-        ({"revolutions": "2"}, "revolutions"),
-        ({"revolutions": 1e9}, "revolutions"),
-        ({"samples": 0}, "samples"),
-        ({"samples": 2.5}, "samples"),
-        ({"samples": "8"}, "samples"),
-        ({"rtol": 2.0}, "rtol"),
-        ({"rtol": "1e-3"}, "rtol"),
-        ({"initial": 3.0}, "initial"),
-        ({"initial": ([1.0, 2.0], 0.0)}, "initial q"),
-        ({"initial": (1.0, np.inf)}, "initial qd"),
-        ({"initial": ("a", 0.0)}, "initial q"),
-        ({"bound": -1.0}, "bound"),
-        ({"start": np.inf}, "start"),
-        ({"start": "0"}, "start"),
-    ],
-)
-def test_bad_input_is_one_clear_line(changes, word):
-    arguments = {"speed": 2.0, "revolutions": 1.0, "initial": (0.1, 0.0), **changes}
-    with pytest.raises(BadInput, match=word) as caught:
-        simulate(_driven(), **arguments)
-    assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("system", "words"),
-    [
-        (system_of(M=wave(np.eye(1)), K=np.eye(1)), "mass matrix M"),
-        (system_of(M=np.eye(1), K=np.eye(1)).without("M"), "no mass term"),
-    ],
-)
-def test_a_mass_that_is_not_positive_is_refused(system, words):
-    with pytest.raises(BadInput, match=words):
-        simulate(system, 1.0, 1.0, initial=(0.1, 0.0))

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput, LinearRangeWarning
-from elastolink.runtime.core.families import Term
 from elastolink.runtime.periodic import simulate, steady_state
 from elastolink.runtime.periodic.equation import equation_of
 from elastolink.runtime.periodic.ring import solve_ring
@@ -46,16 +44,6 @@ def test_harmonic_balance_gives_the_same_motion_and_coefficients():
         coefficients = _harmonic_balance(speed)[1][60:90]
         off = np.abs(state.coefficients[index, :30, 0] - coefficients)
         assert np.max(off) <= np.max(state.error[index]) * size
-
-
-def test_a_long_damped_march_ends_in_it():
-    state = steady_state(forced_mathieu(), 2.0, rtol=1e-12)
-    # exp(-0.2/2 2 pi 120/2) of the start is left after 120 turns.
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        run = simulate(forced_mathieu(), 2.0, 120, samples=len(state.theta))
-    last = run.q[-len(state.theta) - 1 : -1, 0]
-    assert np.max(np.abs(last - state.q[:, 0])) <= 1e-12 * np.max(np.abs(last))
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -137,35 +125,7 @@ def test_plots_are_drawn():
     assert steady_state(forced_mathieu(), [1.0, 2.0]).plot().get_yscale() == "log"
 
 
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"method": "harmonics"}, "one of"),
-        ({"rtol": 0.0}, "rtol"),
-        ({"samples": 0}, "samples"),
-        ({"samples": "x"}, "samples"),
-        ({"samples": np.nan}, "samples"),
-        ({"rtol": "x"}, "rtol"),
-        ({"speed": []}, "no speed at all"),
-        ({"speed": "x"}, "speed"),
-        ({"speed": np.ones(100), "samples": 2**20}, "take the speeds in parts"),
-        ({"speed": -1.0}, "positive"),
-        ({"stiffness": 2.0}, "parameters"),
-    ],
-)
-def test_bad_input_is_refused_in_one_line(options, message):
-    with pytest.raises(BadInput, match=message) as caught:
-        steady_state(forced_mathieu(), options.pop("speed", 1.0), **options)
-    assert "\n" not in str(caught.value).strip()
-
-
-def test_without_forcing_or_shapes_it_is_refused():
-    free = forced_mathieu().without("p")
-    still = free.with_terms(Term("p", None, lambda theta: np.zeros((len(theta), 1))))
-    with pytest.raises(BadInput, match="forcing that is zero"):
-        steady_state(still, 1.0)
-    with pytest.raises(BadInput, match="without forcing"):
-        steady_state(free, 1.0)
+def test_deflections_without_shapes_or_off_the_beam_are_refused():
     with pytest.raises(BadInput, match="without mode shapes"):
         steady_state(replace(forced_mathieu(), shape=None), 1.0).deflection()
     with pytest.raises(BadInput, match="places"):
@@ -196,14 +156,12 @@ def stiff(damping=0.02, fast=1600.0):
         wave = np.exp(np.cos(theta))
         return np.stack([wave, np.sin(theta) * wave, np.cos(3 * theta)], axis=1)
 
-    made = system_of(
-        {"damping_ratio": damping},
+    return system_of(
         M=np.diag([1.0, 1.2, 0.5]),
         K=turned(frequencies**2),
-        C=("damping_ratio", turned(2 * frequencies)),
+        C=turned(2 * damping * frequencies),
         f=push,
     )
-    return replace(made, limits={"damping_ratio": "non-negative"})
 
 
 @pytest.mark.parametrize("fast", [160.0, 1600.0])
@@ -242,8 +200,3 @@ def test_a_ring_of_any_length_is_solved():
         ahead = np.roll(nodes, -1, axis=1)
         rest = ahead - np.einsum("bkij,bkj->bki", maps, nodes) - loads
         assert np.max(np.abs(rest)) <= 1e-11 * np.max(np.abs(nodes))
-
-
-def test_negative_damping_is_refused_where_it_is_a_parameter():
-    with pytest.raises(BadInput, match="damping_ratio"):
-        steady_state(stiff(), 1.1, method="harmonic_balance", damping_ratio=-0.1)

@@ -38,39 +38,36 @@ def equations(forced=False):
 INVERSE = (1.0 / ENDS[1], 1.0 / ENDS[0])
 
 
+def whole(parts):
+    """Return matrices from their parts, a factor and a power of two."""
+    matrices, exponents = parts
+    return np.ldexp(matrices, exponents[:, None, None])
+
+
 @pytest.mark.smoke
 @pytest.mark.parametrize("forced", [False, True])
 def test_products_are_the_monodromy_matrices(forced):
     at = equations(forced)
     table = table_of(at, INVERSE, 32, WAY, 1e-13)
     values = np.random.default_rng(1).uniform(*INVERSE, 20)
-    matrices, exponents = table.products(values)
-    exact, powers = product(segments_of(at(values), 32, WAY).maps)
-    found = np.ldexp(matrices, exponents[:, None, None])
-    wanted = np.ldexp(exact, powers[:, None, None])
-    assert np.max(np.abs(found - wanted)) < 1e-11 * np.max(np.abs(wanted))
+    found, exact = (
+        whole(table.products(values)),
+        whole(product(segments_of(at(values), 32, WAY).maps)),
+    )
+    assert np.max(np.abs(found - exact)) < 1e-11 * np.max(np.abs(exact))
     assert table.tail < 1e-11
     assert table.weights(values).shape == (20, len(table.groups))
 
 
 def test_half_of_the_period_and_a_single_value():
-    at = equations()
+    at, value = equations(), np.array([0.45])
+    maps = segments_of(at(value), 32, WAY).maps
     half = table_of(at, INVERSE, 32, WAY, 1e-13, half=True)
-    matrices, exponents = half.products(np.array([0.45]))
-    maps = segments_of(at(np.array([0.45])), 32, WAY).maps[:, :16]
-    exact, powers = product(maps)
-    np.testing.assert_allclose(
-        np.ldexp(matrices, exponents[:, None, None]),
-        np.ldexp(exact, powers[:, None, None]),
-        atol=1e-11,
-    )
+    exact = whole(product(maps[:, :16]))
+    np.testing.assert_allclose(whole(half.products(value)), exact, atol=1e-11)
     single = table_of(at, (0.45, 0.45), 32, WAY, 1e-13)
     assert len(single.groups) == 1
-    one, power = single.products(np.array([0.45]))
-    whole, twos = product(segments_of(at(np.array([0.45])), 32, WAY).maps)
-    np.testing.assert_allclose(
-        np.ldexp(one, power[:, None, None]), np.ldexp(whole, twos[:, None, None]), atol=1e-12
-    )
+    np.testing.assert_allclose(whole(single.products(value)), whole(product(maps)), atol=1e-12)
 
 
 def test_a_table_that_does_not_fit_is_refused_in_one_line():

@@ -58,50 +58,6 @@ def test_shading_agrees_with_exact_boundaries(undamped):
         assert np.array_equal(~undamped.stable[i], np.any(inside, axis=0))
 
 
-def test_damped_boundaries_lie_where_a_multiplier_is_one(undamped):
-    system = rig(**{"coupler.damping_ratio": 0.01})
-    chart = el.stability_chart(system, ("speed", SPEEDS), ("follower_inertia", INERTIAS))
-    curves = chart.exact
-    checked = 0
-    for j in (10, 30):
-        for row in (*curves.lower[:, j], *curves.upper[:, j]):
-            if np.isfinite(row) and SPEEDS[0] < row < SPEEDS[-1]:
-                found = el.floquet_multipliers(system, row, follower_inertia=curves.at[j])
-                assert np.min(np.abs(np.abs(found.multipliers) - 1.0)) < 1e-7
-                checked += 1
-    assert checked >= 4
-    assert chart.stable.mean() > undamped.stable.mean()
-
-
-def test_two_modes_agree_with_multipliers():
-    system = rig(**{"model.modes": 2})
-    speeds = np.linspace(55.0, 99.0, 23)
-    chart = el.stability_chart(system, ("speed", speeds), ("follower_inertia", INERTIAS[::10]))
-    direct = el.floquet_multipliers(
-        system, speeds[None, :], follower_inertia=INERTIAS[::10][:, None]
-    )
-    largest = np.max(np.abs(direct.multipliers), axis=-1)
-    clear = np.abs(largest - 1.0) > 1e-5
-    assert np.array_equal(chart.stable[clear], largest[clear] < 1.0 + 1e-5)
-    assert np.allclose(chart.largest[clear], largest[clear], rtol=1e-5)
-
-
-@pytest.mark.parametrize(
-    ("x", "y", "words"),
-    [
-        (("speeed", SPEEDS), ("follower_inertia", INERTIAS), "speeed"),
-        (("speed", SPEEDS), ("speed", SPEEDS), "another parameter"),
-        (("speed", SPEEDS - 50.0), ("follower_inertia", INERTIAS), "positive speeds"),
-        (("speed", SPEEDS[::-1]), ("follower_inertia", INERTIAS), "rising"),
-        (("speed", [np.nan, 2.0]), ("follower_inertia", INERTIAS), "finite"),
-        (("speed", [2.0]), ("follower_inertia", INERTIAS), "at least two"),
-    ],
-)
-def test_bad_axes_are_refused(x, y, words):
-    with pytest.raises(el.BadInput, match=words):
-        el.stability_chart(rig(), x, y)
-
-
 def test_picture_shows_what_it_promises(undamped, tmp_path):
     axes = undamped.plot()
     labels = {text.get_text() for text in axes.get_legend().get_texts()}

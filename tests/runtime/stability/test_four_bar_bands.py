@@ -36,16 +36,6 @@ def bands(slow):
     return stability_edges(slow, SPAN, margin=1.02)
 
 
-def test_multipliers_are_on_the_circle_outside_the_bands(slow, bands):
-    speeds = np.linspace(*SPAN, 80)
-    margin = 1e-3
-    near = (speeds[:, None] > bands.lower - margin) & (speeds[:, None] < bands.upper + margin)
-    outside = speeds[~np.any(near, axis=1)][:40]
-    assert len(outside) == 40
-    found = floquet_multipliers(slow.system, outside)
-    assert np.max(np.abs(np.abs(found.multipliers) - 1.0)) <= 1e-10
-
-
 def test_the_widest_band_is_found_by_reduction_too(bands):
     # Its checks: multipliers grow well inside every band, and nowhere else.
     assert bands.passed, bands.checks

@@ -23,18 +23,12 @@ def _beam(**changes):
 
 def test_speeds_of_a_constant_system():
     found = resonances(_beam(), (2.4, 20.0), highest=4)
+    sums = {"2 w1": 6.0, "2 w2": 14.0, "w1 + w2": 10.0, "w2 - w1": 4.0}
     expected = {
-        "2 w1 = w": 6.0,
-        "2 w1 = 2 w": 3.0,
-        "2 w2 = w": 14.0,
-        "2 w2 = 2 w": 7.0,
-        "2 w2 = 3 w": 14 / 3,
-        "2 w2 = 4 w": 3.5,
-        "w1 + w2 = w": 10.0,
-        "w1 + w2 = 2 w": 5.0,
-        "w1 + w2 = 3 w": 10 / 3,
-        "w1 + w2 = 4 w": 2.5,
-        "w2 - w1 = w": 4.0,
+        f"{left} = {'' if n == 1 else f'{n} '}w": total / n
+        for left, total in sums.items()
+        for n in (1, 2, 3, 4)
+        if total / n > 2.4
     }
     assert {item.label: pytest.approx(item.speed, rel=1e-13) for item in found} == expected
     assert [item.speed for item in found] == sorted((i.speed for i in found), reverse=True)
@@ -64,23 +58,6 @@ def test_no_values_no_ends():
     found = tongue(system, resonance, parameter=("load", np.zeros((0, 3))))
     assert found.lower.shape == (0, 3)
     assert found.passed
-
-
-@pytest.mark.parametrize(
-    ("span", "changes", "words"),
-    [
-        ((0.0, 5.0), {}, "speed_range"),
-        ((5.0, 2.0), {}, "speed_range"),
-        ((1.0, np.inf), {}, "speed_range"),
-        ((1.0, 5.0), {"highest": 0}, "highest"),
-        ((1.0, 5.0), {"kinds": ("sums",)}, "sums"),
-        ((1.0, 5.0), {"kinds": None}, "kinds"),
-        ((1.0, 5.0), {"push": 1.0}, "push"),
-    ],
-)
-def test_bad_input(span, changes, words):
-    with pytest.raises(BadInput, match=words):
-        resonances(_beam(), span, **changes)
 
 
 def test_a_mean_system_at_divergence_is_refused():

@@ -7,7 +7,14 @@ import numpy as np
 import pytest
 from edge_truth import flexible_rod as rod
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.stability.invariants import from_sum, largest_modulus, surely_stable
+from elastolink.runtime.periodic.equation import equation_of
+from elastolink.runtime.stability.chart_lines import is_mirrored
+from elastolink.runtime.stability.invariants import (
+    from_sum,
+    in_sum,
+    largest_modulus,
+    surely_stable,
+)
 from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis
 
 SPEEDS = np.linspace(500.0, 4000.0, 160)
@@ -47,6 +54,8 @@ def test_hardly_a_point_is_undecided(case):
     assert np.mean(chart.undecided) < 1e-3
     assert np.all(chart.slack[chart.stable & ~chart.undecided] == 0.0)
     assert np.all(chart.largest[chart.stable & ~chart.undecided] == 1.0)
+    # The geometry changes the frequency.
+    assert np.isnan(chart.natural_frequency)
 
 
 def test_axes_may_change_places():
@@ -71,11 +80,6 @@ def test_two_axes_of_geometry():
     assert np.isnan(chart.natural_frequency)
 
 
-def test_frequency_is_none_where_the_geometry_changes_it(case):
-    _, chart = case
-    assert np.isnan(chart.natural_frequency)
-
-
 def test_damped_chart_agrees_with_multipliers():
     system = rod(PolynomialBasis(2), damping=40.0, internal_damping=0.5)
     chart = el.stability_chart(system, ("speed", SPEEDS[::4]), ("crank_ratio", RATIOS[::4]))
@@ -85,20 +89,6 @@ def test_damped_chart_agrees_with_multipliers():
         direct = el.floquet_multipliers(system, chart.x[j], crank_ratio=chart.y[i])
         assert chart.largest[i, j] == pytest.approx(np.max(np.abs(direct.multipliers)), abs=1e-8)
     assert chart.passed
-
-
-@pytest.mark.slow
-def test_edges_are_traced_row_by_row():
-    """A region traced at one crank ratio is where the chart's row is unstable."""
-    system = rod(PolynomialBasis(1))
-    speeds = np.linspace(1200.0, 2600.0, 201)
-    chart = el.stability_chart(system, ("speed", speeds), ("crank_ratio", [0.1, 0.2]), edges=True)
-    assert chart.checks["edges"].passed
-    for column in range(2):
-        lower, upper = chart.edges.lower[:, column], chart.edges.upper[:, column]
-        inside = (speeds > lower[:, None]) & (speeds < upper[:, None])
-        assert np.array_equal(np.any(inside, axis=0), ~chart.stable[column])
-    assert np.any(~chart.stable)
 
 
 @pytest.mark.parametrize("modes", [1, 2, 3, 4])
@@ -133,6 +123,29 @@ def test_signs_of_five_modes_want_places():
     assert stable
     assert largest == 1.0
     assert slack == 0.0
+
+
+def test_damping_is_never_taken_for_a_mirror_image():
+    """A moving wave of stiffness has no mirrored half either."""
+    plain, wavy = rod(PolynomialBasis(3)), lambda t: np.sin(t)[:, None, None] * np.eye(3)
+    assert is_mirrored(equation_of(plain, 500.0))
+    for other in (rod(PolynomialBasis(3), damping=20.0), plain.with_terms(Term("Kg", None, wavy))):
+        assert not is_mirrored(equation_of(other, 500.0))
+
+
+def test_sums_and_coefficients_are_two_forms_of_one_polynomial():
+    """Hand case: rho = exp(+-i a) has z = 2 cos a."""
+    angles = np.array([0.3, 1.1, 2.9])
+    polynomial = np.poly(2.0 * np.cos(angles))[1:]
+    whole = np.poly(np.exp(1j * np.concatenate([angles, -angles]))).real
+    assert np.allclose(from_sum(polynomial), whole[1:4], atol=1e-14)
+    assert np.allclose(in_sum(whole[1:4]), polynomial, atol=1e-14)
+
+
+def test_too_many_segments_are_refused():
+    axes = ("speed", [1e-3, 1.0]), ("crank_ratio", [0.1, 0.2])
+    with pytest.raises(el.BadInput, match=r"raise the (lowest )?speed"):
+        el.stability_chart(rod(PolynomialBasis(3)), *axes)
 
 
 def test_a_term_that_is_not_finite_is_refused_at_its_geometry():

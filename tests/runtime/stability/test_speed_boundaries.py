@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.boundaries import hill_boundaries
 from elastolink.runtime.periodic import floquet_multipliers, monodromy
 from elastolink.runtime.stability.boundary_speeds import parity, speed_boundaries
 from periodic_systems import system_of, wave
-from scipy.optimize import brentq
 from scipy.special import mathieu_a, mathieu_b
 
 
@@ -53,7 +51,7 @@ def test_mathieu_characteristic_values():
         assert gap < 1e-11 * a
 
 
-def test_damped_boundaries_against_hill_and_against_bisection():
+def test_damped_boundaries_are_those_of_hills_equation():
     function = PeriodicFunction(a=[0.0, 1.0], b=[0.0, 0.0])
     damping = 0.05
     system = _beam(pull=0.3).with_terms(Term("C", None, 2 * damping * np.eye(1), power=1))
@@ -61,14 +59,6 @@ def test_damped_boundaries_against_hill_and_against_bisection():
     bounds = hill_boundaries(function, np.array([0.3]), regions=(1,), damping=damping)
     expected = 2.0 / np.sqrt([bounds.upper[0, 0], bounds.lower[0, 0]])
     np.testing.assert_allclose(found.speed, expected, rtol=1e-11)
-
-    def distance(speed):
-        matrix = monodromy(system, speed).matrix
-        return np.linalg.det(matrix + np.eye(2))
-
-    middle = np.mean(found.speed)
-    assert brentq(distance, 2.0, middle, xtol=1e-14) == pytest.approx(found.speed[0], rel=1e-11)
-    assert brentq(distance, middle, 20.0, xtol=1e-14) == pytest.approx(found.speed[1], rel=1e-11)
 
 
 def test_constant_coefficients_have_closed_regions():
@@ -133,62 +123,11 @@ def test_another_period_and_another_parameter():
     np.testing.assert_allclose(2 * found.speed, other.speed, rtol=1e-12)
 
 
-def test_scaling_of_units_changes_nothing():
-    found = speed_boundaries(_coupled(), speed_range=(2.0, 12.0))
-    tiny = LinearPeriodic(
-        2,
-        tuple(
-            Term(
-                term.array,
-                term.scale,
-                (lambda theta, f=term.function: 1e-9 * f(theta))
-                if callable(term.function)
-                else 1e-9 * term.function,
-                term.power,
-            )
-            for term in _coupled().terms
-        ),
-        _coupled().parameters,
-        _coupled().scales,
-    )
-    scaled = speed_boundaries(tiny, speed_range=(2.0, 12.0))
-    np.testing.assert_allclose(scaled.speed, found.speed, rtol=1e-12)
-
-
 def test_record_plots_and_saves(tmp_path):
     found = speed_boundaries(_beam(depth=1.0), speed_range=(2.0, 8.0))
     assert found.plot().get_xlabel() == "crank speed [rpm]"
     saved = np.load(found.save(tmp_path / "found.npz"))
     np.testing.assert_array_equal(saved["speed"], found.speed)
-    again = speed_boundaries(_beam(depth=1.0), speed_range=(2.0, 8.0))
-    assert again.speed.tobytes() == found.speed.tobytes()
-
-
-def test_no_boundary_in_range_is_an_empty_result():
-    found = speed_boundaries(_beam(), speed_range=(100.0, 200.0))
-    assert found.speed.shape == (0,)
-    assert found.cosine.shape[0] == 0
-    assert found.passed
-
-
-@pytest.mark.parametrize(
-    ("arguments", "word"),
-    [
-        ({"multiplier": 2}, "multiplier"),
-        ({"multiplier": ()}, "multiplier"),
-        ({"speed_range": (0.0, 1.0)}, "speed_range"),
-        ({"speed_range": (2.0, 1.0)}, "speed_range"),
-        ({"speed_range": (1.0, np.inf)}, "speed_range"),
-        ({"speed_range": (1e-4, 1.0)}, "speed_range"),
-        ({"rtol": 0.0}, "rtol"),
-        ({"mass": 2.0}, "mass"),
-        ({"k": np.array([1.0, 2.0])}, "k"),
-    ],
-)
-def test_bad_input_is_one_clear_line(arguments, word):
-    with pytest.raises(BadInput, match=word) as caught:
-        speed_boundaries(_beam(), **{"speed_range": (1.0, 2.0), **arguments})
-    assert "\n" not in str(caught.value)
 
 
 def test_every_result_has_its_checks():
@@ -197,7 +136,8 @@ def test_every_result_has_its_checks():
     assert set(many.checks) == {"truncation", "parity", "monodromy"}
     assert many.passed, many.checks
     none = speed_boundaries(_beam(), speed_range=(100.0, 200.0))
-    assert set(none.checks) == {"truncation", "parity"}
+    assert none.speed.shape == (0,) and none.cosine.shape[0] == 0
+    assert none.passed and set(none.checks) == {"truncation", "parity"}
 
 
 def test_parity_notices_a_boundary_left_out():
@@ -208,11 +148,6 @@ def test_parity_notices_a_boundary_left_out():
     for index in range(len(found.speed)):
         left = np.delete(found.speed, index)
         assert not parity(system, [(-1, left)], (1.0, 10.0), {}).passed
-
-
-def test_provenance_tells_changes():
-    found = speed_boundaries(_beam(), speed_range=(1.0, 2.0), k=3.0)
-    assert found.provenance["changed"] == "k=3.0"
 
 
 def test_a_high_harmonic_is_not_mistaken_for_a_mean():

@@ -5,7 +5,6 @@ from __future__ import annotations
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.stability import tongue_curves
 
 SPEEDS = (500.0, 4000.0)
@@ -58,17 +57,13 @@ def test_every_tongue_stands_on_its_foot(curves):
 
 
 def test_ends_are_where_the_multipliers_leave_the_circle(rod, curves):
-    """Bisection on the growth alone, at every tongue of ratio 0.05."""
+    """The growth alone, on either side of both ends of every tongue of ratio 0.05."""
     system = rod.with_geometry(crank_ratio=0.05)
-    width = curves.width[:, 1]
+    beside = 1e-5 * curves.width[:, 1]
     for ends, outward in ((curves.lower[:, 1], -1.0), (curves.upper[:, 1], 1.0)):
-        outside, inside = ends + outward * 0.05 * width, ends - outward * 0.05 * width
-        for _ in range(14):
-            middle = 0.5 * (outside + inside)
-            grows = _growth(system, middle) > 1e-7
-            inside, outside = np.where(grows, middle, inside), np.where(grows, outside, middle)
-        # Growth starts like a root: 1e-7 of it is seen far closer than the last bracket.
-        assert np.all(np.abs(0.5 * (inside + outside) - ends) < 1e-5 * width)
+        assert np.all(_growth(system, ends + outward * beside) < 1e-7)
+        # Growth starts like a root: so near there is far more of it.
+        assert np.all(_growth(system, ends - outward * beside) > 1e-7)
 
 
 def test_growth_is_that_of_the_multipliers(rod, curves):
@@ -140,18 +135,3 @@ def test_plot_and_export(curves, tmp_path):
     assert axes.get_xlabel().startswith("crank speed")
     curves.save(tmp_path / "curves.json")
     assert (tmp_path / "curves.json").stat().st_size > 0
-
-
-@pytest.mark.parametrize(
-    ("name", "values", "span"),
-    [
-        ("crank", [0.1], SPEEDS),
-        ("crank_ratio", [0.2, 0.1], SPEEDS),
-        ("crank_ratio", [0.0, 0.1], SPEEDS),
-        ("crank_ratio", [0.1], (4000.0, 500.0)),
-        ("crank_ratio", [0.1], (0.0, 500.0)),
-    ],
-)
-def test_bad_arguments_are_refused(rod, name, values, span):
-    with pytest.raises(BadInput):
-        tongue_curves(rod, name, values, span)

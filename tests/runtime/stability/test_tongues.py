@@ -9,9 +9,8 @@ import matplotlib
 import numpy as np
 import pytest
 from edge_truth import rig
-from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.stability import resonances, speed_boundaries, stability_edges, tongue
+from elastolink.runtime.core.families import Term
+from elastolink.runtime.stability import resonances, stability_edges, tongue
 from periodic_systems import is_growing, system_of, wave
 
 matplotlib.use("Agg")
@@ -49,6 +48,9 @@ def _resonance(system, label, span=(0.3, 12.0), **options):
     return next(item for item in resonances(system, span, **options) if item.label == label)
 
 
+SUM = _resonance(FULL, "w1 + w2 = w")
+
+
 def _exact(system, found, **parameters):
     """Return the exact ends by bisection of the multipliers, all values at once; ``(2, nb)``."""
     # Undamped, multipliers leave the circle with a square root, and round-off is magnified so:
@@ -72,19 +74,13 @@ EPS = np.array([0.1, 0.05, 0.025])
 
 CASES = {
     "principal": (FULL, "2 w1 = w", {}),
-    "second mode": (FULL, "2 w2 = w", {}),
     "sum": (FULL, "w1 + w2 = w", {}),
     "sum, second harmonic": (FULL, "w1 + w2 = 2 w", {}),
     "principal, damped": (FULL, "2 w1 = w", {"d1": 0.05, "d2": 0.2}),
     "sum, damped": (FULL, "w1 + w2 = w", {"d1": 0.06, "d2": 0.18}),
-    "periodic mass": (_whole(), "2 w1 = w", {}),
     "periodic mass, sum": (_whole(), "w1 + w2 = w", {}),
     "periodic mass, sum, damped": (_whole(), "w1 + w2 = w", {"c": 0.2}),
-    "difference, not conservative": (
-        _pair(((0.3, 1.0), (-0.8, 0.2))),
-        "w2 - w1 = w",
-        {},
-    ),
+    "difference, not conservative": (_pair(((0.3, 1.0), (-0.8, 0.2))), "w2 - w1 = w", {}),
     "difference, not conservative, damped": (
         _pair(((0.3, 1.0), (-0.8, 0.2)), ((0.2, 0.4), (0.1, -0.3))),
         "w2 - w1 = w",
@@ -135,17 +131,12 @@ def test_checks_pass_and_say_what_was_compared():
     resonance = _resonance(system, "w1 + w2 = w", (0.3, 20.0))
     found = tongue(system, resonance, parameter=("eps", EPS), c=0.005)
     assert found.passed, dict(found.checks)
-    assert set(found.checks) == {
-        "told apart",
-        "error over half the width",
-        "stable inside",
-        "unstable outside",
-    }
-    assert len(found.operators) == 3
+    names = {"told apart", "error over half the width", "stable inside", "unstable outside"}
+    assert set(found.checks) == names
 
 
 def test_a_wrong_end_fails_the_checks():
-    found = tongue(FULL, _resonance(FULL, "w1 + w2 = w"), parameter=("eps", EPS), order=3)
+    found = tongue(FULL, SUM, parameter=("eps", EPS), order=3)
     checks = found.checks._make
     wide = replace(found, upper=found.upper + 0.5 * found.width)
     assert not replace(checks, tongue=wide)()["stable inside"].passed
@@ -253,60 +244,21 @@ def test_truncations_keep_the_pairs_of_a_conservative_system():
 
 
 def test_a_parameter_beside_other_periodic_parts():
-    more = Term("K", None, wave([[0.05, 0.0], [0.0, 0.0]]))
-    system = _pair(((0.4, 1.0), (1.0, -0.3))).with_terms(more)
+    system = FULL.with_terms(Term("K", None, wave([[0.05, 0.0], [0.0, 0.0]])))
     resonance = _resonance(system, "w1 + w2 = w")
-    values = np.array([[0.05], [0.1]])
-    found = tongue(system, resonance, parameter=("eps", values), order=3)
+    found = tongue(system, resonance, parameter=("eps", [[0.05], [0.1]]), order=3)
     assert found.lower.shape == (2, 1)
-    assert len(found.operators) == 2
     assert found.passed, dict(found.checks)
-    alone = tongue(system, resonance, eps=0.1, order=3)
-    assert alone.lower.shape == ()
-    assert alone.lower == found.lower[1, 0]
+    assert tongue(system, resonance, eps=0.1, order=3).lower == found.lower[1, 0]
 
 
 def test_pictures_and_records():
-    resonance = _resonance(FULL, "w1 + w2 = w")
-    found = tongue(FULL, resonance, parameter=("eps", EPS))
+    found = tongue(FULL, SUM, parameter=("eps", EPS))
     axes = found.plot()
     assert axes.get_ylabel() == "eps"
     assert [text.get_text() for text in axes.get_legend().get_texts()] == [found.label]
-    alone = tongue(FULL, resonance, eps=0.1)
-    assert alone.plot().get_xlabel() == "crank speed [rpm]"
-    record = found.to_dict()
-    assert record["resonance"]["modes"] == [1, 2]
-    np.testing.assert_array_equal(record["width"], found.width)
-
-
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"order": 0}, "order"),
-        ({"order": 9}, "order"),
-        ({"damping": 1.0}, "damping"),
-        ({"parameter": ("eps", [0.1, np.nan, 0.2])}, "finite"),
-        ({"parameter": ("epsilon", 0.1)}, "epsilon"),
-        ({"parameter": "eps"}, "pair"),
-        ({"eps": 0.1}, "once"),
-        ({"d3": 0.1}, "d3"),
-    ],
-)
-def test_bad_input(changes, words):
-    resonance = _resonance(FULL, "w1 + w2 = w")
-    given = {"parameter": ("eps", [0.1, 0.2, 0.3]), **changes}
-    with pytest.raises(BadInput, match=words):
-        tongue(FULL, resonance, **given)
-
-
-def test_a_resonance_that_does_not_fit_is_refused():
-    resonance = _resonance(FULL, "w1 + w2 = w")
-    with pytest.raises(BadInput, match="modes"):
-        tongue(FULL, replace(resonance, modes=(1, 3)), parameter=("eps", 0.1))
-    with pytest.raises(BadInput, match="a Resonance"):
-        tongue(FULL, "w1 + w2 = w", parameter=("eps", 0.1))
-    with pytest.raises(BadInput, match="no such resonance"):
-        tongue(FULL, replace(resonance, harmonic=30), parameter=("eps", 0.1))
+    assert tongue(FULL, SUM, eps=0.1).plot().get_xlabel() == "crank speed [rpm]"
+    assert found.to_dict()["resonance"]["modes"] == [1, 2]
 
 
 @pytest.mark.slow
@@ -332,21 +284,13 @@ def test_four_exponents_that_meet_exactly():
             assert found.passed
 
 
-@pytest.mark.parametrize("units", [(1e5, 1e-4)])
-def test_units_of_mass_and_coordinates_do_not_matter(units):
-    turn = np.diag(units)
-    terms = []
-    for term in FULL.terms:
-        old = term.function
-        new = (
-            (lambda theta, old=old: turn @ old(theta) @ turn)
-            if callable(old)
-            else turn @ old @ turn
-        )
-        terms.append(Term(term.array, term.scale, new, term.power))
-    other = LinearPeriodic(2, tuple(terms), FULL.parameters, FULL.scales)
+def test_units_of_mass_and_coordinates_do_not_matter():
+    turn = np.diag([1e5, 1e-4])
+    other = FULL.with_changed_terms(
+        lambda term: replace(term, function=lambda theta: turn @ term(theta) @ turn)
+    )
     given = {"parameter": ("eps", EPS), "order": 3, "d1": 0.004, "d2": 0.012}
-    expected = tongue(FULL, _resonance(FULL, "w1 + w2 = w"), **given)
+    expected = tongue(FULL, SUM, **given)
     found = tongue(other, _resonance(other, "w1 + w2 = w"), **given)
     np.testing.assert_allclose(found.lower, expected.lower, rtol=1e-11)
     np.testing.assert_allclose(found.upper, expected.upper, rtol=1e-11)
@@ -415,20 +359,19 @@ def test_a_series_out_of_its_depth_does_not_pass_a_closed_range():
 # ---------------------------------------------------------------- Smith's 1/16 inch rig
 
 
+RANGE = (38.0, 95.0)
+
+
 @pytest.fixture(scope="module", name="rig")
 def _rig():
     """Smith, chapter 9, suggestion 1: what his theory of a single mode leaves out."""
     return rig(**{"model.modes": 2})
 
 
-def _of_rig(rig, label):
-    return next(r for r in resonances(rig, (38.0, 95.0), highest=16) if r.label == label)
-
-
 @pytest.fixture(scope="module")
 def traced(rig):
     """Ends [rad/s] from tracing the multipliers, another route; known to 1e-10."""
-    found = stability_edges(rig, (38.0, 95.0))
+    found = stability_edges(rig, RANGE)
     ends = zip(found.lower.tolist(), found.upper.tolist(), strict=True)
     return dict(zip(found.names, ends, strict=True))
 
@@ -437,31 +380,19 @@ def _traced(traced, resonance):
     return np.array(traced[resonance.kind, *sorted(resonance.modes), resonance.harmonic])
 
 
-def test_which_resonances_of_the_rig_there_are(rig):
-    found = resonances(rig, (38.0, 95.0), highest=10)
-    labels = [item.label for item in found]
-    assert [label for label in labels if "+" in label] == ["w1 + w2 = 9 w", "w1 + w2 = 10 w"]
-    assert all(item.opens == (item.kind != "difference") for item in found)
-    assert all(np.ptp(item.signatures) == 0 for item in found if item.kind == "difference")
-    assert {"2 w1 = 4 w", "w2 - w1 = 6 w"} < set(labels)
-
-
 @pytest.mark.parametrize(
     ("label", "most"),
     [
         # The largest errors at order 4 [rad/s].
         ("2 w1 = 6 w", 0.08),
         ("w1 + w2 = 12 w", 0.04),
-        pytest.param("2 w1 = 8 w", 0.003, marks=pytest.mark.slow),
-        pytest.param("2 w2 = 16 w", 0.002, marks=pytest.mark.slow),
         pytest.param("w1 + w2 = 9 w", 0.3, marks=pytest.mark.slow),
     ],
 )
 def test_tongues_of_the_rig(rig, traced, label, most):
-    resonance, errors = _of_rig(rig, label), []
+    resonance, errors = _resonance(rig, label, RANGE, highest=16), []
     exact = _traced(traced, resonance)
-    # At order 2 the wide 2 w1 = 4 w hides 2 w2 = 16 w beside it.
-    for order in (4,) if label == "2 w2 = 16 w" else (2, 4):
+    for order in (2, 4):
         found = tongue(rig, resonance, order=order)
         actual = np.max(np.abs(np.array([found.lower, found.upper]) - exact))
         assert actual <= found.error
@@ -475,7 +406,7 @@ def test_tongues_of_the_rig(rig, traced, label, most):
 @pytest.mark.slow
 def test_four_exponents_of_the_rig_that_nearly_meet_are_treated_together(rig, traced):
     # 2 w1 = 4 w lies beside w1 + w2 = 10 w: alone the pair's series diverges.
-    resonance = _of_rig(rig, "w1 + w2 = 10 w")
+    resonance = _resonance(rig, "w1 + w2 = 10 w", RANGE, highest=16)
     together = tongue(rig, resonance, order=6)
     assert together.dimension == 4
     assert abs(together.lower - _traced(traced, resonance)[0]) < 0.03
@@ -484,17 +415,3 @@ def test_four_exponents_of_the_rig_that_nearly_meet_are_treated_together(rig, tr
     hidden = tongue(rig, resonance, order=2)
     assert np.isnan(hidden.lower)
     assert not hidden.checks["told apart"].passed
-
-
-@pytest.mark.slow
-def test_tongues_over_the_follower_inertia_of_the_rig(rig):
-    resonance = _of_rig(rig, "2 w1 = 8 w")
-    inertia = rig.parameters["follower_inertia"] * np.array([1.0, 2.0])
-    found = tongue(rig, resonance, parameter=("follower_inertia", inertia), order=5)
-    for k, value in enumerate(inertia):
-        edges = speed_boundaries(rig, 1, speed_range=(40.6, 41.2), follower_inertia=value).speed
-        # The only region here that has a width to speak of.
-        widest = int(np.argmax(np.diff(edges)[::2])) * 2
-        assert abs(found.lower[k] - edges[widest]) <= found.error[k] < 0.02
-        assert abs(found.upper[k] - edges[widest + 1]) <= found.error[k]
-    assert np.all(np.diff(found.width) > 0)

@@ -5,11 +5,10 @@ from __future__ import annotations
 import elastolink as el
 import numpy as np
 import pytest
-from edge_truth import region_of
-from elastolink.runtime.core.errors import BadInput
+from edge_truth import contradictions, region_of, rig
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic import floquet_multipliers
-from elastolink.runtime.stability import speed_boundaries, stability_edges
+from elastolink.runtime.stability import stability_edges
 from periodic_systems import system_of, wave
 
 LOW, HIGH = 1.0, 2.3
@@ -42,10 +41,13 @@ def test_sum_region_has_the_width_of_first_order():
         assert found.passed, found.checks
 
 
-def test_the_edges_are_where_multipliers_leave_the_circle():
+@pytest.mark.parametrize(
+    ("system", "span", "least"),
+    [(_pair(0.3, own=1.0), (1.3, 6.0), 4), (rig(**{"model.modes": 2}), (81.0, 81.7), 1)],
+)
+def test_the_edges_are_where_multipliers_leave_the_circle(system, span, least):
     """Multipliers from another tolerance, a hair on either side of each end."""
-    system = _pair(0.3, own=1.0)
-    found = stability_edges(system, (1.3, 6.0))
+    found = stability_edges(system, span)
     checked = 0
     for i in range(len(found.kind)):
         if not found.width[i] > 1e-5:
@@ -57,7 +59,7 @@ def test_the_edges_are_where_multipliers_leave_the_circle():
         assert outside.stable.tolist() == [True, True]
         assert inside.stable.tolist() == [False, False]
         checked += 1
-    assert checked >= 4
+    assert checked >= least
     assert found.passed, found.checks
 
 
@@ -90,29 +92,21 @@ def test_uncoupled_oscillators_have_only_closed_regions():
 # Damping -------------------------------------------------------------------------------------
 
 
-def test_equal_damping_draws_a_sum_region_in():
-    """Mettler with damping c of both: |speed - w1 - w2| < sqrt(e^2/(4 w1 w2) - c^2)."""
-    pull, damping = 0.02, 0.004
-    found = stability_edges(_pair(pull, damping=(damping, damping)), (3.2, 3.4))
+@pytest.mark.parametrize(("first", "second"), [(0.004, 0.004), (0.004, 0.0004)])
+def test_damping_draws_a_sum_region_in_and_if_unequal_widens_it(first, second):
+    """Mettler; Schmidt and Weidenhammer.
+
+    |speed - w1 - w2| < (c1 + c2)/(2 sqrt(c1 c2)) sqrt(e^2/(4 w1 w2) - c1 c2).
+    """
+    pull, system = 0.02, _pair(0.02, damping=(first, second))
+    found = stability_edges(system, (3.2, 3.4))
     at = region_of(found, "sum", 1)
-    half = np.sqrt(pull**2 / (4 * LOW * HIGH) - damping**2)
+    sharp = pull / (2 * np.sqrt(LOW * HIGH))
+    half = 0.5 * (first + second) / np.sqrt(first * second) * np.sqrt(sharp**2 - first * second)
     assert 0.5 * found.width[at] == pytest.approx(half, rel=0.02)
     assert found.passed, found.checks
-    for end in (found.lower[at], found.upper[at]):
-        modulus = np.abs(floquet_multipliers(_pair(pull, damping=(damping,) * 2), end).multipliers)
-        assert abs(np.max(modulus) - 1.0) < 1e-11
-
-
-def test_unequal_damping_widens_a_sum_region():
-    """Known since Schmidt and Weidenhammer: |speed - ...| < (c1 + c2)/(2 sqrt(c1 c2)) times."""
-    pull, first, second = 0.02, 0.004, 0.0004
-    found = stability_edges(_pair(pull, damping=(first, second)), (3.2, 3.4))
-    at = region_of(found, "sum", 1)
-    root = pull**2 / (4 * LOW * HIGH) - first * second
-    half = 0.5 * (first + second) / np.sqrt(first * second) * np.sqrt(root)
-    assert 0.5 * found.width[at] == pytest.approx(half, rel=0.02)
-    sharp = stability_edges(_pair(pull), (3.2, 3.4))
-    assert found.width[at] > 1.5 * sharp.width[region_of(sharp, "sum", 1)]
+    ends = floquet_multipliers(system, [found.lower[at], found.upper[at]]).multipliers
+    np.testing.assert_allclose(np.max(np.abs(ends), axis=-1), 1.0, rtol=0, atol=1e-11)
 
 
 def test_strong_damping_closes_every_region():
@@ -137,21 +131,6 @@ def test_narrow_regions_within_wide_ones(damping):
     assert found.lower[around] < found.lower[nested] < found.upper[nested] < found.upper[around]
     # Of like multiplier as the wider region, told by the number of those off the circle.
     assert "region 15 of mode 2" in found.labels
-
-
-def test_damped_principal_regions_are_those_of_the_fourier_matrix():
-    system = _pair(0.3, own=1.0, damping=(0.01, 0.01))
-    found = stability_edges(system, (1.5, 6.0))
-    ends = speed_boundaries(system, speed_range=(1.5, 6.0)).speed
-    listed = [
-        end
-        for i, kind in enumerate(found.kind)
-        if kind == "principal"
-        for end in (found.lower[i], found.upper[i])
-        if 1.5 <= end <= 6.0
-    ]
-    assert len(ends) == len(listed) >= 4
-    np.testing.assert_allclose(np.sort(listed), ends, rtol=1e-10)
 
 
 # Random systems against a dense line of multipliers ---------------------------------------------
@@ -193,21 +172,14 @@ def _whirl(pull) -> LinearPeriodic:
         _random(6, 3.0),
         *(
             pytest.param(system, marks=pytest.mark.slow)
-            for system in (_random(1, 0.5), _random(2, 2.0), _whirl(0.3), _whirl(1.0))
+            for system in (_random(1, 0.5), _random(2, 2.0), _whirl(1.0))
         ),
     ],
 )
 def test_every_unstable_speed_is_in_a_region_and_no_other(system):
     found = stability_edges(system, (1.2, 9.0))
-    speeds = np.linspace(1.2, 9.0, 1501)
-    direct = floquet_multipliers(system, speeds)
-    unstable = np.any(np.abs(direct.multipliers) > 1 + 4 * direct.error, axis=-1)
-    # A missing end is far above the range.
-    assert np.all(np.isfinite(found.lower))
-    end = np.where(np.isnan(found.upper), np.inf, found.upper)
-    inside = np.any((speeds[:, None] >= found.lower) & (speeds[:, None] <= end), axis=1)
-    assert unstable.sum() > 30
-    np.testing.assert_array_equal(inside, unstable)
+    assert contradictions(system, found, np.linspace(1.2, 9.0, 1501)) == 0
+    assert np.nansum(found.width) > 0.15
     assert found.passed, found.checks
 
 
@@ -239,41 +211,3 @@ def test_boundaries_without_modes_are_paired():
     assert found.modes[at].tolist() == [0, 0]
     assert found.lower[at] == pytest.approx(np.sqrt(2.0), rel=1e-12)
     assert found.upper[at] == pytest.approx(np.sqrt(2.3), rel=1e-12)
-
-
-# Records -----------------------------------------------------------------------
-
-
-def test_result_draws_and_saves(tmp_path):
-    found = stability_edges(_pair(0.3), (2.0, 5.0))
-    assert found.plot().get_xlabel() == "crank speed [rpm]"
-    saved = np.load(found.save(tmp_path / "edges.npz"))
-    np.testing.assert_array_equal(saved["width"], found.width)
-    again = stability_edges(_pair(0.3), (2.0, 5.0))
-    assert again.lower.tobytes() == found.lower.tobytes()
-    assert found.to_dict()["kind"] == list(found.kind)
-
-
-def test_circulatory_forces_are_refused():
-    skew = Term("K", None, np.array([[0.0, 0.1], [-0.1, 0.0]]))
-    with pytest.raises(BadInput, match="not symmetric"):
-        stability_edges(_pair().with_terms(skew), (3.0, 4.0))
-
-
-@pytest.mark.parametrize(
-    ("arguments", "word"),
-    [
-        ({"speed_range": (0.0, 1.0)}, "speed_range"),
-        ({"speed_range": (1e-4, 1.0)}, "speed_range"),
-        ({"rtol": 1.0}, "rtol"),
-        ({"rtol": None}, "rtol"),
-        ({"margin": 1.0}, "margin"),
-        ({"margin": "a"}, "margin"),
-        ({"margin": [2.0]}, "margin"),
-        ({"mass": 1.0}, "mass"),
-    ],
-)
-def test_bad_input_is_one_clear_line(arguments, word):
-    with pytest.raises(BadInput, match=word) as caught:
-        stability_edges(_pair(), **{"speed_range": (3.0, 4.0), **arguments})
-    assert "\n" not in str(caught.value)

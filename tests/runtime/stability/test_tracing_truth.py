@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.core.errors import BadInput
+from edge_truth import contradictions, rig
 from elastolink.runtime.core.families import LinearPeriodic
 from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.stability import stability_edges
-from periodic_systems import system_of
+from periodic_systems import system_of, wave
 
 SWAP = np.array([[0.0, 1.0], [1.0, 0.0]])
 NONE = np.zeros((2, 2))
@@ -17,27 +16,10 @@ NONE = np.zeros((2, 2))
 
 def _system(stiffness, waves, damping=None) -> LinearPeriodic:
     """Return unit masses on springs with a sum of waves (harmonic, cosine, sine matrices)."""
-    n = len(stiffness)
-
-    def pull(theta):
-        out = np.zeros((len(theta), n, n))
-        for harmonic, cosine, sine in waves:
-            out += np.cos(harmonic * theta)[:, None, None] * cosine
-            out += np.sin(harmonic * theta)[:, None, None] * sine
-        return out
-
+    pull = [wave(cosine, harmonic) for harmonic, cosine, _ in waves]
+    pull += [wave(sine, harmonic, -np.pi / 2) for harmonic, _, sine in waves]
     drag = {} if damping is None else {"C": damping}
-    return system_of(M=np.eye(n), K=np.diag(stiffness), Kg=pull, **drag)
-
-
-def _contradictions(system, found, low, high, count=600):
-    speeds = np.linspace(low, high, count)
-    direct = floquet_multipliers(system, speeds)
-    grows = np.any(np.abs(direct.multipliers) > 1 + 4 * direct.error, axis=-1)
-    begin = np.where(np.isnan(found.lower), low, found.lower) - found.error
-    end = np.where(np.isnan(found.upper), high, found.upper) + found.error
-    inside = np.any((speeds[:, None] >= begin) & (speeds[:, None] <= end), axis=1)
-    return int(np.sum(grows != inside))
+    return system_of(M=np.eye(len(stiffness)), K=np.diag(stiffness), Kg=pull, **drag)
 
 
 def _busy(strength, damping):
@@ -57,27 +39,16 @@ def test_damped_regions_leave_stable_gaps_open(strength):
     system = _busy(strength, 0.02)
     found = stability_edges(system, (1.2, 5.0))
     assert found.passed, found.checks
-    assert _contradictions(system, found, 1.2, 5.0) == 0
+    assert contradictions(system, found, np.linspace(1.2, 5.0, 600)) == 0
     upper = found.upper[found.labels.index("region 3 of mode 2")]
     lower = found.lower[found.labels.index("sum of 1 and 2, n = 2")]
     assert floquet_multipliers(system, 0.5 * (lower + upper)).stable
 
 
-def test_damped_ends_do_not_depend_on_the_range():
-    system = _busy(0.9, 0.02)
-    ends = []
-    for high in (1.9, 2.5):
-        found = stability_edges(system, (1.2, high))
-        at = found.labels.index("sum of 1 and 2, n = 2")
-        ends.append((found.lower[at], found.upper[at]))
-    np.testing.assert_allclose(ends, ends[:1] * 2, rtol=1e-11)
-
-
-@pytest.mark.parametrize("damping", [1e-15])
-def test_tiny_damping_changes_next_to_nothing(damping):
-    wave = [(1, 0.1 * SWAP, NONE)]
-    sharp = stability_edges(_system([1.0, 5.29], wave), (3.0, 3.6))
-    found = stability_edges(_system([1.0, 5.29], wave, damping * np.eye(2)), (3.0, 3.6))
+def test_tiny_damping_changes_next_to_nothing():
+    pull = [(1, 0.1 * SWAP, NONE)]
+    sharp = stability_edges(_system([1.0, 5.29], pull), (3.0, 3.6))
+    found = stability_edges(_system([1.0, 5.29], pull, 1e-15 * np.eye(2)), (3.0, 3.6))
     i, j = (e.labels.index("sum of 1 and 2, n = 1") for e in (sharp, found))
     assert abs(found.lower[j] - sharp.lower[i]) < 1e-11
     assert abs(found.upper[j] - sharp.upper[i]) < 1e-11
@@ -123,10 +94,9 @@ def test_sum_region_at_a_multiplier_of_one(pull, width):
 
 def test_nested_regions_of_a_rig_do_not_depend_on_the_range():
     """A wide region of Smith's rig with narrow ones in it, speeds in rpm."""
-    rig = el.load_scene("smith_1972_5152_sixteenth_inch", overrides={"model.modes": 2}).system()
-    rpm = np.pi / 30
+    system, rpm = rig(**{"model.modes": 2}), np.pi / 30
     for low, high in ((1050, 2200), (1000, 1800)):
-        found = stability_edges(rig, (low * rpm, high * rpm))
+        found = stability_edges(system, (low * rpm, high * rpm))
         assert found.passed, found.checks
         at = int(np.argmin(np.abs(found.lower / rpm - 1099.485)))
         assert found.kind[at] == "principal"
@@ -148,13 +118,8 @@ def test_a_range_within_a_region_is_a_region_without_ends(damping):
 def test_closed_regions_are_drawn_apart_from_open_ones():
     found = stability_edges(_system([1.0, 5.29], [(1, 0.1 * SWAP, NONE)]), (1.2, 6.0))
     axes = found.plot()
+    assert axes.get_xlabel() == "crank speed [rpm]"
     wide = found.width > 2 * found.error
     assert 0 < wide.sum() < len(wide)
     assert len(axes.collections) == wide.sum()
     assert any("closed" in text for text in axes.get_legend_handles_labels()[1])
-
-
-def test_damping_that_feeds_energy_is_refused():
-    system = _system([1.0, 4.0], [(1, 0.1 * SWAP, NONE)], -0.01 * np.eye(2))
-    with pytest.raises(BadInput, match="feeds energy"):
-        stability_edges(system, (0.9, 1.1))

@@ -59,17 +59,6 @@ def test_values_of_single_modes(number):
             assert abs(found[-1] - exact) < 8e-16 * b * 2 * b**order
 
 
-def test_ends_and_parity():
-    modes = FreeFreeModes(7)
-    value, slope, curvature, third = modes([0.0, 1.0])
-    assert np.allclose(value[1], 2.0, rtol=1e-14)
-    assert np.allclose(value[0], modes.left_values, rtol=1e-14)
-    assert np.allclose(slope[1], modes.end_slopes, rtol=1e-14)
-    assert np.allclose(slope[0], -modes.parity * modes.end_slopes, rtol=1e-14)
-    assert np.max(np.abs(curvature / modes.roots**2)) < 1e-14
-    assert np.max(np.abs(third / modes.roots**3)) < 1e-14
-
-
 def test_integrals_of_slopes_against_quadrature():
     eta, weights = nodes(200)
     modes = FreeFreeModes(MANY)

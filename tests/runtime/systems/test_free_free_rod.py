@@ -202,42 +202,7 @@ def test_the_crank_gives_the_energy(drop):
     assert rod.energy(np.stack([q, q]), np.stack([qd, 0 * qd]), np.array([t, t])).shape == (2,)
 
 
-def test_the_tension_is_the_pull_of_the_turning_rod():
-    """At rest in itself and turning steadily, the modes feel N(x) of a rod held at its end.
-
-    N = m w^2 (L^2 - x^2)/2 from the pin, where the mean position's own part comes through the
-    pin's multiplier; by quadrature of N u' psi'.
-    """
-    rod, t = made(4), 0.0
-    q, qd = rod.undeformed(0.0)
-    turning = 30.0
-    length, mass = ROD["length"], ROD["mass_per_length"]
-    qd[:] = 0.0
-    qd[1], qd[2] = turning * length / 2, turning
-    q[3:] = [1e-3, -4e-4, 2e-4, 1e-4]
-    bare = made(4, ("tension",))
-    lam = np.array([-mass * length * turning**2 * length / 2, 0.0, 0.0])
-    still = np.zeros_like(q)
-    found = residual(rod, q, qd, still, lam, t) - residual(bare, q, qd, still, lam, t)
-    x, weights = np.polynomial.legendre.leggauss(60)
-    eta = (1 + x) / 2
-    slope = rod.modes(eta)[1]
-    pull = mass * turning**2 * length**2 * (1 - eta**2) / 2
-    # u = L f psi, so that int N u' v' dx = L int N f psi' psi' d eta
-    exact = length * (weights / 2 * pull * (slope @ q[3:])) @ slope
-    np.testing.assert_allclose(found[3:], exact, rtol=1e-9)
-
-
 # ---------------------------------------------------------------- deflections and refusals
-
-
-def test_the_block_stays_where_the_linkage_puts_it():
-    rod = made(1)
-    theta = np.linspace(0.0, 6.0, 20)
-    q, _ = rod.undeformed(theta / rod.speed)
-    slide = rod.linkage.motion(theta).slide
-    found = rod.place_of_block(q, theta / SPEED)
-    np.testing.assert_allclose(found * ROD["length"], slide, rtol=1e-14)
 
 
 def test_deflection_is_measured_from_the_line_of_the_block():

@@ -77,7 +77,8 @@ def test_terms_replaced_by_other_means_are_not_brought_back_silently(change):
 
 
 def test_own_methods_may_change_terms_in_any_order():
-    system = _system().with_terms(Term("Kg", "push", np.eye(2)), scales={"push": 3.0})
+    system = rod_system("overhang", 2, **NUMBERS, provenance={"scene": "one"})
+    system = system.with_terms(Term("Kg", "push", np.eye(2)), scales={"push": 3.0})
     system = system.without("g").with_parameters(push=4.0, damping=1.0)
     moved = with_modal_damping(system, 0.01).with_geometry(crank_ratio=0.1, length=1.1)
     again = moved.with_geometry(crank_ratio=0.2, length=1.0)
@@ -86,6 +87,10 @@ def test_own_methods_may_change_terms_in_any_order():
         np.testing.assert_array_equal(again.array(name, THETA), fresh.array(name, THETA))
     assert again.array("Kg", THETA)[0, 0, 0] == 4.0
     assert not moved.has("g")
+    assert moved.geometry == {"crank_ratio": 0.1, "frame": 0.59997, "length": 1.1}
+    assert moved.reference_length == 1.1 and moved.parameters["damping"] == 1.0
+    assert moved.provenance["scene"] == "one"
+    assert "crank_ratio=0.1" in moved.provenance["changed"]
 
 
 def test_unknown_limits_are_refused():

@@ -10,8 +10,6 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import DAMPING, Term
 from elastolink.runtime.hill.form import is_hill
-from elastolink.runtime.periodic.energy import energy_balance
-from elastolink.runtime.periodic.equation import equation_of
 from elastolink.runtime.stability import resonances, tongue
 from elastolink.runtime.systems import rod_system
 from numpy.polynomial.legendre import leggauss
@@ -106,26 +104,10 @@ def test_tension_is_that_from_the_frame_and_the_frames_own():
         (made[("tension",)] - made[()], from_frame),
     ):
         np.testing.assert_allclose(found, expected, rtol=0, atol=1e-14 * size)
-    # Both parts together are the whole, to round-off.
-    together = made[("tension",)] + made[("frame",)] - made[PRINTED]
-    np.testing.assert_allclose(together, made[()], rtol=0, atol=1e-15 * size)
-    assert np.max(np.abs(made[("tension",)] - made[PRINTED])) > 0.1 * size
+    assert np.max(np.abs(from_line - from_frame)) > 0.1 * size
 
 
 # ---------------------------------------------------------------- damping through D
-
-
-@pytest.mark.slow
-def test_energy_of_a_damped_motion_is_balanced():
-    """The balance holds with D, and fails where the motion had D and the balance has not."""
-    system = rod_system(PlainBasis(2), **{**FLEXIBLE, "damping": 400.0})
-    motion = el.simulate(system, 40.0, 1.0, samples=1600)
-    assert motion.checks["energy balance"].value < motion.checks["energy balance"].limit < 1e-4
-    theta, q, slope = motion.theta, motion.q, motion.qd / 40.0
-    whole = energy_balance(equation_of(system, 40.0, {}, forcing=True), theta, q, slope, 1e-12)
-    bare = equation_of(system.without("D"), 40.0, {}, forcing=True)
-    part = energy_balance(bare, theta, q, slope, 1e-12)
-    assert whole.value < 1e-6 < 1e-4 < part.value
 
 
 def test_damping_through_d_alone_counts_as_damping():
@@ -147,40 +129,7 @@ def test_multipliers_with_d_multiply_to_liouvilles_determinant():
     assert found.passed
 
 
-@pytest.mark.slow
-def test_speed_boundaries_and_series_see_d():
-    """The Fourier matrix and the monodromy matrix agree on an end of a damped region."""
-    system = rod_system(PlainBasis(1), **{**FLEXIBLE, "damping": 20.0})
-    edges = el.stability_edges(system, (700.0, 2500.0))
-    ends = [e for pair in zip(edges.lower, edges.upper, strict=True) for e in pair]
-    assert len(ends) >= 2
-    for end in ends:
-        size = np.max(np.abs(el.floquet_multipliers(system, end).multipliers))
-        assert size == pytest.approx(1.0, abs=1e-8)
-    bare = el.stability_edges(system.without("D"), (700.0, 2500.0))
-    assert np.abs(edges.lower[-1] - bare.lower[-1]) > 1e3 * edges.error[-1]
-
-
 # ---------------------------------------------------------------- geometry and arguments
-
-
-def test_another_geometry_is_another_system_with_the_same_rest():
-    damped = rod_system(PlainBasis(2), **FLEXIBLE, provenance={"scene": "one"})
-    extra = Term("C", "more", np.eye(2))
-    system = damped.with_terms(extra, scales={"more": 3.0}).with_parameters(damping=7.0)
-    moved = system.with_geometry(crank_ratio=0.1, length=1.1)
-    straight = rod_system(
-        PlainBasis(2), **{**FLEXIBLE, "crank_ratio": 0.1, "length": 1.1, "damping": 7.0}
-    ).with_terms(extra, scales={"more": 3.0})
-    theta = np.linspace(0.0, 6.0, 5)
-    for name in ("M", "A", "B", "C", "D", "K", "f", "g"):
-        np.testing.assert_array_equal(moved.array(name, theta), straight.array(name, theta))
-    assert moved.geometry == {"crank_ratio": 0.1, "frame": 0.59997, "length": 1.1}
-    assert moved.reference_length == 1.1
-    assert moved.parameters["damping"] == 7.0
-    assert moved.provenance["scene"] == "one"
-    assert "crank_ratio=0.1" in moved.provenance["changed"]
-    assert not system.without("C").with_geometry(crank_ratio=0.1).has("C")
 
 
 def test_geometry_that_cannot_be_changed():

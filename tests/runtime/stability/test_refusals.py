@@ -1,0 +1,111 @@
+"""What charts, regions and tongues refuse: one line that names the argument."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import elastolink as el
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.families import Term
+from elastolink.runtime.stability import (
+    resonances,
+    speed_boundaries,
+    stability_chart,
+    stability_edges,
+    tongue,
+    tongue_curves,
+)
+from periodic_systems import system_of, wave
+
+PAIR = system_of(
+    {"eps": 0.1}, M=np.eye(2), K=[np.diag([1.0, 5.3]), ("eps", wave([[0.4, 1.0], [1.0, -0.3]]))]
+)
+SKEW = PAIR.with_terms(Term("K", None, np.array([[0.0, 0.1], [-0.1, 0.0]])))
+FED = PAIR.with_terms(Term("C", None, -0.01 * np.eye(2)))
+SUM = next(one for one in resonances(PAIR, (3.0, 4.0)) if one.kind == "sum")
+MATHIEU = {
+    "system": el.load_scene("mathieu").system(),
+    "x": ("lam2", [0.1, 0.6]),
+    "y": ("mu", [0.01, 0.02]),
+}
+
+# What is given where a case does not change it.
+GIVEN = {
+    tongue: {"resonance": SUM, "parameter": ("eps", [0.1, 0.2, 0.3])},
+    resonances: {"speed_range": (1.0, 5.0)},
+    stability_edges: {"speed_range": (3.0, 4.0)},
+    speed_boundaries: {"speed_range": (1.0, 2.0)},
+    tongue_curves: {"name": "eps", "values": [0.1, 0.2], "speed_range": (1.0, 5.0)},
+    stability_chart: {"x": ("speed", [1.0, 2.0]), "y": ("eps", [0.1, 0.2])},
+}
+CASES = {
+    tongue: [
+        ({"order": 9}, "order"),
+        ({"parameter": ("eps", [0.1, np.nan, 0.2])}, "finite"),
+        ({"parameter": ("epsilon", 0.1)}, "epsilon"),
+        ({"parameter": "eps"}, "pair"),
+        ({"eps": 0.1}, "once"),
+        ({"d3": 0.1}, "d3"),
+        ({"resonance": replace(SUM, modes=(1, 3))}, "modes"),
+        ({"resonance": SUM.label}, "a Resonance"),
+        ({"resonance": replace(SUM, harmonic=30)}, "no such resonance"),
+    ],
+    resonances: [
+        ({"speed_range": (5.0, 2.0)}, "speed_range"),
+        ({"speed_range": (0.0, 5.0)}, "speed_range"),
+        ({"speed_range": (1.0, np.inf)}, "speed_range"),
+        ({"highest": 0}, "highest"),
+        ({"kinds": ("sums",)}, "sums"),
+        ({"kinds": None}, "kinds"),
+        ({"push": 1.0}, "push"),
+    ],
+    stability_edges: [
+        ({"speed_range": (0.0, 1.0)}, "speed_range"),
+        ({"speed_range": (1e-4, 1.0)}, "speed_range"),
+        ({"rtol": 1.0}, "rtol"),
+        ({"margin": 1.0}, "margin"),
+        ({"margin": "a"}, "margin"),
+        ({"mass": 1.0}, "mass"),
+        ({"system": SKEW}, "not symmetric"),
+        ({"system": FED}, "feeds energy"),
+    ],
+    speed_boundaries: [
+        ({"multiplier": 2}, "multiplier"),
+        ({"multiplier": ()}, "multiplier"),
+        ({"speed_range": (2.0, 1.0)}, "speed_range"),
+        ({"speed_range": (1e-4, 1.0)}, "speed_range"),
+        ({"rtol": 0.0}, "rtol"),
+        ({"mass": 2.0}, "mass"),
+        ({"eps": np.array([1.0, 2.0])}, "eps"),
+    ],
+    tongue_curves: [
+        ({"name": "crank"}, "crank"),
+        ({"values": [0.2, 0.1]}, "values"),
+        ({"values": [0.0, 0.1]}, "values"),
+        ({"speed_range": (4.0, 0.5)}, "speed_range"),
+    ],
+    stability_chart: [
+        ({"x": ("speeed", [1.0, 2.0])}, "speeed"),
+        ({"y": ("speed", [1.0, 2.0])}, "another parameter"),
+        ({"x": ("speed", [-1.0, 2.0])}, "positive speeds"),
+        ({"x": ("speed", [2.0, 1.0])}, "rising"),
+        ({"x": ("speed", [np.nan, 2.0])}, "finite"),
+        ({"x": ("speed", [2.0])}, "at least two"),
+        ({"order": 3}, "order"),
+        ({**MATHIEU, "order": 9}, "order"),
+        ({**MATHIEU, "order": True}, "order"),
+        ({**MATHIEU, "edges": True}, "edges"),
+        ({**MATHIEU, "rtol": 0.5}, "rtol"),
+    ],
+}
+
+
+@pytest.mark.parametrize(
+    ("call", "changes", "words"), [(call, *case) for call, cases in CASES.items() for case in cases]
+)
+def test_bad_input_is_refused_in_one_line(call, changes, words):
+    with pytest.raises(BadInput, match=words) as told:
+        call(**{"system": PAIR, **GIVEN[call], **changes})
+    assert "\n" not in str(told.value)

@@ -152,35 +152,11 @@ def shape_functions(
     bending_stiffness: float | None = None,
     shear_stiffness: float | None = None,
 ) -> tuple[Array, Array]:
-    """Return the shape functions of the displacements along and across an element.
+    """Return the shape functions of displacements along and across an element (Aannaque 4.3-4.10).
 
-    Parameters
-    ----------
-    kind : str
-        Of the element.
-    xi : array_like, shape (nx,)
-        Places over the element's length, 0 to 1.
-    length : float
-        Of the element [m].
-    derivative : int
-        0 to 3 derivatives by x.
-    bending_stiffness, shear_stiffness : float, optional
-        EI [N m^2] and k G A [N]; "timoshenko" needs them.
-
-    Returns
-    -------
-    u_shapes, v_shapes : ndarray, shape (nx, n)
-        Displacements (or their derivatives by x) per nodal value: ``u = u_shapes @ q_local``.
-
-    Raises
-    ------
-    BadInput
-        If the kind or the derivative is unknown, a place lies outside the element, or a number is
-        not positive.
-
-    Notes
-    -----
-    Aannaque (4.3), (4.4), (4.6), (4.10), (A.1), (A.2), (A.5), (A.6).
+    At places ``xi`` over the element's length [m], 0 to 1, shape ``(nx,)``, or their derivative by
+    x, to the third: two arrays ``(nx, n)`` per nodal value, ``u = u_shapes @ q_local``.  The kind
+    "timoshenko" needs EI [N m^2] and k G A [N].  Also (A.1), (A.2), (A.5), (A.6).
     """
     rows = _shape_rows(kind, xi, length, bending_stiffness, shear_stiffness)
     if derivative not in range(4):
@@ -199,27 +175,11 @@ def section_rotation(
     bending_stiffness: float | None = None,
     shear_stiffness: float | None = None,
 ) -> Array:
-    """Return the shape functions of the rotation of the cross-section.
+    """Return the shape functions of the rotation of the cross-section, ``(nx, n)``.
 
-    The rotation is the slope v' where there is no shear deformation.  Its first derivative times
-    EI is the bending moment, its second times EI less the shear force.
-
-    Parameters
-    ----------
-    kind, xi, length, bending_stiffness, shear_stiffness
-        As :func:`shape_functions`.
-    derivative : int
-        0 to 2 derivatives by x.
-
-    Returns
-    -------
-    ndarray, shape (nx, n)
-        Rotation [rad] (or its derivatives) per nodal value.
-
-    Raises
-    ------
-    BadInput
-        As :func:`shape_functions`.
+    The rotation is the slope v' where there is no shear deformation.  Its first derivative by x
+    times EI is the bending moment, its second times EI less the shear force.  The arguments are
+    those of :func:`shape_functions`.
     """
     rows = _shape_rows(kind, xi, length, bending_stiffness, shear_stiffness)
     if derivative not in range(3):

@@ -59,25 +59,15 @@ def search_path(folders: Sequence[str | Path] = ()) -> Iterator[Path]:
 
 
 def find_module(spec: ModelSpec, folders: Sequence[str | Path] = ()) -> EmittedModule:
-    """Return the emitted module of a spec.
+    """Return the emitted module of a spec, the given folders searched first.
 
     A module for the spec's own number of modes is preferred to one for any number, and one without
-    the terms that the spec drops to a general one that can leave them out.  Outside the
-    packaged modules, one that today's sources would emit differently counts as missing, so that a
-    cache that an older version filled is never used by mistake.
+    the terms that the spec drops to a general one that can leave them out.  Outside the packaged
+    modules, one that today's sources would emit differently counts as missing, so that a cache that
+    an older version filled is never used by mistake.
 
-    Parameters
-    ----------
-    spec : ModelSpec
-        The model that a scene names.
-    folders : sequence of path-like
-        Folders to search first.
-
-    Raises
-    ------
-    BadInput
-        If no manifest lists it, with the command that makes it; if its model cannot make it; or
-        if the file is not as it was emitted.
+    Refused where no manifest lists it, with the command that makes it; where its model cannot make
+    it; and where the file is not as it was emitted.
     """
     candidates = (spec, spec.with_(modes=None)) if spec.modes is not None else (spec,)
     outdated = ""

@@ -263,28 +263,11 @@ def element_matrices(
     *,
     inextensible: bool | tuple[str, ...] = False,
 ) -> tuple[Array, Array, Array]:
-    """Return mass and stiffness of the structure's own elements at one position.
+    """Return mass and stiffness of the structure's own elements at a crank angle [rad].
 
-    Parameters
-    ----------
-    structure : Structure
-        With the elements that its beams name.
-    theta : float
-        Crank angle [rad].
-    inextensible : bool or tuple of str
-        Beams that cannot stretch: True for all.
-
-    Returns
-    -------
-    mass, stiffness : ndarray, shape (size, size)
-        On the coordinates that are left.
-    reduction : ndarray, shape (structure.size, size)
-        The free coordinates by those that are left.
-
-    Raises
-    ------
-    BadInput
-        If an argument is unusable, or nothing is left that moves.
+    ``inextensible`` names the beams that cannot stretch, True all.  Beside the two, on the
+    coordinates that are left, comes the reduction: the free coordinates by those that are left.  A
+    structure in which nothing is left that moves is refused.
     """
     rigid = rigid_beams("element_matrices", structure, theta, inextensible)
     arrays, angle = AngleArrays(structure), np.array([float(theta)])
@@ -296,30 +279,11 @@ def element_matrices(
 
 
 def log_determinant(problem: Transcendental, omega: ArrayLike) -> tuple[Array, Array]:
-    """Return the determinant of D without overflow.
+    """Return ``log10 |det D|`` and the sign of the determinant at positive frequencies [rad/s].
 
     Zeros are frequencies at which the nodes move, poles those of the members with held ends; a
     frequency at which all nodes stand still is a pole for whole members and a zero for divided
     ones.
-
-    Parameters
-    ----------
-    problem : Transcendental
-        Any.
-    omega : array_like, shape (...)
-        Frequencies [rad/s].
-
-    Returns
-    -------
-    logarithm : ndarray, shape (...)
-        ``log10 |det D|``.
-    sign : ndarray, shape (...)
-        Sign of the determinant.
-
-    Raises
-    ------
-    BadInput
-        If a frequency is not positive, or there is none.
     """
     require_kind("problem", problem, Transcendental, "make one with dynamic_stiffness")
     rates = numbers("omega", omega)

@@ -54,29 +54,16 @@ def member_matrices(
     axial_stiffness: ArrayLike,
     mass_per_length: ArrayLike,
 ) -> tuple[Array, Array]:
-    """Return dynamic stiffness and mass of uniform beams in their own axes.
+    """Return dynamic stiffness and mass of uniform beams in their own axes, ``(..., n, 6, 6)``.
 
-    Aannaque (5.18) and (5.19): ``D(omega)`` gives the end forces of a harmonic motion, and
-    ``M = -dD/d(omega^2)`` its generalised mass; ``K = D + omega^2 M`` (5.17).
+    Aannaque (5.18) and (5.19): ``D(omega)`` gives the end forces of a harmonic motion, and ``M =
+    -dD/d(omega^2)`` its generalised mass; ``K = D + omega^2 M`` (5.17).  Rows are u1, v1, r1, u2,
+    v2, r2: displacement along and across the beam, rotation, of either end.
 
-    Parameters
-    ----------
-    omega : array_like, shape (...)
-        Frequency [rad/s].
-    length, bending_stiffness, axial_stiffness, mass_per_length : array_like, shape (n,)
-        L [m], EI [N m^2], EA [N], rho A [kg/m].  Complex stiffnesses stand for sections that lose
-        energy.  An infinite EA gives an inextensible beam: of the axial part the mass alone is
-        left, for displacements that are equal at both ends.
-
-    Returns
-    -------
-    stiffness, mass : ndarray, shape (..., n, 6, 6)
-        For u1, v1, r1, u2, v2, r2: displacement along and across the beam, rotation, of either end.
-
-    Raises
-    ------
-    BadInput
-        If a frequency is not finite, or a length, stiffness or mass not positive.
+    Frequencies [rad/s] have any shape; L [m], EI [N m^2], EA [N] and rho A [kg/m] shape ``(n,)``.
+    Complex stiffnesses stand for sections that lose energy.  An infinite EA gives an inextensible
+    beam: of the axial part the mass alone is left, for displacements that are equal at both ends.
+    Refused are frequencies that are not finite, and other numbers that are not positive.
     """
     rates = np.asarray(omega)
     if rates.dtype.kind not in "fciu" or not rates.size or not np.all(np.isfinite(rates)):

@@ -466,32 +466,12 @@ def stress_operator(
 ) -> tuple[LinearForm, tuple[Station, ...]]:
     """Return the stresses of both outer fibres as a linear form of the motion, for many speeds.
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a structure of beams whose sections have a thickness.
-    theta : array_like, shape (nt,)
-        Crank angles [rad].
-    stations : int or mapping of str to array_like, optional
-        Places on each beam, as :func:`stress` takes them.
-    method : str
-        ``"equilibrium"`` or ``"shape"``.
-    accelerations : bool
-        Whether d2q/dtheta2 stays in the form; else the equation of motion replaces it, so that the
-        form needs ``q`` and ``dq/dtheta`` alone.
-
-    Returns
-    -------
-    form : LinearForm
-        Parts ``(nt, 2 stations, n)`` by what they multiply and the power of the speed: first the
-        fibres on the positive sides of all stations, then those on the negative sides [Pa].
-    stations : tuple of Station
-        The places.
-
-    Raises
-    ------
-    BadInput
-        If an argument is unusable.
+    Of a structure of beams whose sections have a thickness, at crank angles [rad], ``(nt,)``;
+    stations and method are those of :func:`stress`.  With ``accelerations`` d2q/dtheta2 stays in
+    the form; else the equation of motion replaces it, so that the form needs ``q`` and
+    ``dq/dtheta`` alone.  Its parts are ``(nt, 2 stations, n)`` by what they multiply and the power
+    of the speed: first the fibres on the positive sides of all stations, then those on the negative
+    sides [Pa].
     """
     require_method(method)
     angles = numbers_in_a_row("theta", theta, " [rad]")

@@ -50,24 +50,9 @@ def dropped_names(module: ModuleType, drop: Collection[str]) -> tuple[Any, ...]:
 def array_function(module: ModuleType, name: str) -> Callable[..., dict[str, Array]]:
     """Return an emitted function of explicit entries as one that returns arrays.
 
-    Parameters
-    ----------
-    module : module
-        Emitted, with ``ARRAYS``.
-    name : str
-        Name of the function; where it is not emitted because all its entries are zero, the
-        arrays are zero.
-
-    Returns
-    -------
-    callable
-        Takes the arguments of the emitted function, which broadcast, and returns the arrays by
-        name, each of shape ``(*batch, rows, columns)``.
-
-    Raises
-    ------
-    BadInput
-        If the module has no such function.
+    It takes the arguments of the emitted function, which broadcast, and returns the arrays by name,
+    each of shape ``(*batch, rows, columns)``.  A function that is not emitted because all its
+    entries are zero gives zeros; one that the module does not know is refused.
     """
     known = getattr(module, "ARRAYS", {})
     if name not in known:

@@ -55,31 +55,13 @@ class MovingBasis(Protocol):
         """One name per shape."""
 
     def shapes(self, x: Array, place: Array, derivative: int = 0) -> Array:
-        """Return the shapes or a derivative by eta.
+        """Return the shapes or a derivative by eta, ``(nt, nx, n)``.
 
-        Parameters
-        ----------
-        x : ndarray
-            Places eta on the rod, from 0 to 1, shape ``(nx,)``.
-        place : ndarray
-            Places xi of the block, shape ``(nt,)``.
-        derivative : int
-            Which derivative by eta.
-
-        Returns
-        -------
-        ndarray
-            Shape ``(nt, nx, n)``.
+        At places eta on the rod, 0 to 1, ``(nx,)``, for places xi of the block, ``(nt,)``.
         """
 
     def array(self, name: str, place: Array) -> Array:
-        """Return the integrals of one name at places xi ``(nt,)``; ``(nt, n, n)`` or ``(nt, n)``.
-
-        Raises
-        ------
-        BadInput
-            If there is no array of that name.
-        """
+        """Return the integrals of one name at places xi; ``(nt, n, n)`` or ``(nt, n)``."""
 
 
 def require_array(name: str) -> None:

@@ -109,17 +109,9 @@ class FreeFreeModes:
         return self._constants[3]
 
     def __call__(self, eta: ArrayLike) -> tuple[Array, Array, Array, Array]:
-        """Return the modes and their first three derivatives along eta.
+        """Return the modes and three derivatives along eta, each ``(*eta.shape, size)``.
 
-        Parameters
-        ----------
-        eta : array_like
-            Places from the left end over the length, from 0 to 1, any shape.
-
-        Returns
-        -------
-        value, slope, curvature, third : ndarray
-            Shape ``(*eta.shape, size)`` each.
+        ``eta`` has places from the left end over the length, 0 to 1.
         """
         return self.at(np.asarray(eta, dtype=float)[..., None])
 
@@ -181,13 +173,7 @@ class FreeFreeBasis:
         return tuple(f"free-free {i}" for i in range(1, self.size + 1))
 
     def shapes(self, x: Array, place: Array, derivative: int = 0) -> Array:
-        """Return the shapes or a derivative by eta, to the third; see :class:`MovingBasis`.
-
-        Raises
-        ------
-        BadInput
-            If a point or the block is not on the rod, or the derivative is not one of 0 to 3.
-        """
+        """Return the shapes or a derivative by eta, to the third; see :class:`MovingBasis`."""
         derivative = require_derivative(derivative)
         lean, _ = self._lean(place)
         points = require_points(x)
@@ -199,15 +185,10 @@ class FreeFreeBasis:
         return np.broadcast_to(of_mode - taken, (len(lean), *of_mode.shape)).copy()
 
     def array(self, name: str, place: Array) -> Array:
-        """Return the integrals of one name at places xi ``(nt,)``; ``(nt, n, n)`` or ``(nt, n)``.
+        """Return the integrals of one name; see :class:`MovingBasis`.
 
         In closed form: the modes are orthonormal and free of mean and moment, so that only the
         straight parts of the shapes are left to integrate.
-
-        Raises
-        ------
-        BadInput
-            If there is no array of that name, or the block is not on the rod.
         """
         require_array(name)
         lean, rate = self._lean(place)

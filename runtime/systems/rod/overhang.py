@@ -93,25 +93,10 @@ def _brackets(place: Array, modes: int) -> tuple[Array, Array]:
 def overhang_roots(place: ArrayLike, modes: int) -> Array:
     """Return the roots beta of the rod pinned at an end, held at the block and free at the tip.
 
-    Each lies alone in a bracket (Wittrick and Williams' count with the two bays held at the
-    block); Newton's method, halving where it leaves the bracket, goes on to round-off.
-
-    Parameters
-    ----------
-    place : array_like
-        Places xi = x1/L of the block, shape ``(nt,)`` or a number; above 0, to 1.
-    modes : int
-        Number of roots, from 1 to 1000.
-
-    Returns
-    -------
-    ndarray
-        Shape ``(nt, modes)``, ascending; mode n solves ``e'''' = beta_n^4 e``.
-
-    Raises
-    ------
-    BadInput
-        If the block is not on the rod, or the number is not a whole one from 1 to 1000.
+    For places xi = x1/L of the block, above 0, to 1, ``(nt,)`` or a number, and up to 1000 modes:
+    ``(nt, modes)``, ascending; mode n solves ``e'''' = beta_n^4 e``.  Each root lies alone in a
+    bracket (Wittrick and Williams' count with the two bays held at the block); Newton's method,
+    halving where it leaves the bracket, goes on to round-off.
     """
     modes = require_modes(modes, _MOST, _WHY)
     xi = require_places(place, alone=True)
@@ -303,25 +288,10 @@ class OverhangBasis:
         bending_stiffness: float,
         mass_per_length: float,
     ) -> OverhangFrequencies:
-        """Return the natural frequencies of the rod with the block held still.
+        """Return the natural frequencies of the rod with the block held still (Beale & Scott 7).
 
-        ``omega_k`` of Beale & Scott (7).
-
-        Parameters
-        ----------
-        place : array_like
-            Places xi = x1/L of the block, shape ``(nt,)`` or a number; above 0, to 1.
-        length : float
-            Length L of the rod [m].
-        bending_stiffness : float
-            EI [N m^2].
-        mass_per_length : float
-            Mass per length [kg/m].
-
-        Raises
-        ------
-        BadInput
-            If the block is not on the rod, or a number is not positive and finite.
+        For places xi = x1/L of the block, above 0, to 1, ``(nt,)`` or a number; the length L [m],
+        EI [N m^2] and mass per length [kg/m] are positive.
         """
         require_numbers(
             {
@@ -361,11 +331,6 @@ class OverhangBasis:
         """Return the shapes or a derivative by eta, to the third; see :class:`MovingBasis`.
 
         At the block itself the third derivative is that on the side of the pin.
-
-        Raises
-        ------
-        BadInput
-            If a point or the block is not on the rod, or for a higher derivative.
         """
         derivative = require_derivative(derivative)
         values = (("left_amplitude",), ("right_amplitude",))
@@ -373,26 +338,9 @@ class OverhangBasis:
         return self._on_rod(x, place, both, values, derivative)
 
     def drift(self, x: Array, place: Array, derivative: int = 0) -> Array:
-        """Return the derivative of the shapes by the block's place xi, at fixed eta.
+        """Return the derivative of the shapes by the block's place xi ``(nt, nx, n)``.
 
-        Parameters
-        ----------
-        x : ndarray
-            Places eta on the rod, from 0 to 1, shape ``(nx,)``.
-        place : ndarray
-            Places xi of the block, shape ``(nt,)``.
-        derivative : int
-            Which further derivative by eta, to the second.
-
-        Returns
-        -------
-        ndarray
-            Shape ``(nt, nx, n)``.
-
-        Raises
-        ------
-        BadInput
-            If a point or the block is not on the rod, or for a higher derivative.
+        And its derivatives by eta, to the second; the places are those of :meth:`shapes`.
         """
         derivative = require_derivative(derivative, most=2)
         values = (
@@ -406,11 +354,6 @@ class OverhangBasis:
         """Return the integrals of one name at places xi; see :class:`MovingBasis`.
 
         Beale & Scott (8), (9), (11), and what else the canonical form needs.
-
-        Raises
-        ------
-        BadInput
-            If there is no array of that name, or the block is not on the rod.
         """
         require_array(name)
         if name in ("overlap", "bending"):

@@ -171,11 +171,6 @@ class _TwoSided:
         """Return the shapes or a derivative by eta, to the third; see :class:`MovingBasis`.
 
         At the block itself the values are those of the side of the pin.
-
-        Raises
-        ------
-        BadInput
-            If a point or the block is not on the rod, or for a higher derivative.
         """
         field = ("value", "slope", "curvature", "shear")[require_derivative(derivative)]
         eta = require_points(x)[None, :]
@@ -189,11 +184,6 @@ class _TwoSided:
         """Return the integrals of one name at places xi; see :class:`MovingBasis`.
 
         From tables that exact quadrature in long doubles gives once.
-
-        Raises
-        ------
-        BadInput
-            If there is no array of that name, or the block is not on the rod.
         """
         require_array(name)
         xi = self._places(place)

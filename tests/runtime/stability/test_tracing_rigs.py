@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from edge_truth import region_of
 from edge_truth import rig as smiths_rig
 from elastolink.runtime.hill import hill_boundaries, hill_form
 from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.stability import stability_edges
 from elastolink.runtime.stability.boundary_speeds import speed_boundaries
+from scipy.integrate import solve_ivp
 
 # The greatest measured inertia of the follower.
 INERTIA = 2.1467117515247174e-3
@@ -17,6 +19,32 @@ INERTIA = 2.1467117515247174e-3
 @pytest.fixture(scope="module")
 def rig():
     return smiths_rig(**{"model.modes": 2})
+
+
+def test_a_combination_region_ends_where_runge_kutta_says(rig):
+    """Where the discriminant of the sums of reciprocal multipliers, by DOP853, passes zero."""
+    found = stability_edges(rig, (81.0, 81.7))
+    at = region_of(found, "sum", 10)
+    flexibility = np.linalg.inv(rig.array("M", 0.0)[0])
+    stiffness = rig.array("K", 0.0)[0]
+
+    def slope(theta, state, speed):
+        q, rate = state.reshape(2, 2, 4)
+        force = (rig.array("B", theta)[0] - stiffness / speed**2) @ q
+        return np.concatenate([rate, flexibility @ force]).ravel()
+
+    def discriminant(speed):
+        fine = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-15}
+        run = solve_ivp(slope, (0.0, 2 * np.pi), np.eye(4).ravel(), args=(speed,), **fine)
+        whole = run.y[:, -1].reshape(4, 4)
+        return 2 * np.trace(whole @ whole) - np.trace(whole) ** 2 + 8
+
+    for end, way in ((found.lower[at], 0.02), (found.upper[at], -0.02)):
+        off = found.width[at] * way * np.array([-1.0, 0.0, 1.0])
+        values = [discriminant(end + place) for place in off]
+        assert values[0] > 0 > values[2]
+        roots = np.roots(np.polyfit(off, values, 2))
+        assert np.min(np.abs(roots)) < 1e-8
 
 
 @pytest.mark.parametrize("inertia", [pytest.param(6.55e-4, marks=pytest.mark.slow), INERTIA])

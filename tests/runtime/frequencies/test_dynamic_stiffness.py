@@ -5,15 +5,18 @@ from __future__ import annotations
 import mpmath
 import numpy as np
 import pytest
-from elastolink.runtime.beams import Section, frame
+from beam_motions import FOUR_BAR, JOINT_MASSES, SECTIONS
+from elastolink.runtime.beams import Section, beam_linkage, frame
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import Transcendental
 from elastolink.runtime.frequencies import (
     dynamic_stiffness,
+    element_matrices,
     log_determinant,
     member_matrices,
     wittrick_williams,
 )
+from scipy.linalg import eigvalsh
 
 CLAMPED, PINNED, FREE = ("x", "y", "rotation"), ("x", "y"), ()
 BAR = Section(area=1e-4, second_moment=1e-9, modulus=1e9, density=1e4)  # EI = rho A
@@ -148,6 +151,20 @@ def test_shapes_join_at_the_nodes_and_solve_the_field_equation():
         third = found.shape(mode, "beam", places)
         fourth = (third.third[2] - third.third[0]) / 2e-3
         assert abs(fourth - omega**2 * third.across[1]) < 1e-4 * (1 + omega**2) * size
+
+
+def test_linkage_against_its_finite_elements():
+    """Four-bar at two angles: quintic elements, a pin at each joint, masses on the joints."""
+    exact, fine = (
+        beam_linkage(FOUR_BAR, SECTIONS, joint_masses=JOINT_MASSES, **mesh)
+        for mesh in ({}, {"elements": 5, "kind": "internal_node"})
+    )
+    for theta in (0.4, 3.3):
+        found = wittrick_williams(dynamic_stiffness(exact, theta), count=6)
+        mass, stiffness, _ = element_matrices(fine, theta)
+        reference = np.sqrt(eigvalsh(stiffness, mass))[:6]
+        assert found.passed
+        np.testing.assert_allclose(found.frequencies, reference, rtol=5e-6)
 
 
 def test_plain_problems_are_bisected():

@@ -40,21 +40,10 @@ td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: 
 
 
 def figures(document: str | None = None, figure: str | None = None) -> tuple[FigureEntry, ...]:
-    """Return the figures that a document's name and a label choose.
+    """Return the figures that a document's name and a label choose; all by default.
 
-    Parameters
-    ----------
-    document : str, optional
-        Short name; all documents by default.
-    figure : str, optional
-        A label such as ``84`` or ``27(c)`` (``27c`` will do); a number alone stands for all its
-        parts, the letter of an appendix for all its sheets, ``C.3`` for the sheet that holds it.
-        All figures by default.
-
-    Raises
-    ------
-    BadInput
-        If there is no such document or figure.
+    A label such as ``84`` or ``27(c)`` (``27c`` will do); a number alone stands for all its parts,
+    the letter of an appendix for all its sheets, ``C.3`` for the sheet that holds it.
     """
     known = registry.documents()
     if document is not None and document not in known:
@@ -85,28 +74,9 @@ def reproduce(
 ) -> Gallery:
     """Redraw figures and compare every number that the text quotes with the computed one.
 
-    Parameters
-    ----------
-    document : str, optional
-        Short name of a document; all of them by default.
-    figure : str, optional
-        One figure, see :func:`figures`.
-    out : path, optional
-        Folder for the pictures (PNG) and ``index.html``: all appear, or none.  The same input
-        gives the same bytes.  By default nothing is written.
-    progress : bool
-        Whether to show a progress bar.
-
-    Returns
-    -------
-    Gallery
-        One check per quoted number: agreement, or, for a number known to differ, that it still
-        does.
-
-    Raises
-    ------
-    BadInput
-        If there is no such document or figure, or the folder cannot be written.
+    Document and figure as for :func:`figures`.  Into the folder ``out``, if any, go the pictures
+    (PNG) and ``index.html``: all appear, or none, and the same input gives the same bytes.  There
+    is one check per quoted number: agreement, or, for a number known to differ, that it still does.
     """
     chosen = figures(document, figure)
     shown, files = [], {}

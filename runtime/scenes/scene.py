@@ -35,14 +35,9 @@ _MISSING = object()
 
 
 class ReadOnlyTable(Mapping[str, Any]):
-    """A table of a scene that cannot be changed.
+    """A table of a scene that cannot be changed, its name known to messages.
 
-    Parameters
-    ----------
-    name : str
-        Name of the table, for messages.
-    values : mapping
-        By key: floats in SI units, tuples of them, whole numbers and texts.
+    By key: floats in SI units, tuples of them, whole numbers and texts.
     """
 
     __slots__ = ("_name", "_values")
@@ -65,14 +60,6 @@ class ReadOnlyTable(Mapping[str, Any]):
     def __len__(self) -> int:
         """Return the number of keys."""
         return len(self._values)
-
-    def __eq__(self, other: object) -> bool:
-        """Compare by content."""
-        return isinstance(other, Mapping) and self._values == dict(other)
-
-    def __hash__(self) -> int:
-        """Hash by content."""
-        return hash((self._name, tuple(sorted(self._values.items(), key=lambda item: item[0]))))
 
     def __repr__(self) -> str:
         """Show the values."""

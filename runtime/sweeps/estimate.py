@@ -17,30 +17,14 @@ from .sweeping import planned
 
 @dataclass(frozen=True)
 class SweepEstimate:
-    """Time and memory of a sweep, from working out one of its pieces.
-
-    Attributes
-    ----------
-    points, pieces : int
-        How many there are.
-    seconds : float
-        Of the whole sweep by so many workers, each of which has a core of its own.
-    piece_seconds : float
-        Of the piece that was timed.
-    bytes : int
-        Size of the outputs, in memory or in the store.
-    piece_bytes : int
-        Most memory that a worker held beside its subject while it did that piece.
-    workers : int
-        How many workers were assumed.
-    """
+    """Time and memory of a sweep, from working out one of its pieces."""
 
     points: int
     pieces: int
-    seconds: float
-    piece_seconds: float
-    bytes: int
-    piece_bytes: int
+    seconds: float  # of the whole sweep, each worker having a core of its own
+    piece_seconds: float  # of the piece that was timed
+    bytes: int  # of the outputs, in memory or in the store
+    piece_bytes: int  # most memory that a worker held beside its subject during that piece
     workers: int
 
     def __str__(self) -> str:
@@ -66,23 +50,6 @@ def estimate_sweep(
 
     The piece is done twice: once for the memory, and again for the time.  Where some points are
     far dearer than others, low speeds for one, the time is no better than to a small factor.
-
-    Parameters
-    ----------
-    what, subject, values, options, outputs, chunk
-        As :func:`sweep` takes them.
-    workers : int
-        How many workers there will be.
-
-    Returns
-    -------
-    SweepEstimate
-        Seconds and bytes.
-
-    Raises
-    ------
-    BadInput
-        If an argument is unusable.
     """
     check_workers(workers)
     plan = planned(what, subject, values, options, outputs, chunk)

@@ -12,8 +12,6 @@ from ..core.errors import bad
 from . import options as opt
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from ..linkages.clearance import ClearanceRange
 
 _JOINTS = ("12", "23", "34", "41")
@@ -39,19 +37,17 @@ def _clearance(options: argparse.Namespace) -> int:
     elastolink clearance smith_1972_2122 --at 23='0.1 mm' --at 34='0.05 mm'
     """
     cases = _cases(options)
-    theta = None
-    if options.angles is not None:
-        theta = opt.values(options.angles, "angle", "--angles")
+    given = options.angles
+    theta = None if given is None else opt.values(given, "angle", "--angles")
     linkage: Any = opt.load(options).mechanism()
     found = [
         linkages.clearance_range(linkage, size, theta, joint=joint, link=options.link)
         for _, size, joint in cases
     ]
 
-    def draw(ax: Axes) -> Axes:
+    def draw(ax: Any) -> None:
         for (label, *_), result in zip(cases, found, strict=True):
             result.plot(ax, label=label)
-        return ax
 
     if len(found) == 1:
         return opt.finish(options, found[0], _lines(found[0]), draw)
@@ -88,17 +84,28 @@ def _by_joint(texts: Sequence[str]) -> dict[str, float]:
 
 
 def _lines(found: ClearanceRange) -> list[str]:
-    """Return the extremes over the crank's range, and where the linkage can fold."""
+    """Return the range at some crank angles, its extremes, and where the linkage can fold."""
     import numpy as np
 
     scale, unit = (1.0, "m") if found.unit == "m" else (degrees(1.0), "deg")
+    chosen = opt.even_rows(found.theta2.size)
+    names = {"nominal": "nominal", "lower": "lower", "upper": "upper", "width": "width"}
+    names["small"] = "first order"
+    table = opt.columns(
+        ("theta2 [deg]", "z.4f", np.degrees(found.theta2[chosen])),
+        *(
+            (f"{words} [{unit}]", "z.7g", scale * getattr(found, name)[chosen])
+            for name, words in names.items()
+        ),
+        ("", "", ["folds" if folds else "" for folds in found.folds[chosen]]),
+    )
     sizes = ", ".join(f"{joint}: {size:.6g} m" for joint, size in found.clearances.items())
     rows = [
         (word, f"{degrees(extreme.theta2):.2f}", f"{scale * extreme.width:.6g}")
         for word, extreme in (("greatest", found.greatest), ("least", found.least))
     ]
     header = (f"free movement of the {found.link}", "crank angle [deg]", f"width [{unit}]")
-    lines = [*_table(found), "", f"clearance at {sizes}", *opt.table(header, rows)]
+    lines = [*table, "", f"clearance at {sizes}", *opt.table(header, rows)]
     if np.any(found.folds):
         first = degrees(float(np.ravel(found.theta2)[np.argmax(np.ravel(found.folds))]))
         lines.append(
@@ -106,22 +113,3 @@ def _lines(found: ClearanceRange) -> list[str]:
             f" {first:.4g} deg, the clearance lets the linkage pass into its other assembly"
         )
     return lines
-
-
-def _table(found: ClearanceRange) -> list[str]:
-    """Return the range at some of the crank angles."""
-    import numpy as np
-
-    unit = "m" if found.unit == "m" else "deg"
-    shown = np.asarray if found.unit == "m" else np.degrees
-    chosen = opt.even_rows(found.theta2.size)
-    names = {name: name for name in ("nominal", "lower", "upper", "width")}
-    names["small"] = "first order"
-    return opt.columns(
-        ("theta2 [deg]", "z.4f", np.degrees(found.theta2[chosen])),
-        *(
-            (f"{words} [{unit}]", "z.7g", shown(getattr(found, name)[chosen]))
-            for name, words in names.items()
-        ),
-        ("", "", ["folds" if folds else "" for folds in found.folds[chosen]]),
-    )

@@ -37,68 +37,32 @@ _LEFT_OUT = re.compile(r"Left out of the energies: ([^.]*)\.")
 
 @dataclass(frozen=True)
 class Stage:
-    """What one step of using a scene loads and runs, beyond the steps before it.
+    """What one step of using a scene loads and runs, beyond the steps before it."""
 
-    Attributes
-    ----------
-    modules, size : int
-        Modules of this toolkit that load, and bytes of their sources.
-    emitted : tuple of str
-        Emitted modules among them.
-    numpy, scipy : int
-        Modules of NumPy and SciPy that load.
-    heavy : tuple of str
-        Packages that load and that no solver needs, such as SymPy.
-    calls : mapping of str to int
-        How often each emitted function is called, by ``module.function``.
-    points : mapping of str to int
-        At how many points in all: angles, sections, roots.
-    operations : int
-        Arithmetic operations of these calls: operations of the function times points.
-    refused : str
-        Why the scene cannot do this step; empty where it can.
-    """
-
-    modules: int
-    size: int
-    emitted: tuple[str, ...]
-    numpy: int
+    modules: int  # of this toolkit that load
+    size: int  # bytes of their sources
+    emitted: tuple[str, ...]  # emitted modules among them
+    numpy: int  # modules of NumPy and of SciPy that load
     scipy: int
-    heavy: tuple[str, ...]
-    calls: Mapping[str, int]
-    points: Mapping[str, int]
-    operations: int
-    refused: str
+    heavy: tuple[str, ...]  # packages that load and that no solver needs, such as SymPy
+    calls: Mapping[str, int]  # how often each emitted function is called, by module.function
+    points: Mapping[str, int]  # at how many points in all: angles, sections, roots
+    operations: int  # arithmetic of these calls: operations of the function times points
+    refused: str  # why the scene cannot do this step; empty where it can
 
 
 @dataclass(frozen=True)
 class EmittedUse:
-    """What one emitted module costs, and how a scene uses it.
+    """What one emitted module costs, and how a scene uses it."""
 
-    Attributes
-    ----------
-    size, operations : int
-        Bytes of its text; operations of all its functions together.
-    functions : mapping of str to int
-        Operations per evaluation of each function.
-    left_out : tuple of str
-        Terms that the formulation itself leaves out of the energies.
-    kept, dropped : tuple of str
-        Physical terms that the model can leave out: those that stayed, and those that did not.
-    called : tuple of str
-        Functions that some step of :attr:`Explanation.stages` called.
-    full_size, full_operations : int or None
-        Bytes and operations of the module of the same formulation with every term and every
-        output; None where that one was not emitted.
-    """
-
-    size: int
-    operations: int
-    functions: Mapping[str, int]
-    left_out: tuple[str, ...]
-    kept: tuple[str, ...] = ()
-    dropped: tuple[str, ...] = ()
-    called: tuple[str, ...] = ()
+    size: int  # bytes of its text
+    operations: int  # of all its functions together
+    functions: Mapping[str, int]  # operations per evaluation of each function
+    left_out: tuple[str, ...]  # terms that the formulation itself leaves out of the energies
+    kept: tuple[str, ...] = ()  # physical terms that the model can leave out, and that stayed
+    dropped: tuple[str, ...] = ()  # and those that did not
+    called: tuple[str, ...] = ()  # functions that some step of Explanation.stages called
+    # Of the module of the same formulation with every term and output; None if not emitted.
     full_size: int | None = None
     full_operations: int | None = None
 
@@ -159,10 +123,9 @@ class Explanation(Result):
         done = {name: s.operations for name, s in self.stages.items() if s.calls}
         names = list(done)[::-1]
         ax.barh(names, [done[name] for name in names], color="C0")
+        look: dict[str, Any] = {"va": "center", "fontsize": "small", "color": "0.3"}
         for place, name in enumerate(names):
-            ax.annotate(
-                f" {done[name]}", (done[name], place), va="center", fontsize="small", color="0.3"
-            )
+            ax.annotate(f" {done[name]}", (done[name], place), **look)
         ax.set_xscale("symlog", linthresh=10.0)
         ax.margins(x=0.12)
         ax.set_xlabel("operations of emitted functions")

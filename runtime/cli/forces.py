@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Mapping
 from dataclasses import asdict
+from functools import partial
 from math import degrees
 from typing import TYPE_CHECKING, Any
 
@@ -14,8 +15,6 @@ from . import options as opt
 from .linkages import WHOLE_TURN, angles_of, drive_of, drive_options
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from ..core.results import Result
 
 _JOINTS = ("12", "23", "34", "41", "frame", "torque", "moment")
@@ -51,10 +50,7 @@ def _forces(options: argparse.Namespace) -> int:
     peaks = rigid.force_peaks(machine, speed, acceleration, span=span)
     lines = [*_table(peaks), "", *even]
     more = {"peaks": {name: asdict(peak) for name, peak in peaks.items()}, **numbers}
-
-    def draw(ax: Axes) -> Axes:
-        return found.plot(ax, joint=options.joint)
-
+    draw = partial(found.plot, joint=options.joint)
     return opt.finish(options, found, lines, draw, more=more, beside=beside)
 
 

@@ -10,7 +10,6 @@ import os
 import tempfile
 import warnings
 from collections.abc import Mapping, Sequence
-from contextlib import ExitStack, suppress
 from html import escape
 from pathlib import Path
 
@@ -238,46 +237,19 @@ def _html(header: Sequence[str], rows: Sequence[str]) -> str:
 
 
 def write_together(folder: Path, contents: Mapping[str, bytes]) -> None:
-    """Write files into a folder; on an error or an interrupt it is left as it was.
+    """Write files into a folder, others there staying; a folder that cannot be written is refused.
 
-    The files are written beside the folder's own first, then moved.  Other files in the folder
-    stay.  A folder that cannot be made or written is refused.
+    All are written beside the folder's own first, then moved: what fails or is interrupted while
+    writing leaves the folder as it was.
     """
-    missing = [path for path in (folder, *folder.parents) if not path.exists()]
-    with ExitStack() as whole:
-        whole.callback(_remove, missing)
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            staging = tempfile.TemporaryDirectory(prefix=".gallery.", dir=folder)
-        except OSError as refusal:
-            reason = refusal.strerror or "an error"
-            expected = "a folder that can be written"
-            raise bad(str(folder), reason, expected, "choose another") from refusal
-        with staging as place, ExitStack() as undo:
-            new, old = Path(place, "new"), Path(place, "old")
-            new.mkdir()
-            old.mkdir()
-            for name, content in contents.items():
-                (new / name).write_bytes(content)
-            for name in contents:
-                undo.callback(_restore, folder / name, new / name, old / name)
-                if (folder / name).exists():
-                    (folder / name).replace(old / name)
-                (new / name).replace(folder / name)
-            undo.pop_all()
-        whole.pop_all()
-
-
-def _restore(target: Path, new: Path, old: Path) -> None:
-    """Take back the move of a new file to its place, however far it came."""
-    if old.exists():
-        old.replace(target)
-    elif not new.exists():
-        target.unlink()
-
-
-def _remove(folders: list[Path]) -> None:
-    """Remove those of the folders, the innermost first, that are there and empty."""
-    for folder in folders:
-        with suppress(OSError):
-            folder.rmdir()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        staging = tempfile.TemporaryDirectory(prefix=".gallery.", dir=folder)
+    except OSError as refusal:
+        reason = refusal.strerror or "an error"
+        raise bad(str(folder), reason, "a folder that can be written", "choose another") from refusal
+    with staging as place:
+        for name, content in contents.items():
+            Path(place, name).write_bytes(content)
+        for name in contents:
+            Path(place, name).replace(folder / name)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from .. import design, frequencies, recovery
 from ..core.errors import bad
 from . import options as opt
-from .linkages import refuse_frame, speed_of, speed_range
+from .linkages import moving_scene, speed_of, speed_range
 
 if TYPE_CHECKING:
     from ..core.families import LinearPeriodic
@@ -46,9 +46,7 @@ def add(commands: Any) -> None:
 
 def _of_beams(options: argparse.Namespace, *, moving: bool = False) -> tuple[Scene, LinearPeriodic]:
     """Return the scene and its system, refused where the links are no beams."""
-    scene = opt.load(options)
-    if moving:
-        refuse_frame(scene)
+    scene = moving_scene(options) if moving else opt.load(options)
     system = scene.linear_system()
     if system.structure is not None:
         return scene, system
@@ -87,13 +85,10 @@ def _critical(options: argparse.Namespace) -> int:
 
     elastolink critical-speeds aannaque_1996_table_4_1 --range 20:70 --method mean_frequency
     """
-    scene = opt.load(options)
-    refuse_frame(scene)
+    scene, shown = moving_scene(options), opt.progress(options)
     speeds = speed_range(options.range, scene, "--range")
     system = scene.linear_system()
-    found = frequencies.critical_speeds(
-        system, speeds, method=options.method, progress=opt.progress(options)
-    )
+    found = frequencies.critical_speeds(system, speeds, method=options.method, progress=shown)
     lines = opt.columns(
         ("speed [rad/s]", ".6g", found.speed),
         ("mode", "", [mode for mode, _ in found.labels]),
@@ -108,8 +103,7 @@ def _campbell(options: argparse.Namespace) -> int:
 
     elastolink campbell aannaque_1996_table_4_1 --range 5:70 --plot campbell.png
     """
-    scene = opt.load(options)
-    refuse_frame(scene)
+    scene = moving_scene(options)
     speeds = opt.spaced(*speed_range(options.range, scene, "--range"), 27)
     found = frequencies.campbell(scene.linear_system(), speeds, progress=opt.progress(options))
     return opt.finish(options, found, opt.ranges(found))

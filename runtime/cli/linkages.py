@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -39,12 +40,10 @@ def add(commands: Any) -> None:
 
 
 def _pair(text: str) -> tuple[float, float]:
-    try:
+    with suppress(ValueError):
         q, qd = map(float, text.split(","))
         if math.isfinite(q) and math.isfinite(qd):
             return q, qd
-    except ValueError:
-        pass
     found = f"found {text!r}; expected two finite numbers, such as 0.001,0"
     raise argparse.ArgumentTypeError(found)
 
@@ -175,11 +174,13 @@ def speed_range(text: str | None, scene: Scene, where: str) -> tuple[float, floa
     return ends[0], ends[1]
 
 
-def refuse_frame(scene: Scene) -> None:
-    """Refuse a scene without a crank."""
+def moving_scene(options: argparse.Namespace) -> Scene:
+    """Return the scene that the options name; one without a crank is refused."""
+    scene = opt.load(options)
     if scene.model["mechanism"] == "frame":
         fix = "use frequencies or stress"
         raise bad(f"scene {scene.name}", "a frame, which has no crank", "a linkage", fix)
+    return scene
 
 
 def _speed(options: argparse.Namespace, scene: Scene) -> float:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from .. import periodic
 from ..core.errors import bad
 from . import options as opt
-from .linkages import refuse_frame, speeds_of, speeds_option
+from .linkages import moving_scene, speeds_of, speeds_option
 
 if TYPE_CHECKING:
     from ..core.families import Array
@@ -38,8 +38,7 @@ def _steady_state(options: argparse.Namespace) -> int:
 
     if options.at is not None and not 0.0 <= options.at <= 1.0:
         raise bad("--at", f"{options.at:g}", "a place from 0 to 1", "divide by the length")
-    scene = opt.load(options)
-    refuse_frame(scene)
+    scene = moving_scene(options)
     speeds = speeds_of(options, scene)
     system = scene.linear_system()
     if system.structure is not None:

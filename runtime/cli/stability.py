@@ -233,12 +233,11 @@ def _default_axis(axis: str, scene: Scene) -> Axis:
     inertias = scene.get("measured.follower_inertias", None)
     if axis == "y" and name in {None, "follower_inertia"} and inertias:
         return "follower_inertia", opt.spaced(0.9 * min(inertias), 1.1 * max(inertias), points)
-    raise bad(
-        f"--{axis}",
+    found, fix = (
         f"no chart.{axis}_range in scene {scene.name}",
-        "a parameter and its values",
         f"give --{axis} NAME=START:STOP:COUNT",
     )
+    raise bad(f"--{axis}", found, "a parameter and its values", fix)
 
 
 def _check_scale(options: argparse.Namespace) -> int:
@@ -280,9 +279,8 @@ def _stored(
         return opt.say(options, vars(found), str(found))
     shown = opt.progress(options)
     with _workers(count) as pool:
-        chart = sweeps.sweep(
-            *what, options=fixed, executor=pool, store=options.store, progress=shown
-        )
+        told = {"executor": pool, "store": options.store, "progress": shown}
+        chart = sweeps.sweep(*what, options=fixed, **told)
     left = 100.0 * float(chart["undecided"].mean())
     lines = [
         *_shares((x, y), chart["stable"], chart["kind"]),

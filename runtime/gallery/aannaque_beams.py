@@ -25,8 +25,7 @@ from ..recovery.stress_over_speed import StressCurve, stress_curve
 from ..scenes import load_scene
 from ..systems import with_modal_damping
 from .drawing import COLOURS, Array, Panels, turn
-from .records import Drawn
-from .registry import contents
+from .records import Drawn, contents
 
 SCENE = "aannaque_1996_table_4_1"
 # The thesis' form (7.1), without stiffening; and the whole of the equations.

@@ -12,7 +12,7 @@ from itertools import combinations_with_replacement
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..constrained import constrained_motion
 from ..core.families import LinearPeriodic
@@ -25,7 +25,7 @@ from ..scenes import load_scene
 from ..stability import StabilityChart, stability_chart
 from ..systems.rod import FreeFreeRod
 from . import sketch
-from .drawing import COLOURS, Array, Axes, Panels, panel_title
+from .drawing import COLOURS, Array, Axes, Panels, panel_title, peak
 from .records import Drawn
 
 STIFF = "beale_1992_bahgat_willmert"
@@ -117,11 +117,6 @@ def stiff_tip(
 ) -> tuple[Array, Array]:
     """Return the first turn of the stiff rod: crank angles and the tip's deflection [m]."""
     return tip_from_rest(rod(scene, formulation, modes, drop), SPEED)
-
-
-def peak(values: NDArray[Any]) -> float:
-    """Return the largest size."""
-    return float(np.max(np.abs(values)))
 
 
 def _gap(one: Array, other: Array) -> float:

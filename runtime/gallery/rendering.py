@@ -18,7 +18,7 @@ import numpy as np
 from ..core.errors import LinearRangeWarning, bad
 from ..core.progress import bar
 from ..core.results import Check
-from . import registry
+from . import records
 from .records import KINDS, FigureEntry, Gallery, Quoted, Shown, Table, counts
 
 _CSS = """
@@ -44,7 +44,7 @@ def figures(document: str | None = None, figure: str | None = None) -> tuple[Fig
     A label such as ``84`` or ``27(c)`` (``27c`` will do); a number alone stands for all its parts,
     the letter of an appendix for all its sheets, ``C.3`` for the sheet that holds it.
     """
-    known = registry.documents()
+    known = records.documents()
     if document is not None and document not in known:
         raise bad("document", repr(document), f"one of {sorted(known)}", "correct the name")
     names = list(known) if document is None else [document]
@@ -123,16 +123,14 @@ def render(entry: FigureEntry, *, picture: bool = True) -> tuple[Shown, bytes | 
 
 def _gallery(shown: Sequence[Shown], folder: str, files: tuple[str, ...]) -> Gallery:
     checks: dict[str, Check] = {}
-    worst = 0.0
     for item in shown:
         for row in item.quoted:
-            name = f"{item.entry.document} {item.entry.label}: {row.number}"
-            checks[name if not row.differs else f"{name} (known to differ)"] = row.check
-            if not row.differs:
-                worst = max(worst, row.share)
+            known = " (known to differ)" if row.differs else ""
+            checks[f"{item.entry.document} {item.entry.label}: {row.number}{known}"] = row.check
+    shares = (row.share for item in shown for row in item.quoted if not row.differs)
     return Gallery(
         method="figures redrawn from built-in scenes",
-        error=worst,
+        error=max(shares, default=0.0),
         error_norm="largest deviation of a quoted number over its tolerance",
         checks=checks,
         shown=tuple(shown),
@@ -246,8 +244,8 @@ def write_together(folder: Path, contents: Mapping[str, bytes]) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         staging = tempfile.TemporaryDirectory(prefix=".gallery.", dir=folder)
     except OSError as refusal:
-        reason = refusal.strerror or "an error"
-        raise bad(str(folder), reason, "a folder that can be written", "choose another") from refusal
+        found, expected = refusal.strerror or "an error", "a folder that can be written"
+        raise bad(str(folder), found, expected, "choose another") from refusal
     with staging as place:
         for name, content in contents.items():
             Path(place, name).write_bytes(content)

@@ -17,8 +17,7 @@ from ..hill.bloch import effective_operator
 from ..periodic import FloquetMultipliers, floquet_multipliers
 from ..stability import stability_edges
 from .drawing import COLOURS, Array, Panels, panel_title
-from .records import Drawn
-from .registry import contents
+from .records import Drawn, contents
 from .smith_linkages import LBF_IN_S2, RIG, RPM, OfRig, region_name
 
 

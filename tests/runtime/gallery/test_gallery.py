@@ -11,7 +11,7 @@ import pytest
 from elastolink.runtime.cli import main
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.plotting import new_figure
-from elastolink.runtime.gallery import Drawn, FigureEntry, Quoted, figures, registry, reproduce
+from elastolink.runtime.gallery import Drawn, FigureEntry, Quoted, figures, records, reproduce
 from elastolink.runtime.gallery.rendering import render, write_together
 from elastolink.runtime.gallery.sketch import arrow, turning_arrow
 
@@ -43,7 +43,7 @@ def entry_with(*rows):
 
 
 def only(monkeypatch, *rows):
-    monkeypatch.setattr(registry, "documents", lambda: {"smith": (entry_with(*rows),)})
+    monkeypatch.setattr(records, "documents", lambda: {"smith": (entry_with(*rows),)})
 
 
 @pytest.mark.parametrize(

@@ -100,15 +100,11 @@ def _choose(
 
 
 def _top_level(document: Mapping[str, Any], layout: Layout, problems: list[Problem]) -> None:
-    tables = [table.name for table in layout.all_tables()]
-    known = [*tables, "title", "source"]
+    known = [*(table.name for table in layout.all_tables()), "title", "source"]
     for name, value in document.items():
-        if name in {"title", "source"}:
-            if not isinstance(value, str):
-                problems.append(Problem(name, show(value), "a text", "put it in quotes"))
-        elif name == "schema":
-            continue
-        elif name not in known:
+        if name in {"title", "source"} and not isinstance(value, str):
+            problems.append(Problem(name, show(value), "a text", "put it in quotes"))
+        elif name not in {*known, "schema"}:
             kind = "table" if isinstance(value, Mapping) else "key"
             fix = nearest(name, known, f"remove it, or correct {kind} and mechanism")
             where = f"[{name}]" if kind == "table" else name
@@ -121,7 +117,8 @@ def _table(
     given = document.get(table.name)
     if given is None:
         if not table.required:
-            return None if table.named else _defaults(table) or None
+            defaults = {key.name: key.default for key in table.keys if key.default is not None}
+            return None if table.named else defaults or None
         need = ", ".join(key.name for key in table.keys if key.required)
         fix = f"add it, with {need}" if need else "add it"
         problems.append(Problem(f"[{table.name}]", "nothing", f"a table: {table.meaning}", fix))
@@ -161,10 +158,6 @@ def _named_tables(
             fix = f"write [{table.name}.NAME] above the keys"
             problems.append(Problem(full, show(content), "a table under a name", fix))
     return found
-
-
-def _defaults(table: Table) -> dict[str, Any]:
-    return {key.name: key.default for key in table.keys if key.default is not None}
 
 
 def _unknown_keys(

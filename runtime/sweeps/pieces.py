@@ -8,12 +8,12 @@ from math import prod
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.errors import bad
+from ..core.families import Array
 from ..core.inputs import is_whole
 
-Array = NDArray[np.float64]
 _MOST_POINTS = 10**12
 
 

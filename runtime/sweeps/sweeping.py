@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.errors import bad, warn_of_large_deflection
 from ..core.families import LinearPeriodic
@@ -22,9 +22,7 @@ from .pieces import Grid, check_chunk, grid_of
 from .requests import request_of
 from .result import Sweep
 from .store import Store
-from .tasks import NAMED, Outputs, Piece, Task, task_of
-
-AnyArray = NDArray[Any]
+from .tasks import NAMED, AnyArray, Outputs, Piece, Task, task_of
 
 
 def sweep(
@@ -96,19 +94,17 @@ def sweep(
     """
     plan = planned(what, subject, values, options, outputs, chunk)
     check_executor(executor)
-    found = _swept(plan, executor, store, progress)
+    if store is None:
+        found = _in_memory(plan, executor, progress)
+    else:
+        found = _stored(plan, executor, _place(store), progress)
     if plan.task.name == "steady_state" and "linear range" in found.checks:
         warn_of_large_deflection(found.checks["linear range"].value)
     return found
 
 
-def _swept(
-    plan: Plan, executor: Executor | None, store: str | os.PathLike[str] | None, progress: bool
-) -> Sweep:
+def _stored(plan: Plan, executor: Executor | None, place: Path, progress: bool) -> Sweep:
     """Return the whole sweep, from the store what is there."""
-    if store is None:
-        return _in_memory(plan, executor, progress)
-    place = _place(store)
     request = request_of(plan.task.name, plan.subject, plan.grid, plan.options, plan.outputs)
     kept = Store(place, request, plan.grid)
     done = kept.finished()

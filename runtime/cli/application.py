@@ -25,8 +25,8 @@ from .options import HelpFormatter, add, picture
 
 # Files of subcommands, in the order of the help.
 _GROUPS = (
-    *("scenes", "linkages", "classification", "curves", "tolerances", "forces"),
-    *("balancing", "response", "beams", "stability", "boundaries", "proofs"),
+    *("scenes", "linkages", "curves", "tolerances", "forces", "balancing"),
+    *("response", "beams", "stability", "boundaries", "proofs"),
 )
 _BAD_INPUT = 2
 _INTERRUPTED = 130

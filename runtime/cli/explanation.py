@@ -6,6 +6,7 @@ import pickle
 import re
 import subprocess
 import sys
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from os import PathLike
@@ -177,6 +178,8 @@ def explain(
     system = _system(loaded)
     speed = None if system is None else _speed(loaded, system)
     counted = _counted({**request, "speed": speed})
+    outputs = sorted(loaded.layout.outputs)
+    wanted = loaded.model["outputs"] or outputs
     known = _known()
     costs = {entry.module: cost for entry, cost in known.values()}
     each = {f"{name}.{f}": n for name, cost in costs.items() for f, n in cost.functions.items()}
@@ -200,7 +203,7 @@ def explain(
         scene=loaded.name,
         model=loaded.model_spec().name(),
         terms=_terms(loaded),
-        outputs=_outputs(loaded),
+        outputs={name: "wanted" if name in wanted else "not wanted" for name in outputs},
         emitted={name: _use(name, loaded, known, called) for name in serving},
         packaged=(
             len(costs),
@@ -323,12 +326,6 @@ def _terms(scene: Scene) -> dict[str, str]:
     return {name: "dropped" if name in dropped else "kept" for name in sorted(offered)}
 
 
-def _outputs(scene: Scene) -> dict[str, str]:
-    known = sorted(scene.layout.outputs)
-    wanted = scene.model["outputs"] or known
-    return {name: "wanted" if name in wanted else "not wanted" for name in known}
-
-
 def _of_linear(system: LinearPeriodic, speed: float) -> dict[str, Any]:
     """Return what a linear-periodic system evaluates, as fields of an :class:`Explanation`.
 
@@ -384,24 +381,22 @@ def _listed(names: Iterable[str]) -> str:
 
 def _by_kind(kinds: Mapping[str, str]) -> dict[str, list[str]]:
     """Return the names of each kind."""
-    found: dict[str, list[str]] = {}
+    found: dict[str, list[str]] = defaultdict(list)
     for name, kind in kinds.items():
-        found.setdefault(kind, []).append(name)
+        found[kind].append(name)
     return found
 
 
 def _emission_lines(found: Explanation) -> Iterator[str]:
-    kinds = _by_kind(found.terms) | _by_kind(found.outputs)
-    told = {
-        kind: _listed(kinds.get(kind, ())) for kind in ("kept", "dropped", "wanted", "not wanted")
-    }
+    terms, outputs = _by_kind(found.terms), _by_kind(found.outputs)
     yield "derivation"
-    yield f"  terms kept: {told['kept']}; left out: {told['dropped']}"
+    yield f"  terms kept: {_listed(terms['kept'])}; left out: {_listed(terms['dropped'])}"
     for name, use in found.emitted.items():
         if use.left_out:
             yield f"  left out by the formulation of {name}: {', '.join(use.left_out)}"
     if found.outputs:
-        yield f"  outputs wanted: {told['wanted']}; not wanted: {told['not wanted']}"
+        wanted, others = (_listed(outputs[kind]) for kind in ("wanted", "not wanted"))
+        yield f"  outputs wanted: {wanted}; not wanted: {others}"
     count, size, operations = found.packaged
     uses = found.emitted.values()
     yield "emission"
@@ -445,13 +440,12 @@ def _evaluation_lines(found: Explanation) -> Iterator[str]:
         if not stage.calls:
             continue
         yield f"  {name}: {stage.operations} operations of emitted functions"
-        calls: dict[str, list[str]] = {}
+        calls: dict[str, list[str]] = defaultdict(list)
         for called, times in stage.calls.items():
             module, _, function = called.rpartition(".")
             points = stage.points[called]
             more = f" in {times} calls" if times > 1 else ""
-            text = f"{function} at {points} point{'s' * (points > 1)}{more}"
-            calls.setdefault(module, []).append(text)
+            calls[module].append(f"{function} at {points} point{'s' * (points > 1)}{more}")
         yield from (f"    {module}: {', '.join(functions)}" for module, functions in calls.items())
     kinds = _by_kind(found.array_kinds)
     if kinds:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
 from dataclasses import asdict
 from functools import partial
 from math import degrees, pi
@@ -66,10 +65,15 @@ def _forces(options: argparse.Namespace) -> int:
     even, numbers, beside = _evenness(machine, speed, options.fluctuation)
     span = float(theta[0]), float(theta[-1])
     peaks = rigid.force_peaks(machine, speed, acceleration, span=span)
-    lines = [*_table(peaks), "", *even]
+    # No minus before a zero.
+    table = opt.columns(
+        ("quantity", "", [_LABELS[name] for name in peaks]),
+        ("peak", "z.6g", [peak.value for peak in peaks.values()]),
+        ("crank angle [deg]", "z.2f", [degrees(peak.crank_angle) for peak in peaks.values()]),
+    )
     more = {"peaks": {name: asdict(peak) for name, peak in peaks.items()}, **numbers}
     draw = partial(found.plot, joint=options.joint)
-    return opt.finish(options, found, lines, draw, more=more, beside=beside)
+    return opt.finish(options, found, [*table, "", *even], draw, more=more, beside=beside)
 
 
 _LABELS = {
@@ -79,16 +83,6 @@ _LABELS = {
     "shaking_moment": "moment on the frame [N m]",
     **{f"couple{joint}": f"couple of the slide {joint} [N m]" for joint in ("34", "41")},
 }
-
-
-def _table(peaks: Mapping[str, rigid.ForcePeak]) -> list[str]:
-    """Return the greatest size of each force, and where."""
-    # No minus before a zero.
-    return opt.columns(
-        ("quantity", "", [_LABELS[name] for name in peaks]),
-        ("peak", "z.6g", [peak.value for peak in peaks.values()]),
-        ("crank angle [deg]", "z.2f", [degrees(peak.crank_angle) for peak in peaks.values()]),
-    )
 
 
 def _evenness(

@@ -1,7 +1,4 @@
-"""Redraw the figures of the documents and check the numbers that they quote.
-
-The page is one HTML file, its pictures beside it, written together.
-"""
+"""Redraw the figures of the documents and check their numbers: an HTML page with its pictures."""
 
 from __future__ import annotations
 
@@ -78,22 +75,32 @@ def reproduce(
     is one check per quoted number: agreement, or, for a number known to differ, that it still does.
     """
     chosen = figures(document, figure)
+    folder = None if out is None else _writable(Path(out))
     shown, files = [], {}
     with bar(progress, len(chosen)) as tick:
         for done, entry in enumerate(chosen, start=1):
-            item, picture = render(entry, picture=out is not None)
+            item, picture = render(entry, picture=folder is not None)
             shown.append(item)
             if picture is not None:
                 files[f"{entry.stem}.png"] = picture
                 files |= {name: text.encode() for name, text in item.files.items()}
             if tick is not None:
                 tick(done)
-    if out is not None:
+    if folder is not None:
         names = ", ".join(sorted({entry.document.capitalize() for entry in chosen}))
         title = f"Figures of {names}, redrawn and checked"
         files = {"index.html": page(title, shown).encode(), **files}
-        write_together(Path(out), files)
+        write_together(folder, files)
     return _gallery(shown, "" if out is None else str(out), tuple(files))
+
+
+def _writable(folder: Path) -> Path:
+    """Return a folder that can be made or written, refused here before any work starts."""
+    whole = folder.absolute()
+    there = next(path for path in (whole, *whole.parents) if path.exists())
+    if not there.is_dir() or not os.access(there, os.W_OK):
+        raise bad("--out", repr(str(folder)), "a folder that can be written", "choose another")
+    return folder
 
 
 def render(entry: FigureEntry, *, picture: bool = True) -> tuple[Shown, bytes | None]:
@@ -235,18 +242,13 @@ def _html(header: Sequence[str], rows: Sequence[str]) -> str:
 
 
 def write_together(folder: Path, contents: Mapping[str, bytes]) -> None:
-    """Write files into a folder, others there staying; a folder that cannot be written is refused.
+    """Write files into a folder, made where there is none; others there stay.
 
     All are written beside the folder's own first, then moved: what fails or is interrupted while
     writing leaves the folder as it was.
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        staging = tempfile.TemporaryDirectory(prefix=".gallery.", dir=folder)
-    except OSError as refusal:
-        found, expected = refusal.strerror or "an error", "a folder that can be written"
-        raise bad(str(folder), found, expected, "choose another") from refusal
-    with staging as place:
+    folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=".gallery.", dir=folder) as place:
         for name, content in contents.items():
             Path(place, name).write_bytes(content)
         for name in contents:

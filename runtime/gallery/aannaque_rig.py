@@ -268,8 +268,7 @@ def cycles(
 ) -> tuple[Array, Mapping[tuple[str, float], Array]]:
     """Return crank angles [rad] and stresses [Pa] at the gauges, ``(ns, nt)``, by link and place.
 
-    Those of the outer fibre to the left of the link's direction, tension positive, at crank speeds
-    [rad/s].
+    Those of the outer fibre to the left of the link's direction, tension positive.
     """
     system = rig(scene, frame)
     motion = steady_state(system, np.array(speeds), rtol=1e-5)

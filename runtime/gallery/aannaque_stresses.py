@@ -133,11 +133,7 @@ def _response(frame: float) -> tuple[Array, Array]:
 
 
 def six_frames(axes: Panels, quantity: str) -> Drawn:
-    """Draw a quantity over the speed for six frames (Figs. 7.4 to 7.6).
-
-    The rms displacement of the follower's midpoint, the crank's largest stress, or the peak of the
-    strain energy.
-    """
+    """Draw ``displacement``, ``stress`` or ``energy`` over the speed, six frames (7.4 to 7.6)."""
     ax, speed = axes[0], _COARSE
     if quantity == "stress":
         speed = np.linspace(20.0, 70.0, 251)

@@ -1,8 +1,4 @@
-"""Beale and Scott's figures: the tip by polynomial and free-free modes, resonances, a chart.
-
-Figs. 2 to 10 are the tip's deflection by polynomial and by free-free modes, Figs. 11 and 12 the
-response near the natural frequency; the stability chart is one that they left undone.
-"""
+"""Beale and Scott's Figs. 2 to 12: a tip by polynomial and free-free modes, resonances; a chart."""
 
 from __future__ import annotations
 

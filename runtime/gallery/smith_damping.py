@@ -176,10 +176,7 @@ _KINDS = {
 
 
 class _Region(NamedTuple):
-    """One unstable region in rpm: kind, label, ends and width without damping, what damping leaves.
-
-    The last is about the width that the lowest decrement measured at rest leaves.
-    """
+    """One unstable region in rpm, and what the lowest measured decrement leaves of its width."""
 
     kind: str
     label: str

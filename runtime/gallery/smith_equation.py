@@ -1,7 +1,4 @@
-"""Smith's Figs. 28 to 38: the coupler equation solved step by step, charts and space of its edges.
-
-The charts are over lambda^2 and mu; the space is that of Hill's equation with two functions.
-"""
+"""Smith's Figs. 28 to 38: the coupler equation step by step, charts and space of its edges."""
 
 from __future__ import annotations
 
@@ -192,10 +189,7 @@ def _edges(ax: Axes, mu: Array, ends: Array, style: str, colour: str, label: str
 
 
 def _to_order(f: PeriodicFunction, mu: Array, regions: Sequence[int], order: int) -> Array:
-    """Return lower and upper ends by Smith's series (7.25), (7.37), ``(2, regions, mu)``.
-
-    They are drawn beyond where they are good.
-    """
+    """Return both ends by (7.25), (7.37), also where they are poor, ``(2, regions, mu)``."""
     return np.stack([boundary_series(f, n, order)(mu) for n in regions], axis=1)
 
 
@@ -237,10 +231,7 @@ def figure_35(axes: Panels) -> Drawn:
 
 
 def damped(axes: Panels, regions: list[int], dampings: list[float], top: float) -> None:
-    """Draw regions up to a mu for several dampings, exact and, of a single one, to first order.
-
-    Figs. 36 and 37.
-    """
+    """Draw regions for several dampings, exact and, of a single one, first order (Figs. 36, 37)."""
     f, ax = series(_LINKAGE), axes[0]
     for damping, colour in zip(dampings, COLOURS, strict=False):
         # Closer values above the tips, exact and by (7.51), where the outlines are flat.

@@ -1,7 +1,4 @@
-"""Smith's linkages and rigs, as all his figures use them; Figs. 6 to 10 and 27.
-
-These draw the follower's motion, clearance and the coupler's end load.
-"""
+"""Smith's linkages and rigs; Figs. 6 to 10 and 27: follower, clearance, the coupler's end load."""
 
 from __future__ import annotations
 
@@ -127,7 +124,7 @@ class Rig:
         """
         functions = (self.function(equation, float(one)) for one in np.atleast_1d(inertia))
         each = [hill_boundaries(f, 1.0, regions) for f in functions]
-        lam2 = np.moveaxis([[one.upper, one.lower] for one in each], 0, -1)
+        lam2 = np.moveaxis(np.array([[one.upper, one.lower] for one in each]), 0, -1)
         positive = lam2 > 0.0
         roots = np.sqrt(np.where(positive, lam2, 1.0))
         return np.asarray(np.where(positive, self.frequency / roots, np.inf))
@@ -184,7 +181,7 @@ def _follower(crank: float, theta: Array) -> FourBarMotion:
 def output(axes: Panels, rate: str, small: float, slope: float, level: float) -> Drawn:
     """Draw the follower's angle, speed or acceleration for a family of cranks (Fig. 6).
 
-    Its value for a vanishing crank, the slope over the angle and the level of the parallelogram's.
+    ``small`` is its value for a vanishing crank, slope and level are the parallelogram's.
     """
     ax, scale = axes[0], 180.0 / pi if rate == "theta4" else 1.0
 

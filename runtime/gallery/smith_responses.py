@@ -114,10 +114,7 @@ def response(
     resonances: Sequence[float] = (),
     claim: Sequence[Any] = (),
 ) -> Drawn:
-    """Draw a frequency response; compute resonances near speeds [rpm] and what a claim needs.
-
-    A claim is one of :data:`_CLAIMS` and what it takes.
-    """
+    """Draw a frequency response; compute resonances near speeds [rpm] and one of the claims."""
     one, ax = Response(chart, inertia, low, high), axes[0]
     least, middle, most = one.rig.decrements
     for decrement, colour, width in (

@@ -16,7 +16,6 @@ from . import options as opt
 
 if TYPE_CHECKING:
     from ..core.families import Array
-    from ..linkages import Linkage, Motion
     from ..scenes import Scene
 
 WHOLE_TURN = "0:360:721deg"
@@ -163,7 +162,7 @@ def animation(options: argparse.Namespace) -> Callable[..., object]:
     return lambda linkage, **more: animate(linkage, path, **more)
 
 
-def _table(motion: Motion) -> list[str]:
+def _table(motion: linkages.Motion) -> list[str]:
     """Return the lines that show a motion: some of its angles, and how it is to be read."""
     import numpy as np
 
@@ -188,7 +187,7 @@ def _table(motion: Motion) -> list[str]:
     return lines
 
 
-def angles_of(options: argparse.Namespace, linkage: Linkage, *, margin: float) -> Array:
+def angles_of(options: argparse.Namespace, linkage: linkages.Linkage, margin: float) -> Array:
     """Return the crank angles [rad] of ``--angles``: by default a turn, or what the crank reaches.
 
     At either end of that range, where the linkage folds, a share of it (``margin``) is left out.

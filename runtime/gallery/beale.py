@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 from itertools import combinations_with_replacement
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -144,10 +144,7 @@ def polynomials(axes: Panels, modes: int) -> Drawn:
 
 
 def _linkage() -> QuickReturn:
-    linkage = load_scene(STIFF).mechanism()
-    if not isinstance(linkage, QuickReturn):
-        raise TypeError("not a quick return")
-    return linkage
+    return cast("QuickReturn", load_scene(STIFF).mechanism())
 
 
 @lru_cache(maxsize=4)
@@ -259,9 +256,7 @@ def constrained_tip(scene: str, modes: int) -> tuple[Array, Array]:
     From the paper's initial conditions: undeformed, at the speeds of the rigid mechanism.
     """
     overrides = {"model.formulation": "free_free", "model.modes": modes, "model.drop": FRAME}
-    system = load_scene(scene, overrides=overrides).system()
-    if not isinstance(system, FreeFreeRod):
-        raise TypeError("not the rod with constraints")
+    system = cast("FreeFreeRod", load_scene(scene, overrides=overrides).system())
     run = constrained_motion(system, rtol=1e-6, samples=720)
     return system.speed * run.time, system.deflection(run.q, run.time, 1.0)[..., 0]
 

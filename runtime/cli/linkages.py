@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 from .. import linkages, periodic
 from ..core.errors import BadInput, bad
-from . import constrained
 from . import options as opt
 
 if TYPE_CHECKING:
     from ..core.families import Array
     from ..scenes import Scene
+    from ..systems.rod import FreeFreeRod
 
 WHOLE_TURN = "0:360:721deg"
 
@@ -288,8 +288,8 @@ def _simulate(options: argparse.Namespace) -> int:
         found = f"{options.revolutions:g}"
         raise bad("--revolutions", found, "a number above 0, at most 1e6", "correct it")
     scene = opt.load(options)
-    if constrained.is_constrained(scene):
-        return constrained.simulate(options, scene)
+    if is_constrained(scene):
+        return _simulate_constrained(options, scene)
     speed = 1.0 if without_crank(options, scene) else speed_of(options, scene)
     system = scene.linear_system()
     chosen = {name: getattr(options, name) for name in ("method", "initial")}
@@ -302,6 +302,52 @@ def _simulate(options: argparse.Namespace) -> int:
         told = (replace(p, fix=fix) if p.where == "initial" else p for p in error.problems)
         raise BadInput(*told) from error
     return opt.finish(options, result, [*opt.ranges(result), "", f"status: {result.message}"])
+
+
+def _simulate_constrained(options: argparse.Namespace, scene: Scene) -> int:
+    """Integrate the constrained equations from the undeformed rod."""
+    from ..constrained import constrained_motion
+
+    if options.initial is not None:
+        fix = "leave it out: the motion starts from the undeformed rod"
+        raise bad("--initial", "a value", "none for constrained equations", fix)
+    if options.method not in (None, "collocation"):
+        raise bad("--method", repr(options.method), "collocation alone", "leave it out")
+    rod = at_speed(options, scene)
+    result = constrained_motion(
+        rod,
+        span=options.revolutions * (2.0 * math.pi / abs(rod.speed)),
+        samples=max(1, round(360 * options.revolutions)),
+        progress=opt.progress(options),
+    )
+    norms = [
+        (name, f"{float(getattr(result, f'{name}_norm').max()):.2e}")
+        for name in ("position", "velocity", "acceleration")
+    ]
+    lines = [
+        *opt.ranges(result),
+        "",
+        *opt.table(("constraints, level of", "largest scaled defect"), norms),
+        "",
+        f"status: {result.message}",
+    ]
+    return opt.finish(options, result, lines)
+
+
+def is_constrained(scene: Scene) -> bool:
+    """Return True where the scene's formulation leads to a constrained system."""
+    return bool(scene.model["formulation"] == "free_free")
+
+
+def at_speed(options: argparse.Namespace, scene: Scene) -> FreeFreeRod:
+    """Return the scene's system at the one crank speed of the option or of the scene."""
+    if options.speed is not None and ":" in options.speed:
+        expected = "one speed: each has its own periodic motion"
+        fix = "give one, or use formulation 'free_free_linear'"
+        raise bad("--speed", repr(options.speed), expected, fix)
+    moved = opt.load(options, **{"operation.speed": speed_of(options, scene)})
+    system: FreeFreeRod = moved.system()  # type: ignore[assignment]
+    return system
 
 
 def without_crank(options: argparse.Namespace, scene: Scene) -> bool:

@@ -20,7 +20,7 @@ from ..core.progress import bar
 from ..core.results import provenance
 from ..core.workers import Workers, check_executor, check_workers
 from ..scenes import Scene
-from .pieces import Grid, check_chunk, grid_of
+from .pieces import Grid, grid_of
 from .requests import request_of
 from .result import Sweep
 from .store import Store
@@ -141,7 +141,7 @@ def planned(
 ) -> Plan:
     """Return the plan of a sweep."""
     task = task_of(what)
-    grid = grid_of(values, task.chunk if chunk is None else check_chunk(chunk), rows=task.rows)
+    grid = grid_of(values, task.chunk if chunk is None else chunk, rows=task.rows)
     if isinstance(subject, Scene) and task.of_systems:
         subject = subject.linear_system() if task.name in NAMED else subject.system()
     told = dict(options or {})

@@ -12,7 +12,7 @@ import os
 import sys
 import warnings
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from importlib import import_module
 from pathlib import Path
 from typing import NoReturn
@@ -21,12 +21,12 @@ from ... import __version__
 from ..core.errors import BadInput, ElastolinkError, ElastolinkWarning, bad
 from ..core.progress import time_taken
 from ..core.threads import environment, use_one_thread
-from .options import HelpFormatter, picture
+from .options import HelpFormatter, add, picture
 
 # Files of subcommands, in the order of the help.
 _GROUPS = (
-    *("scenes", "linkages", "classification", "curves", "clearance", "tolerances", "forces"),
-    *("driving", "balancing", "response", "beams", "stability", "boundaries", "proofs"),
+    *("scenes", "linkages", "curves", "tolerances", "forces", "balancing"),
+    *("response", "beams", "stability", "boundaries", "proofs"),
 )
 _BAD_INPUT = 2
 _INTERRUPTED = 130
@@ -51,12 +51,8 @@ def build_parser() -> argparse.ArgumentParser:
         ),
         formatter_class=HelpFormatter,
     )
-    parser.add_argument(
-        "--version",
-        action="version",
-        version=f"elastolink {__version__}",
-        help="print the version and leave",
-    )
+    told = {"--version": "print the version and leave"}
+    add(parser, told, action="version", version=f"elastolink {__version__}")
     commands = parser.add_subparsers(
         title="commands", metavar="COMMAND", required=True, parser_class=_Parser
     )
@@ -98,21 +94,14 @@ def _complain(prefix: str, message: str) -> None:
     print(f"{prefix}: {' '.join(message.split())}", file=sys.stderr)
 
 
-@contextmanager
-def _module_folder(folder: str | None) -> Iterator[None]:
+def _module_folder(folder: str | None) -> AbstractContextManager[None]:
     """Let emitted modules be sought in a folder first, for the time of one command."""
     if folder is None:
-        yield
-        return
+        return nullcontext()
     if not (Path(folder) / "manifest.json").is_file():
-        raise bad(
-            "--modules",
-            repr(folder),
-            "a folder with a manifest.json",
-            "regenerate-equations writes one",
-        )
-    with environment({"ELASTOLINK_GENERATED": folder}):
-        yield
+        fix = "regenerate-equations writes one"
+        raise bad("--modules", repr(folder), "a folder with a manifest.json", fix)
+    return environment({"ELASTOLINK_GENERATED": folder})
 
 
 @contextmanager

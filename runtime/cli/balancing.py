@@ -53,10 +53,16 @@ def _balance(options: argparse.Namespace) -> int:
     elastolink balance smith_1972_12_6_12_12 --speed 10 --trade-off shaking_force,torque \
         --plot curve.png
     """
-    chosen = [name for name in ("case", "trade_off") if getattr(options, name) is not None]
-    if len(chosen) == 2:
-        raise bad("--case", "--trade-off beside it", "one of the two", "leave one out")
-    _refuse_unused(options)
+    optimum = ("weights", "limits", "measure")
+    if options.case is not None:
+        if options.trade_off is not None:
+            raise bad("--case", "--trade-off beside it", "one of the two", "leave one out")
+        unused = (*optimum, "links", "mass", "points")
+        opt.refuse_unused(options, unused, "the optimum or the trade-off, without --case")
+    elif options.trade_off is not None:
+        opt.refuse_unused(options, optimum, "the optimum, without --trade-off")
+    else:
+        opt.refuse_unused(options, ("points",), "--trade-off beside it")
     scene = opt.load(options)
     (speed, acceleration), machine = drive_of(options, scene), scene.machine()
     if speed == acceleration == 0.0:
@@ -66,14 +72,11 @@ def _balance(options: argparse.Namespace) -> int:
     mass = opt.positive(options, "mass", "mass")
     given: dict[str, Any] = {"case": options.case, "offsets": offset}
     if options.case is None:
-        links = None
-        if options.links is not None:
-            links = [name.strip() for name in options.links.split(",")]
+        links = None if options.links is None else _names(options.links)
         given = {"links": links, "bounds": rigid.Bounds(mass=mass, offset=offset)}
         if options.trade_off is not None:
-            return _trade_off(
-                options, machine, speed, acceleration=acceleration, offsets=offset, **given
-            )
+            given |= {"acceleration": acceleration, "offsets": offset}
+            return _trade_off(options, machine, speed, **given)
         given["weights"] = _pairs(options.weights, "--weights")
         given["limits"] = _pairs(options.limits, "--limits")
         given["measure"] = options.measure or "peak"
@@ -81,22 +84,10 @@ def _balance(options: argparse.Namespace) -> int:
     return opt.finish(options, found, _lines(found))
 
 
-def _refuse_unused(options: argparse.Namespace) -> None:
-    """Raise BadInput for options that the chosen way of balancing does not look at."""
-    optimum = ("weights", "limits", "measure")
-    if options.case is not None:
-        unused = (*optimum, "links", "mass", "points")
-        opt.refuse_unused(options, unused, "the optimum or the trade-off, without --case")
-    elif options.trade_off is not None:
-        opt.refuse_unused(options, optimum, "the optimum, without --trade-off")
-    else:
-        opt.refuse_unused(options, ("points",), "--trade-off beside it")
-
-
 def _trade_off(
     options: argparse.Namespace, machine: rigid.Machine, speed: float, **given: Any
 ) -> int:
-    names = [name.strip() for name in options.trade_off.split(",")]
+    names = _names(options.trade_off)
     if len(names) != 2:
         fix = "write --trade-off shaking_force,torque"
         raise bad("--trade-off", repr(options.trade_off), "two forces", fix)
@@ -133,6 +124,10 @@ def _lines(found: rigid.Balancing) -> list[str]:
             f"weighted sum: {found.value:.8g}, not below {found.lower_bound:.8g} within bounds"
         )
     return lines
+
+
+def _names(text: str) -> list[str]:
+    return [name.strip() for name in text.split(",")]
 
 
 def _pairs(text: str | None, where: str) -> dict[str, float] | None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from .. import design, frequencies, recovery
 from ..core.errors import bad
 from . import options as opt
-from .linkages import refuse_frame, speed_of, speed_range
+from .linkages import moving_scene, speed_of, speed_range
 
 if TYPE_CHECKING:
     from ..core.families import LinearPeriodic
@@ -46,9 +46,7 @@ def add(commands: Any) -> None:
 
 def _of_beams(options: argparse.Namespace, *, moving: bool = False) -> tuple[Scene, LinearPeriodic]:
     """Return the scene and its system, refused where the links are no beams."""
-    scene = opt.load(options)
-    if moving:
-        refuse_frame(scene)
+    scene = moving_scene(options) if moving else opt.load(options)
     system = scene.linear_system()
     if system.structure is not None:
         return scene, system
@@ -56,12 +54,9 @@ def _of_beams(options: argparse.Namespace, *, moving: bool = False) -> tuple[Sce
 
     where = f"scene {scene.name}"
     if scene.model["formulation"] not in BEAM_FORMULATIONS:
-        raise bad(
-            where,
-            f"formulation '{scene.model['formulation']}'",
-            "links that are beams, such as formulation 'cubic_beams'",
-            "choose aannaque_1996_table_4_1, for example",
-        )
+        expected = "links that are beams, such as formulation 'cubic_beams'"
+        fix = "choose aannaque_1996_table_4_1, for example"
+        raise bad(where, f"formulation '{scene.model['formulation']}'", expected, fix)
     if scene.model["mechanism"] == "frame":
         found, fix = "members that do not stretch", "say --set frame.axial=elastic"
     else:
@@ -90,13 +85,10 @@ def _critical(options: argparse.Namespace) -> int:
 
     elastolink critical-speeds aannaque_1996_table_4_1 --range 20:70 --method mean_frequency
     """
-    scene = opt.load(options)
-    refuse_frame(scene)
+    scene, shown = moving_scene(options), opt.progress(options)
     speeds = speed_range(options.range, scene, "--range")
     system = scene.linear_system()
-    found = frequencies.critical_speeds(
-        system, speeds, method=options.method, progress=opt.progress(options)
-    )
+    found = frequencies.critical_speeds(system, speeds, method=options.method, progress=shown)
     lines = opt.columns(
         ("speed [rad/s]", ".6g", found.speed),
         ("mode", "", [mode for mode, _ in found.labels]),
@@ -111,8 +103,7 @@ def _campbell(options: argparse.Namespace) -> int:
 
     elastolink campbell aannaque_1996_table_4_1 --range 5:70 --plot campbell.png
     """
-    scene = opt.load(options)
-    refuse_frame(scene)
+    scene = moving_scene(options)
     speeds = opt.spaced(*speed_range(options.range, scene, "--range"), 27)
     found = frequencies.campbell(scene.linear_system(), speeds, progress=opt.progress(options))
     return opt.finish(options, found, opt.ranges(found))
@@ -136,16 +127,15 @@ def _stress(options: argparse.Namespace) -> int:
     speeds = opt.values(options.speed, "frequency", "--speed")
     if limit is None:
         curve = recovery.stress_curve(system, speeds)
-        return opt.finish(
-            options, curve, [*_curve_lines(curve), *_unstable_lines(curve.unstable_ranges)]
-        )
+        lines = [*_curve_lines(curve), *_unstable_lines(curve.unstable_ranges)]
+        return opt.finish(options, curve, lines)
     found = design.quiet_speeds(system, speeds, limit)
     lines = opt.columns(
         ("from [rad/s]", ".5g", [band.low for band in found.bands]),
         ("to", ".5g", [band.high for band in found.bands]),
         ("quietest", ".5g", [band.best for band in found.bands]),
         ("stress/limit", ".3g", [band.ratio for band in found.bands]),
-        ("beyond the critical speed", "", [_beyond(band.above) for band in found.bands]),
+        ("beyond the critical speed", "", [_known(b.above, ".5g") for b in found.bands]),
     )
     lines += _unstable_lines(found.unstable)
     return opt.finish(options, found, lines, more={"bands": _numbers(found)})
@@ -156,8 +146,8 @@ def _numbers(found: QuietSpeeds) -> list[tuple[float, float, float, float, float
     return [(b.low, b.high, b.best, b.ratio, b.above) for b in found.bands]
 
 
-def _beyond(speed: float | None) -> str:
-    return "-" if speed is None else f"{speed:.5g}"
+def _known(value: float | None, form: str) -> str:
+    return "-" if value is None else format(value, form)
 
 
 def _unstable_lines(ranges: Sequence[tuple[float, float]]) -> list[str]:
@@ -167,18 +157,16 @@ def _unstable_lines(ranges: Sequence[tuple[float, float]]) -> list[str]:
 
 def _peaks(found: StressResult, limit: float | None) -> list[str]:
     """Return a row per link: its largest stress, where and when."""
-    rows = [
-        (
-            link,
-            f"{peak.value / 1e6:.6g}",
-            f"{peak.place:.3g}",
-            f"{degrees(peak.theta):.4g}",
-            peak.fibre,
-            "-" if limit is None or not peak.value else f"{limit / abs(peak.value):.4g}",
-        )
-        for link, peak in found.maxima.items()
-    ]
-    return opt.table(("link", "stress [MPa]", "at x/length", "at [deg]", "fibre", "safety"), rows)
+    peaks = found.maxima.values()
+    safety = [limit / abs(one.value) if limit and one.value else None for one in peaks]
+    return opt.columns(
+        ("link", "", found.maxima),
+        ("stress [MPa]", ".6g", [one.value / 1e6 for one in peaks]),
+        ("at x/length", ".3g", [one.place for one in peaks]),
+        ("at [deg]", ".4g", [degrees(one.theta) for one in peaks]),
+        ("fibre", "", [one.fibre for one in peaks]),
+        ("safety", "", [_known(factor, ".4g") for factor in safety]),
+    )
 
 
 def _curve_lines(curve: StressCurve) -> list[str]:
@@ -187,9 +175,10 @@ def _curve_lines(curve: StressCurve) -> list[str]:
         (f"{curve.speed[i]:.5g}", *(f"{value / 1e6:.5g}" for value in curve.maximum[i]))
         for i in opt.highest(curve.maximum.max(axis=1))
     ]
-    title = f"{len(curve.speed)} speeds; largest stress [MPa] where it is higher than beside:"
+    count = len(curve.speed)
     if not rows:
-        return [f"{len(curve.speed)} speeds; the largest stress is nowhere higher than beside"]
+        return [f"{count} speeds; the largest stress is nowhere higher than beside"]
+    title = f"{count} speeds; largest stress [MPa] where it is higher than beside:"
     return [title, "", *opt.table(("speed [rad/s]", *curve.links), rows)]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import re
+from functools import partial
 from itertools import chain
 from math import pi, sqrt
 from typing import TYPE_CHECKING, Any
@@ -135,9 +136,8 @@ def _of_mode(options: argparse.Namespace, form: hill.HillForm, regions: tuple[in
     lines = [f"natural frequency {_speed(frequency, 1.0)}; crank speeds:", ""]
     lines += _table(options, ("region", "from", "to"), rows, found)
     more = {"natural_frequency": frequency, **_perturbation(found)}
-    return opt.finish(
-        options, found[0], lines, lambda ax: _bars(ax, found[0], frequency), more=more
-    )
+    draw = partial(_bars, exact=found[0], frequency=frequency)
+    return opt.finish(options, found[0], lines, draw, more=more)
 
 
 def _of_modes(
@@ -169,12 +169,10 @@ def _solved(
     damping: float,
 ) -> list[Any]:
     """Return the exact boundaries, then those by perturbation where they are wanted."""
-    more: dict[str, Any] = {"certified": True} if options.certified else {}
-    found: list[Any] = [hill.hill_boundaries(f, mu, regions, damping=damping, **more)]
-    if options.order is not None:
-        order = options.order
-        found.append(hill.perturbation_boundaries(f, mu, regions, order=order, damping=damping))
-    return found
+    exact = hill.hill_boundaries(f, mu, regions, damping=damping, certified=options.certified)
+    if options.order is None:
+        return [exact]
+    return [exact, hill.perturbation_boundaries(f, mu, regions, options.order, damping)]
 
 
 def _table(
@@ -187,9 +185,8 @@ def _table(
     more = (f"order {options.order} from", "to") * len(found[1:])
     lines = opt.table((*header, *more), rows)
     if any(one.outside.any() for one in found[1:]):
-        lines.append(
-            "no number of the perturbation: outside the range in which its orders converge"
-        )
+        reason = "outside the range in which its orders converge"
+        lines.append(f"no number of the perturbation: {reason}")
     return lines
 
 
@@ -242,9 +239,8 @@ def _perturb(options: argparse.Namespace) -> int:
 
     if options.plot and len(found) > 1:
         lines.append(f"the picture shows region {found[0].region}; choose one by --regions")
-    return opt.finish(
-        options, worst, lines, draw, more={"series": [one.to_dict() for one in found]}
-    )
+    more = {"series": [one.to_dict() for one in found]}
+    return opt.finish(options, worst, lines, draw, more=more)
 
 
 def _function(

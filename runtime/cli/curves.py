@@ -12,7 +12,6 @@ from .linkages import animation, speed_of
 
 if TYPE_CHECKING:
     from ..linkages.curves import CouplerCurve
-    from ..linkages.harmonic_analysis import Source
     from ..scenes import Scene
 
 
@@ -59,12 +58,12 @@ def _curve(options: argparse.Namespace) -> int:
 
 def _point(text: str, linkage: linkages.Linkage, link: str) -> tuple[float, float]:
     """Return the place of a point in its link [m]."""
-    parts = text.split(",")
-    if len(parts) != 2:
+    along, comma, across = text.partition(",")
+    if not comma or "," in across:
         raise bad("--point", repr(text), "ALONG,ACROSS", "write it like 0.5,0.3 or '6 in,2 in'")
     if link not in linkage.links:
         raise bad("--link", repr(link), f"one of {', '.join(linkage.links)}", "choose one")
-    return _coordinate(parts[0], linkage, link), _coordinate(parts[1], linkage, link)
+    return _coordinate(along, linkage, link), _coordinate(across, linkage, link)
 
 
 def _coordinate(text: str, linkage: linkages.Linkage, link: str) -> float:
@@ -75,9 +74,8 @@ def _coordinate(text: str, linkage: linkages.Linkage, link: str) -> float:
     if share == 0.0:
         return 0.0
     if link not in linkage.lengths:
-        raise bad(
-            "--point", repr(text), f"a length with a unit: the {link} has none", "write '20 mm'"
-        )
+        expected = f"a length with a unit: the {link} has none"
+        raise bad("--point", repr(text), expected, "write '20 mm'")
     return share * float(linkage.lengths[link])
 
 
@@ -124,7 +122,7 @@ def _harmonics(options: argparse.Namespace) -> int:
     return opt.finish(options, found, [*lines, "", f"{found.evaluations} angles"])
 
 
-def _source(options: argparse.Namespace, scene: Scene) -> Source:
+def _source(options: argparse.Namespace, scene: Scene) -> tuple[Any, ...]:
     """Return what is to be analysed: a field of the motion, or else a force."""
     linkage = scene.mechanism()
     linkage.require_full_turn()

@@ -6,6 +6,7 @@ import pickle
 import re
 import subprocess
 import sys
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from os import PathLike
@@ -37,68 +38,32 @@ _LEFT_OUT = re.compile(r"Left out of the energies: ([^.]*)\.")
 
 @dataclass(frozen=True)
 class Stage:
-    """What one step of using a scene loads and runs, beyond the steps before it.
+    """What one step of using a scene loads and runs, beyond the steps before it."""
 
-    Attributes
-    ----------
-    modules, size : int
-        Modules of this toolkit that load, and bytes of their sources.
-    emitted : tuple of str
-        Emitted modules among them.
-    numpy, scipy : int
-        Modules of NumPy and SciPy that load.
-    heavy : tuple of str
-        Packages that load and that no solver needs, such as SymPy.
-    calls : mapping of str to int
-        How often each emitted function is called, by ``module.function``.
-    points : mapping of str to int
-        At how many points in all: angles, sections, roots.
-    operations : int
-        Arithmetic operations of these calls: operations of the function times points.
-    refused : str
-        Why the scene cannot do this step; empty where it can.
-    """
-
-    modules: int
-    size: int
-    emitted: tuple[str, ...]
-    numpy: int
+    modules: int  # of this toolkit that load
+    size: int  # bytes of their sources
+    emitted: tuple[str, ...]  # emitted modules among them
+    numpy: int  # modules of NumPy and of SciPy that load
     scipy: int
-    heavy: tuple[str, ...]
-    calls: Mapping[str, int]
-    points: Mapping[str, int]
-    operations: int
-    refused: str
+    heavy: tuple[str, ...]  # packages that load and that no solver needs, such as SymPy
+    calls: Mapping[str, int]  # how often each emitted function is called, by module.function
+    points: Mapping[str, int]  # at how many points in all: angles, sections, roots
+    operations: int  # arithmetic of these calls: operations of the function times points
+    refused: str  # why the scene cannot do this step; empty where it can
 
 
 @dataclass(frozen=True)
 class EmittedUse:
-    """What one emitted module costs, and how a scene uses it.
+    """What one emitted module costs, and how a scene uses it."""
 
-    Attributes
-    ----------
-    size, operations : int
-        Bytes of its text; operations of all its functions together.
-    functions : mapping of str to int
-        Operations per evaluation of each function.
-    left_out : tuple of str
-        Terms that the formulation itself leaves out of the energies.
-    kept, dropped : tuple of str
-        Physical terms that the model can leave out: those that stayed, and those that did not.
-    called : tuple of str
-        Functions that some step of :attr:`Explanation.stages` called.
-    full_size, full_operations : int or None
-        Bytes and operations of the module of the same formulation with every term and every
-        output; None where that one was not emitted.
-    """
-
-    size: int
-    operations: int
-    functions: Mapping[str, int]
-    left_out: tuple[str, ...]
-    kept: tuple[str, ...] = ()
-    dropped: tuple[str, ...] = ()
-    called: tuple[str, ...] = ()
+    size: int  # bytes of its text
+    operations: int  # of all its functions together
+    functions: Mapping[str, int]  # operations per evaluation of each function
+    left_out: tuple[str, ...]  # terms that the formulation itself leaves out of the energies
+    kept: tuple[str, ...] = ()  # physical terms that the model can leave out, and that stayed
+    dropped: tuple[str, ...] = ()  # and those that did not
+    called: tuple[str, ...] = ()  # functions that some step of Explanation.stages called
+    # Of the module of the same formulation with every term and output; None if not emitted.
     full_size: int | None = None
     full_operations: int | None = None
 
@@ -159,10 +124,9 @@ class Explanation(Result):
         done = {name: s.operations for name, s in self.stages.items() if s.calls}
         names = list(done)[::-1]
         ax.barh(names, [done[name] for name in names], color="C0")
+        look: dict[str, Any] = {"va": "center", "fontsize": "small", "color": "0.3"}
         for place, name in enumerate(names):
-            ax.annotate(
-                f" {done[name]}", (done[name], place), va="center", fontsize="small", color="0.3"
-            )
+            ax.annotate(f" {done[name]}", (done[name], place), **look)
         ax.set_xscale("symlog", linthresh=10.0)
         ax.margins(x=0.12)
         ax.set_xlabel("operations of emitted functions")
@@ -214,6 +178,8 @@ def explain(
     system = _system(loaded)
     speed = None if system is None else _speed(loaded, system)
     counted = _counted({**request, "speed": speed})
+    outputs = sorted(loaded.layout.outputs)
+    wanted = loaded.model["outputs"] or outputs
     known = _known()
     costs = {entry.module: cost for entry, cost in known.values()}
     each = {f"{name}.{f}": n for name, cost in costs.items() for f, n in cost.functions.items()}
@@ -237,7 +203,7 @@ def explain(
         scene=loaded.name,
         model=loaded.model_spec().name(),
         terms=_terms(loaded),
-        outputs=_outputs(loaded),
+        outputs={name: "wanted" if name in wanted else "not wanted" for name in outputs},
         emitted={name: _use(name, loaded, known, called) for name in serving},
         packaged=(
             len(costs),
@@ -360,12 +326,6 @@ def _terms(scene: Scene) -> dict[str, str]:
     return {name: "dropped" if name in dropped else "kept" for name in sorted(offered)}
 
 
-def _outputs(scene: Scene) -> dict[str, str]:
-    known = sorted(scene.layout.outputs)
-    wanted = scene.model["outputs"] or known
-    return {name: "wanted" if name in wanted else "not wanted" for name in known}
-
-
 def _of_linear(system: LinearPeriodic, speed: float) -> dict[str, Any]:
     """Return what a linear-periodic system evaluates, as fields of an :class:`Explanation`.
 
@@ -421,24 +381,22 @@ def _listed(names: Iterable[str]) -> str:
 
 def _by_kind(kinds: Mapping[str, str]) -> dict[str, list[str]]:
     """Return the names of each kind."""
-    found: dict[str, list[str]] = {}
+    found: dict[str, list[str]] = defaultdict(list)
     for name, kind in kinds.items():
-        found.setdefault(kind, []).append(name)
+        found[kind].append(name)
     return found
 
 
 def _emission_lines(found: Explanation) -> Iterator[str]:
-    kinds = _by_kind(found.terms) | _by_kind(found.outputs)
-    told = {
-        kind: _listed(kinds.get(kind, ())) for kind in ("kept", "dropped", "wanted", "not wanted")
-    }
+    terms, outputs = _by_kind(found.terms), _by_kind(found.outputs)
     yield "derivation"
-    yield f"  terms kept: {told['kept']}; left out: {told['dropped']}"
+    yield f"  terms kept: {_listed(terms['kept'])}; left out: {_listed(terms['dropped'])}"
     for name, use in found.emitted.items():
         if use.left_out:
             yield f"  left out by the formulation of {name}: {', '.join(use.left_out)}"
     if found.outputs:
-        yield f"  outputs wanted: {told['wanted']}; not wanted: {told['not wanted']}"
+        wanted, others = (_listed(outputs[kind]) for kind in ("wanted", "not wanted"))
+        yield f"  outputs wanted: {wanted}; not wanted: {others}"
     count, size, operations = found.packaged
     uses = found.emitted.values()
     yield "emission"
@@ -482,13 +440,12 @@ def _evaluation_lines(found: Explanation) -> Iterator[str]:
         if not stage.calls:
             continue
         yield f"  {name}: {stage.operations} operations of emitted functions"
-        calls: dict[str, list[str]] = {}
+        calls: dict[str, list[str]] = defaultdict(list)
         for called, times in stage.calls.items():
             module, _, function = called.rpartition(".")
             points = stage.points[called]
             more = f" in {times} calls" if times > 1 else ""
-            text = f"{function} at {points} point{'s' * (points > 1)}{more}"
-            calls.setdefault(module, []).append(text)
+            calls[module].append(f"{function} at {points} point{'s' * (points > 1)}{more}")
         yield from (f"    {module}: {', '.join(functions)}" for module, functions in calls.items())
     kinds = _by_kind(found.array_kinds)
     if kinds:

@@ -1,11 +1,11 @@
-"""``elastolink forces``: pin forces, driving torque, shaking force and moment of rigid links."""
+"""``elastolink forces`` and ``elastolink run-up``: machines of rigid links, driven."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
 from dataclasses import asdict
-from math import degrees
+from functools import partial
+from math import degrees, pi
 from typing import TYPE_CHECKING, Any
 
 from .. import rigid
@@ -14,15 +14,15 @@ from . import options as opt
 from .linkages import WHOLE_TURN, angles_of, drive_of, drive_options
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from ..core.results import Result
+    from ..scenes import Scene
 
+_REVOLUTIONS = 10.0
 _JOINTS = ("12", "23", "34", "41", "frame", "torque", "moment")
 
 
 def add(commands: Any) -> None:
-    """Add the subcommand."""
+    """Add the two subcommands."""
     forces = opt.command(commands, "forces", _forces)
     opt.add(forces, drive_options("default operation.speed"))
     opt.add(forces, opt.angles(f"{WHOLE_TURN}, or the range that the crank reaches"))
@@ -30,6 +30,22 @@ def add(commands: Any) -> None:
     opt.add(forces, {"--joint": drawn}, choices=_JOINTS)
     wheel = "size a flywheel for this coefficient of speed fluctuation, e.g. 0.02"
     opt.add(forces, {"--fluctuation COEFF": wheel}, type=float)
+
+    run_up = opt.command(commands, "run-up", _run_up)
+    opt.add(
+        run_up,
+        {
+            "--torque TORQUE": "constant motor torque, e.g. '5 N*m'; default: the scene's motor",
+            "--stall-torque TORQUE": "motor torque at rest; default motor.stall_torque",
+            "--no-load-speed SPEED": "speed at which the torque has fallen to zero, e.g. '1500"
+            " rpm', rad/s without a unit; default motor.no_load_speed",
+            "--duration TIME": "where the run ends, e.g. '2 s'",
+            "--start-speed SPEED": "crank speed at the start, e.g. '100 rpm'; default 0",
+            "--start-angle ANGLE": "crank angle at the start, e.g. '30 deg'; default 0",
+        },
+    )
+    end = f"where the run ends; default {_REVOLUTIONS:g} where there is no --duration"
+    opt.add(run_up, {"--revolutions N": end}, type=float)
 
 
 def _forces(options: argparse.Namespace) -> int:
@@ -49,13 +65,15 @@ def _forces(options: argparse.Namespace) -> int:
     even, numbers, beside = _evenness(machine, speed, options.fluctuation)
     span = float(theta[0]), float(theta[-1])
     peaks = rigid.force_peaks(machine, speed, acceleration, span=span)
-    lines = [*_table(peaks), "", *even]
+    # No minus before a zero.
+    table = opt.columns(
+        ("quantity", "", [_LABELS[name] for name in peaks]),
+        ("peak", "z.6g", [peak.value for peak in peaks.values()]),
+        ("crank angle [deg]", "z.2f", [degrees(peak.crank_angle) for peak in peaks.values()]),
+    )
     more = {"peaks": {name: asdict(peak) for name, peak in peaks.items()}, **numbers}
-
-    def draw(ax: Axes) -> Axes:
-        return found.plot(ax, joint=options.joint)
-
-    return opt.finish(options, found, lines, draw, more=more, beside=beside)
+    draw = partial(found.plot, joint=options.joint)
+    return opt.finish(options, found, [*table, "", *even], draw, more=more, beside=beside)
 
 
 _LABELS = {
@@ -65,16 +83,6 @@ _LABELS = {
     "shaking_moment": "moment on the frame [N m]",
     **{f"couple{joint}": f"couple of the slide {joint} [N m]" for joint in ("34", "41")},
 }
-
-
-def _table(peaks: Mapping[str, rigid.ForcePeak]) -> list[str]:
-    """Return the greatest size of each force, and where."""
-    # No minus before a zero.
-    return opt.columns(
-        ("quantity", "", [_LABELS[name] for name in peaks]),
-        ("peak", "z.6g", [peak.value for peak in peaks.values()]),
-        ("crank angle [deg]", "z.2f", [degrees(peak.crank_angle) for peak in peaks.values()]),
-    )
 
 
 def _evenness(
@@ -113,3 +121,68 @@ def _evenness(
     names = ("inertia", "first_order", "fluctuation", "motor_torque", "error")
     numbers["flywheel"] = {name: getattr(wheel, name) for name in names}
     return lines, numbers, (steady, wheel)
+
+
+def _run_up(options: argparse.Namespace) -> int:
+    """How a machine of rigid links runs under its motor, from rest or a given speed.
+
+    elastolink run-up slider_crank_example --revolutions 20 --plot run_up.png
+    elastolink run-up slider_crank_example --torque '5 N*m' --duration '0.5 s'
+    """
+    scene = opt.load(options)
+    machine = scene.machine()
+    torque = _torque(options, scene)
+    duration = opt.given(options, "duration", "time")
+    revolutions = options.revolutions
+    if revolutions is None and duration is None:
+        revolutions = _REVOLUTIONS
+    found = rigid.run_up(
+        machine,
+        torque,
+        revolutions=revolutions,
+        duration=duration,
+        speed0=opt.given(options, "start-speed", "frequency") or 0.0,
+        theta0=opt.given(options, "start-angle", "angle") or 0.0,
+        flywheel=float(scene.get("motor.flywheel", 0.0)),
+    )
+    return opt.finish(options, found, _run_lines(found))
+
+
+def _torque(options: argparse.Namespace, scene: Scene) -> rigid.TorqueLine | float:
+    """Return what drives: the constant torque, or the torque line of options and scene."""
+    constant = opt.given(options, "torque", "moment")
+    stall = opt.given(options, "stall-torque", "moment")
+    free = opt.given(options, "no-load-speed", "frequency")
+    if constant is not None:
+        if stall is not None or free is not None:
+            found = "a constant torque and a torque line"
+            raise bad("--torque", found, "one of them", "leave the other out")
+        return constant
+    table = scene.get("motor", {})
+    stall = table.get("stall_torque") if stall is None else stall
+    free = table.get("no_load_speed") if free is None else free
+    if stall is None or free is None:
+        missing = "--stall-torque" if stall is None else "--no-load-speed"
+        fix = "give --torque '5 N*m', or --stall-torque with --no-load-speed"
+        raise bad(missing, "nothing, and none in the scene's [motor]", "a motor", fix)
+    return rigid.TorqueLine(stall, free)
+
+
+def _run_lines(found: rigid.RunUp) -> list[str]:
+    """Return the table of a run, and how it ended."""
+    speed, fluctuation = float(found.speed[-1]), found.fluctuation
+    balance = found.checks["energy less work, relative"].value
+    rows = [
+        ("time [s]", f"{found.time[-1]:.6g}"),
+        ("revolutions", f"{found.revolutions:.6g}"),
+        ("final speed [rad/s]", f"{speed:.6g}"),
+        ("final speed [rpm]", f"{speed * 30.0 / pi:.6g}"),
+        (
+            "speed fluctuation, last revolution",
+            "less than one made" if fluctuation is None else f"{fluctuation:.4g}",
+        ),
+        ("kinetic and potential energy [J]", f"{found.energy[-1]:.6g}"),
+        ("energy balance, relative", f"{balance:.2g}"),
+        ("flywheel [kg m^2]", f"{found.flywheel:.6g}"),
+    ]
+    return [*opt.table(("quantity", "value"), rows), "", f"status: {found.status}: {found.message}"]

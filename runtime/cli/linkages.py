@@ -1,32 +1,44 @@
-"""``elastolink kinematics`` and ``elastolink simulate``: how a linkage moves and vibrates."""
+"""``elastolink kinematics``, ``classify``, ``simulate``: how a linkage moves, and vibrates."""
 
 from __future__ import annotations
 
 import argparse
 import math
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from .. import periodic
+from .. import linkages, periodic
 from ..core.errors import BadInput, bad
-from . import constrained
 from . import options as opt
 
 if TYPE_CHECKING:
     from ..core.families import Array
-    from ..linkages import Linkage, Motion
     from ..scenes import Scene
+    from ..systems.rod import FreeFreeRod
 
 WHOLE_TURN = "0:360:721deg"
 
 
 def add(commands: Any) -> None:
-    """Add the two subcommands."""
+    """Add the three subcommands."""
     kinematics = opt.command(commands, "kinematics", _kinematics)
     opt.add(kinematics, opt.angles("%(default)s"), default="0:360:361deg")
     drive = drive_options("without a drive in option or scene, rates are over it")
     opt.add(kinematics, {**drive, "--animate FILE": "draw the moving linkage: a .gif file"})
+
+    classify = opt.command(commands, "classify", _classify, scene=False)
+    opt.scene_options(classify, nargs="?")
+    lengths = "frame, crank, coupler, follower, instead of a scene"
+    opt.add(classify, {"--lengths A,B,C,D": lengths})
+    driven = {"--input": "driven link of a four-bar; default crank"}
+    opt.add(classify, driven, choices=("crank", "follower"))
+    opt.add(
+        classify, {"--tolerance": "relative, of every length; default 0"}, type=float, default=0.0
+    )
+    plane = "draw Barker's base plane instead of the transmission angle"
+    opt.switches(classify, {"--base-plane": plane})
 
     simulate = opt.command(commands, "simulate", _simulate)
     opt.add(simulate, speed_option("default operation.speed"))
@@ -39,12 +51,10 @@ def add(commands: Any) -> None:
 
 
 def _pair(text: str) -> tuple[float, float]:
-    try:
+    with suppress(ValueError):
         q, qd = map(float, text.split(","))
         if math.isfinite(q) and math.isfinite(qd):
             return q, qd
-    except ValueError:
-        pass
     found = f"found {text!r}; expected two finite numbers, such as 0.001,0"
     raise argparse.ArgumentTypeError(found)
 
@@ -67,6 +77,81 @@ def _kinematics(options: argparse.Namespace) -> int:
     return opt.finish(options, motion, _table(motion))
 
 
+def _classify(options: argparse.Namespace) -> int:
+    """Grashof's and Barker's class, change points, transmission angle, dead centres.
+
+    elastolink classify smith_1972_12_6_12_12 --plot transmission.png
+    elastolink classify --lengths 12,6,12,12 --base-plane --plot plane.png
+    """
+    if options.plot is None:
+        opt.refuse_unused(options, ("base_plane",), "--plot FILE beside it")
+    linkage: Any = _linkage(options)
+    four_bar = isinstance(linkage, linkages.FourBar)
+    if not four_bar:
+        opt.refuse_unused(options, ("input",), "a four-bar linkage")
+    driven: Any = options.input or "crank"
+    found: Any = linkages.classify(linkage, input=driven, tolerance=options.tolerance)
+    passed_on = linkages.transmission_angle(linkage)
+    if options.base_plane and not four_bar:
+        raise bad("--base-plane", found.mechanism, "a four-bar linkage", "leave it out")
+    draw = found.plot if options.base_plane else passed_on.plot
+    lines = [*_class_lines(found), "", *_transmission_lines(passed_on)]
+    more = {"transmission": passed_on.to_dict()}
+    return opt.finish(options, found, lines, draw, more=more, beside=(passed_on,))
+
+
+def _linkage(options: argparse.Namespace) -> Any:
+    """Return the linkage of the scene or of ``--lengths``."""
+    if (options.scene is None) == (options.lengths is None):
+        expected = "either SCENE or --lengths A,B,C,D"
+        raise bad("classify", "both or neither", expected, "give one of them")
+    if options.scene is not None:
+        return opt.load(options).mechanism()
+    try:
+        lengths = [float(text) for text in options.lengths.split(",")]
+    except ValueError as refusal:
+        fix = "write --lengths 12,6,12,12"
+        raise bad("--lengths", repr(options.lengths), "four numbers", fix) from refusal
+    checked = linkages.classify(lengths)
+    return linkages.FourBar(checked.frame, checked.crank, checked.coupler, checked.follower)
+
+
+def _class_lines(found: Any) -> list[str]:
+    symbol = found.symbol if hasattr(found, "symbol") else found.mechanism
+    turning = ", ".join(link for link, full in found.turns.items() if full) or "no link"
+    lines = [f"{symbol}: {found.name} ({found.category})"]
+    if hasattr(found, "also"):
+        lines.append(f"also called: {found.also}; {found.characteristic}")
+        kinds = ", ".join(f"{link} {kind}" for link, kind in found.inversions.items())
+        lines.append(f"inversions, by fixed link: {kinds}")
+    lines.append(f"turning fully against the frame: {turning}")
+    lines.append(
+        f"change point {found.nearest_change}: {found.distance:+.6g} of the sum of lengths away"
+    )
+    return lines
+
+
+def _transmission_lines(found: Any) -> list[str]:
+    low, high = (math.degrees(value) for value in (found.least, found.greatest))
+    band = "within" if found.within_band else "outside"
+    first, last = (math.degrees(value) for value in found.band)
+    lines = [f"transmission angle: {low:.6g} to {high:.6g} deg, {band} {first:g} to {last:g} deg"]
+    for name, angle in found.dead_centres.items():
+        at = math.degrees(angle)
+        lines.append(f"dead centre, {name}: crank at {at:.6g} deg")
+    for name, angles in found.toggles.items():
+        if len(angles):
+            shown = ", ".join(f"{math.degrees(angle):.6g}" for angle in angles)
+            lines.append(f"coupler and follower in line, {name}: crank at {shown} deg")
+    if found.swing is not None:
+        slides = found.mechanism == "slider-crank"
+        size = f"{found.swing:.6g}" if slides else f"{math.degrees(found.swing):.6g} deg"
+        lines.append(f"{'stroke' if slides else 'swing'} of the output: {size}")
+    if found.time_ratio is not None:
+        lines.append(f"time ratio: {found.time_ratio:.6g}")
+    return lines
+
+
 def animation(options: argparse.Namespace) -> Callable[..., object]:
     """Return what writes ``--animate``, if that was given; a wrong file is refused here."""
     if options.animate is None:
@@ -77,7 +162,7 @@ def animation(options: argparse.Namespace) -> Callable[..., object]:
     return lambda linkage, **more: animate(linkage, path, **more)
 
 
-def _table(motion: Motion) -> list[str]:
+def _table(motion: linkages.Motion) -> list[str]:
     """Return the lines that show a motion: some of its angles, and how it is to be read."""
     import numpy as np
 
@@ -102,7 +187,7 @@ def _table(motion: Motion) -> list[str]:
     return lines
 
 
-def angles_of(options: argparse.Namespace, linkage: Linkage, *, margin: float) -> Array:
+def angles_of(options: argparse.Namespace, linkage: linkages.Linkage, margin: float) -> Array:
     """Return the crank angles [rad] of ``--angles``: by default a turn, or what the crank reaches.
 
     At either end of that range, where the linkage folds, a share of it (``margin``) is left out.
@@ -175,11 +260,13 @@ def speed_range(text: str | None, scene: Scene, where: str) -> tuple[float, floa
     return ends[0], ends[1]
 
 
-def refuse_frame(scene: Scene) -> None:
-    """Refuse a scene without a crank."""
+def moving_scene(options: argparse.Namespace) -> Scene:
+    """Return the scene that the options name; one without a crank is refused."""
+    scene = opt.load(options)
     if scene.model["mechanism"] == "frame":
         fix = "use frequencies or stress"
         raise bad(f"scene {scene.name}", "a frame, which has no crank", "a linkage", fix)
+    return scene
 
 
 def _speed(options: argparse.Namespace, scene: Scene) -> float:
@@ -201,8 +288,8 @@ def _simulate(options: argparse.Namespace) -> int:
         found = f"{options.revolutions:g}"
         raise bad("--revolutions", found, "a number above 0, at most 1e6", "correct it")
     scene = opt.load(options)
-    if constrained.is_constrained(scene):
-        return constrained.simulate(options, scene)
+    if is_constrained(scene):
+        return _simulate_constrained(options, scene)
     speed = 1.0 if without_crank(options, scene) else speed_of(options, scene)
     system = scene.linear_system()
     chosen = {name: getattr(options, name) for name in ("method", "initial")}
@@ -215,6 +302,52 @@ def _simulate(options: argparse.Namespace) -> int:
         told = (replace(p, fix=fix) if p.where == "initial" else p for p in error.problems)
         raise BadInput(*told) from error
     return opt.finish(options, result, [*opt.ranges(result), "", f"status: {result.message}"])
+
+
+def _simulate_constrained(options: argparse.Namespace, scene: Scene) -> int:
+    """Integrate the constrained equations from the undeformed rod."""
+    from ..constrained import constrained_motion
+
+    if options.initial is not None:
+        fix = "leave it out: the motion starts from the undeformed rod"
+        raise bad("--initial", "a value", "none for constrained equations", fix)
+    if options.method not in (None, "collocation"):
+        raise bad("--method", repr(options.method), "collocation alone", "leave it out")
+    rod = at_speed(options, scene)
+    result = constrained_motion(
+        rod,
+        span=options.revolutions * (2.0 * math.pi / abs(rod.speed)),
+        samples=max(1, round(360 * options.revolutions)),
+        progress=opt.progress(options),
+    )
+    norms = [
+        (name, f"{float(getattr(result, f'{name}_norm').max()):.2e}")
+        for name in ("position", "velocity", "acceleration")
+    ]
+    lines = [
+        *opt.ranges(result),
+        "",
+        *opt.table(("constraints, level of", "largest scaled defect"), norms),
+        "",
+        f"status: {result.message}",
+    ]
+    return opt.finish(options, result, lines)
+
+
+def is_constrained(scene: Scene) -> bool:
+    """Return True where the scene's formulation leads to a constrained system."""
+    return bool(scene.model["formulation"] == "free_free")
+
+
+def at_speed(options: argparse.Namespace, scene: Scene) -> FreeFreeRod:
+    """Return the scene's system at the one crank speed of the option or of the scene."""
+    if options.speed is not None and ":" in options.speed:
+        expected = "one speed: each has its own periodic motion"
+        fix = "give one, or use formulation 'free_free_linear'"
+        raise bad("--speed", repr(options.speed), expected, fix)
+    moved = opt.load(options, **{"operation.speed": speed_of(options, scene)})
+    system: FreeFreeRod = moved.system()  # type: ignore[assignment]
+    return system
 
 
 def without_crank(options: argparse.Namespace, scene: Scene) -> bool:

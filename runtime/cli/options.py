@@ -300,15 +300,14 @@ def _verdict(result: Result, checks: Mapping[str, Check]) -> list[str]:
     error = np.asarray(result.error, dtype=float)
     finite = error[np.isfinite(error)]
     worst = f"{finite.max():.2g}" if finite.size else "not known"
-    lines = [
+    return [
         f"method: {result.method}",
         f"error:  {worst} ({result.error_kind}; {result.error_norm})",
+        *(
+            f"check:  {name}: {check.value:.2g} (limit {check.limit:.2g})"
+            for name, check in sorted(checks.items())
+        ),
     ]
-    lines += [
-        f"check:  {name}: {check.value:.2g} (limit {check.limit:.2g})"
-        for name, check in sorted(checks.items())
-    ]
-    return lines
 
 
 def _value(text: str) -> Any:

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any
 from .. import periodic
 from ..core.errors import bad
 from . import options as opt
-from .linkages import refuse_frame, speeds_of, speeds_option
+from .linkages import moving_scene, speeds_of, speeds_option
 
 if TYPE_CHECKING:
     from ..core.families import Array
-    from ..periodic import SteadyState
 
 # Of the coordinates of beams, by the end of their names; all others are rotations.
 _UNITS = {**dict.fromkeys(("x", "y", "along", "across"), "m"), "curvature": "1/m"}
@@ -38,8 +37,7 @@ def _steady_state(options: argparse.Namespace) -> int:
 
     if options.at is not None and not 0.0 <= options.at <= 1.0:
         raise bad("--at", f"{options.at:g}", "a place from 0 to 1", "divide by the length")
-    scene = opt.load(options)
-    refuse_frame(scene)
+    scene = moving_scene(options)
     speeds = speeds_of(options, scene)
     system = scene.linear_system()
     if system.structure is not None:
@@ -58,7 +56,7 @@ def _steady_state(options: argparse.Namespace) -> int:
     return opt.finish(options, result, _lines(result, largest, place), more=more)
 
 
-def _largest(found: SteadyState, labels: tuple[str, ...]) -> list[str]:
+def _largest(found: periodic.SteadyState, labels: tuple[str, ...]) -> list[str]:
     """Return the largest values of the coordinates of a linkage of beams."""
     units = [_UNITS.get(label.rpartition(".")[2], "rad") for label in labels]
     return opt.columns(
@@ -66,7 +64,7 @@ def _largest(found: SteadyState, labels: tuple[str, ...]) -> list[str]:
     )
 
 
-def _lines(found: SteadyState, peaks: Array, places: Array) -> list[str]:
+def _lines(found: periodic.SteadyState, peaks: Array, places: Array) -> list[str]:
     """Return a row per speed, or per resonance where there are many."""
     import numpy as np
 

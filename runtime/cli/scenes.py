@@ -162,12 +162,10 @@ def _to_scale(ax: Axes) -> Axes:
 def _draw_function(scene: Scene, ax: Axes) -> Axes:
     import numpy as np
 
+    from ..core.periodic_function import PeriodicFunction
+
     theta = np.linspace(0.0, 2 * np.pi, 361)
-    a, b = scene.get("function.a"), scene.get("function.b")
-    value = sum(
-        a[m] * np.cos(m * theta) + b[m] * np.sin(m * theta) for m in range(len(a))
-    ) * np.ones_like(theta)
-    ax.plot(np.degrees(theta), value)
+    ax.plot(np.degrees(theta), PeriodicFunction(**scene["function"])(theta))
     ax.set_xlabel("theta [deg]")
     ax.set_ylabel("f(theta)")
     return ax

@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING, Any
 
 from .. import periodic, stability, sweeps
 from ..core.errors import bad
-from . import constrained
 from . import options as opt
-from .linkages import speed_of, speeds_of, speeds_option, without_crank
+from .linkages import at_speed, is_constrained, speed_of, speeds_of, speeds_option, without_crank
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
+    from ..constrained.multipliers import ConstrainedMultipliers
+    from ..constrained.orbits import PeriodicOrbit
     from ..core.families import Array, LinearPeriodic
     from ..scenes import Scene
     from ..sweeps.result import AnyArray
@@ -61,12 +62,43 @@ def _stability(options: argparse.Namespace) -> int:
     elastolink stability smith_1972_5152_sixteenth_inch --speed 300:900:61rpm
     """
     scene = opt.load(options)
-    if constrained.is_constrained(scene):
-        return constrained.stability(options, scene)
+    if is_constrained(scene):
+        return _about_orbit(options, scene)
     speeds: Any = [1.0] if without_crank(options, scene) else speeds_of(options, scene)
     system = scene.linear_system()
     result = periodic.floquet_multipliers(system, speeds if len(speeds) > 1 else speeds[0])
     return opt.finish(options, result, _multiplier_lines(result, scene))
+
+
+def _about_orbit(options: argparse.Namespace, scene: Scene) -> int:
+    """Find the periodic motion by shooting, and the multipliers about it."""
+    from ..constrained import orbit_multipliers, periodic_orbit
+
+    orbit = periodic_orbit(at_speed(options, scene))
+    if not orbit.converged:
+        return opt.finish(options, orbit, [f"no periodic motion: {orbit.message}"])
+    result = orbit_multipliers(orbit)
+    lines = [
+        *opt.multipliers("physical multiplier", result.physical),
+        "",
+        f"{_verdict(orbit, result)}; largest deflection {orbit.deflection:.3g} of the "
+        f"length; {len(result.others)} more multipliers belong to the constraints and are 1",
+    ]
+    return opt.finish(options, result, lines, beside=(orbit,))
+
+
+def _verdict(orbit: PeriodicOrbit, found: ConstrainedMultipliers) -> str:
+    """Return the verdict, and whether the equations hold where it was found."""
+    told = ("stable" if found.stable else "unstable") + " about the periodic motion"
+    reached = orbit.checks["linear range"]
+    if not orbit.checks["accuracy"].passed:
+        return f"not known: the periodic motion is known to {orbit.error:.2g} only"
+    if not reached.passed:
+        return (
+            f"no verdict on the rod: the motion leaves the linear range, {reached.limit:g} of the "
+            f"length, where the equations hold; by them it is {told}"
+        )
+    return told
 
 
 def _multiplier_lines(result: periodic.FloquetMultipliers, scene: Scene) -> list[str]:
@@ -233,12 +265,11 @@ def _default_axis(axis: str, scene: Scene) -> Axis:
     inertias = scene.get("measured.follower_inertias", None)
     if axis == "y" and name in {None, "follower_inertia"} and inertias:
         return "follower_inertia", opt.spaced(0.9 * min(inertias), 1.1 * max(inertias), points)
-    raise bad(
-        f"--{axis}",
+    found, fix = (
         f"no chart.{axis}_range in scene {scene.name}",
-        "a parameter and its values",
         f"give --{axis} NAME=START:STOP:COUNT",
     )
+    raise bad(f"--{axis}", found, "a parameter and its values", fix)
 
 
 def _check_scale(options: argparse.Namespace) -> int:
@@ -280,9 +311,8 @@ def _stored(
         return opt.say(options, vars(found), str(found))
     shown = opt.progress(options)
     with _workers(count) as pool:
-        chart = sweeps.sweep(
-            *what, options=fixed, executor=pool, store=options.store, progress=shown
-        )
+        told = {"executor": pool, "store": options.store, "progress": shown}
+        chart = sweeps.sweep(*what, options=fixed, **told)
     left = 100.0 * float(chart["undecided"].mean())
     lines = [
         *_shares((x, y), chart["stable"], chart["kind"]),

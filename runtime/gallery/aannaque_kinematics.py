@@ -18,8 +18,7 @@ from ..scenes import load_scene
 from . import sketch
 from .aannaque_beams import FRAMES
 from .drawing import COLOURS, Array, Axes, Panels, panel_title
-from .records import Drawn
-from .registry import contents
+from .records import Drawn, contents
 from .smith_linkages import four_bar_of
 
 _SCENE = "aannaque_1996_table_3_2"

@@ -25,8 +25,7 @@ from ..scenes import load_scene
 from .aannaque_beams import FRAME, exact_frequencies, maxima, nearest
 from .aannaque_kinematics import cycle
 from .drawing import COLOURS, Axes, Panels, mark_fractions, panel_title, turn
-from .records import Drawn
-from .registry import contents
+from .records import Drawn, contents
 
 SHORT, LONG = "aannaque_1996_table_4_1", "aannaque_1996_long_coupler"
 # Speeds in the captions of appendices C and D [rad/s].
@@ -269,8 +268,7 @@ def cycles(
 ) -> tuple[Array, Mapping[tuple[str, float], Array]]:
     """Return crank angles [rad] and stresses [Pa] at the gauges, ``(ns, nt)``, by link and place.
 
-    Those of the outer fibre to the left of the link's direction, tension positive, at crank speeds
-    [rad/s].
+    Those of the outer fibre to the left of the link's direction, tension positive.
     """
     system = rig(scene, frame)
     motion = steady_state(system, np.array(speeds), rtol=1e-5)

@@ -13,8 +13,7 @@ from ..periodic import SteadyState, cycles_to_settle, steady_state
 from .aannaque_beams import CRITICAL, FULL, THESIS, beams, midpoint, moved, rms
 from .algorithms import modal_motion, newmark_limit, newmark_maps, operation_count, printed_count
 from .drawing import COLOURS, Array, Panels, panel_title, turn
-from .records import Drawn
-from .registry import contents
+from .records import Drawn, contents
 
 _SPEED = 35.0
 _FORMS = ((THESIS, "the thesis' form"), (FULL, "full form with stiffening"))

@@ -32,7 +32,7 @@ from .aannaque_beams import (
     stresses,
     tops,
 )
-from .drawing import COLOURS, Panels
+from .drawing import COLOURS, Panels, peak
 from .records import Drawn
 
 # Speeds [rad/s] of Figs. 7.1 and 7.3, of 7.4 and 7.6, of 7.7 to 7.11.
@@ -81,7 +81,7 @@ def figure_7_1(axes: Panels) -> Drawn:
             ax.axvline(place, color="0.6", lw=0.6, ls=(0, (1, 3)))
     both = [tops(_SPEEDS, largest), tops(_SPEEDS, second)]
     values = [_apart(places, np.concatenate(both)), nearest(places, CRITICAL)]
-    values += [nearest(both[0], CRITICAL), float(np.max(np.abs(real_parts())))]
+    values += [nearest(both[0], CRITICAL), peak(real_parts())]
     rows, mean = [], float(_held().mean[0])
     for place in places:
         rank = int(np.argmin([np.min(np.abs(one - place), initial=np.inf) for one in both]))
@@ -118,7 +118,7 @@ def figure_7_3(axes: Panels) -> Drawn:
     reference, whole = tops(_SPEEDS, fine), _meissner(_SPEEDS, 720)
     places = [tops(_SPEEDS, values) for values in counts.values()]
     places += [_held().mean[0] / np.arange(1, 12), tops(_SPEEDS, damped)]
-    gaps = [float(np.max(np.abs(_meissner(_SPEEDS, count) - whole))) for count in (90, 180)]
+    gaps = [peak(_meissner(_SPEEDS, count) - whole) for count in (90, 180)]
     return Drawn([*(_apart(reference, some) for some in places), np.log2(gaps[0] / gaps[1])])
 
 
@@ -133,11 +133,7 @@ def _response(frame: float) -> tuple[Array, Array]:
 
 
 def six_frames(axes: Panels, quantity: str) -> Drawn:
-    """Draw a quantity over the speed for six frames (Figs. 7.4 to 7.6).
-
-    The rms displacement of the follower's midpoint, the crank's largest stress, or the peak of the
-    strain energy.
-    """
+    """Draw ``displacement``, ``stress`` or ``energy`` over the speed, six frames (7.4 to 7.6)."""
     ax, speed = axes[0], _COARSE
     if quantity == "stress":
         speed = np.linspace(20.0, 70.0, 251)
@@ -243,7 +239,7 @@ def figure_7_9(axes: Panels) -> Drawn:
         ax.plot(np.degrees(theta), 1e-6 * values, style, color=colour, label=name)
         even.append(resampled(values, 512))
     one, two = (float(np.corrcoef(values, even[2])[0, 1]) for values in even[:2])
-    peaks = [float(np.max(np.abs(values))) for values in even]
+    peaks = [peak(values) for values in even]
     return Drawn([two, one / two, peaks[1] / peaks[0], peaks[2] / peaks[1]])
 
 

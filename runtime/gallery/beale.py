@@ -1,18 +1,14 @@
-"""Beale and Scott's figures: the tip by polynomial and free-free modes, resonances, a chart.
-
-Figs. 2 to 10 are the tip's deflection by polynomial and by free-free modes, Figs. 11 and 12 the
-response near the natural frequency; the stability chart is one that they left undone.
-"""
+"""Beale and Scott's Figs. 2 to 12: a tip by polynomial and free-free modes, resonances; a chart."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
 from itertools import combinations_with_replacement
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..constrained import constrained_motion
 from ..core.families import LinearPeriodic
@@ -25,7 +21,7 @@ from ..scenes import load_scene
 from ..stability import StabilityChart, stability_chart
 from ..systems.rod import FreeFreeRod
 from . import sketch
-from .drawing import COLOURS, Array, Axes, Panels, panel_title
+from .drawing import COLOURS, Array, Axes, Panels, panel_title, peak
 from .records import Drawn
 
 STIFF = "beale_1992_bahgat_willmert"
@@ -119,11 +115,6 @@ def stiff_tip(
     return tip_from_rest(rod(scene, formulation, modes, drop), SPEED)
 
 
-def peak(values: NDArray[Any]) -> float:
-    """Return the largest size."""
-    return float(np.max(np.abs(values)))
-
-
 def _gap(one: Array, other: Array) -> float:
     """Return the largest difference over the other's peak."""
     return peak(one - other) / peak(other)
@@ -153,10 +144,7 @@ def polynomials(axes: Panels, modes: int) -> Drawn:
 
 
 def _linkage() -> QuickReturn:
-    linkage = load_scene(STIFF).mechanism()
-    if not isinstance(linkage, QuickReturn):
-        raise TypeError("not a quick return")
-    return linkage
+    return cast("QuickReturn", load_scene(STIFF).mechanism())
 
 
 @lru_cache(maxsize=4)
@@ -268,9 +256,7 @@ def constrained_tip(scene: str, modes: int) -> tuple[Array, Array]:
     From the paper's initial conditions: undeformed, at the speeds of the rigid mechanism.
     """
     overrides = {"model.formulation": "free_free", "model.modes": modes, "model.drop": FRAME}
-    system = load_scene(scene, overrides=overrides).system()
-    if not isinstance(system, FreeFreeRod):
-        raise TypeError("not the rod with constraints")
+    system = cast("FreeFreeRod", load_scene(scene, overrides=overrides).system())
     run = constrained_motion(system, rtol=1e-6, samples=720)
     return system.speed * run.time, system.deflection(run.q, run.time, 1.0)[..., 0]
 

@@ -115,6 +115,11 @@ def mark_fractions(
                 )
 
 
+def peak(values: NDArray[Any]) -> float:
+    """Return the largest size."""
+    return float(np.max(np.abs(values)))
+
+
 def panel_title(ax: Axes, text: str) -> None:
     """Write a panel's title at its left."""
     ax.set_title(text, loc="left", fontsize=9)

@@ -1,9 +1,20 @@
-"""Records of the gallery: a quoted number, a table, what a figure gives, and the whole of it."""
+"""Records of all figures, read from one file of data for each document, and what drawing gives.
+
+A record holds the figure's label and title, the function that draws it (``draw``, a module and a
+name in it, with ``arguments`` after the axes), its panels and size, and what is compared, the
+expected value under the name of its kind; ``common`` holds what these share.  A record of a
+``kind`` takes what it does not say from the file's table ``kind``, whose quoted numbers follow its
+own; a note ``@name`` stands in its table ``notes``; ``page`` is a document that notes and tables
+make up.
+"""
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from functools import cache
+from importlib import import_module, resources
 from math import nan
 from textwrap import fill
 from typing import Any, Literal, SupportsFloat
@@ -11,6 +22,7 @@ from typing import Any, Literal, SupportsFloat
 from ..core.results import Check, Result
 from .drawing import Axes, Panels
 
+DOCUMENTS = ("smith", "aannaque", "beale")
 Relation = Literal["=", "<", ">"]
 Kind = Literal["printed", "words", "check"]
 
@@ -24,44 +36,18 @@ KINDS: Mapping[Kind, tuple[str, str]] = {
 
 @dataclass(frozen=True)
 class Quoted:
-    """One statement of a document, as a number beside the one that is computed here.
+    """One statement of a document, as a number beside the one that is computed here."""
 
-    Attributes
-    ----------
-    number : str
-        What is compared, in a few words.
-    expected : float
-        The value that the computed one is held against.
-    computed : float
-        The value computed here; not a number in a record that was not drawn.
-    tolerance : float
-        Largest deviation at which the two agree, in the same unit.
-    meaning : str
-        Where the tolerance comes from, or how words were read as a number.
-    where : str
-        Section of the document.
-    relation : {"=", "<", ">"}
-        Whether the value should be as ``expected``, below it, or above it.
-    unit : str
-        Unit of the values; empty for a ratio.
-    differs : str
-        Why the two are known to differ; empty where they should agree.
-    kind : {"printed", "words", "check"}
-        Where ``expected`` comes from: the document prints it; words of the document such as "an
-        order of magnitude" are read as it; or a whole table of printed numbers is
-        compared by its worst one.
-    """
-
-    number: str
+    number: str  # what is compared, in a few words
     expected: float = nan
-    computed: float = nan
-    tolerance: float = 0.0
-    meaning: str = ""
-    where: str = ""
-    relation: Relation = "="
-    unit: str = ""
-    differs: str = ""
-    kind: Kind = "check"
+    computed: float = nan  # not a number in a record that was not drawn
+    tolerance: float = 0.0  # largest deviation at which the two agree, in the same unit
+    meaning: str = ""  # where the tolerance comes from, or how words were read as a number
+    where: str = ""  # section of the document
+    relation: Relation = "="  # whether the value should be as expected, below it, or above it
+    unit: str = ""  # of the values; empty for a ratio
+    differs: str = ""  # why the two are known to differ; empty where they should agree
+    kind: Kind = "check"  # whether printed, read from words, or the worst number of a table
 
     @property
     def deviation(self) -> float:
@@ -121,17 +107,7 @@ def counts(rows: Sequence[Quoted]) -> list[str]:
 
 @dataclass(frozen=True)
 class Table:
-    """A table of finished texts.
-
-    Attributes
-    ----------
-    title : str
-        One line.
-    header : tuple of str
-        Column headings.
-    rows : tuple of tuple of str
-        As many cells each as the header has.
-    """
+    """A table of finished texts: as many cells in each row as there are headings."""
 
     title: str
     header: tuple[str, ...]
@@ -168,74 +144,33 @@ class Table:
 
 @dataclass(frozen=True)
 class Drawn:
-    """What drawing a figure gives beside the picture.
+    """What drawing a figure gives beside the picture, for its record."""
 
-    Attributes
-    ----------
-    values : sequence
-        The computed values of the record's quoted numbers, in their order.
-    words : mapping
-        What stands in the braces of the record's notes and of the titles of its tables.
-    tables : sequence
-        The rows of each of the record's tables, their cells numbers and texts.
-    """
-
-    values: Sequence[SupportsFloat] = ()
+    values: Sequence[SupportsFloat] = ()  # of the quoted numbers, in their order
+    # What stands in the braces of notes and of the titles of tables.
     words: Mapping[str, object] = field(default_factory=dict)
-    tables: Sequence[Iterable[Sequence[Any]]] = ()
+    tables: Sequence[Iterable[Sequence[Any]]] = ()  # rows of each table, cells numbers and texts
 
 
 @dataclass(frozen=True)
 class FigureEntry:
-    """The record of one figure or table of a document.
+    """The record of one figure or table of a document."""
 
-    Attributes
-    ----------
-    document : str
-        Short name of the document.
-    label : str
-        The figure's number there, for example ``27(c)``; a name for a table of our own.
-    title : str
-        What it shows.
-    draw : callable
-        From the axes, in the order of rows and columns, to a :class:`Drawn`, or None where
-        nothing goes with the picture.
-    panels : tuple of int
-        Rows and columns of axes.
-    size : tuple of float
-        Width and height of the picture [in].
-    projection : str or None
-        Of the axes: ``"3d"`` for a picture in space.
-    axes : mapping
-        Settings of all panels, see :func:`~.drawing.dress`.
-    panel : sequence of mapping
-        Further settings of each panel.
-    legend : int
-        Columns of the legend below the panels; 0 for none.
-    quoted : tuple of Quoted
-        Numbers of the text that the figure bears on, not computed yet.
-    notes : tuple of str
-        What the document leaves open and what was chosen for it.
-    tables : sequence of mapping
-        Tables of numbers behind the picture: ``title`` and ``columns``, see :meth:`Table.of`.
-    page : mapping
-        The document of ours that notes and tables make up, if any: its ``file``, the ``intro`` in
-        Markdown that stands before them, and which note is the ``first`` in it.
-    """
-
-    document: str
-    label: str
+    document: str  # its short name
+    label: str  # the figure's number there, such as 27(c); a name for a table of our own
     title: str
     draw: Callable[[Panels], Drawn | None]
-    panels: tuple[int, int] = (1, 1)
-    size: tuple[float, float] = (7.2, 4.6)
-    projection: str | None = None
-    axes: Mapping[str, Any] = field(default_factory=dict)
-    panel: Sequence[Mapping[str, Any]] = ()
-    legend: int = 4
-    quoted: tuple[Quoted, ...] = ()
-    notes: tuple[str, ...] = ()
-    tables: Sequence[Mapping[str, Any]] = ()
+    panels: tuple[int, int] = (1, 1)  # rows and columns of axes
+    size: tuple[float, float] = (7.2, 4.6)  # width and height of the picture [in]
+    projection: str | None = None  # of the axes: "3d" for a picture in space
+    axes: Mapping[str, Any] = field(default_factory=dict)  # settings of all panels, see dress
+    panel: Sequence[Mapping[str, Any]] = ()  # further settings of each
+    legend: int = 4  # columns of the legend below the panels; 0 for none
+    quoted: tuple[Quoted, ...] = ()  # numbers of the text that the figure bears on
+    notes: tuple[str, ...] = ()  # what the document leaves open and what was chosen for it
+    tables: Sequence[Mapping[str, Any]] = ()  # "title" and "columns" of each, see Table.of
+    # The document of ours that notes and tables make up, if any: its "file", the "intro" in
+    # Markdown that stands before them, and which note is the "first" in it.
     page: Mapping[str, Any] = field(default_factory=dict)
 
     @property
@@ -264,21 +199,76 @@ class FigureEntry:
         return Shown(self, rows, notes, tables)
 
 
+@cache
+def documents() -> Mapping[str, tuple[FigureEntry, ...]]:
+    """Return the records of each document, in the order of its figures."""
+    return {name: _read(name) for name in DOCUMENTS}
+
+
+@cache
+def contents(document: str) -> Mapping[str, Any]:
+    """Return a document's file of data: its records and what else stands printed in it."""
+    file = resources.files(__package__) / "data" / f"{document}.toml"
+    return tomllib.loads(file.read_text("utf-8"))
+
+
+def _read(document: str) -> tuple[FigureEntry, ...]:
+    data = contents(document)
+    notes, kinds = data.get("notes", {}), data.get("kind", {})
+    return tuple(
+        _entry(document, _merged(kinds.get(record.get("kind", ""), {}), record), notes)
+        for record in data["figure"]
+    )
+
+
+def _merged(kind: Mapping[str, Any], record: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a record with what its kind adds; tables in both are joined, and quoted numbers."""
+    tables = {
+        name: {**kind[name], **record[name]}
+        for name in kind.keys() & record.keys()
+        if isinstance(kind[name], dict)
+    }
+    quoted = [*record.get("quoted", ()), *kind.get("quoted", ())]
+    return {**kind, **record, **tables, "quoted": quoted}
+
+
+def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> FigureEntry:
+    record.pop("kind", None)
+    common = record.pop("common", {})
+    place, arguments = record.pop("draw"), record.pop("arguments", ())
+
+    def draw(axes: Panels) -> Drawn | None:
+        # The module that draws is loaded only now.
+        module, _, name = place.partition(".")
+        drawn: Drawn | None = getattr(import_module(f".{module}", __package__), name)(
+            axes, *arguments
+        )
+        return drawn
+
+    for name in {"panels", "size"} & record.keys():
+        record[name] = tuple(record[name])
+    return FigureEntry(
+        document,
+        draw=draw,
+        quoted=tuple(_comparison(common, row) for row in record.pop("quoted", ())),
+        notes=tuple(
+            notes[note[1:]] if note.startswith("@") else note for note in record.pop("notes", ())
+        ),
+        **record,
+    )
+
+
+def _comparison(common: Mapping[str, Any], row: Mapping[str, Any]) -> Quoted:
+    """Return one comparison; the key of its expected value is its kind."""
+    kind = next(kind for source in (row, common) for kind in KINDS if kind in source)
+    given = {**common, **row}
+    rest = {name: value for name, value in given.items() if name not in KINDS}
+    return Quoted(kind=kind, expected=given[kind], **rest)
+
+
 @dataclass(frozen=True)
 class Shown:
-    """A figure that was drawn.
-
-    Attributes
-    ----------
-    entry : FigureEntry
-        Its record.
-    quoted : tuple of Quoted
-        The quoted numbers with the computed ones.
-    notes : tuple of str
-        As in the record, with the computed words in place.
-    tables : tuple of Table
-        Numbers behind the picture.
-    """
+    """A figure that was drawn: its record, with the computed numbers and words in place."""
 
     entry: FigureEntry
     quoted: tuple[Quoted, ...] = ()
@@ -303,16 +293,8 @@ class Shown:
 class Gallery(Result):
     """Figures that were redrawn, and every number of the text beside the computed one.
 
-    The ``error`` is the largest deviation over its tolerance among the numbers that should agree.
-
-    Attributes
-    ----------
-    shown : tuple of Shown
-        The figures in order.
-    folder : str
-        Where the pictures and ``index.html`` were written; empty where nothing was.
-    files : tuple of str
-        Names of the files in that folder.
+    The ``error`` is the largest deviation over its tolerance among the numbers that should agree;
+    ``folder`` is where the pictures and ``index.html`` were written, empty where nothing was.
     """
 
     shown: tuple[Shown, ...] = field(default=(), repr=False)

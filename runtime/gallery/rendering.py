@@ -1,7 +1,4 @@
-"""Redraw the figures of the documents and check the numbers that they quote.
-
-The page is one HTML file, its pictures beside it, written together.
-"""
+"""Redraw the figures of the documents and check their numbers: an HTML page with its pictures."""
 
 from __future__ import annotations
 
@@ -10,7 +7,6 @@ import os
 import tempfile
 import warnings
 from collections.abc import Mapping, Sequence
-from contextlib import ExitStack, suppress
 from html import escape
 from pathlib import Path
 
@@ -19,7 +15,7 @@ import numpy as np
 from ..core.errors import LinearRangeWarning, bad
 from ..core.progress import bar
 from ..core.results import Check
-from . import registry
+from . import records
 from .records import KINDS, FigureEntry, Gallery, Quoted, Shown, Table, counts
 
 _CSS = """
@@ -40,23 +36,12 @@ td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: 
 
 
 def figures(document: str | None = None, figure: str | None = None) -> tuple[FigureEntry, ...]:
-    """Return the figures that a document's name and a label choose.
+    """Return the figures that a document's name and a label choose; all by default.
 
-    Parameters
-    ----------
-    document : str, optional
-        Short name; all documents by default.
-    figure : str, optional
-        A label such as ``84`` or ``27(c)`` (``27c`` will do); a number alone stands for all its
-        parts, the letter of an appendix for all its sheets, ``C.3`` for the sheet that holds it.
-        All figures by default.
-
-    Raises
-    ------
-    BadInput
-        If there is no such document or figure.
+    A label such as ``84`` or ``27(c)`` (``27c`` will do); a number alone stands for all its parts,
+    the letter of an appendix for all its sheets, ``C.3`` for the sheet that holds it.
     """
-    known = registry.documents()
+    known = records.documents()
     if document is not None and document not in known:
         raise bad("document", repr(document), f"one of {sorted(known)}", "correct the name")
     names = list(known) if document is None else [document]
@@ -85,46 +70,37 @@ def reproduce(
 ) -> Gallery:
     """Redraw figures and compare every number that the text quotes with the computed one.
 
-    Parameters
-    ----------
-    document : str, optional
-        Short name of a document; all of them by default.
-    figure : str, optional
-        One figure, see :func:`figures`.
-    out : path, optional
-        Folder for the pictures (PNG) and ``index.html``: all appear, or none.  The same input
-        gives the same bytes.  By default nothing is written.
-    progress : bool
-        Whether to show a progress bar.
-
-    Returns
-    -------
-    Gallery
-        One check per quoted number: agreement, or, for a number known to differ, that it still
-        does.
-
-    Raises
-    ------
-    BadInput
-        If there is no such document or figure, or the folder cannot be written.
+    Document and figure as for :func:`figures`.  Into the folder ``out``, if any, go the pictures
+    (PNG) and ``index.html``: all appear, or none, and the same input gives the same bytes.  There
+    is one check per quoted number: agreement, or, for a number known to differ, that it still does.
     """
     chosen = figures(document, figure)
+    folder = None if out is None else _writable(Path(out))
     shown, files = [], {}
     with bar(progress, len(chosen)) as tick:
         for done, entry in enumerate(chosen, start=1):
-            item, picture = render(entry, picture=out is not None)
+            item, picture = render(entry, picture=folder is not None)
             shown.append(item)
             if picture is not None:
                 files[f"{entry.stem}.png"] = picture
                 files |= {name: text.encode() for name, text in item.files.items()}
             if tick is not None:
                 tick(done)
-    if out is not None:
+    if folder is not None:
         names = ", ".join(sorted({entry.document.capitalize() for entry in chosen}))
         title = f"Figures of {names}, redrawn and checked"
         files = {"index.html": page(title, shown).encode(), **files}
-        write_together(Path(out), files)
+        write_together(folder, files)
     return _gallery(shown, "" if out is None else str(out), tuple(files))
+
+
+def _writable(folder: Path) -> Path:
+    """Return a folder that can be made or written, refused here before any work starts."""
+    whole = folder.absolute()
+    there = next(path for path in (whole, *whole.parents) if path.exists())
+    if not there.is_dir() or not os.access(there, os.W_OK):
+        raise bad("--out", repr(str(folder)), "a folder that can be written", "choose another")
+    return folder
 
 
 def render(entry: FigureEntry, *, picture: bool = True) -> tuple[Shown, bytes | None]:
@@ -154,16 +130,14 @@ def render(entry: FigureEntry, *, picture: bool = True) -> tuple[Shown, bytes | 
 
 def _gallery(shown: Sequence[Shown], folder: str, files: tuple[str, ...]) -> Gallery:
     checks: dict[str, Check] = {}
-    worst = 0.0
     for item in shown:
         for row in item.quoted:
-            name = f"{item.entry.document} {item.entry.label}: {row.number}"
-            checks[name if not row.differs else f"{name} (known to differ)"] = row.check
-            if not row.differs:
-                worst = max(worst, row.share)
+            known = " (known to differ)" if row.differs else ""
+            checks[f"{item.entry.document} {item.entry.label}: {row.number}{known}"] = row.check
+    shares = (row.share for item in shown for row in item.quoted if not row.differs)
     return Gallery(
         method="figures redrawn from built-in scenes",
-        error=worst,
+        error=max(shares, default=0.0),
         error_norm="largest deviation of a quoted number over its tolerance",
         checks=checks,
         shown=tuple(shown),
@@ -268,46 +242,14 @@ def _html(header: Sequence[str], rows: Sequence[str]) -> str:
 
 
 def write_together(folder: Path, contents: Mapping[str, bytes]) -> None:
-    """Write files into a folder; on an error or an interrupt it is left as it was.
+    """Write files into a folder, made where there is none; others there stay.
 
-    The files are written beside the folder's own first, then moved.  Other files in the folder
-    stay.  A folder that cannot be made or written is refused.
+    All are written beside the folder's own first, then moved: what fails or is interrupted while
+    writing leaves the folder as it was.
     """
-    missing = [path for path in (folder, *folder.parents) if not path.exists()]
-    with ExitStack() as whole:
-        whole.callback(_remove, missing)
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            staging = tempfile.TemporaryDirectory(prefix=".gallery.", dir=folder)
-        except OSError as refusal:
-            reason = refusal.strerror or "an error"
-            expected = "a folder that can be written"
-            raise bad(str(folder), reason, expected, "choose another") from refusal
-        with staging as place, ExitStack() as undo:
-            new, old = Path(place, "new"), Path(place, "old")
-            new.mkdir()
-            old.mkdir()
-            for name, content in contents.items():
-                (new / name).write_bytes(content)
-            for name in contents:
-                undo.callback(_restore, folder / name, new / name, old / name)
-                if (folder / name).exists():
-                    (folder / name).replace(old / name)
-                (new / name).replace(folder / name)
-            undo.pop_all()
-        whole.pop_all()
-
-
-def _restore(target: Path, new: Path, old: Path) -> None:
-    """Take back the move of a new file to its place, however far it came."""
-    if old.exists():
-        old.replace(target)
-    elif not new.exists():
-        target.unlink()
-
-
-def _remove(folders: list[Path]) -> None:
-    """Remove those of the folders, the innermost first, that are there and empty."""
-    for folder in folders:
-        with suppress(OSError):
-            folder.rmdir()
+    folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=".gallery.", dir=folder) as place:
+        for name, content in contents.items():
+            Path(place, name).write_bytes(content)
+        for name in contents:
+            Path(place, name).replace(folder / name)

@@ -36,8 +36,7 @@ from ..rigid.counterweights import CASES, Case
 from ..scenes import load_scene
 from . import sketch
 from .drawing import COLOURS, Array, Axes, Panels, panel_title
-from .records import Drawn
-from .registry import contents
+from .records import Drawn, contents
 
 INCH, POUND = 0.0254, 4.4482216152605
 TURN = np.linspace(0.0, 2.0 * pi, 1441)

@@ -17,8 +17,7 @@ from ..hill.bloch import effective_operator
 from ..periodic import FloquetMultipliers, floquet_multipliers
 from ..stability import stability_edges
 from .drawing import COLOURS, Array, Panels, panel_title
-from .records import Drawn
-from .registry import contents
+from .records import Drawn, contents
 from .smith_linkages import LBF_IN_S2, RIG, RPM, OfRig, region_name
 
 
@@ -177,10 +176,7 @@ _KINDS = {
 
 
 class _Region(NamedTuple):
-    """One unstable region in rpm: kind, label, ends and width without damping, what damping leaves.
-
-    The last is about the width that the lowest decrement measured at rest leaves.
-    """
+    """One unstable region in rpm, and what the lowest measured decrement leaves of its width."""
 
     kind: str
     label: str

@@ -1,7 +1,4 @@
-"""Smith's Figs. 28 to 38: the coupler equation solved step by step, charts and space of its edges.
-
-The charts are over lambda^2 and mu; the space is that of Hill's equation with two functions.
-"""
+"""Smith's Figs. 28 to 38: the coupler equation step by step, charts and space of its edges."""
 
 from __future__ import annotations
 
@@ -27,7 +24,7 @@ from ..linkages import FourBar
 from ..periodic import simulate
 from ..scenes import load_scene
 from .algorithms import de_vogelaere_maps, de_vogelaere_start, kutta_merson, second_order_form
-from .drawing import COLOURS, Array, Axes, Panels, outline, panel_title
+from .drawing import COLOURS, Array, Axes, Panels, outline, panel_title, peak
 from .records import Drawn
 from .smith_linkages import linkage_of, series
 
@@ -123,20 +120,19 @@ def methods(axes: Panels, other: str) -> Drawn:
 
     De Vogelaere's with a half step of 0.5 degrees, beside another step or Kutta and Merson's.
     """
-    usual, step = _march(0.5, 4), other == "1 deg"
-    looser = _march(1.0, 4) if step else _kutta_merson(4)
-    names = ("h = 0.5 deg", "h = 1 deg")
-    if not step:
-        names = ("de Vogelaere, h = 0.5 deg", "Kutta-Merson, variable step")
-    for ax in axes:
-        _line(ax, usual, COLOURS[0], names[0])
-        _line(ax, looser, COLOURS[1], names[1], "--")
+    runs = {"h = 0.5 deg": _march(0.5, 4), "h = 1 deg": _march(1.0, 4)}
+    if other != "1 deg":
+        first, second = "de Vogelaere, h = 0.5 deg", "Kutta-Merson, variable step"
+        runs = {first: _march(0.5, 4), second: _kutta_merson(4)}
     # Of the fast vibration in the fourth cycle, by a smooth window: its phase, without sign.
     sizes = []
-    for theta, q, _ in (usual, looser):
-        last = theta >= 6 * pi
-        window = np.sin(0.5 * (theta[last] - theta[last][0])) ** 4
-        sizes.append(np.sum(q[last] * window * np.exp(-1j * _LAMBDA * theta[last])))
+    for (name, run), colour, style in zip(runs.items(), COLOURS, ("-", "--"), strict=False):
+        for ax in axes:
+            _line(ax, run, colour, name, style)
+        last = run[0] >= 6 * pi
+        theta = run[0][last]
+        window = np.sin(0.5 * (theta - theta[0])) ** 4
+        sizes.append(np.sum(run[1][last] * window * np.exp(-1j * _LAMBDA * theta)))
     return Drawn([abs(np.degrees(np.angle(sizes[0] / sizes[1])))])
 
 
@@ -156,9 +152,9 @@ def figure_31(axes: Panels) -> Drawn:
         inside = slice(wave // 2, wave // 2 + len(slow))
         fast[inside, m - 1] = values[inside] - slow
     size = np.sqrt(2.0 * np.nanmean(fast**2, axis=0))
-    rest, peak = np.nanmax(np.abs(run.q - fast), axis=0), np.max(np.abs(run.q), axis=0)
+    rest, whole = np.nanmax(np.abs(run.q - fast), axis=0), np.max(np.abs(run.q), axis=0)
     ratios = [part[m] / part[m + 1] for part in (size, rest) for m in (0, 1)]
-    return Drawn([*ratios, peak[0] / peak[2], peak[0] / peak[1]])
+    return Drawn([*ratios, whole[0] / whole[2], whole[0] / whole[1]])
 
 
 def figure_32(axes: Panels) -> Drawn:
@@ -188,19 +184,12 @@ def figure_33(axes: Panels) -> Drawn:
     return Drawn([*np.abs(half[::2]), *np.abs(half[1::2])])
 
 
-def _largest(one: Array, other: Array) -> float:
-    return float(np.max(np.abs(one - other)))
-
-
 def _edges(ax: Axes, mu: Array, ends: Array, style: str, colour: str, label: str) -> None:
     ax.plot(np.concatenate(ends).T, mu, style, color=colour, lw=1.3, label=label)
 
 
 def _to_order(f: PeriodicFunction, mu: Array, regions: Sequence[int], order: int) -> Array:
-    """Return lower and upper ends by Smith's series (7.25), (7.37), ``(2, regions, mu)``.
-
-    They are drawn beyond where they are good.
-    """
+    """Return both ends by (7.25), (7.37), also where they are poor, ``(2, regions, mu)``."""
     return np.stack([boundary_series(f, n, order)(mu) for n in regions], axis=1)
 
 
@@ -224,7 +213,7 @@ def figure_34(axes: Panels) -> Drawn:
     ):
         near = _to_order(f, mu, (*regions, 5), order)
         _edges(ax, mu, near, style, colour, f"{name} order")
-        words[name] = _largest(near[:, 0], np.concatenate([exact.lower, exact.upper]))
+        words[name] = peak(near[:, 0] - np.concatenate([exact.lower, exact.upper]))
     return Drawn(words=words)
 
 
@@ -242,10 +231,7 @@ def figure_35(axes: Panels) -> Drawn:
 
 
 def damped(axes: Panels, regions: list[int], dampings: list[float], top: float) -> None:
-    """Draw regions up to a mu for several dampings, exact and, of a single one, to first order.
-
-    Figs. 36 and 37.
-    """
+    """Draw regions for several dampings, exact and, of a single one, first order (Figs. 36, 37)."""
     f, ax = series(_LINKAGE), axes[0]
     for damping, colour in zip(dampings, COLOURS, strict=False):
         # Closer values above the tips, exact and by (7.51), where the outlines are flat.
@@ -311,8 +297,8 @@ def figure_38(axes: Panels) -> Drawn:
     words = {"share": float(share[0])}
     for side, (one, two) in {"left": (1.0, 0.0), "right": (0.0, 1.0)}.items():
         for order in (1, 2):
-            near = space_series(share * one, share * two, order)
-            words[f"{side}{order}"] = max(map(_largest, space_ends(one, two, share), near))
+            near = np.array(space_series(share * one, share * two, order))
+            words[f"{side}{order}"] = peak(near - space_ends(one, two, share))
     return Drawn([min(around), max(falls)], words)
 
 

@@ -1,7 +1,4 @@
-"""Smith's linkages and rigs, as all his figures use them; Figs. 6 to 10 and 27.
-
-These draw the follower's motion, clearance and the coupler's end load.
-"""
+"""Smith's linkages and rigs; Figs. 6 to 10 and 27: follower, clearance, the coupler's end load."""
 
 from __future__ import annotations
 
@@ -22,9 +19,8 @@ from ..linkages.clearance import clearance_range
 from ..linkages.transmission import transmission_angle
 from ..scenes import load_scene
 from . import sketch
-from .drawing import COLOURS, Array, Axes, Panels
-from .records import Drawn
-from .registry import contents
+from .drawing import COLOURS, Array, Axes, Panels, peak
+from .records import Drawn, contents
 
 RPM = pi / 30.0
 # 1 lbf in s^2 in kg m^2, from the exact pound, standard gravity and the exact inch.
@@ -126,15 +122,9 @@ class Rig:
         the speed 2 Omega / n.  Lower and upper speeds ``(2, len(regions), k)``, infinite where
         lambda^2 would be negative.
         """
-        values = np.atleast_1d(np.asarray(inertia, dtype=float))
-        if equation == "reduced":
-            # Its coefficient is proportional to the inertia.
-            bounds = hill_boundaries(self.function(equation, 1.0), values, regions)
-            lam2 = np.stack([bounds.upper, bounds.lower])
-        else:
-            each = [hill_boundaries(self.function(equation, v), 1.0, regions) for v in values]
-            upper = np.stack([one.upper for one in each], axis=-1)
-            lam2 = np.stack([upper, np.stack([one.lower for one in each], axis=-1)])
+        functions = (self.function(equation, float(one)) for one in np.atleast_1d(inertia))
+        each = [hill_boundaries(f, 1.0, regions) for f in functions]
+        lam2 = np.moveaxis(np.array([[one.upper, one.lower] for one in each]), 0, -1)
         positive = lam2 > 0.0
         roots = np.sqrt(np.where(positive, lam2, 1.0))
         return np.asarray(np.where(positive, self.frequency / roots, np.inf))
@@ -191,7 +181,7 @@ def _follower(crank: float, theta: Array) -> FourBarMotion:
 def output(axes: Panels, rate: str, small: float, slope: float, level: float) -> Drawn:
     """Draw the follower's angle, speed or acceleration for a family of cranks (Fig. 6).
 
-    Its value for a vanishing crank, the slope over the angle and the level of the parallelogram's.
+    ``small`` is its value for a vanishing crank, slope and level are the parallelogram's.
     """
     ax, scale = axes[0], 180.0 / pi if rate == "theta4" else 1.0
 
@@ -265,7 +255,7 @@ def end_loads(axes: Panels, proportions: str) -> Drawn:
 def _sizes(proportions: str) -> list[float]:
     """Return the peaks of phi, f1, f2 and f3."""
     parts = end_load(linkage_of(proportions), np.linspace(0.0, 2 * pi, 2881))
-    return [float(np.max(np.abs(parts[name]))) for name in ("phi", "f1", "f2", "f3")]
+    return [peak(parts[name]) for name in ("phi", "f1", "f2", "f3")]
 
 
 def _with_coupler(linkage: FourBar, change: float, crossed: bool = False) -> FourBar:
@@ -380,7 +370,7 @@ def figure_10(axes: Panels) -> Drawn:
         ax.plot(np.degrees(theta), np.degrees(moves.small), ":", color="0.15", lw=1.1, zorder=5)
     ax.plot([], [], ":", color="0.15", lw=1.1, label="small clearance, (3.3)")
     every = ranges.values()
-    apart = max(degrees(float(np.max(np.abs(moves.width - moves.small)))) for moves in every)
+    apart = max(degrees(peak(moves.width - moves.small)) for moves in every)
     greatest = [degrees(theta[int(np.argmax(moves.below[:-1]))]) for moves in every]
     near = np.abs(theta - pi) < radians(60.0)
     values = [(at + 180.0) % 360.0 - 180.0 for at in greatest]

@@ -14,7 +14,7 @@ from scipy.signal import find_peaks
 
 from ..hill import discriminant
 from ..periodic import simulate, steady_state
-from .drawing import COLOURS, Array, Panels, mark_fractions, panel_title, turn
+from .drawing import COLOURS, Array, Panels, mark_fractions, panel_title, peak, turn
 from .records import Drawn
 from .smith_linkages import RIG, RPM, OfRig
 
@@ -114,10 +114,7 @@ def response(
     resonances: Sequence[float] = (),
     claim: Sequence[Any] = (),
 ) -> Drawn:
-    """Draw a frequency response; compute resonances near speeds [rpm] and what a claim needs.
-
-    A claim is one of :data:`_CLAIMS` and what it takes.
-    """
+    """Draw a frequency response; compute resonances near speeds [rpm] and one of the claims."""
     one, ax = Response(chart, inertia, low, high), axes[0]
     least, middle, most = one.rig.decrements
     for decrement, colour, width in (
@@ -137,7 +134,7 @@ def response(
     # The axis is kept to what can be read, 15 % of the length; dashed lines say that up to 5 %
     # linear equations hold.
     length = 1e3 * one.rig.system(inertia=inertia).reference_length
-    top = max(float(np.max(np.abs(values))) for values in (ends.least, ends.greatest))
+    top = max(peak(values) for values in (ends.least, ends.greatest))
     end = min(1.15 * top, 0.15 * length)
     if 0.05 * length < end:
         for level in (0.05 * length, -0.05 * length):

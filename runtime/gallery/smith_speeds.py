@@ -13,9 +13,8 @@ import numpy as np
 from ..hill import discriminant, perturbation_boundaries
 from ..scenes import load_scene
 from ..stability.boundary_speeds import speed_boundaries
-from .drawing import COLOURS, Array, Axes, Panels
-from .records import Drawn
-from .registry import contents
+from .drawing import COLOURS, Array, Axes, Panels, peak
+from .records import Drawn, contents
 from .smith_linkages import (
     EQUATIONS,
     LBF_IN_S2,
@@ -170,8 +169,8 @@ def order_sizes(rig: Rig) -> dict[str, float]:
     Keys ``phi``, ``eps1 f1``, ``eps2 f2`` are the terms of (6.17); ``eps2 cos23`` and
     ``(pi^2/3 - 1/4) phi`` those that it leaves out of the first mode's equation.
     """
-    follower = _peak(rig.function("reduced", float(rig.inertias[0]))(_TURN))
-    return {name: _peak(term) / follower for name, term in _terms(rig.linkage, _TURN).items()}
+    follower = peak(rig.function("reduced", float(rig.inertias[0]))(_TURN))
+    return {name: peak(term) / follower for name, term in _terms(rig.linkage, _TURN).items()}
 
 
 def _terms(linkage: str, theta: Array) -> dict[str, Array]:
@@ -184,10 +183,6 @@ def _terms(linkage: str, theta: Array) -> dict[str, Array]:
         "eps2 cos23": eps2 * parts["cos23"],
         "(pi^2/3 - 1/4) phi": (pi**2 / 3 - 0.25) * parts["phi"],
     }
-
-
-def _peak(values: Array) -> float:
-    return float(np.max(np.abs(values)))
 
 
 def _claims(rig: Rig) -> list[float]:
@@ -254,7 +249,7 @@ def equations_table(axes: Panels) -> Drawn:
 def _ratio(linkage: str) -> float:
     """Return the peak of the coupler part that (6.17) leaves out over that of the one it keeps."""
     phi, f1, f2, tension, more = _terms(linkage, _TURN).values()
-    return _peak(tension + more) / _peak(f1 + f2 - phi)
+    return peak(tension + more) / peak(f1 + f2 - phi)
 
 
 def _shifts() -> tuple[list[Sequence[Any]], Array, Array]:

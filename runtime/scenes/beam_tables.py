@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from ..core.errors import BadInput, Problem
-from .schema import Key, Table, not_negative, positive
+from .schema import Key, Table, choice, not_negative, positive, quantities
 
 # Terms of the moving beams that a scene may leave out, and names for sets of them.
 DROPPED = ("geometric_stiffness", "turning")
@@ -62,6 +62,7 @@ SECTION_KEYS = (
     *(replace(key, default=None) for key in MATERIAL.keys if key.name != "poisson"),
     Key("elements", "number of elements", "count", limit="positive", most=200),
 )
+_HELD = ("x", "y", "rotation")
 _NODE_KEYS = (
     not_negative("mass", "lumped mass", "mass"),
     not_negative("inertia", "lumped moment of inertia", "inertia"),
@@ -72,21 +73,16 @@ _NODE_KEYS = (
     not_negative("damping_x", "damper along x", "damping"),
     not_negative("damping_y", "damper along y", "damping"),
     not_negative("damping_rotation", "torsion damper", "rotational_damping"),
-    Key(
-        "held",
-        "what the ground or the shaft holds; left out, what the mechanism says",
-        "texts",
-        choices=("x", "y", "rotation"),
-    ),
-    Key("force", "constant load, x and y component", "quantities", "force", length=2),
+    Key("held", "what ground or shaft hold; else what the mechanism says", "texts", choices=_HELD),
+    quantities("force", "constant load, x and y component", "force", length=2),
 )
 JOINTS = Table("joints", "what is at a joint, under its letter: A, B, C, D", _NODE_KEYS, named=True)
 NODES = Table(
     "nodes",
     "points of a frame, each under a name of its own",
     (
-        Key("place", "x and y", "quantities", "length", length=2, required=True),
-        Key("pinned", "whether members turn by themselves there", "text", choices=("yes", "no")),
+        quantities("place", "x and y", "length", length=2, required=True),
+        choice("pinned", "whether members turn by themselves there", "yes", "no"),
         *_NODE_KEYS,
     ),
     required=True,
@@ -106,15 +102,7 @@ MEMBERS = Table(
 FRAME = Table(
     "frame",
     "assumptions about all members",
-    (
-        Key(
-            "axial",
-            "whether members stretch",
-            "text",
-            default="elastic",
-            choices=("elastic", "rigid"),
-        ),
-    ),
+    (choice("axial", "whether members stretch", "elastic", "rigid", default="elastic"),),
 )
 
 

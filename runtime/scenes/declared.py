@@ -33,11 +33,8 @@ def declared_layout(
     model = document.get("model")
     mechanism = model.get("mechanism") if isinstance(model, Mapping) else None
     if not isinstance(schema, Mapping) or not isinstance(mechanism, str):
-        problems.append(
-            Problem(
-                "schema", repr(schema)[:60], "a table, beside [model] with a mechanism", "add it"
-            )
-        )
+        expected = "a table, beside [model] with a mechanism"
+        problems.append(Problem("schema", repr(schema)[:60], expected, "add it"))
         return None
     parameters: dict[str, str] = {}
     tables: list[Table] = []
@@ -66,35 +63,29 @@ def declared_layout(
 
 def _key(table: str, name: str, entry: object, problems: list[Problem]) -> Key:
     """Turn one declaration into a key; a wrong one becomes a text, and a problem."""
-    where = f"schema.{table}.{name}"
-    fallback = Key(name, "declared by the scene", "text", default="")
+    before = len(problems)
+
+    def refuse(found: str, expected: str, fix: str) -> None:
+        problems.append(Problem(f"schema.{table}.{name}", found, expected, fix))
+
     if isinstance(entry, str):
         entry = {"kind": entry} if entry in _KINDS else {"dimension": entry}
     if not isinstance(entry, Mapping):
         fix = "write KEY = 'length', or KEY = {dimension = 'length', limit = 'positive'}"
-        problems.append(Problem(where, repr(entry)[:60], "a dimension or a table", fix))
-        return fallback
+        refuse(repr(entry)[:60], "a dimension or a table", fix)
+        entry = {}
     kind, dimension = entry.get("kind", "quantity"), entry.get("dimension", "dimensionless")
     limit, choices = entry.get("limit", "any"), entry.get("choices", [])
-    before = len(problems)
-    for found, allowed in (
-        (kind, _KINDS),
-        (dimension, tuple(sorted(DIMENSIONS))),
-        (limit, _LIMITS),
-    ):
+    for found, allowed in ((kind, _KINDS), (dimension, sorted(DIMENSIONS)), (limit, _LIMITS)):
         if not isinstance(found, str) or found not in allowed:
-            problems.append(
-                Problem(where, repr(found)[:60], f"one of {list(allowed)}", "correct it")
-            )
+            refuse(repr(found)[:60], f"one of {list(allowed)}", "correct it")
     unknown = sorted(set(entry) - set(_FIELDS))
     if unknown:
-        problems.append(Problem(where, f"unknown {unknown}", f"some of {_FIELDS}", "remove them"))
+        refuse(f"unknown {unknown}", f"some of {_FIELDS}", "remove them")
     if not isinstance(choices, list) or not all(isinstance(choice, str) for choice in choices):
-        problems.append(
-            Problem(where, repr(choices)[:60], "choices as a list of texts", "correct it")
-        )
+        refuse(repr(choices)[:60], "choices as a list of texts", "correct it")
     if len(problems) > before:
-        return fallback
+        return Key(name, "declared by the scene", "text", default="")
     default = entry.get("default")
     return Key(
         name,

@@ -6,9 +6,9 @@ import math
 from typing import Any
 
 from ...derive.spec import BEAM_FORMULATIONS
-from ..core.errors import BadInput, Problem
+from ..core.errors import BadInput, Problem, bad
 from .beam_tables import complete_beams
-from .checks import body_problems
+from .checks import check_body, collecting
 from .rod_tables import complete_crank, complete_rod
 from .schema import Layout
 
@@ -27,13 +27,9 @@ def complete(values: Values, layout: Layout) -> None:
     if not layout.links:
         return
     balanced = values["model"]["balanced"]
+    expected, fix = "0, since model.balanced names this link", "remove one of the two"
     contradictions = [
-        Problem(
-            f"{link}.{key}",
-            f"{values[link][key]:g}",
-            "0, since model.balanced names this link",
-            "remove one of the two",
-        )
+        Problem(f"{link}.{key}", f"{values[link][key]:g}", expected, fix)
         for link in balanced
         for key in ("first_moment", "centre_along")
         if values.get(link, {}).get(key, 0.0) != 0.0
@@ -43,17 +39,16 @@ def complete(values: Values, layout: Layout) -> None:
     if "coupler" in layout.flexible:
         _flexible_bar(values["coupler"], values["links"]["coupler"])
     gravity = values["gravity"]["acceleration"]
-    missing: list[Problem] = []
+    problems: list[Problem] = []
     for link in layout.links:
         if link in values:
             # A slider and a block have no length: their mass is at the pin unless they say more.
             length = values["links"].get(link, 0.0)
-            missing += _rigid_bar(link, values[link], length, gravity, balanced=link in balanced)
-    if missing:
-        raise BadInput(*missing)
-    impossible = body_problems(values, layout)
-    if impossible:
-        raise BadInput(*impossible)
+            with collecting(problems):
+                _complete_bar(link, values[link], length, gravity, balanced=link in balanced)
+                check_body(link, values[link])
+    if problems:
+        raise BadInput(*problems)
 
 
 def _pad_series(function: dict[str, Any]) -> None:
@@ -83,9 +78,9 @@ def _flexible_bar(bar: dict[str, Any], length: float) -> None:
     bar["mass"] = bar["mass_per_length"] * length
 
 
-def _rigid_bar(
+def _complete_bar(
     link: str, bar: dict[str, Any], length: float, gravity: float, *, balanced: bool
-) -> list[Problem]:
+) -> None:
     """Mass, first moments and inertia from whatever gives them; a uniform bar's by default."""
     if "weight" in bar:
         bar["mass"] = bar["weight"] / gravity
@@ -93,17 +88,16 @@ def _rigid_bar(
         absent = [key for key in ("width", "thickness") if key not in bar]
         if absent:
             fix = f"add {' and '.join(absent)}, or give mass instead of density"
-            return [Problem(f"{link}.density", "no section", "width and thickness beside it", fix)]
+            raise bad(f"{link}.density", "no section", "width and thickness beside it", fix)
         bar["mass"] = bar["density"] * bar["width"] * bar["thickness"] * length
     given = sorted({"centre_along", "centre_across", "inertia_about_centre"} & set(bar))
     if given and "mass" not in bar:
         expected = "mass, weight or density beside it"
-        return [Problem(f"{link}.{given[0]}", "no mass", expected, "add the mass")]
+        raise bad(f"{link}.{given[0]}", "no mass", expected, "add the mass")
     if balanced:
         bar["first_moment"] = 0.0
     if "mass" in bar:
         _about_first_joint(bar, bar["mass"], length)
-    return []
 
 
 def _about_first_joint(bar: dict[str, Any], mass: float, length: float) -> None:

@@ -5,24 +5,54 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from .schema import Key, Table, not_negative, positive
+from .schema import Key, Table, choice, not_negative, positive, quantities
 
 LINKS = ("frame", "crank", "coupler", "follower")
+SLIDER_CRANK_LINKS = ("crank", "coupler", "slider")
+QUICK_RETURN_LINKS = ("crank", "block", "rod")
 
 
+def _length(name: str, meaning: str) -> Key:
+    return positive(name, meaning, "length", required=True)
+
+
+_CRANK = _length("crank", "length of the driven link")
+_ASSEMBLY = choice("assembly", "closure", "open", "crossed", default="open")
 FOUR_BAR_LENGTHS = Table(
     "links",
     "lengths between the pins, and which of the two closures",
     (
-        positive("frame", "distance between the fixed pivots", "length", required=True),
-        positive("crank", "length of the driven link", "length", required=True),
-        positive(
-            "coupler", "length of the link between crank and follower", "length", required=True
+        _length("frame", "distance between the fixed pivots"),
+        _CRANK,
+        _length("coupler", "length of the link between crank and follower"),
+        _length("follower", "length of the link to the second fixed pivot"),
+        _ASSEMBLY,
+    ),
+    required=True,
+)
+SLIDER_CRANK_LENGTHS = Table(
+    "links",
+    "lengths between the pins, and on which side of the crank pin the slider is",
+    (
+        _CRANK,
+        _length("coupler", "length of the link between crank and slider"),
+        Key(
+            "offset",
+            "distance of the slider's line from the crank pivot, to the left",
+            dimension="length",
+            default=0.0,
         ),
-        positive(
-            "follower", "length of the link to the second fixed pivot", "length", required=True
-        ),
-        Key("assembly", "closure", "text", default="open", choices=("open", "crossed")),
+        _ASSEMBLY,
+    ),
+    required=True,
+)
+QUICK_RETURN_LENGTHS = Table(
+    "links",
+    "lengths between the pins, and of the rod",
+    (
+        _length("frame", "distance between the pivots of crank and rod"),
+        _CRANK,
+        _length("rod", "length of the rod, which a block on the crank pin slides along"),
     ),
     required=True,
 )
@@ -41,16 +71,14 @@ GRAVITY = Table(
     "what turns a weight into a mass",
     (positive("acceleration", "acceleration of free fall", "acceleration", default=9.80665),),
 )
-_SPEED = positive("speed", "crank speed", "frequency")
 OPERATION = Table(
     "operation",
     "how the machine runs",
     (
-        _SPEED,
-        Key(
+        positive("speed", "crank speed", "frequency"),
+        quantities(
             "speed_range",
             "lowest and highest crank speed",
-            "quantities",
             "frequency",
             limit="positive",
             length=2,
@@ -62,21 +90,15 @@ MEASURED = Table(
     "measured",
     "what was observed on the rig",
     (
-        Key("follower_inertias", "values tried", "quantities", "inertia", limit="positive"),
-        Key(
-            "follower_inertia_tolerances",
-            "uncertainty of each",
-            "quantities",
-            "inertia",
-            limit="non-negative",
-        ),
+        quantities("follower_inertias", "values tried", "inertia", limit="positive"),
+        quantities("follower_inertia_tolerances", "their errors", "inertia", limit="non-negative"),
         positive("natural_frequency", "of the coupler", "frequency"),
-        Key("log_decrement", "lowest and highest", "quantities", limit="non-negative", length=2),
-        Key("speeds", "crank speeds of resonances", "quantities", "frequency", limit="positive"),
+        quantities("log_decrement", "lowest and highest", limit="non-negative", length=2),
+        quantities("speeds", "crank speeds of resonances", "frequency", limit="positive"),
         Key(
             "regions", "region of instability of each, n in 2 Omega / n", "counts", limit="positive"
         ),
-        Key("inertias", "follower inertia of each", "quantities", "inertia", limit="positive"),
+        quantities("inertias", "follower inertia of each", "inertia", limit="positive"),
     ),
 )
 COUPLER = Table(
@@ -158,17 +180,9 @@ def chart_table(parameters: Mapping[str, str]) -> Table:
     axes = []
     for axis in ("x", "y"):
         axes += [
-            Key(axis, f"parameter along {axis}", "text", choices=names),
-            Key(f"{axis}_range", "first and last value", "quantities", length=2, rising=True),
-            Key(
-                f"{axis}_points",
-                "number of values",
-                "count",
-                default=201,
-                limit="positive",
-                least=2,
-                most=20000,
-            ),
+            choice(axis, f"parameter along {axis}", *names),
+            quantities(f"{axis}_range", "first and last value", length=2, rising=True),
+            Key(f"{axis}_points", "number of values", "count", default=201, least=2, most=20000),
         ]
     return Table("chart", "the stability chart that is drawn by default", tuple(axes))
 
@@ -210,12 +224,12 @@ def _acting(links: tuple[str, ...]) -> tuple[Table, ...]:
         "loads",
         "external loads, each under a name of its own",
         (
-            Key("link", "link that it acts on", "text", required=True, choices=links),
+            choice("link", "link that it acts on", *links, required=True),
             Key("along", f"point of action along the link, {place}", dimension="length"),
             Key("across", f"point of action across the link, {place}", dimension="length"),
-            Key("force", "x and y component", "quantities", "force", length=2),
+            quantities("force", "x and y component", "force", length=2),
             Key("couple", "anticlockwise", dimension="moment"),
-            Key("axes", "axes of the force", "text", default="fixed", choices=("fixed", "link")),
+            choice("axes", "axes of the force", "fixed", "link", default="fixed"),
         ),
         named=True,
     )
@@ -224,10 +238,10 @@ def _acting(links: tuple[str, ...]) -> tuple[Table, ...]:
         "springs",
         "springs and dampers between two points, each under a name of its own",
         (
-            Key("first", "link of the first end", "text", required=True, choices=ends),
-            Key("first_at", "point in that link's axes", "quantities", "length", length=2),
-            Key("second", "link of the second end", "text", required=True, choices=ends),
-            Key("second_at", "point in that link's axes", "quantities", "length", length=2),
+            choice("first", "link of the first end", *ends, required=True),
+            quantities("first_at", "point in that link's axes", "length", length=2),
+            choice("second", "link of the second end", *ends, required=True),
+            quantities("second_at", "point in that link's axes", "length", length=2),
             not_negative("stiffness", "stiffness", "stiffness"),
             not_negative("free_length", "length without force", "length"),
             Key("preload", "tension at the free length", dimension="force"),
@@ -239,8 +253,8 @@ def _acting(links: tuple[str, ...]) -> tuple[Table, ...]:
         "torsion_springs",
         "torsion springs and dampers between two links, each under a name of its own",
         (
-            Key("first", "one link", "text", required=True, choices=ends),
-            Key("second", "the other link", "text", required=True, choices=ends),
+            choice("first", "one link", *ends, required=True),
+            choice("second", "the other link", *ends, required=True),
             not_negative("stiffness", "stiffness", "rotational_stiffness"),
             Key("free_angle", "angle of the second against the first", dimension="angle"),
             Key("preload", "couple at the free angle", dimension="moment"),
@@ -255,38 +269,3 @@ def rigid_tables(geometry: Table, links: tuple[str, ...]) -> tuple[Table, ...]:
     """Return the tables of a linkage with three moving rigid links."""
     bodies = tuple(_body(link) for link in links)
     return (geometry, *bodies, *_acting(links), ACTING_GRAVITY, _RIGID_OPERATION, _MOTOR)
-
-
-SLIDER_CRANK_LENGTHS = Table(
-    "links",
-    "lengths between the pins, and on which side of the crank pin the slider is",
-    (
-        positive("crank", "length of the driven link", "length", required=True),
-        positive("coupler", "length of the link between crank and slider", "length", required=True),
-        Key(
-            "offset",
-            "distance of the slider's line from the crank pivot, to the left",
-            dimension="length",
-            default=0.0,
-        ),
-        Key("assembly", "closure", "text", default="open", choices=("open", "crossed")),
-    ),
-    required=True,
-)
-QUICK_RETURN_LENGTHS = Table(
-    "links",
-    "lengths between the pins, and of the rod",
-    (
-        positive("frame", "distance between the pivots of crank and rod", "length", required=True),
-        positive("crank", "length of the driven link", "length", required=True),
-        positive(
-            "rod",
-            "length of the rod, which a block on the crank pin slides along",
-            "length",
-            required=True,
-        ),
-    ),
-    required=True,
-)
-SLIDER_CRANK_LINKS = ("crank", "coupler", "slider")
-QUICK_RETURN_LINKS = ("crank", "block", "rod")

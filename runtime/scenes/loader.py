@@ -68,22 +68,7 @@ def load_scene(
 def scene_from_document(
     name: str, document: Mapping[str, Any], overrides: Mapping[str, Any] | None = None
 ) -> Scene:
-    """Return the scene of tables that are in memory already.
-
-    Parameters
-    ----------
-    name : str
-        Name that the scene shall have.
-    document : mapping
-        Tables as a TOML file gives them.
-    overrides : mapping, optional
-        As for :func:`load_scene`.
-
-    Raises
-    ------
-    BadInput
-        If anything in it is wrong; every problem is listed.
-    """
+    """Return the scene of tables as a TOML file gives them; else as :func:`load_scene`."""
     tables = {key: dict(v) if isinstance(v, Mapping) else v for key, v in document.items()}
     _override(tables, overrides or {})
     layout, values = validate(tables)

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 from ..core.errors import BadInput, Problem
 from ..core.families import LinearPeriodic
+from ..core.modules import find_module
+from ..systems import assemble
 
 if TYPE_CHECKING:
     from .scene import Scene
@@ -24,9 +26,6 @@ def own_system(scene: Scene) -> LinearPeriodic:
     it.  A module that takes something else needs a builder of its own around
     :func:`elastolink.runtime.systems.assemble`.
     """
-    from ..core.modules import find_module
-    from ..systems import assemble
-
     emitted = find_module(scene.model_spec())
     numbers = _numbers(scene)
     parameters = list(emitted.module.PARAMETERS)

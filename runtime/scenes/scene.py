@@ -35,14 +35,9 @@ _MISSING = object()
 
 
 class ReadOnlyTable(Mapping[str, Any]):
-    """A table of a scene that cannot be changed.
+    """A table of a scene that cannot be changed, its name known to messages.
 
-    Parameters
-    ----------
-    name : str
-        Name of the table, for messages.
-    values : mapping
-        By key: floats in SI units, tuples of them, whole numbers and texts.
+    By key: floats in SI units, tuples of them, whole numbers and texts.
     """
 
     __slots__ = ("_name", "_values")
@@ -65,14 +60,6 @@ class ReadOnlyTable(Mapping[str, Any]):
     def __len__(self) -> int:
         """Return the number of keys."""
         return len(self._values)
-
-    def __eq__(self, other: object) -> bool:
-        """Compare by content."""
-        return isinstance(other, Mapping) and self._values == dict(other)
-
-    def __hash__(self) -> int:
-        """Hash by content."""
-        return hash((self._name, tuple(sorted(self._values.items(), key=lambda item: item[0]))))
 
     def __repr__(self) -> str:
         """Show the values."""
@@ -153,12 +140,6 @@ class Scene:
         """True where the scene declares its own tables, for a model of the user's."""
         return not self.layout.formulations
 
-    @property
-    def _of_rigid_links(self) -> bool:
-        return (
-            self.model["mechanism"] in LINKAGES and not self.layout.flexible and not self._declared
-        )
-
     def get(self, key: str, default: Any = _MISSING) -> Any:
         """Return the value of a dotted key, in SI units.
 
@@ -225,13 +206,10 @@ class Scene:
             If the scene is about rigid links alone, or its module was not emitted yet.
         """
         mechanism = self.model["mechanism"]
-        if self._of_rigid_links:
-            raise bad(
-                f"scene {self.name}",
-                f"formulation '{self.model['formulation']}', in which nothing vibrates",
-                "a scene with a flexible link",
-                "use kinematics or forces, or choose a scene with a flexible link",
-            )
+        if mechanism in LINKAGES and not self.layout.flexible and not self._declared:
+            found = f"formulation '{self.model['formulation']}', in which nothing vibrates"
+            fix = "use kinematics or forces, or choose a scene with a flexible link"
+            raise bad(f"scene {self.name}", found, "a scene with a flexible link", fix)
         module, function = _BUILDERS.get(mechanism, _OWN_BUILDER)
         if self.layout.formulations == tuple(BEAM_FORMULATIONS):
             module, function = _BEAM_BUILDER
@@ -251,13 +229,11 @@ class Scene:
 
         found = self.system()
         if not isinstance(found, LinearPeriodic):
-            raise bad(
-                f"scene {self.name}",
-                f"formulation '{self.model['formulation']}', whose equations are constrained",
-                "a linear formulation",
-                f"--set model.formulation='{self.model['formulation']}_linear', or see "
-                "constrained_motion and periodic_orbit",
-            )
+            name = self.model["formulation"]
+            given = f"formulation '{name}', whose equations are constrained"
+            fix = f"--set model.formulation='{name}_linear', or see constrained_motion"
+            fix += " and periodic_orbit"
+            raise bad(f"scene {self.name}", given, "a linear formulation", fix)
         return found
 
     def mechanism(self) -> Linkage:
@@ -270,12 +246,9 @@ class Scene:
         """
         kind = LINKAGES.get(self.model["mechanism"])
         if kind is None or self._declared:
-            raise bad(
-                f"scene {self.name}",
-                f"mechanism '{self.model['mechanism']}'",
-                f"a linkage: one of {sorted(LINKAGES)}",
-                "choose a scene with a [links] table",
-            )
+            found = f"mechanism '{self.model['mechanism']}'"
+            fix = "choose a scene with a [links] table"
+            raise bad(f"scene {self.name}", found, f"a linkage: one of {sorted(LINKAGES)}", fix)
         from .. import linkages as mechanisms
 
         made = getattr(mechanisms, kind)

@@ -38,6 +38,16 @@ def not_negative(name: str, meaning: str, dimension: str = "dimensionless", **mo
     return Key(name, meaning, dimension=dimension, limit="non-negative", **more)
 
 
+def quantities(name: str, meaning: str, dimension: str = "dimensionless", **more: Any) -> Key:
+    """Return the key of a list of quantities; ``more`` are further fields of :class:`Key`."""
+    return Key(name, meaning, "quantities", dimension, **more)
+
+
+def choice(name: str, meaning: str, *choices: str, **more: Any) -> Key:
+    """Return the key of one text of several; ``more`` are further fields of :class:`Key`."""
+    return Key(name, meaning, "text", choices=choices, **more)
+
+
 @dataclass(frozen=True)
 class Table:
     """One table of a scene."""
@@ -60,6 +70,10 @@ class Table:
         """Return the other keys of the groups that ``name`` belongs to."""
         groups = (group for group in self.exactly_one + self.at_most_one if name in group)
         return tuple(other for group in groups for other in group if other != name)
+
+
+def _names(name: str, meaning: str, choices: tuple[str, ...] = ()) -> Key:
+    return Key(name, meaning, "texts", default=(), choices=choices)
 
 
 @dataclass(frozen=True)
@@ -86,23 +100,13 @@ class Layout:
             (
                 Key("mechanism", "kind of mechanism", "text", required=True),
                 Key("formulation", "named assumptions", "text", required=True),
-                Key("flexible", "links that bend", "texts", default=(), choices=self.flexible),
+                _names("flexible", "links that bend", self.flexible),
                 Key("modes", "number of modes", "count", limit="positive", most=1000),
-                Key("drop", "physical terms left out", "texts", default=()),
-                Key(
-                    "balanced",
-                    "links with the centre of mass at their first joint",
-                    "texts",
-                    default=(),
-                    choices=self.links,
+                _names("drop", "physical terms left out"),
+                _names(
+                    "balanced", "links with their centre of mass at the first joint", self.links
                 ),
-                Key(
-                    "outputs",
-                    "what the module is for; none means all",
-                    "texts",
-                    default=(),
-                    choices=self.outputs,
-                ),
+                _names("outputs", "what the module is for; none means all", self.outputs),
             ),
             required=True,
         )

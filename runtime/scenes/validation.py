@@ -6,20 +6,18 @@ import difflib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Any
 
-from ..core.errors import BadInput, Problem
+from ..core.errors import BadInput, Problem, bad
 from ..core.units import DIMENSIONS, expected, to_si
-from .checks import chart_problems, geometry_problems, measured_problems, series_problems
+from .checks import check_chart, check_geometry, check_measured, check_series, collecting
 from .declared import declared_layout
 from .layouts import LAYOUTS
 from .schema import Key, Layout, Table
 
-_Reader = Callable[[object, Key, str, list[Problem]], Any]
-
+_Reader = Callable[[object, Key, str], Any]
 Values = dict[str, dict[str, Any]]
-_TOP = ("title", "source", "model")
 
 
 def validate(document: Mapping[str, Any]) -> tuple[Layout, Values]:
@@ -39,9 +37,11 @@ def validate(document: Mapping[str, Any]) -> tuple[Layout, Values]:
         read = _table(document, table, layout, problems)
         if read is not None:
             values[table.name] = read
-    _model_problems(values.get("model", {}), layout, problems)
-    for check in (geometry_problems, chart_problems, measured_problems, series_problems):
-        problems.extend(check(values, layout))
+    if {"formulation", "flexible"} <= set(values.get("model", {})):
+        problems += _complete_model(values["model"], layout)
+    for check in (check_geometry, check_chart, check_measured, check_series):
+        with collecting(problems):
+            check(values, layout)
     if problems:
         raise BadInput(*dict.fromkeys(problems))
     return layout, values
@@ -100,15 +100,11 @@ def _choose(
 
 
 def _top_level(document: Mapping[str, Any], layout: Layout, problems: list[Problem]) -> None:
-    tables = [table.name for table in layout.all_tables()]
-    known = [*tables, "title", "source"]
+    known = [*(table.name for table in layout.all_tables()), "title", "source"]
     for name, value in document.items():
-        if name in {"title", "source"}:
-            if not isinstance(value, str):
-                problems.append(Problem(name, show(value), "a text", "put it in quotes"))
-        elif name == "schema":
-            continue
-        elif name not in known:
+        if name in {"title", "source"} and not isinstance(value, str):
+            problems.append(Problem(name, show(value), "a text", "put it in quotes"))
+        elif name not in {*known, "schema"}:
             kind = "table" if isinstance(value, Mapping) else "key"
             fix = nearest(name, known, f"remove it, or correct {kind} and mechanism")
             where = f"[{name}]" if kind == "table" else name
@@ -121,7 +117,8 @@ def _table(
     given = document.get(table.name)
     if given is None:
         if not table.required:
-            return None if table.named else _defaults(table) or None
+            defaults = {key.name: key.default for key in table.keys if key.default is not None}
+            return None if table.named else defaults or None
         need = ", ".join(key.name for key in table.keys if key.required)
         fix = f"add it, with {need}" if need else "add it"
         problems.append(Problem(f"[{table.name}]", "nothing", f"a table: {table.meaning}", fix))
@@ -138,9 +135,8 @@ def _table(
         if key.name in given or key.default is not None:
             # Defaults are read, too: those that a scene declares may have units.
             value = given.get(key.name, key.default)
-            read = _READERS[key.kind](value, key, where, problems)
-            if read is not None:
-                values[key.name] = read
+            with collecting(problems):
+                values[key.name] = _READERS[key.kind](value, key, where)
         elif key.required:
             what = f"{key.meaning}: {_expectation(key)}"
             problems.append(Problem(where, "nothing", what, f"add it to [{table.name}]"))
@@ -162,10 +158,6 @@ def _named_tables(
             fix = f"write [{table.name}.NAME] above the keys"
             problems.append(Problem(full, show(content), "a table under a name", fix))
     return found
-
-
-def _defaults(table: Table) -> dict[str, Any]:
-    return {key.name: key.default for key in table.keys if key.default is not None}
 
 
 def _unknown_keys(
@@ -209,93 +201,71 @@ def _expectation(key: Key) -> str:
     return f"{kind} of {list(key.choices)}" if key.choices else kind
 
 
-def _quantity(value: object, key: Key, where: str, problems: list[Problem]) -> float | None:
-    try:
-        number = to_si(value, key.dimension, where)
-    except BadInput as error:
-        problems.extend(error.problems)
-        return None
-    return None if _out_of_range(number, value, key, where, problems) else number
+def _quantity(value: object, key: Key, where: str) -> float:
+    number = to_si(value, key.dimension, where)
+    _check_range(number, value, key, where)
+    return number
 
 
-def _out_of_range(
-    number: float, value: object, key: Key, where: str, problems: list[Problem]
-) -> bool:
-    low = {"any": True, "positive": number > 0, "non-negative": number >= 0}[key.limit]
-    if not low:
-        what = f"a {key.limit} value: {key.meaning}"
-        fix = (
-            "correct the sign" if number < 0 else f"give {DIMENSIONS[key.dimension].words} above 0"
-        )
-        problems.append(Problem(where, show(value), what, fix))
-    elif key.least is not None and number < key.least:
-        problems.append(Problem(where, show(value), f"at least {key.least}", "make it larger"))
-        return True
-    elif key.most is not None and number > key.most:
-        problems.append(Problem(where, show(value), f"at most {key.most}", "make it smaller"))
-        return True
-    return not low
+def _check_range(number: float, value: object, key: Key, where: str) -> None:
+    if not {"any": True, "positive": number > 0, "non-negative": number >= 0}[key.limit]:
+        fix = f"give {DIMENSIONS[key.dimension].words} above 0"
+        fix = "correct the sign" if number < 0 else fix
+        raise bad(where, show(value), f"a {key.limit} value: {key.meaning}", fix)
+    if key.least is not None and number < key.least:
+        raise bad(where, show(value), f"at least {key.least}", "make it larger")
+    if key.most is not None and number > key.most:
+        raise bad(where, show(value), f"at most {key.most}", "make it smaller")
 
 
-def _list(value: object, key: Key, where: str, problems: list[Problem]) -> Sequence[Any] | None:
-    if isinstance(value, (list, tuple)):
-        if key.length is not None and len(value) != key.length:
-            found = f"{len(value)} values"
-            problems.append(Problem(where, found, f"{key.length} values", "correct the list"))
-            return None
-        return value
-    problems.append(Problem(where, show(value), _expectation(key), "put it in brackets: [...]"))
-    return None
-
-
-def _quantities(
-    value: object, key: Key, where: str, problems: list[Problem]
-) -> tuple[float, ...] | None:
-    items = _list(value, key, where, problems)
-    if items is None:
-        return None
-    if len(items) == 0:
-        problems.append(Problem(where, "an empty list", _expectation(key), "add a value"))
-        return None
-    # A chart's own axis decides the dimension of its range; see chart_problems.
-    if key.name in {"x_range", "y_range"}:
-        return tuple(items)
-    numbers = _each(_quantity, items, key, where, problems)
-    if numbers is not None and key.rising and any(b <= a for a, b in pairwise(numbers)):
-        problems.append(Problem(where, show(value), "values that increase", "sort them"))
-        return None
-    return numbers
-
-
-def _count(value: object, key: Key, where: str, problems: list[Problem]) -> int | None:
-    # No text and no 2.0, whoever gives it: a count means the same in a file and in Python.
-    if isinstance(value, bool) or not isinstance(value, int):
-        problems.append(Problem(where, show(value), "a whole number", f"write {where} = 1"))
-        return None
-    return None if _out_of_range(value, value, key, where, problems) else value
-
-
-def _text(value: object, key: Key, where: str, problems: list[Problem]) -> str | None:
-    if not isinstance(value, str):
-        problems.append(Problem(where, show(value), _expectation(key), "put it in quotes"))
-        return None
-    if key.choices and value not in key.choices:
-        fix = nearest(value, key.choices, "choose one of them")
-        problems.append(Problem(where, show(value), f"one of {list(key.choices)}", fix))
-        return None
+def _list(value: object, key: Key, where: str) -> Sequence[Any]:
+    if not isinstance(value, (list, tuple)):
+        raise bad(where, show(value), _expectation(key), "put it in brackets: [...]")
+    if key.length is not None and len(value) != key.length:
+        raise bad(where, f"{len(value)} values", f"{key.length} values", "correct the list")
     return value
 
 
-def _each(
-    reader: _Reader, value: object, key: Key, where: str, problems: list[Problem]
-) -> tuple[Any, ...] | None:
-    """Return what a reader makes of every item of a list, or None where one is wrong."""
-    items = _list(value, key, where, problems)
-    if items is None:
-        return None
-    read = [reader(item, key, f"{where}[{i}]", problems) for i, item in enumerate(items)]
-    found = tuple(item for item in read if item is not None)
-    return found if len(found) == len(items) else None
+def _quantities(value: object, key: Key, where: str) -> tuple[float, ...]:
+    items = _list(value, key, where)
+    if len(items) == 0:
+        raise bad(where, "an empty list", _expectation(key), "add a value")
+    # A chart's own axis decides the dimension of its range; see check_chart.
+    if key.name in {"x_range", "y_range"}:
+        return tuple(items)
+    numbers = _each(_quantity, items, key, where)
+    if key.rising and any(b <= a for a, b in pairwise(numbers)):
+        raise bad(where, show(value), "values that increase", "sort them")
+    return numbers
+
+
+def _count(value: object, key: Key, where: str) -> int:
+    # No text and no 2.0, whoever gives it: a count means the same in a file and in Python.
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise bad(where, show(value), "a whole number", f"write {where} = 1")
+    _check_range(value, value, key, where)
+    return value
+
+
+def _text(value: object, key: Key, where: str) -> str:
+    if not isinstance(value, str):
+        raise bad(where, show(value), _expectation(key), "put it in quotes")
+    if key.choices and value not in key.choices:
+        fix = nearest(value, key.choices, "choose one of them")
+        raise bad(where, show(value), f"one of {list(key.choices)}", fix)
+    return value
+
+
+def _each(reader: _Reader, value: object, key: Key, where: str) -> tuple[Any, ...]:
+    """Return what a reader makes of every item of a list; every wrong one is told."""
+    problems: list[Problem] = []
+    found = []
+    for i, item in enumerate(_list(value, key, where)):
+        with collecting(problems):
+            found.append(reader(item, key, f"{where}[{i}]"))
+    if problems:
+        raise BadInput(*problems)
+    return tuple(found)
 
 
 _READERS: dict[str, _Reader] = {
@@ -308,28 +278,19 @@ _READERS: dict[str, _Reader] = {
 }
 
 
-def _model_problems(model: dict[str, Any], layout: Layout, problems: list[Problem]) -> None:
-    """Check what the formulation demands of the flexible links, and fill in the mode count."""
-    if "formulation" not in model or "flexible" not in model:
-        return
-    if layout.formulations and set(model["flexible"]) != set(layout.flexible):
-        wanted = list(layout.flexible)
-        problems.append(
-            Problem(
-                "model.flexible",
-                show(list(model["flexible"])),
-                f"{wanted}, which formulation '{model['formulation']}' is about",
-                f"write flexible = {wanted}",
-            )
-        )
-    model["drop"] = tuple(
-        dict.fromkeys(
-            term for name in model.get("drop", ()) for term in layout.named_drops.get(name, (name,))
-        )
-    )
-    if layout.flexible:
+def _complete_model(model: dict[str, Any], layout: Layout) -> list[Problem]:
+    """Fill in terms left out and the mode count; return what the formulation does not allow."""
+    problems = []
+    flexible = list(layout.flexible)
+    if layout.formulations and set(model["flexible"]) != set(flexible):
+        found = show(list(model["flexible"]))
+        known = f"{flexible}, which formulation '{model['formulation']}' is about"
+        problems.append(Problem("model.flexible", found, known, f"write flexible = {flexible}"))
+    sets = (layout.named_drops.get(name, (name,)) for name in model.get("drop", ()))
+    model["drop"] = tuple(dict.fromkeys(chain.from_iterable(sets)))
+    if flexible:
         model.setdefault("modes", 1)
     elif layout.formulations and "modes" in model:
-        problems.append(
-            Problem("model.modes", show(model["modes"]), "nothing", "no link bends; remove it")
-        )
+        fix = "no link bends; remove it"
+        problems.append(Problem("model.modes", show(model["modes"]), "nothing", fix))
+    return problems

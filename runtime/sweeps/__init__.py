@@ -9,16 +9,15 @@ from ..core.lazy import on_first_use
 if TYPE_CHECKING:
     from ..core.workers import WorkersLost as WorkersLost
     from ..core.workers import process_pool as process_pool
-    from .estimate import estimate_sweep as estimate_sweep
     from .result import Sweep as Sweep
+    from .sweeping import estimate_sweep as estimate_sweep
     from .sweeping import sweep as sweep
 
 __all__, __getattr__, __dir__ = on_first_use(
     globals(),
     {
         ".core.workers": ("WorkersLost", "process_pool"),
-        "estimate": ("estimate_sweep",),
         "result": ("Sweep",),
-        "sweeping": ("sweep",),
+        "sweeping": ("estimate_sweep", "sweep"),
     },
 )

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import prod
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.errors import bad
+from ..core.families import Array
 from ..core.inputs import is_whole
 
-Array = NDArray[np.float64]
 _MOST_POINTS = 10**12
 
 
@@ -70,6 +69,8 @@ class Grid:
 
 def grid_of(values: Mapping[str, ArrayLike], chunk: int, *, rows: bool = False) -> Grid:
     """Return the grid of a sweep, cut into pieces of about ``chunk`` points."""
+    if not is_whole(chunk, 1):
+        raise bad("chunk", repr(chunk), "a whole number of points, 1 or more", "leave it out")
     if not isinstance(values, Mapping) or not values:
         fix = 'give values={"speed": numpy.linspace(...)}'
         raise bad("values", repr(values)[:60], "values along at least one named axis", fix)
@@ -84,7 +85,7 @@ def grid_of(values: Mapping[str, ArrayLike], chunk: int, *, rows: bool = False) 
     inner = 1
     for axis in range(len(shape) - 1, -1, -1):
         size = shape[axis]
-        together = max(1, chunk // inner)
+        together = max(1, int(chunk) // inner)
         if rows and axis == len(shape) - 1:
             together = size
         elif rows and axis == len(shape) - 2:
@@ -97,13 +98,6 @@ def grid_of(values: Mapping[str, ArrayLike], chunk: int, *, rows: bool = False) 
             break
         inner *= size
     return Grid(names, axes, tuple(parts))
-
-
-def check_chunk(chunk: Any) -> int:
-    """Return the wanted number of points of a piece."""
-    if not is_whole(chunk, 1):
-        raise bad("chunk", repr(chunk), "a whole number of points, 1 or more", "leave it out")
-    return int(chunk)
 
 
 def _axis(name: object, given: ArrayLike) -> Array:

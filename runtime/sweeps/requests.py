@@ -169,9 +169,6 @@ def _feed_pickled(found: _Hash, value: object) -> None:
 
 
 def _untold(value: object) -> Exception:
-    return bad(
-        "sweep",
-        f"an argument of type {type(value).__name__}, whose content cannot be told",
-        "numbers, texts, arrays, systems, scenes and functions of a module",
-        "leave out the store, or give something simpler",
-    )
+    found = f"an argument of type {type(value).__name__}, whose content cannot be told"
+    expected = "numbers, texts, arrays, systems, scenes and functions of a module"
+    return bad("sweep", found, expected, "leave out the store, or give something simpler")

@@ -114,7 +114,9 @@ class Sweep(Result):
 
         if len(self.axes) > 2:
             raise bad("Sweep.plot", f"{len(self.axes)} axes", "one or two", "use the outputs")
-        name = self._drawn() if output is None else output
+        plain = [name for name, array in self.outputs.items() if array.ndim == len(self.axes)]
+        usual = "stable" if "stable" in plain else (plain or list(self.outputs))[0]
+        name = usual if output is None else output
         ax = axes_or_new(ax)
         # Most points along an axis of a picture; of more, evenly chosen ones are drawn.
         thin = [slice(None, None, -(-len(v) // 1200)) for v in self.axes.values()]
@@ -139,8 +141,3 @@ class Sweep(Result):
         mesh = ax.pcolormesh(values[1], values[0], shown.astype(float), shading="nearest")
         ax.figure.colorbar(mesh, ax=ax, label=name)
         return ax
-
-    def _drawn(self) -> str:
-        depth = len(self.axes)
-        plain = [name for name, array in self.outputs.items() if array.ndim == depth]
-        return (["stable"] if "stable" in plain else plain or list(self.outputs))[0]

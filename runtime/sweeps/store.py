@@ -14,15 +14,13 @@ from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..._files import whole_file
 from ..core.errors import bad
 from ..core.results import write_whole
 from .pieces import Grid
-from .tasks import Piece
+from .tasks import AnyArray, Piece
 
-AnyArray = NDArray[Any]
 _MANIFEST = "manifest.json"
 _ABOUT = "about"
 # Files that a killed process had begun to write.

@@ -1,8 +1,10 @@
-"""Sweeps over a grid of values: piece by piece, on any executor, from and to a store."""
+"""Sweeps over a grid of values, piece by piece, on any executor, from and to a store; the cost."""
 
 from __future__ import annotations
 
 import os
+import time
+import tracemalloc
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
@@ -10,21 +12,19 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.errors import bad, warn_of_large_deflection
 from ..core.families import LinearPeriodic
 from ..core.progress import bar
 from ..core.results import provenance
-from ..core.workers import Workers, check_executor
+from ..core.workers import Workers, check_executor, check_workers
 from ..scenes import Scene
-from .pieces import Grid, check_chunk, grid_of
+from .pieces import Grid, grid_of
 from .requests import request_of
 from .result import Sweep
 from .store import Store
-from .tasks import NAMED, Outputs, Piece, Task, task_of
-
-AnyArray = NDArray[Any]
+from .tasks import NAMED, AnyArray, Outputs, Piece, Task, task_of
 
 
 def sweep(
@@ -96,19 +96,17 @@ def sweep(
     """
     plan = planned(what, subject, values, options, outputs, chunk)
     check_executor(executor)
-    found = _swept(plan, executor, store, progress)
+    if store is None:
+        found = _in_memory(plan, executor, progress)
+    else:
+        found = _stored(plan, executor, _place(store), progress)
     if plan.task.name == "steady_state" and "linear range" in found.checks:
         warn_of_large_deflection(found.checks["linear range"].value)
     return found
 
 
-def _swept(
-    plan: Plan, executor: Executor | None, store: str | os.PathLike[str] | None, progress: bool
-) -> Sweep:
+def _stored(plan: Plan, executor: Executor | None, place: Path, progress: bool) -> Sweep:
     """Return the whole sweep, from the store what is there."""
-    if store is None:
-        return _in_memory(plan, executor, progress)
-    place = _place(store)
     request = request_of(plan.task.name, plan.subject, plan.grid, plan.options, plan.outputs)
     kept = Store(place, request, plan.grid)
     done = kept.finished()
@@ -143,7 +141,7 @@ def planned(
 ) -> Plan:
     """Return the plan of a sweep."""
     task = task_of(what)
-    grid = grid_of(values, task.chunk if chunk is None else check_chunk(chunk), rows=task.rows)
+    grid = grid_of(values, task.chunk if chunk is None else chunk, rows=task.rows)
     if isinstance(subject, Scene) and task.of_systems:
         subject = subject.linear_system() if task.name in NAMED else subject.system()
     told = dict(options or {})
@@ -275,4 +273,72 @@ def _assembled(plan: Plan, whole: Piece, place: Path | None, resumed: int) -> Sw
         pieces=plan.grid.pieces,
         resumed=resumed,
         store=place,
+    )
+
+
+@dataclass(frozen=True)
+class SweepEstimate:
+    """Time and memory of a sweep, from working out one of its pieces."""
+
+    points: int
+    pieces: int
+    seconds: float  # of the whole sweep, each worker having a core of its own
+    piece_seconds: float  # of the piece that was timed
+    bytes: int  # of the outputs, in memory or in the store
+    piece_bytes: int  # most memory that a worker held beside its subject during that piece
+    workers: int
+
+    def __str__(self) -> str:
+        """Return it as one line."""
+        return (
+            f"{self.points} points in {self.pieces} pieces: about {self.seconds:.3g} s with "
+            f"{self.workers} worker{'s' * (self.workers > 1)}, {self.bytes / 1e6:.3g} MB of "
+            f"outputs, {self.piece_bytes / 1e6:.3g} MB for each worker"
+        )
+
+
+def estimate_sweep(
+    what: str | Callable[..., Any],
+    subject: object,
+    values: Mapping[str, ArrayLike],
+    *,
+    options: Mapping[str, object] | None = None,
+    outputs: tuple[str, ...] | None = None,
+    chunk: int | None = None,
+    workers: int = 1,
+) -> SweepEstimate:
+    """Return what :func:`sweep` of the same arguments would cost, from doing its middle piece.
+
+    The piece is done twice: once for the memory, and again for the time.  Where some points are
+    far dearer than others, low speeds for one, the time is no better than to a small factor.
+    """
+    check_workers(workers)
+    plan = planned(what, subject, values, options, outputs, chunk)
+    middle = plan.grid.pieces // 2
+    already = tracemalloc.is_tracing()
+    if not already:
+        tracemalloc.start()
+    try:
+        before = tracemalloc.get_traced_memory()[0]
+        tracemalloc.reset_peak()
+        piece = plan.piece(middle)
+        peak = tracemalloc.get_traced_memory()[1] - before
+    finally:
+        if not already:
+            tracemalloc.stop()
+    begin = time.perf_counter()
+    plan.piece(middle)
+    seconds = time.perf_counter() - begin
+    run = plan.grid.run(middle)
+    share = plan.grid.points / (run.stop - run.start)
+    held = sum(int(np.asarray(array).nbytes) for array in piece.arrays.values())
+    at_once = min(workers, plan.grid.pieces)
+    return SweepEstimate(
+        points=plan.grid.points,
+        pieces=plan.grid.pieces,
+        seconds=seconds * share / at_once,
+        piece_seconds=seconds,
+        bytes=round(held * share),
+        piece_bytes=int(peak),
+        workers=workers,
     )

@@ -14,13 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import LinearRangeWarning, bad
-from ..core.families import LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..core.results import Check, Result
 
 if TYPE_CHECKING:
     from ..periodic import FloquetMultipliers, SteadyState
 
-Array = NDArray[np.float64]
 AnyArray = NDArray[Any]
 
 
@@ -152,8 +151,7 @@ def _by_geometry(
             result = getattr(periodic, solver)(made, **values, **options)
         return _wanted(arrays_of(result), outputs), result
 
-    mesh = np.meshgrid(*axes.values(), indexing="ij")
-    values = {name: part.ravel() for name, part in zip(axes, mesh, strict=True)}
+    values = _points(axes)
     shapes = [name for name in values if name in system.geometry]
     rest = {name: value for name, value in values.items() if name not in shapes}
     if not shapes:
@@ -171,6 +169,12 @@ def _by_geometry(
         for own, arrays, _ in found:
             joined[name][own] = arrays[name]
     return _of_result(joined, *(result for _, _, result in found))
+
+
+def _points(axes: Mapping[str, Array]) -> dict[str, Array]:
+    """Return the values of all points of a piece, by the name of their axis."""
+    mesh = np.meshgrid(*axes.values(), indexing="ij")
+    return {name: part.ravel() for name, part in zip(axes, mesh, strict=True)}
 
 
 def _of_multipliers(found: FloquetMultipliers) -> dict[str, AnyArray]:
@@ -198,12 +202,10 @@ def _each(
     outputs: Outputs,
 ) -> Piece:
     """Call a function at one point after another."""
-    mesh = np.meshgrid(*axes.values(), indexing="ij")
-    rows = np.stack([part.ravel() for part in mesh], axis=-1).tolist()
     own = _own_values(function, subject, tuple(axes))
     arrays: list[dict[str, AnyArray]] = []
     results: list[Result] = []
-    for row in rows:
+    for row in zip(*(values.tolist() for values in _points(axes).values()), strict=True):
         point = dict(zip(axes, row, strict=True))
         made = _moved(subject, {name: point.pop(name) for name in own})
         answer = function(made, **point, **options)
@@ -275,12 +277,9 @@ def _stacked(name: str, values: list[AnyArray | None]) -> AnyArray:
     shapes = {None if value is None else value.shape for value in values}
     kinds = {None if value is None else value.dtype.kind for value in values}
     if len(shapes) > 1 or kinds & {"O", None}:
-        raise bad(
-            f"output {name!r}",
-            "numbers at every point" if len(shapes) == 1 else f"shapes {sorted(map(str, shapes))}",
-            "numbers of one shape at every point",
-            "name the outputs that have one, as outputs=(...), or return such",
-        )
+        found = f"shapes {sorted(map(str, shapes))}" if len(shapes) > 1 else "no numbers"
+        fix = "name the outputs that have one, as outputs=(...), or return such"
+        raise bad(f"output {name!r}", found, "numbers of one shape at every point", fix)
     return np.stack([value for value in values if value is not None])
 
 

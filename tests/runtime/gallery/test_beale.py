@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from elastolink.runtime.frequencies import natural_frequencies
 from elastolink.runtime.gallery import beale
-from elastolink.runtime.gallery.beale import FLEXIBLE, HEAVY, STIFF, peak, rod, stiff_tip
+from elastolink.runtime.gallery.beale import FLEXIBLE, HEAVY, STIFF, rod, stiff_tip
+from elastolink.runtime.gallery.drawing import peak
 from elastolink.runtime.periodic import floquet_multipliers
 from rod_tip_deflections import TIPS
 

@@ -30,67 +30,44 @@ class WorkersLost(ElastolinkError):  # noqa: N818 - reads as what it is
     """The workers of an executor ended before their work did."""
 
 
-class Workers:
-    """Does the same work on many items, with a subject that every worker prepares once.
+def run_on(
+    executor: Executor | None, work: Callable[[Any], Any], items: Iterable[Any]
+) -> Iterator[tuple[int, Any]]:
+    """Yield the number of an item and ``work(item)``, as they are done.
 
     The executor is of threads, of processes, or what :meth:`distributed.Client.get_executor`
-    returns; None does everything here.  ``prepare`` makes the subject from ``arguments``: for
-    anything but threads they must bear pickling, or are refused.
+    returns; None does everything here.  The work is sent once and kept by each worker: for
+    anything but threads it must bear pickling, or is refused.  Workers that end, for example for
+    want of memory, raise `WorkersLost`; an executor that was shut down, BadInput.
     """
-
-    def __init__(
-        self, executor: Executor | None, prepare: Callable[..., Any], *arguments: Any
-    ) -> None:
-        check_executor(executor)
-        self._executor = executor
-        self._subject: Any = None
-        self._sent: bytes | None = None
-        if executor is None or isinstance(executor, ThreadPoolExecutor):
-            self._subject = prepare(*arguments)
-        else:
-            self._sent = _pickled(prepare, arguments)
-
-    def run(
-        self, work: Callable[[Any, Any], Any], items: Iterable[Any]
-    ) -> Iterator[tuple[int, Any]]:
-        """Yield the number of an item and ``work(subject, item)``, as they are done.
-
-        Workers that end, for example for want of memory, raise `WorkersLost`; an executor that was
-        shut down, BadInput.
-        """
-        queue = enumerate(items)
-        if self._executor is None:
-            for number, item in queue:
-                yield number, work(self._subject, item)
-            return
-        submit: Any = self._executor.submit
-        given: tuple[Any, ...] = (_call, self._sent, work)
-        if self._sent is None:
-            given = (work, self._subject)
-        # Dask's executor does not tell how many workers it has.
-        count = getattr(self._executor, "_max_workers", None) or os.cpu_count() or 1
-        waiting: dict[Future[Any], int] = {}
-        try:
-            while True:
-                for number, item in islice(queue, _EACH * int(count) - len(waiting)):
-                    with _refusals(of=RuntimeError):
-                        waiting[submit(*given, item)] = number
-                if not waiting:
-                    return
-                done, _ = wait(waiting, return_when=FIRST_COMPLETED)
-                for future in sorted(done, key=waiting.__getitem__):
-                    number = waiting.pop(future)
-                    with _refusals():
-                        found = future.result()
-                    yield number, found
-        finally:
-            for future in waiting:
-                future.cancel()
-
-    def map(self, work: Callable[[Any, Any], Any], items: Iterable[Any]) -> list[Any]:
-        """Return ``work(subject, item)`` of all items, in their order."""
-        found = dict(self.run(work, items))
-        return [found[number] for number in range(len(found))]
+    check_executor(executor)
+    queue = enumerate(items)
+    if executor is None:
+        for number, item in queue:
+            yield number, work(item)
+        return
+    here = isinstance(executor, ThreadPoolExecutor)
+    given = (work,) if here else (_call, _pickled(work))
+    # Dask's executor does not tell how many workers it has.
+    count = getattr(executor, "_max_workers", None) or os.cpu_count() or 1
+    submit: Any = executor.submit
+    waiting: dict[Future[Any], int] = {}
+    try:
+        while True:
+            for number, item in islice(queue, _EACH * int(count) - len(waiting)):
+                with _refusals(of=RuntimeError):
+                    waiting[submit(*given, item)] = number
+            if not waiting:
+                return
+            done, _ = wait(waiting, return_when=FIRST_COMPLETED)
+            for future in sorted(done, key=waiting.__getitem__):
+                number = waiting.pop(future)
+                with _refusals():
+                    found = future.result()
+                yield number, found
+    finally:
+        for future in waiting:
+            future.cancel()
 
 
 def in_order(executor: Executor) -> Callable[..., Iterable[Any]]:
@@ -99,18 +76,11 @@ def in_order(executor: Executor) -> Callable[..., Iterable[Any]]:
     Unlike ``executor.map`` it sends the function once, and each worker keeps it.
     """
 
-    def run(function: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
-        return Workers(executor, _same, function).map(_applied, items)
+    def run(work: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
+        found = dict(run_on(executor, work, items))
+        return [found[number] for number in range(len(found))]
 
     return run
-
-
-def _same(function: Callable[[Any], Any]) -> Callable[[Any], Any]:
-    return function
-
-
-def _applied(function: Callable[[Any], Any], item: Any) -> Any:
-    return function(item)
 
 
 def check_executor(executor: object) -> None:
@@ -161,21 +131,19 @@ def check_workers(workers: object, where: str = "workers") -> int:
     return require_whole(where, workers, 1, 1024, "give the number of cores")
 
 
-_prepared = threading.local()
+_kept = threading.local()
 
 
-def _call(sent: bytes, work: Callable[[Any, Any], Any], item: Any) -> Any:
-    """Do the work on one item in a worker, which keeps the subject for the next one."""
-    if getattr(_prepared, "sent", None) != sent:
-        prepare, arguments = pickle.loads(sent)
-        _prepared.subject = prepare(*arguments)
-        _prepared.sent = sent
-    return work(_prepared.subject, item)
+def _call(sent: bytes, item: Any) -> Any:
+    """Do the work on one item in a worker, which keeps the work for the next one."""
+    if getattr(_kept, "sent", None) != sent:
+        _kept.work, _kept.sent = pickle.loads(sent), sent
+    return _kept.work(item)
 
 
-def _pickled(prepare: Callable[..., Any], arguments: tuple[Any, ...]) -> bytes:
+def _pickled(work: Callable[[Any], Any]) -> bytes:
     try:
-        return pickle.dumps((prepare, arguments))
+        return pickle.dumps(work)
     except (pickle.PicklingError, AttributeError, TypeError) as reason:
         raise bad(
             "executor",

@@ -18,7 +18,7 @@ from ..core.errors import bad, warn_of_large_deflection
 from ..core.families import LinearPeriodic
 from ..core.progress import bar
 from ..core.results import provenance
-from ..core.workers import Workers, check_executor, check_workers
+from ..core.workers import check_executor, check_workers, run_on
 from ..scenes import Scene
 from .pieces import Grid, grid_of
 from .requests import request_of
@@ -183,21 +183,15 @@ def _place(store: str | os.PathLike[str]) -> Path:
         raise bad("store", repr(store), "a path", "give a folder or a .npz file") from None
 
 
-def prepared(plan: Plan) -> Plan:
-    """Return what a worker keeps between pieces."""
-    return plan
-
-
 def _pieces(
     plan: Plan, executor: Executor | None, wanted: list[int], progress: bool
 ) -> Iterator[tuple[int, Piece]]:
     """Yield the pieces that are wanted as they are done."""
-    workers = Workers(executor, prepared, plan)
     points = plan.grid.points
     sizes = [plan.grid.run(number) for number in wanted]
     done = points - sum(run.stop - run.start for run in sizes)
     with bar(progress, points, begun=done, unit=" points") as tick:
-        for place, piece in workers.run(Plan.piece, wanted):
+        for place, piece in run_on(executor, plan.piece, wanted):
             yield wanted[place], piece
             done += sizes[place].stop - sizes[place].start
             if tick is not None:

@@ -363,7 +363,7 @@ def _deflections(
     system: LinearPeriodic, speeds: Array, progress: bool = False
 ) -> tuple[Array, Array]:
     """Return the largest r.m.s. deflection over the length, and the motions' relative error."""
-    from ..periodic.peaks import quiet_state
+    from ..periodic.periodic_motion import quiet_state
 
     rtol = _FINE if system.structure is None else _RTOL
     out, error = np.empty((2, len(speeds)))

@@ -15,7 +15,7 @@ from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.maxima import local_maxima, narrowed
 from ..core.results import Result, provenance
-from ..periodic.peaks import peak_error, quiet_state, require_shapes
+from ..periodic.periodic_motion import SteadyState, quiet_state
 from .critical import label_speeds
 from .held import mean_frequencies
 
@@ -159,7 +159,9 @@ def resonance_curve(
         raise bad("x", repr(x), "one place x/length from 0 to 1", "divide by the length")
     if speeds.ndim != 1 or len(speeds) < 3 or not np.all(np.diff(speeds) > 0):
         raise bad("speed", speed, "at least three rising speeds [rad/s]", "use numpy.linspace")
-    require_shapes("resonance_curve", system)
+    if system.shapes(np.zeros(1), np.zeros(1)) is None:
+        fix = "take stress_curve for a structure of beams, or steady_state and its q"
+        raise bad("resonance_curve", "a system without mode shapes", "one with them", fix)
     mean, _ = mean_frequencies(system, min(6, system.size), 1e-12, parameters=parameters)
     state = quiet_state(system, speeds, rtol, parameters)
     peak = state.peak(x)
@@ -175,7 +177,7 @@ def resonance_curve(
     mode, order = label_speeds(mean[:3], maxima)
     return ResonanceCurve(
         method=state.method,
-        error=peak_error(state, np.full(len(speeds), float(x))),
+        error=_peak_error(state, float(x)),
         error_norm="of the largest deflection, over itself",
         checks={name: state.checks[name] for name in sorted(state.checks)},
         provenance=provenance(system.changed_provenance(**parameters)),
@@ -191,3 +193,21 @@ def resonance_curve(
         mean_frequency=mean,
         x=float(x),
     )
+
+
+def _peak_error(state: SteadyState, x: float) -> Array:
+    """Return the error of the peak deflection at a place x/length over itself, of each motion."""
+    out = np.full(len(state.speed), np.inf)
+    if state.shapes is None:
+        return np.full(len(state.speed), np.nan)
+    shape = state.shapes(np.array([x]), state.theta)[:, 0]
+    for k, (q, error) in enumerate(zip(state.q, state.error, strict=True)):
+        bent = np.einsum("tn,tn->t", shape, q)
+        top = np.max(np.abs(bent))
+        if np.isfinite(top) and top > 0:
+            error_here = float((np.max(np.abs(q), axis=0) * error) @ np.max(np.abs(shape), axis=0))
+            # Between even angles, a wave of harmonic k is lower at the nearest by (k step/2)^2/2.
+            waves = np.abs(np.fft.rfft(bent))
+            turn = float(np.sum(waves * np.arange(len(waves)) ** 2) / np.max(waves))
+            out[k] = error_here / top + turn * (np.pi / len(state.theta)) ** 2 / 2
+    return out

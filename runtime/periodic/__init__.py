@@ -3,8 +3,8 @@
 ``floquet_multipliers``, ``monodromy``
     Stability at given speeds, with the error of every multiplier.
 ``steady_state``
-    The periodic motion of a forced system, however stiff; ``steady_peaks`` its largest deflection
-    alone, at any number of speeds; ``cycles_to_settle`` how long a start takes to die away.
+    The periodic motion of a forced system, however stiff; ``cycles_to_settle`` how long a start
+    takes to die away.
 ``simulate``
     The motion from a start, over any number of revolutions.
 ``prepare``
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from .multipliers import cycles_to_settle as cycles_to_settle
     from .multipliers import floquet_multipliers as floquet_multipliers
     from .multipliers import monodromy as monodromy
-    from .peaks import steady_peaks as steady_peaks
     from .periodic_motion import SteadyState as SteadyState
     from .periodic_motion import steady_state as steady_state
     from .prepared import Prepared as Prepared
@@ -46,7 +45,6 @@ __all__, __getattr__, __dir__ = on_first_use(
             "floquet_multipliers",
             "monodromy",
         ),
-        "peaks": ("steady_peaks",),
         "periodic_motion": ("SteadyState", "steady_state"),
         "prepared": ("Prepared", "prepare"),
         "reduced": ("reduced_system",),

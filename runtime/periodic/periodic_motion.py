@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
@@ -13,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.collocation import legendre_integrals
 from ..core.deferred import DeferredField, DeferredGroup
-from ..core.errors import LINEAR_RANGE, bad, warn_of_large_deflection
+from ..core.errors import LINEAR_RANGE, LinearRangeWarning, bad, warn_of_large_deflection
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.progress import bar
@@ -490,3 +491,17 @@ def _check_memory(equation: Equation, angles: int) -> None:
             f"at most {_MOST_FLOATS // each} of them at a time",
             "take the speeds in parts, by sweep",
         )
+
+
+def quiet_state(
+    system: LinearPeriodic,
+    speeds: ArrayLike,
+    rtol: float,
+    parameters: Mapping[str, float] | None = None,
+) -> SteadyState:
+    """Return the steady state without a warning of the linear range; its check tells."""
+    with warnings.catch_warnings():
+        # At a resonance it is left as a matter of course.
+        warnings.simplefilter("ignore", LinearRangeWarning)
+        changes: dict[str, Any] = dict(parameters or {})
+        return steady_state(system, speeds, rtol=rtol, **changes)

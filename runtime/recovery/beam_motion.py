@@ -135,7 +135,7 @@ def chunks(motion: BeamMotion) -> list[slice]:
 
 def quiet_steady_state(system: LinearPeriodic, speed: float) -> SteadyState:
     """Return the steady state at a speed [rad/s]; the caller looks at the linear range."""
-    from ..periodic.peaks import quiet_state
+    from ..periodic.periodic_motion import quiet_state
 
     # Mesh and equations err far more than this.
     return quiet_state(system, speed, 1e-7)

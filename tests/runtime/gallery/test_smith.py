@@ -27,7 +27,7 @@ from elastolink.runtime.gallery.smith_linkages import (
 from elastolink.runtime.gallery.smith_responses import Response, envelope
 from elastolink.runtime.gallery.smith_speeds import OBSERVATIONS
 from elastolink.runtime.hill import hill_boundaries
-from elastolink.runtime.periodic import steady_peaks
+from elastolink.runtime.periodic import steady_state
 from elastolink.runtime.rigid import case_counterweights, rigid_forces, with_counterweights
 from elastolink.runtime.scenes import load_scene
 
@@ -132,10 +132,10 @@ def test_extremes_are_those_of_the_steady_peaks():
     ends = envelope(LAST, decrement)
     system = LAST.rig.system(decrement=decrement, inertia=LAST.inertia)
     chosen = [0, 100, 200]
-    peaks = steady_peaks(system, ends.speed[chosen] * RPM, x=[0.5])
+    peak = steady_state(system, ends.speed[chosen] * RPM).peak(0.5)
     size = np.maximum(ends.greatest, -ends.least)[chosen]
     # Both take the largest of even angles, here 256 or more of them.
-    assert size == pytest.approx(1e3 * peaks.peak, rel=1e-3)
+    assert size == pytest.approx(1e3 * peak, rel=1e-3)
     for speed, place in ((400.0, 391.0), (530.0, 520.0)):
         assert smith_responses.resonance(LAST, speed) == pytest.approx(place, abs=2.0)
 

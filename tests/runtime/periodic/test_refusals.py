@@ -13,7 +13,6 @@ from elastolink.runtime.periodic import (
     prepare,
     reduced_system,
     simulate,
-    steady_peaks,
     steady_state,
 )
 from elastolink.runtime.periodic.truncation import modal_truncation
@@ -39,7 +38,6 @@ GIVEN = {
     monodromy: {"speed": 1.0},
     simulate: {"speed": 2.0, "revolutions": 1.0, "initial": (0.1, 0.0)},
     steady_state: {"speed": 1.0},
-    steady_peaks: {"speed": [1.0, 2.0]},
     prepare: {"speeds": 80.0},
 }
 CASES = {
@@ -93,11 +91,6 @@ CASES = {
         ({"system": STILL}, "forcing that is zero"),
         ({"system": FREE}, "without forcing"),
         ({"system": DAMPED, "method": "harmonic_balance", "c": -0.1}, "c: found"),
-    ],
-    steady_peaks: [
-        ({"x": 1.5}, "places"),
-        ({"system": SHAPELESS}, "mode shapes"),
-        ({"speed": []}, "row of speeds"),
     ],
     prepare: [
         ({"speeds": (90.0, 70.0)}, "speeds"),

@@ -198,9 +198,10 @@ def resonance_curve(
 def _peak_error(state: SteadyState, x: float) -> Array:
     """Return the error of the peak deflection at a place x/length over itself, of each motion."""
     out = np.full(len(state.speed), np.inf)
-    if state.shapes is None:
+    shapes = None if state.shapes is None else state.shapes(np.array([x]), state.theta)
+    if shapes is None:
         return np.full(len(state.speed), np.nan)
-    shape = state.shapes(np.array([x]), state.theta)[:, 0]
+    shape = shapes[:, 0]
     for k, (q, error) in enumerate(zip(state.q, state.error, strict=True)):
         bent = np.einsum("tn,tn->t", shape, q)
         top = np.max(np.abs(bent))

@@ -136,18 +136,10 @@ _Key = tuple[tuple[bytes, bytes], ...]
 
 @dataclass(frozen=True, eq=False)
 class EffectiveOperator:
-    """A and B of one region as polynomials in the parameters, homogeneous component by component.
+    """A and B of region n as polynomials in the parameters, homogeneous component by component.
 
-    Attributes
-    ----------
-    n : int
-        Number of the region.
-    order : int
-        Highest total degree.
-    damped : bool
-        True where the last parameter is K.
-    diagonal, coupling : tuple of ndarray, shape (M_k,), complex
-        Coefficients of A and of B for the degrees k = 1 ... order, by monomial, read-only.
+    ``diagonal`` and ``coupling`` hold their coefficients by monomial, ``(M_k,)``, for the degrees
+    k = 1 ... order; where ``damped`` the last parameter is K.
     """
 
     n: int

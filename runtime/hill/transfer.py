@@ -75,29 +75,13 @@ def gauss(q: int) -> Gauss:
 class Transfer:
     """The transfer matrices of all segments as polynomials over a box of parameters.
 
-    Attributes
-    ----------
-    table : ndarray, shape (4 * segments, monomials)
-        Entries (row, column, segment) by monomials ``xi^i eta^j``, by rising total degree, in the
-        state ``(u, du/dx)``, x running from -1 to 1 over a segment.
-    degree : int
-        Total degree.
-    segments : int
-        Number of segments, a power of two.
-    lam2, mu : (centre, half-width)
-        ``xi = (lam2 - centre) / half-width`` and eta likewise.
-    truncation : float
-        Estimate of the largest entry that the polynomials and the interpolation leave out.
-    size : float
-        Largest ``|lam2 + mu f|`` over box and circle.
-    spread : tuple of float
-        Largest deviation from the point of expansion that lam2 and mu bring about.
-    swing : float
-        Largest ``|mu| sup|f|`` over the box.
-    floor : float
-        Smallest ``lam2 + mu f`` over box and circle, at most zero.
-    f_error : float
-        Error of the periodic function that was used.
+    ``table`` ``(4 * segments, monomials)`` holds entries (row, column, segment) by monomials
+    ``xi^i eta^j`` of rising total degree, in the state ``(u, du/dx)``, x from -1 to 1 over a
+    segment; ``xi = (lam2 - centre) / half-width`` and eta likewise, from ``lam2`` and ``mu``.
+    ``truncation`` estimates the largest entry that is left out, ``f_error`` is that of f.  Over box
+    and circle ``size`` is the largest ``|lam2 + mu f|``, ``floor`` the smallest ``lam2 + mu f``, at
+    most 0, ``swing`` the largest ``|mu| sup|f|``; ``spread`` is how far lam2 and mu lead away from
+    the point of expansion.
     """
 
     table: Array

@@ -34,11 +34,8 @@ def on_grid(names: Names, axes: Axes, fixed: float = 1.0) -> tuple[Array, dict[s
 def fixed_speed(system: LinearPeriodic, names: Names, speed: float | None) -> float:
     """Return the speed of all points of a chart; 1 where it is left out, or an axis.
 
-    Raises
-    ------
-    BadInput
-        If the speed is given beside an axis of that name, or is no positive number; if none is
-        given and no axis, of a system whose inertia forces come from a turning crank.
+    Refused where it is given beside an axis of that name, is no positive number, or is missing of
+    a system whose inertia forces come from a turning crank.
     """
     if "speed" in names:
         if speed is not None:

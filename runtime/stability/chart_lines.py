@@ -262,18 +262,8 @@ class HillLines:
         return np.array(value)[:, None], np.array(error)[:, None]
 
 
-def _lines_of(sampler: Sampler) -> Lines | HillLines:
-    return Lines(sampler) if sampler.form is None else HillLines(sampler, sampler.form)
-
-
 def invariants(sampler: Sampler, workers: Map, *, progress: bool) -> Series:
-    """Return the invariants of a chart in the way that suits it, its lines by ``workers``.
-
-    Raises
-    ------
-    BadInput
-        If modes, lines and nodes amount to more than an hour or so.
-    """
+    """Return the invariants of a chart in the way that suits it, its lines by ``workers``."""
     if sampler.plain is not None:
         return _plain_hill(sampler, *sampler.plain)
     surface = _Surface(sampler, workers)
@@ -326,7 +316,8 @@ class _Surface:
 
     def __init__(self, sampler: Sampler, workers: Map) -> None:
         self.sampler, self.workers = sampler, workers
-        self.lines = _lines_of(sampler)
+        form = sampler.form
+        self.lines: Lines | HillLines = Lines(sampler) if form is None else HillLines(sampler, form)
         which = self.lines.inner
         self.wanted = sampler.transform(sampler.names[which], sampler.axes[which])
         self.across = sampler.transform(sampler.names[1 - which], sampler.axes[1 - which])

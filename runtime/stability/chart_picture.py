@@ -59,10 +59,11 @@ def draw_chart(chart: StabilityChart, ax: Axes | None) -> Axes:
     ax.set_ylabel(_LABELS.get(chart.y_name, chart.y_name))
     if chart.x_name == "speed" and np.isfinite(chart.natural_frequency):
         _draw_fractions(ax, chart)
+    what = "discriminant" if chart.error_norm.startswith("half trace") else "invariants"
     ax.text(
         0.99,
         0.01,
-        f"error of the {_what(chart)} < {chart.error:.1e} (estimate)",
+        f"error of the {what} < {chart.error:.1e} (estimate)",
         transform=ax.transAxes,
         ha="right",
         va="bottom",
@@ -134,10 +135,6 @@ def _draw_edges(ax: Axes, chart: StabilityChart, edges: EdgeCurves) -> None:
                 va="top" if horizontal else "center",
                 ha="right",
             )
-
-
-def _what(chart: StabilityChart) -> str:
-    return "discriminant" if chart.error_norm.startswith("half trace") else "invariants"
 
 
 def _shown(name: str, values: Array) -> Array:

@@ -8,7 +8,7 @@ the kind: at +1, at -1, or with its conjugate elsewhere.
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,8 +29,7 @@ _TOGETHER = 256
 _PLACES = np.linspace(-1.5, 1.5, 13)
 
 
-@dataclass(frozen=True)
-class Levels:
+class Levels(NamedTuple):
     """Log moduli, falling, with errors and multipliers, all of shape ``(k, 2n)``.
 
     ``size`` is the error of the monodromy matrices, shape ``(k,)``.
@@ -44,12 +43,10 @@ class Levels:
     @property
     def outside(self) -> NDArray[np.bool_]:
         """Which are outside the circle beyond their error."""
-        flags: NDArray[np.bool_] = self.value > 2 * self.noise
-        return flags
+        return np.asarray(self.value > 2 * self.noise)
 
 
-@dataclass(frozen=True)
-class Span:
+class Span(NamedTuple):
     """Speeds between which multipliers of one kind are outside the circle.
 
     ``lower`` and ``upper`` are NaN where none crosses the circle; ``begin`` and ``end`` are then
@@ -64,8 +61,7 @@ class Span:
     multiplier: complex
 
 
-@dataclass(frozen=True)
-class _Crossing:
+class _Crossing(NamedTuple):
     speed: float
     error: float
     rising: bool
@@ -111,13 +107,8 @@ class Crossings:
             before = len(found)
             speed = np.concatenate([self._speed, fresh])
             order = np.argsort(speed, kind="stable")
-            old, new = self._levels, self.levels(fresh)
-            self._levels = Levels(
-                *(
-                    np.concatenate([getattr(old, f), getattr(new, f)])[order]
-                    for f in ("value", "noise", "multiplier", "size")
-                )
-            )
+            both = zip(self._levels, self.levels(fresh), strict=True)
+            self._levels = Levels(*(np.concatenate(parts)[order] for parts in both))
             self._speed = speed[order]
             found = self._crossings()
             if len(found) == before:
@@ -284,14 +275,14 @@ def labelled(spans: list[Span], undamped: Regions) -> Regions:
     lows, highs = undamped.begin, undamped.end
     size = (end - begin)[:, None] + (highs - lows) + 1e-12 * end[:, None]
     cost = np.abs((end + begin)[:, None] - (highs + lows)) / size
-    cost = cost + 2 * np.abs(np.angle(turn[:, None] / _upper(undamped.multiplier)))
+    upper = undamped.multiplier.real + 1j * np.abs(undamped.multiplier.imag)
+    cost = cost + 2 * np.abs(np.angle(turn[:, None] / upper))
     # Of two that lie alike the one of like width, then that of the lower, stronger harmonic; never
     # one of another kind of multiplier.
     ratio = np.log((end - begin + 1e-15 * end)[:, None] / (highs - lows + 1e-15 * highs))
     cost = cost + 0.2 * np.abs(ratio) + 0.05 * undamped.harmonic
     real = np.array([s.multiplier.imag == 0.0 for s in spans], dtype=bool)
-    principal = np.array([kind == "principal" for kind in undamped.kind], dtype=bool)
-    cost = cost + 100.0 * (real[:, None] != principal)
+    cost = cost + 100.0 * (real[:, None] != (undamped.kind == "principal"))
     pairs = [(r, c) for r, c in zip(*linear_sum_assignment(cost), strict=True) if cost[r, c] < 20.0]
     modes, harmonic = np.zeros((k, 2), dtype=np.int64), np.zeros(k, dtype=np.int64)
     detuning = np.full(k, np.nan)
@@ -309,13 +300,8 @@ def labelled(spans: list[Span], undamped: Regions) -> Regions:
         detuning,
         begin,
         end,
-        tuple(kind),
+        np.array(kind, dtype=np.str_),
     )
-
-
-def _upper(turn: NDArray[np.complex128]) -> NDArray[np.complex128]:
-    value: NDArray[np.complex128] = turn.real + 1j * np.abs(turn.imag)
-    return value
 
 
 def _highest(matrices: MatricesOverSpeed, phase: Array, middle: Array, half: Array) -> Array:

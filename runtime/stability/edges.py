@@ -44,7 +44,7 @@ _WIDE = 1e-6
 _REAL = 1e-4
 _GAP = "multiplier +-1, and gap of multipliers of opposite Krein signature"
 _RPM = 30.0 / np.pi
-_TOLD = ("lower", "upper", "multiplier", "modes", "harmonic", "detuning", "kind")
+_TOLD = ("lower", "upper", "multiplier", "modes", "harmonic", "detuning")
 _CLOSED = "closed: too narrow to be told from none"
 _COLOURS = {"principal": "#c05a1f", "sum": "#6b3d8f", "difference": "#2b7a78"}
 
@@ -125,8 +125,44 @@ class StabilityEdges(Result):
         )
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the regions as bars over the speed, one row for each pair of modes."""
-        return _draw(self, ax)
+        """Draw the regions as bars over the speed, closed ones as dots, a row for each pair."""
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        low, high = (speed * _RPM for speed in self.speed_range)
+        pairs = sorted({tuple(pair) for pair in self.modes.tolist()})
+        seen: set[str] = set()
+        last = dict.fromkeys(pairs, -np.inf)
+        for i in np.argsort(self.lower, kind="stable"):
+            pair = tuple(self.modes[i].tolist())
+            row = pairs.index(pair)
+            begin = self.lower[i] * _RPM if np.isfinite(self.lower[i]) else low
+            end = self.upper[i] * _RPM if np.isfinite(self.upper[i]) else high
+            closed = bool(self.upper[i] - self.lower[i] <= 2 * self.error[i])
+            kind = _CLOSED if closed else self.kind[i]
+            label = None if kind in seen else kind
+            seen.add(kind)
+            if closed:
+                ax.plot(begin, row, ".", color="0.6", ms=2.5, label=label)
+                continue
+            colour, around = _COLOURS[kind], [row - 0.3, row + 0.3]
+            ax.fill_between([begin, end], *around, color=colour, lw=0)
+            ax.plot([begin, begin], around, color=colour, lw=0.8, label=label)
+            middle = 0.5 * (max(begin, low) + min(end, high))
+            # Numbers that would run into each other are left out.
+            if middle - last[pair] > 0.03 * (high - low):
+                ax.text(middle, row + 0.36, f"{self.harmonic[i]}", fontsize=7, ha="center")
+                last[pair] = middle
+        names = [f"mode {i}" if i == j else f"modes {i}, {j}" for i, j in pairs]
+        ax.set_yticks(range(len(pairs)), names)
+        ax.set_ylim(-0.6, len(pairs) - 0.3)
+        ax.set_xlim(low, high)
+        ax.set_xlabel("crank speed [rpm]")
+        ax.set_title("unstable regions; the numbers are harmonics", fontsize=9)
+        if seen:
+            below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.12)}
+            ax.legend(**below, ncols=3, fontsize=8, frameon=False)
+        return ax
 
 
 def stability_edges(
@@ -230,6 +266,7 @@ def stability_edges(
         checks=checks,
         provenance=provenance(system.changed_provenance(**parameters)),
         **{name: getattr(regions, name) for name in _TOLD},
+        kind=tuple(regions.kind.tolist()),
         least_width=least,
         speed_range=(low, high),
     )
@@ -343,7 +380,7 @@ def _combined(matrices: MatricesOverSpeed, events: Events, edges: Edges, *, held
     pair, harmonic, off = meeting_labels(modes, phase, phase, shares)
     rows = np.arange(len(middle))[:, None]
     signs = np.sign(modes.turns[rows, pair - 1])
-    kind = tuple("sum" if first == second else "difference" for first, second in signs)
+    kind = np.where(signs[:, 0] == signs[:, 1], "sum", "difference")
     turn = np.exp(1j * np.abs(phase))
     return Regions(
         edges.lower, edges.upper, edges.error, turn, pair, np.abs(harmonic), off, begin, end, kind
@@ -377,7 +414,7 @@ def _principal(
         off,
         reach[0],
         reach[1],
-        ("principal",) * len(real),
+        np.full(len(real), "principal"),
     )
 
 
@@ -431,48 +468,3 @@ def _endless(
     labels = principal_labels(turns, real, np.zeros_like(turns))
     reach = np.repeat(np.array(span)[:, None], k, axis=1)
     return _principal(np.full((2, k), np.nan), np.zeros(k), real, labels, reach)
-
-
-def _draw(found: StabilityEdges, ax: Axes | None) -> Axes:
-    """Draw each region as a bar, closed ones as a grey dot, one row for each pair of modes."""
-    from ..core.plotting import axes_or_new
-
-    ax = axes_or_new(ax)
-    low, high = (speed * _RPM for speed in found.speed_range)
-    pairs = sorted({tuple(pair) for pair in found.modes.tolist()})
-    seen: set[str] = set()
-    order = np.argsort(found.lower, kind="stable")
-    last = dict.fromkeys(pairs, -np.inf)
-    for i in order:
-        kind, pair = found.kind[i], tuple(found.modes[i].tolist())
-        row = pairs.index(pair)
-        begin = found.lower[i] * _RPM if np.isfinite(found.lower[i]) else low
-        end = found.upper[i] * _RPM if np.isfinite(found.upper[i]) else high
-        closed = bool(found.upper[i] - found.lower[i] <= 2 * found.error[i])
-        kind = _CLOSED if closed else kind
-        label = None if kind in seen else kind
-        seen.add(kind)
-        if closed:
-            ax.plot(begin, row, ".", color="0.6", ms=2.5, label=label)
-            continue
-        ax.fill_between([begin, end], row - 0.3, row + 0.3, color=_COLOURS[kind], lw=0)
-        ax.plot([begin, begin], [row - 0.3, row + 0.3], color=_COLOURS[kind], lw=0.8, label=label)
-        middle = 0.5 * (max(begin, low) + min(end, high))
-        # Numbers that would run into each other are left out.
-        if middle - last[pair] > 0.03 * (high - low):
-            ax.text(middle, row + 0.36, f"{found.harmonic[i]}", fontsize=7, ha="center")
-            last[pair] = middle
-    ax.set_yticks(range(len(pairs)), [_name(pair) for pair in pairs])
-    ax.set_ylim(-0.6, len(pairs) - 0.3)
-    ax.set_xlim(low, high)
-    ax.set_xlabel("crank speed [rpm]")
-    ax.set_title("unstable regions; the numbers are harmonics", fontsize=9)
-    if seen:
-        ax.legend(
-            loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3, fontsize=8, frameon=False
-        )
-    return ax
-
-
-def _name(pair: tuple[int, ...]) -> str:
-    return f"mode {pair[0]}" if pair[0] == pair[1] else f"modes {pair[0]}, {pair[1]}"

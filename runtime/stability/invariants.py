@@ -21,24 +21,13 @@ def largest_modulus(
 ) -> tuple[Array, NDArray[np.bool_], Array]:
     """Return the largest modulus of a multiplier, whether all are stable, and the slack of that.
 
-    Parameters
-    ----------
-    coefficients : ndarray, shape (..., k)
-        As :func:`weighed_characteristic` returns them.
-    reduced : bool
-        Whether they are the first half of a palindromic polynomial; then the roots are sought in
-        ``z = rho + 1/rho``, where stability means z real and ``|z| <= 2``.
-    error : float or ndarray, shape (...) or (..., k)
-        Absolute error of the coefficients, or of each of them; round-off is added.
-
-    Returns
-    -------
-    largest, stable, slack : ndarray, shape (...)
-        A root counts as stable where its modulus exceeds 1 by no more than what the error of the
-        coefficients explains; ``slack`` is the largest such allowance of a point.  It is 0 where
-        signs of the reduced polynomial prove that every multiplier is on the unit circle.  Where a
-        coefficient is infinite the growth overflowed: infinite, unstable, slack 0.  Where one is
-        NaN nothing is known: NaN, not stable, infinite slack.
+    From the coefficients of :func:`weighed_characteristic` ``(..., k)`` and the absolute error of
+    all of them or of each, round-off added; where ``reduced``, roots are sought in
+    ``z = rho + 1/rho``, where stability means z real and ``|z| <= 2``.  A root counts as stable
+    where its modulus exceeds 1 by no more than what the errors explain; the slack is the largest
+    such allowance of a point, 0 where signs of the reduced polynomial prove that every multiplier
+    is on the unit circle.  Where a coefficient is infinite the growth overflowed: infinite,
+    unstable, slack 0.  Where one is NaN nothing is known: NaN, not stable, infinite slack.
     """
     known = known_to(coefficients, np.asarray(error, dtype=float))
     usable = np.all(np.isfinite(coefficients), axis=-1)
@@ -73,7 +62,8 @@ def known_to(coefficients: Array, error: Array) -> Array:
 def _moduli(coefficients: Array, known: Array, reduced: bool) -> Moduli:
     """Judge polynomials all of whose coefficients are finite."""
     if not reduced:
-        return _by_roots(_roots(coefficients), known)
+        rho = _roots(coefficients)
+        return _judged(np.abs(rho), root_uncertainty(rho, known))
     polynomial = in_sum(coefficients)
     # On the unit circle a coefficient enters by 2 cos, the middle one by 1.
     n = known.shape[-1]
@@ -92,11 +82,6 @@ def _moduli(coefficients: Array, known: Array, reduced: bool) -> Moduli:
         found = _by_sums(_roots(polynomial[rest]) if z is None else z[rest], moved)
         largest[rest], stable[rest], slack[rest] = found
     return largest, stable, slack
-
-
-def _by_roots(rho: NDArray[np.complex128], known: Array) -> Moduli:
-    """Judge by all multipliers."""
-    return _judged(np.abs(rho), root_uncertainty(rho, known))
 
 
 def _by_sums(z: NDArray[np.complex128], known: Array) -> Moduli:
@@ -325,15 +310,9 @@ def _turning(a: Array) -> list[Array]:
         return [middle - reach, middle + reach]
     # Slope / 4 = z^3 + 3 a_1/4 z^2 + a_2/2 z + a_3/4; with z = middle + t: t^3 - 3 p t - 2 q.
     p = middle**2 - a[1] / 6.0
-    q = -0.5 * _cubic(a, middle)
+    q = -0.5 * (((middle + 0.75 * a[0]) * middle + 0.5 * a[1]) * middle + 0.25 * a[2])
     root = np.sqrt(np.maximum(p, 0.0))
     with np.errstate(divide="ignore"):
         angle = np.arccos(np.clip(q / root**3, -1.0, 1.0)) / 3.0
     third = 2.0 * np.pi / 3.0
     return [middle + 2.0 * root * np.cos(angle + k * third) for k in (1, 2, 0)]
-
-
-def _cubic(a: Array, z: Array) -> Array:
-    """Return a quarter of the slope of a polynomial of degree four."""
-    value: Array = ((z + 0.75 * a[0]) * z + 0.5 * a[1]) * z + 0.25 * a[2]
-    return value

@@ -8,7 +8,7 @@ all other modes at rest: where the periodic part is large its mean frequency is 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,8 +36,7 @@ _BESIDE = 1e-8
 _LACK = 4.0
 
 
-@dataclass(frozen=True)
-class Modes:
+class Modes(NamedTuple):
     """Modes at k speeds.
 
     ``turns`` ``(k, n)`` are those in a period of each multiplier of positive signature, negative

@@ -12,7 +12,7 @@ speed, while their moduli start with a square root.  Near a narrow tongue it is 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,8 +37,7 @@ _TURN_ROUND = 2.0 * np.pi
 _TELLING = 1e-5
 
 
-@dataclass(frozen=True)
-class Events:
+class Events(NamedTuple):
     """Meetings of multipliers, each between two sampled speeds, ``(k,)`` or ``(k, 2)``.
 
     The pair is apart at ``low`` and ``high``, NaN where the range ends first or one of the two is
@@ -55,8 +54,7 @@ class Events:
     minus: Array
 
 
-@dataclass(frozen=True)
-class Samples:
+class Samples(NamedTuple):
     """Arguments of the multipliers of positive signature over the rising speed, ``(ns, n)``.
 
     They are followed from sample to sample, up to a whole number of turns; ``open`` is true where
@@ -177,11 +175,12 @@ def meetings(samples: Samples, principal: bool = False) -> Events:
     """
     n = samples.phase.shape[1]
     rows: list[tuple[float, float, float, Array, Array, Array]] = []
-    real = samples.open & (_off_turn(2 * samples.phase) < _LOCKED)
+    real = samples.open & (np.abs(_wrapped(2 * samples.phase)) < _LOCKED)
     for k in range(n):
         for other in (k,) if principal else range(k + 1, n):
             total = samples.phase[:, k] + samples.phase[:, other]
-            locked = samples.open[:, k] & samples.open[:, other] & (_off_turn(total) < _LOCKED)
+            locked = samples.open[:, k] & samples.open[:, other]
+            locked &= np.abs(_wrapped(total)) < _LOCKED
             hidden = np.zeros_like(locked) if principal else real[:, k] | real[:, other]
             for first, last, run in _passages(total / _TURN_ROUND, locked & ~hidden, hidden):
                 inside = run[len(run) // 2] if run else None
@@ -199,12 +198,6 @@ def meetings(samples: Samples, principal: bool = False) -> Events:
 
 def _at(values: Array, index: int | None) -> float:
     return float("nan") if index is None else float(values[index])
-
-
-def _off_turn(phase: Array) -> Array:
-    turns = phase / _TURN_ROUND
-    distance: Array = np.abs(turns - np.round(turns)) * _TURN_ROUND
-    return distance
 
 
 Passage = tuple[int | None, int | None, list[int]]
@@ -229,8 +222,7 @@ def _passages(turns: Array, locked: Flags, hidden: Flags) -> list[Passage]:
     return found
 
 
-@dataclass(frozen=True)
-class Pair:
+class Pair(NamedTuple):
     """Two multipliers at each of k places, all arrays of shape ``(k,)``.
 
     ``gap`` is g, negative off the circle, ``noise`` its absolute error, ``ahead`` the angle by
@@ -291,12 +283,10 @@ def perturbation_size(matrices: Array, error: Array) -> Array:
 
 
 def _wrapped(angle: Array) -> Array:
-    value: Array = np.mod(angle + np.pi, 2 * np.pi) - np.pi
-    return value
+    return np.asarray(np.mod(angle + np.pi, 2 * np.pi) - np.pi)
 
 
-@dataclass(frozen=True)
-class Edges:
+class Edges(NamedTuple):
     """Edges of tongues, each array of shape ``(k,)``.
 
     ``lower`` and ``upper`` [rad/s] are equal where the tongue is too narrow to be told from none,
@@ -424,8 +414,7 @@ class _Search:
             own = index[rows]
             self.old[0, own], self.old[1, own] = self.x[side, own], self.g[side, own]
             self.x[side, own], self.g[side, own] = speed[rows], pair.gap[rows]
-            chosen = Pair(*(getattr(pair, f)[rows] for f in Pair.__dataclass_fields__))
-            self._keep(side, own, chosen)
+            self._keep(side, own, Pair(*(values[rows] for values in pair)))
         closed = (pair.gap <= pair.noise) | (self.x[1, index] - self.x[0, index] <= rounding)
         closed &= ~off
         if np.any(closed):
@@ -437,11 +426,9 @@ class _Search:
     def edge(self, index: Index, side: int) -> tuple[Array, Array, Array]:
         """Return one edge of open tongues, its error, and the argument there."""
         outer, inner = self.x[side, index], self.bottom[index]
-        record: list[Pair] = []
 
         def gap(rows: Index, speed: Array) -> tuple[Array, Array]:
             pair = self._at(index[rows], speed)
-            record.append(pair)
             return pair.gap, pair.noise
 
         roots, width, slope = bracketed_roots(

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +20,7 @@ _TELLING = 20.0
 _BESIDE = 0.01
 
 
-@dataclass(frozen=True)
-class Regions:
+class Regions(NamedTuple):
     """Regions with their ends and labels, see :class:`~.edges.StabilityEdges`.
 
     ``begin`` and ``end`` are as far as the region is known to reach: its ends where it has them,
@@ -37,7 +36,7 @@ class Regions:
     detuning: Array
     begin: Array
     end: Array
-    kind: tuple[str, ...]
+    kind: NDArray[np.str_]
 
     @property
     def middle(self) -> Array:
@@ -50,9 +49,8 @@ class Regions:
 
     def take(self, index: NDArray[np.intp]) -> Regions:
         """Return some of the regions, in the order given."""
-        values = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "kind"}
-        kind = tuple(self.kind[i] for i in index)
-        return Regions(**{name: value[index] for name, value in values.items()}, kind=kind)
+        columns: Sequence[Any] = self
+        return Regions(*(values[index] for values in columns))
 
     def overlapping(self, low: float, high: float) -> Regions:
         """Return those that reach into a range, by rising speed."""
@@ -62,9 +60,7 @@ class Regions:
 
 def joined(first: Regions, second: Regions) -> Regions:
     """Return the regions of both."""
-    names = [f.name for f in fields(Regions) if f.name != "kind"]
-    both = {n: np.concatenate([getattr(first, n), getattr(second, n)]) for n in names}
-    return Regions(**both, kind=first.kind + second.kind)
+    return Regions(*(np.concatenate(both) for both in zip(first, second, strict=True)))
 
 
 # ---------------------------------------------------------------- checks
@@ -78,7 +74,7 @@ def edge_checks(
 ) -> dict[str, Check]:
     """Return ``samples`` and ``verdicts``, the numbers of speeds that contradict the regions."""
     begin, end = np.maximum(regions.begin, span[0]), np.minimum(regions.end, span[1])
-    regions = replace(regions, begin=begin, end=end)
+    regions = regions._replace(begin=begin, end=end)
     speeds = np.linspace(*span, 64)
     found = floquet_multipliers(system, speeds, **parameters)
     missed = speeds[~_covered(regions, speeds) & _grows(found)]
@@ -144,7 +140,7 @@ def _counts(
     found = floquet_multipliers(system, speeds, **parameters)
     modulus, blur = np.abs(found.multipliers), np.max(found.error, axis=-1)
     covers = (speeds[:, None] > begin) & (speeds[:, None] < end)
-    weight = np.array([1 if regions.kind[i] == "principal" else 2 for i in wide], dtype=int)
+    weight = np.where(regions.kind[wide] == "principal", 1, 2)
     expected = covers.astype(int) @ weight
     fewest = np.sum(modulus > 1.0 + 4 * found.error, axis=-1)
     most = np.sum(modulus > 1.0 - 4 * found.error, axis=-1)

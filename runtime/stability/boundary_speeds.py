@@ -76,8 +76,7 @@ class SpeedBoundaries(Result):
         shift = 0.0 if self.multiplier[index] == 1 else 0.5
         kappa = 2 * np.pi / self.period * (np.arange(self.cosine.shape[1]) + shift)
         phase = angles[:, None] * kappa
-        value: Array = np.cos(phase) @ self.cosine[index] + np.sin(phase) @ self.sine[index]
-        return value
+        return np.asarray(np.cos(phase) @ self.cosine[index] + np.sin(phase) @ self.sine[index])
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the boundaries as lines over the speed and return the axes."""
@@ -467,12 +466,10 @@ def _test_speeds(boundaries: Array, span: tuple[float, float]) -> Array:
 def _shifted(matrices: Monodromy, sign: NDArray[np.int64]) -> Array:
     unit = np.eye(matrices.matrix.shape[-1])
     shrink = np.ldexp(1.0, -matrices.exponent)[:, None, None]
-    value: Array = matrices.scaled - shrink * (sign[:, None, None] * unit)
-    return value
+    return np.asarray(matrices.scaled - shrink * (sign[:, None, None] * unit))
 
 
 def _smallest(matrices: Monodromy, sign: NDArray[np.int64]) -> Array:
     """Return the smallest singular value of (matrix - multiplier) over the matrix."""
     norm = np.linalg.norm(matrices.scaled, axis=(-2, -1))
-    value: Array = np.linalg.svd(_shifted(matrices, sign), compute_uv=False)[:, -1] / norm
-    return value
+    return np.asarray(np.linalg.svd(_shifted(matrices, sign), compute_uv=False)[:, -1] / norm)

@@ -92,8 +92,7 @@ def damping_rate(system: LinearPeriodic, names: Names, axes: Axes) -> Array:
         if term.array in total:
             factor = 1.0 if term.scale is None else scales[term.scale]
             total[term.array] = total[term.array] + factor * term(np.zeros(1))[0, 0, 0]
-    rate: Array = total["C"] / total["M"]
-    return rate
+    return np.asarray(total["C"] / total["M"])
 
 
 def natural_frequency(system: LinearPeriodic, names: Names, axes: Axes) -> float:

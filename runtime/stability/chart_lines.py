@@ -93,8 +93,7 @@ def mirrored_sums(halves: Array) -> Array:
     """
     n = halves.shape[-1] // 2
     cross = np.swapaxes(halves[..., :n, n:], -1, -2) @ halves[..., n:, :n]
-    value: Array = np.eye(n) + 2.0 * cross
-    return value
+    return np.asarray(np.eye(n) + 2.0 * cross)
 
 
 def is_mirrored(equation: Equation) -> bool:
@@ -119,8 +118,7 @@ def _sign_of_trace(matrices: Array, half: bool) -> Array:
     """Return the sign of the trace of matrices, or of what half a period's are half of."""
     if half:
         matrices = mirrored_sums(matrices) - np.eye(matrices.shape[-1] // 2)
-    value: Array = np.sign(np.trace(matrices, axis1=-2, axis2=-1))
-    return value
+    return np.asarray(np.sign(np.trace(matrices, axis1=-2, axis2=-1)))
 
 
 class Lines:

@@ -14,14 +14,7 @@ from ..core.families import Array, LinearPeriodic
 from ..hill import hill_form
 from ..hill.form import is_hill
 from ..periodic.equation import equation_of
-from .chart_axes import (
-    Axes,
-    Names,
-    fixed_speed,
-    is_damped,
-    is_symplectic,
-    plain_axes,
-)
+from .chart_axes import Axes, Names, fixed_speed, is_damped, is_symplectic, plain_axes
 
 # What does independent pieces of work, such as the builtin map.
 Map = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
@@ -87,13 +80,7 @@ class Sampler:
         return np.asarray(1.0 / values if self.damped else 1.0 / np.sqrt(values))
 
     def allowed(self, lines: int, nodes: int) -> None:
-        """Refuse a chart whose lines, and nodes on each, would take too long.
-
-        Raises
-        ------
-        BadInput
-            If modes, points and segments of the turn amount to more than an hour or so.
-        """
+        """Refuse a chart whose lines, and nodes on each, would take more than an hour or so."""
         if self.hill:
             return
         corner: dict[str, Any] = {

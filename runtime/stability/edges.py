@@ -145,9 +145,9 @@ class StabilityEdges(Result):
             if closed:
                 ax.plot(begin, row, ".", color="0.6", ms=2.5, label=label)
                 continue
-            colour, around = _COLOURS[kind], [row - 0.3, row + 0.3]
-            ax.fill_between([begin, end], *around, color=colour, lw=0)
-            ax.plot([begin, begin], around, color=colour, lw=0.8, label=label)
+            foot, top, colour = row - 0.3, row + 0.3, _COLOURS[kind]
+            ax.fill_between([begin, end], foot, top, color=colour, lw=0)
+            ax.plot([begin, begin], [foot, top], color=colour, lw=0.8, label=label)
             middle = 0.5 * (max(begin, low) + min(end, high))
             # Numbers that would run into each other are left out.
             if middle - last[pair] > 0.03 * (high - low):

@@ -44,10 +44,7 @@ class Wave:
 def waves(system: LinearPeriodic, parameters: Mapping[str, ArrayLike]) -> tuple[Wave, ...]:
     """Return the Fourier coefficients of the terms that act at constant speed without forcing.
 
-    Raises
-    ------
-    BadInput
-        If a parameter is not one number, or a term is not smooth enough to have a Fourier series.
+    A parameter that is not one number is refused, and a term not smooth enough to have a series.
     """
     for name, value in parameters.items():
         if np.ndim(value) != 0 or not np.isfinite(np.asarray(value, dtype=float)):

@@ -151,15 +151,13 @@ def root_uncertainty(roots: NDArray[np.complex128], error: Array) -> Array:
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         moved = (np.asarray(change)[..., None] / far) ** (1.0 / np.arange(1, k + 1))
     moved = np.where(np.isnan(moved), np.inf, moved)
-    value: Array = 2.0 * np.min(moved, axis=-1)
-    return value
+    return np.asarray(2.0 * np.min(moved, axis=-1))
 
 
 def in_sum(coefficients: Array) -> Array:
     """Turn ``1, c_1 ... c_n ... c_1, 1`` in rho into a monic polynomial in ``rho + 1/rho``."""
     weights = _sum_weights(coefficients.shape[-1])
-    polynomial: Array = coefficients @ weights[1:] + weights[0]
-    return polynomial
+    return np.asarray(coefficients @ weights[1:] + weights[0])
 
 
 def from_sum(polynomial: Array) -> Array:
@@ -167,8 +165,7 @@ def from_sum(polynomial: Array) -> Array:
     weights = _sum_weights(polynomial.shape[-1])
     # Triangular with a diagonal of ones and whole entries: so is the inverse.
     inverse = np.round(np.linalg.inv(weights[1:]))
-    coefficients: Array = (polynomial - weights[0]) @ inverse
-    return coefficients
+    return np.asarray((polynomial - weights[0]) @ inverse)
 
 
 def sum_weights_back(n: int) -> Array:
@@ -247,8 +244,7 @@ def weighed_characteristic(
 
 def frobenius(matrices: Array) -> Array:
     """Return the Frobenius norms of matrices."""
-    value: Array = np.sqrt(np.einsum("...ij,...ij->...", matrices, matrices))
-    return value
+    return np.asarray(np.sqrt(np.einsum("...ij,...ij->...", matrices, matrices)))
 
 
 def _from_eigenvalues(matrices: Array, wanted: int) -> Array:

@@ -280,8 +280,7 @@ def _shares(modes: Modes, found: SpeedBoundaries) -> Array:
     shift = np.where(found.multiplier == 1, 0.0, 0.5)
     number = np.arange(share.shape[-1]) + shift[:, None]
     gap = number[:, None, :] - np.abs(modes.turns)[:, :, None]
-    value: Array = np.sum(share / (1.0 + gap**2), axis=-1)
-    return value
+    return np.asarray(np.sum(share / (1.0 + gap**2), axis=-1))
 
 
 def _apart(turns: float, phase: float) -> float:
@@ -358,5 +357,4 @@ def _chosen(values: ComplexArray, met: ComplexArray) -> NDArray[np.intp]:
     own = values[np.arange(len(values)), first]
     second = np.argmin(np.abs(values - (1.0 / own.conj())[:, None]), axis=1)
     gone = np.any(off, axis=1) & (away[np.arange(len(values)), first] < 0.5)
-    pairs: NDArray[np.intp] = np.where(gone[:, None], np.stack([first, second], axis=1), nearest)
-    return pairs
+    return np.asarray(np.where(gone[:, None], np.stack([first, second], axis=1), nearest))

@@ -108,8 +108,7 @@ class MeanSystem:
         values = np.linalg.eigvals(self._generator(speed)).astype(complex)
         upper = np.where(_turning(values), values.imag, np.nan)
         # Modes that do not oscillate are the lowest: the others keep their numbers.
-        rising: Array = -np.sort(-upper, axis=-1)[:, : self.system.size][:, ::-1]
-        return rising
+        return np.asarray(-np.sort(-upper, axis=-1)[:, : self.system.size][:, ::-1])
 
     def modes(self, speed: float) -> tuple[Array, NDArray[np.int64]]:
         """Return frequencies and Krein signatures of exp(i nu theta) at one speed, ``(n,)``."""

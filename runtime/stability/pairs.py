@@ -69,10 +69,7 @@ class Samples(NamedTuple):
 def phase_grid(matrices: MatricesOverSpeed, span: tuple[float, float], more: Array) -> Array:
     """Return speeds from one to the next of which no mode turns far, and further ones, rising.
 
-    Raises
-    ------
-    BadInput
-        If the range needs more than 40 000 of them.
+    A range that needs more than 40 000 of them is refused.
     """
     low, high = span
     system = matrices.system
@@ -89,17 +86,13 @@ def phase_grid(matrices: MatricesOverSpeed, span: tuple[float, float], more: Arr
         )
     # Phases grow with the inverse speed.
     even = 1.0 / np.linspace(1 / low, 1 / high, max(count, 8))
-    speed: Array = np.unique(np.concatenate([even, more]))
-    return speed
+    return np.asarray(np.unique(np.concatenate([even, more])))
 
 
 def sampled_phases(matrices: MatricesOverSpeed, span: tuple[float, float], more: Array) -> Samples:
     """Return the phases of a conservative system over a range of speeds, and at ``more`` of them.
 
-    Raises
-    ------
-    BadInput
-        If the range needs more than 40 000 samples, or the growth in a turn overflows.
+    A range in which the growth in a turn overflows is refused.
     """
     speed = phase_grid(matrices, span, more)
     phases, flags = [], []
@@ -278,8 +271,7 @@ def perturbation_size(matrices: Array, error: Array) -> Array:
     """
     m = matrices.shape[-1]
     size = m * error * np.max(np.abs(matrices), axis=(-2, -1))
-    value: Array = size + 4 * m * _EPS * np.linalg.norm(matrices, axis=(-2, -1))
-    return value
+    return np.asarray(size + 4 * m * _EPS * np.linalg.norm(matrices, axis=(-2, -1)))
 
 
 def _wrapped(angle: Array) -> Array:
@@ -395,8 +387,7 @@ class _Search:
             place = np.where(usable, vertex, crossing)
         margin = 1e-3 * (high - low)
         place = np.where(np.isfinite(place), place, 0.5 * (low + high))
-        value: Array = np.clip(place, low + margin, high - margin)
-        return value
+        return np.asarray(np.clip(place, low + margin, high - margin))
 
     def _try(self, index: Index, speed: Array) -> Flags:
         """Evaluate new places, move the brackets, and tell which pairs need no more."""
@@ -420,8 +411,7 @@ class _Search:
         if np.any(closed):
             own = index[closed]
             self.least[own] = np.maximum(width[closed], self.least[own]) + rounding[closed]
-        ended: Flags = off | closed
-        return ended
+        return np.asarray(off | closed)
 
     def edge(self, index: Index, side: int) -> tuple[Array, Array, Array]:
         """Return one edge of open tongues, its error, and the argument there."""

@@ -44,8 +44,7 @@ class Regions(NamedTuple):
         low = np.where(np.isfinite(self.lower), self.lower, self.upper)
         high = np.where(np.isfinite(self.upper), self.upper, self.lower)
         seen = 0.5 * (self.begin + self.end)
-        value: Array = np.where(np.isfinite(low + high), 0.5 * (low + high), seen)
-        return value
+        return np.asarray(np.where(np.isfinite(low + high), 0.5 * (low + high), seen))
 
     def take(self, index: NDArray[np.intp]) -> Regions:
         """Return some of the regions, in the order given."""
@@ -102,8 +101,7 @@ def _narrow(system: LinearPeriodic, regions: Regions, parameters: Mapping[str, f
     grown = np.max(inside.exponents.real, axis=-1)
     if _damped(inside):
         expected = np.zeros_like(expected)
-    value: Array = middle[told & (grown <= 0.1 * expected)]
-    return value
+    return np.asarray(middle[told & (grown <= 0.1 * expected)])
 
 
 def _growth(regions: Regions, index: NDArray[np.intp]) -> Array:
@@ -154,8 +152,7 @@ def _counts(
     if np.any(_ragged(regions, span)):
         # Kinds that go over into each other are seen from sample to sample only.
         fewest, most, expected = (np.minimum(n, 1) for n in (fewest, most, expected))
-    value: Array = speeds[(fewest > expected) | (most < expected)]
-    return value
+    return np.asarray(speeds[(fewest > expected) | (most < expected)])
 
 
 def _ragged(regions: Regions, span: tuple[float, float]) -> NDArray[np.bool_]:
@@ -170,8 +167,7 @@ def _within(regions: Regions, speed: Array) -> NDArray[np.bool_]:
     low = regions.begin + np.where(np.isnan(regions.lower), 0.0, 0.25 * width)
     high = regions.end - np.where(np.isnan(regions.upper), 0.0, 0.25 * width)
     inside = (speed[:, None] > low) & (speed[:, None] < high) & (width > 4 * regions.error)
-    value: NDArray[np.bool_] = np.any(inside, axis=1)
-    return value
+    return np.asarray(np.any(inside, axis=1))
 
 
 def _damped(found: FloquetMultipliers) -> bool:
@@ -182,12 +178,10 @@ def _damped(found: FloquetMultipliers) -> bool:
 
 def _grows(found: FloquetMultipliers) -> NDArray[np.bool_]:
     """Return where a multiplier is outside the circle by more than its error explains."""
-    value: NDArray[np.bool_] = np.any(np.abs(found.multipliers) > 1.0 + 4 * found.error, axis=-1)
-    return value
+    return np.asarray(np.any(np.abs(found.multipliers) > 1.0 + 4 * found.error, axis=-1))
 
 
 def _covered(regions: Regions, speed: Array) -> NDArray[np.bool_]:
     """Return which speeds lie in some region, or within the error of its ends."""
     low, high = regions.begin - 2 * regions.error, regions.end + 2 * regions.error
-    value: NDArray[np.bool_] = np.any((speed[:, None] >= low) & (speed[:, None] <= high), axis=1)
-    return value
+    return np.asarray(np.any((speed[:, None] >= low) & (speed[:, None] <= high), axis=1))

@@ -8,7 +8,7 @@ the kind: at +1, at -1, or with its conjugate elsewhere.
 from __future__ import annotations
 
 from collections import Counter
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -211,16 +211,12 @@ class Crossings:
     def _seen(self, start: float, kind: int, step: int) -> float:
         """Return the last sample from a speed on at which a kind is outside the circle."""
         if not np.isfinite(start):
-            start = float(self._speed[0 if step > 0 else -1])
-            if step < 0:
-                return float(self._speed[0])
-        i = int(np.searchsorted(self._speed, start))
-        if step < 0:
-            i = int(np.searchsorted(self._speed, start, side="right")) - 1
+            # Without any crossing it is outside all over the range.
+            return float(self._speed[0])
+        side: Literal["left", "right"] = "left" if step > 0 else "right"
+        i = int(np.searchsorted(self._speed, start, side)) - (step < 0)
         seen = start
-        while 0 <= i < len(self._speed):
-            if kind not in {_kind(turn) for turn in _kinds(self._levels, i)}:
-                break
+        while 0 <= i < len(self._speed) and kind in map(_kind, _kinds(self._levels, i)):
             seen = float(self._speed[i])
             i += step
         return seen
@@ -245,10 +241,9 @@ def damped_regions(
     Narrow ones are looked for where the ``undamped`` ones are, which lend their labels.
     """
     begin, end = np.maximum(undamped.begin, span[0]), np.minimum(undamped.end, span[1])
-    undamped = undamped.take(np.flatnonzero(end - begin > 4 * undamped.error))
-    begin, end = np.maximum(undamped.begin, span[0]), np.minimum(undamped.end, span[1])
+    seen = np.flatnonzero(end - begin > 4 * undamped.error)
+    undamped, begin, end = undamped.take(seen), begin[seen], end[seen]
     phase = np.angle(undamped.multiplier)
-
     middle, half = 0.5 * (begin + end), 0.5 * (end - begin)
     ends = np.unique(np.concatenate([span, begin, end]))
     more = np.concatenate(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import cache, cached_property, partial
 from inspect import signature
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, TypeVar
@@ -17,6 +17,7 @@ from ..core.deferred import Deferred, DeferredField
 from ..core.errors import Problem, bad
 from ..core.inputs import is_finite
 from ..core.results import Check, DeferredChecks, Result, provenance
+from ..core.twofold import Twofold
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,6 +33,10 @@ TINY = float(np.finfo(float).tiny)
 ROUND_OFFS = 1.5 * EPS
 # A position that a round-off of the lengths moves so far [rad] is a change point.
 UNDECIDED = 0.5
+# Angles at which the rates of a motion are judged.
+_JUDGED = 64
+# What names of rates contain.
+_RATES = {"speeds": ("omega", "velocity"), "accelerations": ("alpha", "acceleration")}
 _LATER = DeferredField()
 
 
@@ -222,6 +227,25 @@ class Motion(Result, ABC):
         if not all(np.all(np.isfinite(part)) for part in place):
             raise bad("along, across", "a value that is not finite", "finite lengths", "correct it")
         return self.link(link).point(*place)
+
+    @cached_property
+    def errors(self) -> Mapping[str, Array]:
+        """Error of every place and rate by name, in its unit; of the same shape.
+
+        What round-off does to it, by the same formulas in 32 digits; of an angle half a unit in
+        the last place more, since pi is a float in them.
+        """
+        drive = Twofold(self.omega2), Twofold(self.alpha2)
+        exact = driven(_without_rounding(self.linkage, self.theta2), *drive)
+        errors = {}
+        for name, value in exact.items():
+            own, unit = getattr(self, name), self.unit_of(name)
+            # Places and rates of points are those of the unit lengths.
+            shift = self.linkage.scale if unit.startswith("m") else 0
+            errors[name] = np.ldexp(value.gap(np.ldexp(own, shift)), -shift)
+            if unit == "rad":
+                errors[name] = errors[name] + 0.5 * EPS * np.abs(own)
+        return errors
 
     @property
     def joints(self) -> Mapping[str, Array]:
@@ -422,10 +446,15 @@ class Linkage(ABC):
         self.require(reached & self._decided(m), angles, self._expected)
         shape = drive[0].shape
         fields: dict[str, Any] = {}
-        for name, value in driven(m, *drive).items():
+        with np.errstate(over="ignore", invalid="ignore"):
+            moved = driven(m, *drive)
+        for name, value in moved.items():
             spread = value if value.shape == shape else np.array(np.broadcast_to(value, shape))
             scaled = name != "theta2" and kind.unit_of(name).startswith("m")
             fields[name] = np.ldexp(spread, -self.scale) if scaled else spread
+        if not all(np.all(np.isfinite(value)) for value in fields.values()):
+            found = f"a rate that exceeds the range of doubles, at {np.max(np.abs(drive)):.3g}"
+            raise bad("speed, acceleration", found, "finite rates of all links", "lower them")
         return kind(
             linkage=self,
             omega2=drive[0],
@@ -538,10 +567,22 @@ def emitted(
     given = {**values, "assembly": linkage.branch}
     names = arguments(call)[1:]
     if "winding" in names:
-        longer = np.greater(np.real(values["crank"]), np.real(values["frame"]))
-        given["winding"] = longer.astype(float)
+        crank, frame = (np.real(values[name]) for name in ("crank", "frame"))
+        given["winding"] = np.greater(crank, frame).astype(float)
     returned = call(theta, **{name: given[name] for name in names})
     return dict(zip(module.RETURNS[function], map(np.asarray, returned), strict=True))
+
+
+def _without_rounding(linkage: Linkage, theta: Array) -> dict[str, Any]:
+    """Return places and rates by the crank angle to twice the digits, of the unit lengths."""
+    lengths = linkage.unit_lengths
+    known = {name: Twofold(value) for name, value in lengths.items()}
+    known["assembly"] = Twofold(linkage.branch)
+    known["winding"] = Twofold(float(lengths["crank"] > lengths.get("frame", np.inf)))
+    call = linkage.kinematics.motion
+    with np.errstate(all="ignore"):
+        returned = call(Twofold(theta), **{name: known[name] for name in arguments(call)[1:]})
+    return dict(zip(linkage.kinematics.RETURNS["motion"], returned, strict=True))
 
 
 @cache
@@ -578,11 +619,22 @@ def _checks(linkage: Linkage, m: Mapping[str, Array]) -> dict[str, Check]:
         "loop closure over longest link": Check(closure, min(float(limit), 1e-8)),
         "folds within the angles": Check(float(linkage._folds(m["theta2"])), 0.0),
     }
-    for name, terms in zip(("speeds", "accelerations"), rates, strict=True):
+    # Round-off of the rates is judged at the angles at which the position is known worst.
+    judged = np.argsort(np.ravel(error))[-_JUDGED:]
+    exact = _without_rounding(linkage, np.ravel(m["theta2"])[judged])
+    for name, terms in zip(_RATES, rates, strict=True):
         size = np.maximum(sum(np.abs(term) for term in terms), np.finfo(float).tiny)
         worst = float(np.max(np.abs(sum(terms)) / (size * error), initial=0.0))
         # Rates may leave their closure by so many times what the error of the angles would do.
         checks[f"closure of {name} over its error"] = Check(worst, 4.0)
+        lost = 0.0
+        for rate, value in exact.items():
+            if any(kind in rate for kind in _RATES[name]):
+                own = np.ravel(m[rate])[judged]
+                parts = np.ravel(size)[judged] / (1.0 if "_" in rate else longest)
+                part = value.gap(own) / np.maximum(np.abs(own), parts)
+                lost = max(lost, float(np.max(part, initial=0.0)))
+        checks[f"round-off of {name} over their terms"] = Check(lost, 1e-8)
     return checks
 
 

@@ -23,28 +23,31 @@ from sliding_truth import (
 TRUTHS = {FourBar: four_bar_motion, SliderCrank: slider_motion, QuickReturn: rod_motion}
 
 
-def errors_of(kind, point):
-    """Return the estimate and the worse of the two actual errors of the places."""
+def compared(kind, point):
+    """Return the motion, and how far each of its places and rates is off."""
     lengths = {name: value for name, value in point.inputs.items() if name != "theta2"}
     if kind is QuickReturn:
         lengths["rod"] = lengths["frame"] + lengths["crank"]
     else:
         lengths["assembly"] = "open" if point.fixed["assembly"] > 0 else "crossed"
     motion = kind(**lengths).motion(point.inputs["theta2"])
-    sizes = {
-        "position": max(map(abs, motion.linkage.lengths.values())),
-        "slide": lengths.get("rod"),
-    }
-    actual = []
+    actual = {}
     with mpmath.workdps(80):
         truth = TRUTHS[kind]({name: mpmath.mpf(v) for name, v in point.arguments.items()})
-        for name in set(truth) & {"theta3", "theta4", *sizes}:
+        for name in set(truth) & set(motion.errors):
             apart, turn = mpmath.mpf(float(getattr(motion, name))) - truth[name], 2 * mpmath.pi
-            if name in sizes:
-                actual.append(float(abs(apart / sizes[name])))
-            else:
-                actual.append(float(abs(apart - turn * mpmath.nint(apart / turn))))
-    return float(motion.error), max(actual)
+            if name in ("theta3", "theta4"):
+                apart -= turn * mpmath.nint(apart / turn)
+            actual[name] = float(abs(apart))
+    return motion, actual
+
+
+def errors_of(kind, point):
+    """Return the estimate and the worse of the two actual errors of the places."""
+    motion, actual = compared(kind, point)
+    sizes = {"theta3": 1.0, "theta4": 1.0, "slide": motion.linkage.lengths.get("rod")}
+    sizes["position"] = max(map(abs, motion.linkage.lengths.values()))
+    return float(motion.error), max(actual[name] / sizes[name] for name in set(actual) & set(sizes))
 
 
 def short_followers(count, seed):
@@ -87,6 +90,33 @@ def test_estimate_covers_the_error_and_is_not_idle(kind, count):
     linkage, points, seed = RANDOM[kind]
     estimates, actual = zip(*(errors_of(linkage, p) for p in points(count, seed)), strict=True)
     covers(estimates, actual, count)
+
+
+@pytest.mark.parametrize("count", [60, pytest.param(300, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("kind", RANDOM)
+def test_every_place_and_rate_tells_its_own_error(kind, count):
+    linkage, points, seed = RANDOM[kind]
+    known_to(linkage, points(count, seed))
+
+
+@pytest.mark.parametrize("kind", NASTY)
+def test_every_place_and_rate_tells_its_own_error_at_nasty_points(kind):
+    linkage, points = NASTY[kind]
+    known_to(linkage, points())
+
+
+def known_to(linkage, points):
+    """Ask for the error itself, but for the round-off of pi and what is beyond 32 digits."""
+    for point in points:
+        motion, actual = compared(linkage, point)
+        assert len(actual) >= 5
+        for name, error in actual.items():
+            size = abs(float(getattr(motion, name)))
+            told = float(motion.errors[name])
+            assert error <= 1.001 * told + 1e-19 * size + 1e-300, name
+            angle = motion.unit_of(name) == "rad"
+            rounding = (2.3e-16 if angle else 1e-19) * size
+            assert told <= 1.001 * error + rounding + 1e-300, name
 
 
 @pytest.mark.parametrize("kind", NASTY)

@@ -14,33 +14,22 @@ RIG = "smith_1972_5152_sixteenth_inch"
 FOLDER = resources.files("elastolink.runtime.scenes") / "data"
 TEXT = (FOLDER / f"{RIG}.toml").read_text()
 DOCUMENT = tomllib.loads(TEXT)
-BROKEN = {
-    "title": 3,
-    "extra": 1,
-    "modell": {},
-    "model": {
-        "mechanism": "four_bar",
-        "flexible": ["couplr"],
-        "formulation": "complet",
-        "modes": 0,
-    },
-    "links": {
-        "frame": "15 inn",
-        "crank": "3 kg",
-        "coupler": -3,
-        "crnk": 3,
-        "bending_stiffness": 3,
-        "assembly": "opened",
-    },
-    "coupler": {
-        "bending_stiffness": -1,
-        "mass_per_length": 1,
-        "natural_frequency": "3 1/s",
-        "damping": -0.1,
-    },
-    "measured": {"follower_inertias": [1, 2], "follower_inertia_tolerances": [1], "speeds": 3},
-    "chart": {"x": "sped", "x_range": [1, 2, 3], "y": "follower_inertia", "y_range": ["3 m", 4]},
-}
+BROKEN = tomllib.loads("""
+title = 3
+extra = 1
+modell = {}
+model = {mechanism = "four_bar", flexible = ["couplr"], formulation = "complet", modes = 0}
+coupler = {bending_stiffness = -1, mass_per_length = 1, natural_frequency = "3 1/s", damping = -0.1}
+measured = {follower_inertias = [1, 2], follower_inertia_tolerances = [1], speeds = 3}
+chart = {x = "sped", x_range = [1, 2, 3], y = "follower_inertia", y_range = ["3 m", 4]}
+[links]
+frame = "15 inn"
+crank = "3 kg"
+coupler = -3
+crnk = 3
+bending_stiffness = 3
+assembly = "opened"
+""")
 KEYS = [f"{table}.{key}" for table, v in DOCUMENT.items() if isinstance(v, dict) for key in v]
 
 
@@ -54,34 +43,17 @@ def refuse(document, *parts):
     return caught.value.problems
 
 
+WRONG = """
+model.formulation title extra [modell] model.flexible[0] model.modes links.crnk
+links.bending_stiffness links.frame links.crank links.coupler links.follower links.assembly
+coupler.bending_stiffness coupler.natural_frequency coupler.damping [coupler] [follower]
+measured.speeds chart.x chart.x_range chart.y_range[0] measured.follower_inertia_tolerances
+"""
+
+
 def test_every_problem_of_a_file_is_reported_at_once():
     problems = refuse(BROKEN)
-    found = [problem.where for problem in problems]
-    assert found == [
-        "model.formulation",
-        "title",
-        "extra",
-        "[modell]",
-        "model.flexible[0]",
-        "model.modes",
-        "links.crnk",
-        "links.bending_stiffness",
-        "links.frame",
-        "links.crank",
-        "links.coupler",
-        "links.follower",
-        "links.assembly",
-        "coupler.bending_stiffness",
-        "coupler.natural_frequency",
-        "coupler.damping",
-        "[coupler]",
-        "[follower]",
-        "measured.speeds",
-        "chart.x",
-        "chart.x_range",
-        "chart.y_range[0]",
-        "measured.follower_inertia_tolerances",
-    ]
+    assert [problem.where for problem in problems] == WRONG.split()
     assert all(problem.found and problem.expected and problem.fix for problem in problems)
 
 

@@ -147,15 +147,15 @@ def test_moments_give_products():
 
 
 @pytest.mark.parametrize(
-    "change, refusal, words",
+    "change",
     [
-        ({"essential": (Essential(length, v, 0),)}, ValueError, "not held at"),
-        ({"essential": (Essential(sp.Integer(0), v, 1),)}, ValueError, "not held at"),
-        ({"supports": (Support(2 * block, v, rod.reaction),)}, ValueError, "not held at"),
+        {"essential": (Essential(length, v, 0),)},
+        {"essential": (Essential(sp.Integer(0), v, 1),)},
+        {"supports": (Support(2 * block, v, rod.reaction),)},
     ],
 )
-def test_shapes_hold_where_the_action_says(change, refusal, words):
-    with pytest.raises(refusal, match=words):
+def test_shapes_hold_where_the_action_says(change):
+    with pytest.raises(ValueError, match="not held at"):
         projected(undamped(PRINTED).with_(**change))
 
 

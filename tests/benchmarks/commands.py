@@ -31,13 +31,7 @@ def commands() -> list[str]:
 
 
 def measured(command: str, folder: str) -> float:
-    """Return the processor seconds of one command, 2 being no failure of self-checks but bad input.
-
-    Raises
-    ------
-    RuntimeError
-        If the command is refused.
-    """
+    """Return the processor seconds of one command; RuntimeError where it is refused, status 2."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     environment = {**os.environ, "MPLBACKEND": "Agg", "OPENBLAS_NUM_THREADS": "1"}
     done = subprocess.run(

@@ -101,18 +101,9 @@ class Exact:
     compute: Callable[[], tuple[Numbers, Numbers]]
 
     @cached_property
-    def _both(self) -> tuple[Numbers, Numbers]:
+    def both(self) -> tuple[Numbers, Numbers]:
+        """Exact values and ``|f| + sum_i |x_i df/dx_i|``, by output name."""
         return self.compute()
-
-    @property
-    def values(self) -> Numbers:
-        """Exact values by output name."""
-        return self._both[0]
-
-    @property
-    def fair(self) -> Numbers:
-        """``|f| + sum_i |x_i df/dx_i|`` by output name."""
-        return self._both[1]
 
 
 def exact_at(reference: Reference, point: Point, digits: int = DIGITS) -> Exact:
@@ -144,19 +135,13 @@ def judge(function: Callable[..., Any], names: Sequence[str], exact: Exact) -> l
     arguments = {name: value for name, value in exact.point.arguments.items() if name in taken}
     returned = function(**arguments)
     values = returned if isinstance(returned, tuple) else (returned,)
-    if len(values) != len(names):
-        raise ValueError(f"{len(values)} values returned for {len(names)} names {list(names)}")
+    known, fair = exact.both
+    found = []
     with mpmath.workdps(DIGITS):
-        return [
-            Judgement(
-                output=name,
-                point=exact.point,
-                value=float(value),
-                error=float(abs(mpmath.mpf(float(value)) - exact.values[name])),
-                fair=float(exact.fair[name]),
-            )
-            for name, value in zip(names, values, strict=True)
-        ]
+        for name, value in zip(names, map(float, values), strict=True):
+            error = float(abs(mpmath.mpf(value) - known[name]))
+            found.append(Judgement(name, exact.point, value, error, float(fair[name])))
+    return found
 
 
 def worst(judgements: Iterable[Judgement]) -> dict[str, Judgement]:

@@ -54,14 +54,9 @@ def angles(theta2, frame, crank, coupler, follower, assembly):
 
 
 def motion(numbers, near=None):
-    """Return the outputs of the emitted ``motion`` by name.
+    """Return the outputs of the emitted ``motion`` by name, from mpmath numbers by name.
 
-    Parameters
-    ----------
-    numbers : mapping
-        Arguments by name, as mpmath numbers.
-    near : mapping, optional
-        Values of theta3 and theta4 whose multiple of 2 pi is taken; else between -pi and pi.
+    Angles are between -pi and pi, or of the multiple of 2 pi next to ``near``.
     """
     theta2 = numbers["theta2"]
     frame, crank, coupler, follower = (numbers[name] for name in LENGTHS)

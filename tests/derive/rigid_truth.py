@@ -14,14 +14,8 @@ _SHAKING = ("shaking_x", "shaking_y", "shaking_moment")
 def forces(machine, theta, speed, acceleration=0.0, outside=None, springs=None):
     """Return every force by name, as mpmath numbers.
 
-    Parameters
-    ----------
-    machine : Machine
-        Its masses and gravity are taken; loads and springs are not.
-    theta, speed, acceleration : float
-        Of the crank.
-    outside, springs : mapping of str to (float, float, float), optional
-        Force and couple at the first joint of a link, from outside and from springs.
+    Masses and gravity are the machine's; ``outside`` and ``springs`` are, by link, force and couple
+    at its first joint.
     """
     mechanism = _NAMES[type(machine.linkage).__name__]
     numbers = {**machine.linkage.geometry, "theta2": theta}

@@ -67,7 +67,7 @@ class PlainBasis:
 
 @dataclass(frozen=True)
 class Rod:
-    """Numbers of one rod, a mass at its tip; ``taut``: bending shortens it along the line."""
+    """Numbers of one rod; ``taut``: bending shortens it along the line."""
 
     frame: float
     crank: float
@@ -77,7 +77,6 @@ class Rod:
     damping: float
     internal_damping: float
     taut: bool
-    tip: float = 0.0
 
     def line(self, theta):
         """Return the block's distance from the pin and the line's direction, in mpmath numbers."""
@@ -85,29 +84,17 @@ class Rod:
         return abs(reach), reach / abs(reach)
 
     def residual(self, crank_angle, coordinates):
-        """Return generalised forces of inertia, bending and damping at time 0.
+        """Return ``int m a . dr/dq_i + dV/dq_i - Q_i`` at time 0, to vanish in a motion.
 
-        Parameters
-        ----------
-        crank_angle : callable
-            Time to crank angle.
-        coordinates : callable
-            Time to the coordinates q_i.
-
-        Returns
-        -------
-        list of mpf
-            ``int m a . dr/dq_i + dV/dq_i - Q_i``, to vanish in a motion.
+        Crank angle and coordinates are functions of time.
         """
         with mpmath.workdps(DIGITS):
             step = mpmath.mpf(10) ** -12
             times = [k * step for k in range(-4, 5)]
             size = len(coordinates(mpmath.mpf(0)))
             total = [mpmath.mpf(0)] * size
-            points = [
-                (eta, w * self.length, 0) for eta, w in zip(*_gauss(2 * size + 6), strict=True)
-            ]
-            for eta, dx, tip in (*points, (mpmath.mpf(1), 0, self.tip)):
+            for eta, weight in zip(*_gauss(2 * size + 6), strict=True):
+                dx = weight * self.length
                 states = [self._point(eta, crank_angle(t), coordinates(t)) for t in times]
                 now = states[4]
                 acceleration = _second([s.place for s in states], step)
@@ -116,7 +103,7 @@ class Rod:
                 for i, (across, along, bent) in enumerate(now.virtual):
                     moved = (across * 1j - along) * now.direction
                     push = acceleration.real * moved.real + acceleration.imag * moved.imag
-                    total[i] += (dx * self.mass_per_length + tip) * push
+                    total[i] += dx * self.mass_per_length * push
                     total[i] += dx * self.damping * rate * across
                     moment = self.bending_stiffness * now.curvature
                     moment += self.internal_damping * bent_rate

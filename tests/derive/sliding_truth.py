@@ -60,12 +60,7 @@ def slider_motion(numbers):
 def rod_motion(numbers, near=None):
     """Return what the emitted ``motion`` of the quick-return should.
 
-    Parameters
-    ----------
-    numbers : mapping
-        Arguments by name, as mpmath numbers.
-    near : mpf, optional
-        A value of theta4 whose multiple of 2 pi is taken; else between -pi and pi.
+    theta4 is between -pi and pi, or of the multiple of 2 pi next to ``near``.
     """
     theta2, frame, crank = (numbers[name] for name in ("theta2", "frame", "crank"))
     pin = crank * mpmath.expj(theta2)

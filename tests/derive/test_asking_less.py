@@ -25,11 +25,10 @@ def cost(module):
     return module.operations, len(emit(module, CONTENT).encode())
 
 
-def marked(specs):
-    return [
-        pytest.param(s, marks=() if s.name() in QUICK else pytest.mark.slow, id=s.name())
-        for s in specs
-    ]
+def case(spec, *more, quick):
+    """Return a case named after what it holds, of the first stage where it is quick."""
+    words = [spec.name(), *(item if isinstance(item, str) else "-".join(item) for item in more)]
+    return pytest.param(spec, *more, marks=() if quick else pytest.mark.slow, id="-".join(words))
 
 
 def outputs_of(system):
@@ -48,7 +47,7 @@ def outputs_of(system):
     return tuple(kernel.name for kernel in system.kernels)
 
 
-@pytest.mark.parametrize("spec", marked(WHOLE))
+@pytest.mark.parametrize("spec", [case(s, quick=s.name() in QUICK) for s in WHOLE])
 def test_each_output_alone_costs_less_than_all(spec):
     system = system_of(spec)
     names = outputs_of(system)
@@ -75,15 +74,7 @@ DROPPED = [
 
 @pytest.mark.parametrize(
     ("spec", "terms"),
-    [
-        pytest.param(
-            spec,
-            terms,
-            marks=() if spec.name() in QUICK else pytest.mark.slow,
-            id="-".join([spec.name(), *terms]),
-        )
-        for spec, terms in DROPPED
-    ],
+    [case(spec, terms, quick=spec.name() in QUICK) for spec, terms in DROPPED],
 )
 def test_a_general_module_leaves_out_what_the_derivation_does(spec, terms):
     """The same numbers as the module that is derived without the terms."""
@@ -175,12 +166,7 @@ COUPLER = [s for s in WHOLE if s.formulation in coupler.MODEL.formulations]
 @pytest.mark.parametrize(
     ("spec", "term"),
     [
-        pytest.param(
-            spec,
-            term,
-            marks=() if (spec.name(), term) == QUICK_TERM else pytest.mark.slow,
-            id=f"{spec.name()}-{term}",
-        )
+        case(spec, term, quick=(spec.name(), term) == QUICK_TERM)
         for spec in COUPLER
         for term in find(spec).choices.drop
     ],

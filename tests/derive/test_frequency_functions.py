@@ -29,17 +29,6 @@ def test_another_lagrangian_gives_other_waves_and_forces():
     assert n in waves
 
 
-def test_rotary_inertia_changes_the_shear_at_an_end():
-    r = sp.Symbol("r", positive=True)
-    action = problem.bending()
-    density = action.density + r * v.diff(x, t) ** 2 / 2
-    bare = problem.end_forces(hamilton(action), sp.Integer(2), problem.MIDDLE)
-    heavy = problem.end_forces(
-        hamilton(action.with_(density=density)), sp.Integer(2), problem.MIDDLE
-    )
-    assert heavy[0] - bare[0] == -4 * r
-
-
 def test_a_wrong_form_is_refused():
     functions = ff.functions()
     above, divisor = ff.numerators()

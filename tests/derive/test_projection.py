@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import mpmath
 import pytest
 import sympy as sp
 from coupler_action import (
@@ -10,7 +9,6 @@ from coupler_action import (
     EI,
     PINNED,
     Fx,
-    beam,
     coupler,
     g,
     l2,
@@ -151,29 +149,6 @@ def test_mass_normalisation_needs_equal_modal_masses():
     system = project(hamilton(action), y, sine_basis(x, l3), CRANK)
     with pytest.raises(ValueError, match="not a multiple of the identity"):
         mass_normalised(system)
-
-
-def test_tip_mass_frequencies_against_the_transcendental_equation():
-    """1 + cos b cosh b + b (cos b sinh b - sin b cosh b) = 0, from the textbooks."""
-    clamped = (Essential(0, y, 0), Essential(0, y, 1))
-    action = beam(essential=clamped, point_terms=(PointTerm(l3, tip / 2 * y.diff(t) ** 2),))
-    basis = FiniteBasis(x, l3, tuple((x / l3) ** (i + 2) for i in range(9)))
-    system = project(hamilton(action), y, basis, CRANK)
-
-    def characteristic(b):
-        bend = mpmath.cos(b) * mpmath.sinh(b) - mpmath.sin(b) * mpmath.cosh(b)
-        return 1 + mpmath.cos(b) * mpmath.cosh(b) + b * bend
-
-    with mpmath.workdps(40):
-        inert, stiff = (
-            mpmath.matrix(system.matrix(name).subs({mu: 1, EI: 1, l3: 1, tip: 1}).evalf(40))
-            for name in "MK"
-        )
-        root = mpmath.inverse(mpmath.cholesky(inert))
-        squares = sorted(mpmath.eigsy(root * stiff * root.T, eigvals_only=True))
-        for guess, square in zip((1.248, 4.031), squares, strict=False):
-            exact = mpmath.findroot(characteristic, guess) ** 2
-            assert abs(mpmath.sqrt(square) - exact) < 1e-6 * exact
 
 
 def test_gravity_adds_a_load_and_a_tension_by_weight():

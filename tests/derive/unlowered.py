@@ -82,12 +82,14 @@ def exact_unlowered(module: str, function: str) -> tuple[Exact, ...]:
 def _points(module: str, function: str) -> Iterator[Point]:
     emitted = getattr(importlib.import_module(f"{generated.__name__}.{module}"), function)
     names = emitted.__code__.co_varnames[: emitted.__code__.co_argcount]
-    if module == OVERHANG:
-        return overhang_points(function)
-    if module == MEISSNER:
-        return meissner_points(function)
-    if module == MODES_MODULE:
-        return mode_points(function)
+    of_function = {
+        OVERHANG: overhang_points,
+        MEISSNER: meissner_points,
+        MODES_MODULE: mode_points,
+        ROD_POLYNOMIALS: _polynomial_points,
+    }
+    if module in of_function:
+        return of_function[module](function)
     if module == SENSITIVITIES:
         points = random_points(60, seed=27) + nasty_points()[::3]
         # Some are in proportion to the angle, which then has no digits that could be kept.
@@ -98,8 +100,6 @@ def _points(module: str, function: str) -> Iterator[Point]:
         return _element_points(names)
     if module.startswith("beam_shapes_"):
         return _shape_points(module, names)
-    if module == ROD_POLYNOMIALS:
-        return _polynomial_points(function)
     if module.endswith("_multibody"):
         return _state_points(names)
     if function == "basis_products":

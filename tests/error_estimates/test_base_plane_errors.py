@@ -111,16 +111,8 @@ def test_the_least_plane_and_the_largest():
 @pytest.mark.parametrize(
     "given",
     [
-        (None,),
-        ("a",),
-        (True,),
-        ([1.2],),
-        (np.nan,),
-        (0.5,),
-        (1.0, 1),
-        (1.2, 2.5),
-        (1.2, "a"),
-        (1.2, 10**9),
+        *((lam,) for lam in (None, "a", True, [1.2], np.nan, 0.5)),
+        *((1.2, points) for points in (1, 2.5, "a", 10**9)),
     ],
 )
 def test_unusable_arguments_are_refused_in_one_line(given):

@@ -1,6 +1,5 @@
 """Errors of the perturbation boundaries against Hill's matrix, over random scenes."""
 
-from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
@@ -12,20 +11,7 @@ from exact_hill import ExactHarmonics
 from honesty import over_scenes
 
 POINTS = 6
-
-
-@dataclass
-class Entry:
-    """One region at one point: the error against the estimate."""
-
-    mu: float
-    strength: float
-    order: int
-    share: float
-    flagged: bool
-    estimate: float = np.nan
-    gap: float = np.nan
-    known: float = np.nan
+SHARES = (0.0, 0.5, 0.97)  # of the damping that closes a region
 
 
 def random_function(rng):
@@ -43,15 +29,15 @@ def amplitude(f, n):
     return float(f.amplitudes[n]) if n <= f.harmonics else 0.0
 
 
-def entries(seed):
-    """Return the entries of one scene: a region, an order, some mu of size 1e-6 to 3."""
+def compared(seed):
+    """Return one scene's errors by name: a region, an order, some mu of size 1e-6 to 3."""
     rng = np.random.default_rng(seed)
     parts = [random_function(rng) for _ in range(int(rng.integers(1, 4)))]
     weights = np.append(1.0, rng.uniform(-1, 1, len(parts) - 1))
     least = np.where(np.arange(POINTS) % 2, -6.0, -1.5)
     mu = rng.choice([-1, 1], POINTS) * 10.0 ** rng.uniform(least, np.log10(3.0))
     n, order = int(rng.integers(0, 7)), int(rng.integers(1, 9))
-    share = float(rng.choice([0.0, 0.5, 0.97]))
+    share = float(rng.choice(SHARES))
     whole = parts[0] * weights[0]
     for part, weight in zip(parts[1:], weights[1:], strict=True):
         whole = whole + part * weight
@@ -61,44 +47,45 @@ def entries(seed):
     found = perturbation_boundaries(*problem, (n,), order, drag)
     told = perturbation_boundaries(*problem, (n,), order, drag, outside="value")
     exact = hill_boundaries(whole, mu, (n,), drag)
-    strength = float(whole.amplitudes[1:].sum())
-    out = []
-    for i in range(POINTS):
-        entry = Entry(mu[i], strength, order, share, bool(found.outside[0, i]))
-        gap = abs(told.upper[0, i] - exact.upper[0, i])
-        if n:
-            gap = max(gap, abs(told.lower[0, i] - exact.lower[0, i]))
-        if np.isfinite(gap):
-            entry.estimate, entry.gap = float(found.error[0, i]), float(gap)
-            entry.known = float(exact.error[0, i])
-        elif not entry.flagged:
-            # One says open, the other closed: only where the result says that it cannot tell.
-            assert found.undecided[0, i] or found.closed[0, i] == np.isnan(exact.upper[0, i])
-        out.append(entry)
-    return out
+    gap = np.abs(told.upper[0] - exact.upper[0])
+    if n:
+        gap = np.maximum(gap, np.abs(told.lower[0] - exact.lower[0]))
+    flagged, both = found.outside[0], np.isfinite(gap)
+    # One says open, the other closed: only where the result says that it cannot tell.
+    agreed = found.undecided[0] | (found.closed[0] == np.isnan(exact.upper[0]))
+    assert np.all(both | flagged | agreed)
+    return {
+        "size": np.abs(mu) * whole.amplitudes[1:].sum(),
+        "order": np.full(POINTS, order),
+        "share": np.full(POINTS, share),
+        "flagged": flagged,
+        "estimate": np.where(both, found.error[0], np.nan),
+        "gap": gap,
+        "known": exact.error[0],
+    }
 
 
 @pytest.mark.parametrize("count", [20, pytest.param(200, marks=pytest.mark.slow)])
 def test_the_estimate_covers_the_error_and_is_not_idle(count):
-    found = [entry for seed in range(count) for entry in entries(seed)]
-    told = [e for e in found if np.isfinite(e.estimate)]
-    assert len(told) > 3 * count
-    covered = [e.gap <= e.estimate + e.known for e in told]
-    assert np.mean(covered) >= 0.99
+    scenes = [compared(seed) for seed in range(count)]
+    size, order, share, flagged, estimate, gap, known = (
+        np.concatenate([scene[name] for scene in scenes]) for name in scenes[0]
+    )
+    told, covered = np.isfinite(estimate), gap <= estimate + known
+    assert np.sum(told) > 3 * count
+    assert np.mean(covered[told]) >= 0.99
     # Each share of damping for itself, so that none hides behind the others.
-    for share in (0.0, 0.5, 0.97):
-        assert np.mean([c for e, c in zip(told, covered, strict=True) if e.share == share]) >= 0.97
-    seen = [e for e in told if e.gap > 4 * e.known]
-    assert len(seen) > count
-    for order in (None, *range(1, 9)):
-        ratios = [e.estimate / e.gap for e in seen if order in (None, e.order)]
-        assert np.median(ratios) <= 1e3
+    assert all(np.mean(covered[told & (share == one)]) >= 0.97 for one in SHARES)
+    seen = told & (gap > 4 * known)
+    assert np.sum(seen) > count
+    ratio, order = estimate[seen] / gap[seen], order[seen]
+    assert np.median(ratio) <= 1e3
+    assert all(np.median(ratio[order == k]) <= 1e3 for k in range(1, 9))
     # Nothing is flagged below ``|mu| sum |c_m| = 0.05``, and not idly: most often it would be off
     # by a hundredth.
-    flagged = [e for e in found if e.flagged]
-    assert len(flagged) > 0.05 * count
-    assert all(np.isnan(e.estimate) and abs(e.mu) * e.strength >= 0.05 for e in flagged)
-    assert np.mean([e.gap > 0.01 for e in flagged if np.isfinite(e.gap)]) > 0.5
+    assert np.sum(flagged) > 0.05 * count
+    assert np.all(np.isnan(estimate[flagged]) & (size[flagged] >= 0.05))
+    assert np.mean(gap[flagged & np.isfinite(gap)] > 0.01) > 0.5
 
 
 @over_scenes(7)

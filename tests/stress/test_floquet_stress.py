@@ -32,15 +32,6 @@ def test_fast_waves_over_many_revolutions():
     assert actual <= run.error[0] < 1e-9
 
 
-@pytest.mark.parametrize("power", [2, 100, 300])
-def test_growth_by_powers_of_ten(power):
-    rate = power * np.log(10.0) / (2 * np.pi)
-    found = floquet_multipliers(mathieu(mu=0.0), 1.0, lam2=-(rate**2))
-    np.testing.assert_allclose(found.multipliers.real, [10.0**power, 10.0**-power], rtol=1e-11)
-    assert np.all(np.abs(found.multipliers - [10.0**power, 10.0**-power]) <= found.error)
-    assert found.passed
-
-
 @pytest.mark.parametrize("rate", [1.0, 110.0])
 def test_growth_does_not_hide_the_quiet_modes(rate):
     # Three modes, one repelled, and a rotation of the coordinates that mixes all of them.

@@ -82,27 +82,12 @@ def test_an_interrupt_of_an_update_leaves_the_truth(number, after, tmp_path, mon
     assert path.read_bytes() == old[: -len(b"# an older text\n")]
 
 
-def test_an_interrupt_while_a_file_is_written_leaves_the_old_one(tmp_path, monkeypatch):
+def test_an_interrupt_while_a_file_is_written_leaves_the_old_one(tmp_path):
     path = tmp_path / "chart.png"
     path.write_bytes(b"old")
-
-    class Torn:
-        def __init__(self, handle, mode):
-            self.handle = handle
-
-        def __enter__(self):
-            return self
-
-        def __exit__(self, *_):
-            os.close(self.handle)
-
-        def write(self, content):
-            os.write(self.handle, content[:2])
-            raise KeyboardInterrupt
-
-    monkeypatch.setattr(_files.os, "fdopen", Torn)
-    with pytest.raises(KeyboardInterrupt):
-        _files.write_whole(path, b"something new")
+    with pytest.raises(KeyboardInterrupt), _files.whole_file(path) as stream:
+        stream.write(b"so")
+        raise KeyboardInterrupt
     assert [p.name for p in tmp_path.iterdir()] == ["chart.png"]
     assert path.read_bytes() == b"old"
 

@@ -14,33 +14,22 @@ RIG = "smith_1972_5152_sixteenth_inch"
 FOLDER = resources.files("elastolink.runtime.scenes") / "data"
 TEXT = (FOLDER / f"{RIG}.toml").read_text()
 DOCUMENT = tomllib.loads(TEXT)
-BROKEN = {
-    "title": 3,
-    "extra": 1,
-    "modell": {},
-    "model": {
-        "mechanism": "four_bar",
-        "flexible": ["couplr"],
-        "formulation": "complet",
-        "modes": 0,
-    },
-    "links": {
-        "frame": "15 inn",
-        "crank": "3 kg",
-        "coupler": -3,
-        "crnk": 3,
-        "bending_stiffness": 3,
-        "assembly": "opened",
-    },
-    "coupler": {
-        "bending_stiffness": -1,
-        "mass_per_length": 1,
-        "natural_frequency": "3 1/s",
-        "damping": -0.1,
-    },
-    "measured": {"follower_inertias": [1, 2], "follower_inertia_tolerances": [1], "speeds": 3},
-    "chart": {"x": "sped", "x_range": [1, 2, 3], "y": "follower_inertia", "y_range": ["3 m", 4]},
-}
+BROKEN = tomllib.loads("""
+title = 3
+extra = 1
+modell = {}
+model = {mechanism = "four_bar", flexible = ["couplr"], formulation = "complet", modes = 0}
+coupler = {bending_stiffness = -1, mass_per_length = 1, natural_frequency = "3 1/s", damping = -0.1}
+measured = {follower_inertias = [1, 2], follower_inertia_tolerances = [1], speeds = 3}
+chart = {x = "sped", x_range = [1, 2, 3], y = "follower_inertia", y_range = ["3 m", 4]}
+[links]
+frame = "15 inn"
+crank = "3 kg"
+coupler = -3
+crnk = 3
+bending_stiffness = 3
+assembly = "opened"
+""")
 KEYS = [f"{table}.{key}" for table, v in DOCUMENT.items() if isinstance(v, dict) for key in v]
 
 
@@ -54,34 +43,17 @@ def refuse(document, *parts):
     return caught.value.problems
 
 
+WRONG = """
+model.formulation title extra [modell] model.flexible[0] model.modes links.crnk
+links.bending_stiffness links.frame links.crank links.coupler links.follower links.assembly
+coupler.bending_stiffness coupler.natural_frequency coupler.damping [coupler] [follower]
+measured.speeds chart.x chart.x_range chart.y_range[0] measured.follower_inertia_tolerances
+"""
+
+
 def test_every_problem_of_a_file_is_reported_at_once():
     problems = refuse(BROKEN)
-    found = [problem.where for problem in problems]
-    assert found == [
-        "model.formulation",
-        "title",
-        "extra",
-        "[modell]",
-        "model.flexible[0]",
-        "model.modes",
-        "links.crnk",
-        "links.bending_stiffness",
-        "links.frame",
-        "links.crank",
-        "links.coupler",
-        "links.follower",
-        "links.assembly",
-        "coupler.bending_stiffness",
-        "coupler.natural_frequency",
-        "coupler.damping",
-        "[coupler]",
-        "[follower]",
-        "measured.speeds",
-        "chart.x",
-        "chart.x_range",
-        "chart.y_range[0]",
-        "measured.follower_inertia_tolerances",
-    ]
+    assert [problem.where for problem in problems] == WRONG.split()
     assert all(problem.found and problem.expected and problem.fix for problem in problems)
 
 
@@ -95,18 +67,13 @@ def test_every_problem_of_a_file_is_reported_at_once():
         ({"links.crank": 0.0}, "positive"),
         ({"links.crank": math.nan}, "finite"),
         ({"links.crank": True}, "a length"),
-        ({"links.crank": [1]}, "a length"),
-        ({"coupler.bending_stiffness": -1.0}, "correct the sign"),
         ({"coupler.bending_stiffness": "171.5 lbf*in"}, "a bending stiffness"),
         ({"coupler.mass_per_length": "0.3 lbf/in"}, "a weight"),
         ({"coupler.damping": -1e-9}, "non-negative"),
         ({"coupler.first_moment": 100.0}, "first_moment^2 / mass"),
-        ({"coupler.inertia": 1e-9}, "first_moment^2 / mass"),
         ({"coupler.damping": 0.1, "coupler.damping_ratio": 0.1}, "at most one"),
         ({"follower.inertia": None}, "add it to [follower]"),
-        ({"follower.inertia": "0.0058 lbf*in**2"}, "a moment of inertia"),
         ({"operation.speed_range": [10.0, 5.0]}, "increase"),
-        ({"operation.speed_range": [10.0]}, "2 values"),
         ({"operation.speed_range": 10.0}, "brackets"),
         ({"operation.speed_range": ["10 rpm", "20 m"]}, "operation.speed_range[1]"),
         ({"measured.follower_inertias": []}, "an empty list"),
@@ -117,14 +84,11 @@ def test_every_problem_of_a_file_is_reported_at_once():
         *(({"model.modes": modes}, "a whole number") for modes in ("2", 2.0, True)),
         ({"model.modes": 10**9}, "at most 1000"),
         ({"model.outputs": ["stablity"]}, "did you mean stability?"),
-        ({"model.balanced": ["frame"]}, "model.balanced[0]"),
         ({"model.mechanism": "four-bar"}, "did you mean four_bar?"),
         ({"model.mechanism": "trolley"}, "[schema]"),
         ({"model.mechanism": None}, "model.mechanism"),
         ({"model.formulation": None}, "model.formulation"),
         ({"chart.x": "follower_inertia"}, "chart"),
-        ({"chart.x": None}, "chart.x"),
-        ({"chart.x_range": ["5 rpm", "4 rpm"]}, "increase"),
         ({"chart.x_range": [0.0, 4.0]}, "above 0"),
         ({"chart.y_range": [-1.0, 4.0]}, "from 0 up"),
         ({"chart.x_points": 10**6}, "at most"),
@@ -153,11 +117,9 @@ def test_a_kinematic_scene_may_have_a_crank_that_does_not_turn_but_must_close():
         {},
         {"model": 3},
         {"model": {}},
-        {"model": []},
         {"model": {"mechanism": 3}},
         {"model": {"mechanism": ["four_bar"], "formulation": "complete"}},
         {"model": {"mechanism": "four_bar"}},
-        {"model": {"mechanism": "hill", "formulation": ["plain"]}},
         {"model": {"mechanism": "four_bar", "formulation": "complete"}, "links": 3},
         {"model": {"mechanism": "hill", "formulation": "plain"}, "function": {"a": []}},
         {"model": {"mechanism": "own", "formulation": "x"}, "schema": 3},

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from elastolink.derive.spec import ModelSpec
@@ -132,42 +130,3 @@ def test_where_a_multiplier_of_the_motion_is_one_nothing_is_called_stable(free):
     aside = orbit_multipliers(periodic_orbit(free, 0.8 * period, [0.0, 0.0, -ROD], np.zeros(3)))
     aside.require()
     assert aside.stable
-
-
-def test_the_distance_from_the_guess_is_told(free):
-    near = periodic_orbit(free, 1.7, [0.0, 0.0, -ROD], np.zeros(3))
-    assert near.moved < 1e-12
-    # Released from 30 degrees it swings; at rest is where the iteration ends.
-    swung = [0.0, 0.5 * ROD, -np.sqrt(0.75) * ROD]
-    far = periodic_orbit(free, 1.7, swung, np.zeros(3))
-    far.require()
-    gap = np.abs(far.q[0] - swung) * np.sqrt([NUMBERS["block"] / NUMBERS["bob"], 1.0, 1.0])
-    assert np.max(np.abs(far.q - [0.0, 0.0, -ROD])) < 1e-12
-    assert 0.3 < far.moved < 1.5 and np.max(gap) > 0.3
-
-
-def test_an_orbit_that_is_not_isolated_does_not_pass(emit):
-    """Without gravity the rod rests at every angle: a double multiplier 1."""
-    found = emit("sliding_pendulum", ModelSpec("sliding_pendulum", "driven"))
-    still = {name: lambda q, t: 0.0 * t for name in DRIVES}
-    free = Constrained.from_module(found.module, {**NUMBERS, "gravity": 0.0}, external=still)
-    orbit = periodic_orbit(free, PERIOD, [0.0, 0.3, -0.75], [0.0, 0.1, 0.0])
-    assert not orbit.passed
-    with pytest.raises(SelfCheckFailed):
-        orbit.require()
-
-
-def test_results_can_be_drawn_and_saved(pendulum, tmp_path):
-    watched = replace(pendulum, watch=lambda q, t: q[:, 0] / ROD)
-    orbit = periodic_orbit(watched, PERIOD, *START)
-    assert orbit.deflection == pytest.approx(STROKE / ROD, rel=1e-3)
-    assert not orbit.checks["linear range"].passed
-    assert len(orbit.plot().lines) == 3
-    found = orbit_multipliers(orbit)
-    assert found.plot().get_aspect() == 1.0
-    assert found.save(tmp_path / "multipliers.json").exists()
-    assert orbit.save(tmp_path / "orbit.npz").exists()
-    xarray = pytest.importorskip("xarray")
-    with xarray.open_dataset(found.save(tmp_path / "multipliers.nc")) as kept:
-        np.testing.assert_array_equal(kept["physical_imag"].values, found.physical.imag)
-    assert found.to_dict()["stable"] is True

@@ -79,15 +79,6 @@ def test_names_and_parameters(systems, emit):
         Constrained.from_module(module, {"rod": 1.0}, external=DRIVES)
 
 
-def test_parameters_broadcast(systems):
-    rods = np.array([0.5, 0.8, 1.2])
-    q, qd = cartesian(np.zeros(3), np.full(3, 0.3), np.zeros(3), np.ones(3), rods)
-    together, _ = systems("multiplier", rod=rods).accelerations(q, qd)
-    for k, rod in enumerate(rods):
-        alone, _ = systems("multiplier", rod=rod).accelerations(q[k], qd[k])
-        np.testing.assert_allclose(together[k], alone, rtol=1e-13)
-
-
 def test_the_drive_is_followed(systems):
     q, qd = cartesian(0.0, 0.7, STROKE * DRIVE, 0.2)
     found = constrained_motion(systems("driven", **DAMPED), q, qd, 3.0, samples=30)

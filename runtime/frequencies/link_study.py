@@ -129,19 +129,9 @@ class FrequencyExponents(Result):
 
 
 def pinned_frequency(section: Section, length: float) -> float:
-    """Return the first natural frequency [rad/s] of a beam pinned at both ends.
+    """Return the first natural frequency [rad/s] of a beam of a length [m] pinned at both ends.
 
-    Parameters
-    ----------
-    section : Section
-        Of the beam.
-    length : float
-        Its length [m].
-
-    Raises
-    ------
-    BadInput
-        If the section is none, or the length not positive.
+    BadInput is raised if the section is none, or the length not positive.
     """
     require_kind("section", section, Section, "make one with Section or Section.rectangle")
     require_positive("pinned_frequency", length=length)

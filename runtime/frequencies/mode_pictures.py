@@ -57,30 +57,12 @@ def draw_mode(
     *,
     found: NaturalFrequencies | None = None,
 ) -> Axes:
-    """Draw a mode of the held linkage over its rigid position and return the axes.
+    """Draw a mode, counted from 1, of the held linkage over its rigid position; return the axes.
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        A linkage or frame of beams.
-    theta : float
-        Crank angle [rad].
-    mode : int
-        Which mode, from 1.
-    ax : Axes, optional
-        Axes to draw into.
-    found : NaturalFrequencies, optional
-        Of this system, with the angle among its angles: the mode is then that curve, and its sign
-        is steady from angle to angle.
-
-    Returns
-    -------
-    Axes
-
-    Raises
-    ------
-    BadInput
-        If the system has no beams, or the mode or the angle is not there.
+    The system is a linkage or frame of beams, ``theta`` the crank angle [rad].  With ``found``,
+    its natural frequencies at angles that include this one, the mode is that curve, its sign
+    steady from angle to angle.  BadInput is raised if the system has no beams, or the mode or the
+    angle is not there.
     """
     from ..core.plotting import axes_or_new
 

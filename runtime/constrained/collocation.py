@@ -28,6 +28,8 @@ _TAIL = 2
 _CAUTION, _SHORTER, _LONGER = 0.9, 0.2, 3.0
 # Some five minutes of windows of the rod.
 _MOST_WINDOWS = 100_000
+# Steps, tried ones too, after which the pace is judged.
+_JUDGED = 500
 
 
 @dataclass(frozen=True)
@@ -393,7 +395,15 @@ def collocation(
     h = _first(equations, start, end, rtol, s)
     state, guess = start, None
     begin: tuple[Array, Array] | None = (np.zeros(equations.n), np.zeros(equations.n))
-    for _ in range(_MOST_WINDOWS):
+    judged = start.t
+    for count in range(_MOST_WINDOWS):
+        if count and count % _JUDGED == 0:
+            if (end - state.t) * _JUDGED > _MOST_WINDOWS * (state.t - judged):
+                raise StoppedEarly(
+                    f"at the pace of the last {_JUDGED} steps the end is more than "
+                    f"{_MOST_WINDOWS} steps away: shorten the span"
+                )
+            judged = state.t
         t = state.t + h if state.t + 1.1 * h < end else end
         h = t - state.t
         if not h > 4e-16 * max(abs(state.t), abs(end)):

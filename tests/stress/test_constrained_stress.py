@@ -14,6 +14,7 @@ from elastolink.runtime.constrained import (
     periodic_orbit,
 )
 from elastolink.runtime.core.errors import RedundantConstraints
+from elastolink.runtime.systems import free_free_rod
 
 
 def rod(modes: int = 1, crank_ratio: float = 0.01, speed: float = 2000.0):
@@ -105,3 +106,12 @@ def test_a_hair_from_a_branching_point():
     np.testing.assert_allclose(np.hypot(*near.q), 1.0, rtol=1e-14)
     with pytest.raises(RedundantConstraints):
         consistent_state(Circle().system, [0.0, 0.0], [0.0, 1.0])
+
+
+@pytest.mark.slow
+def test_a_motion_whose_steps_collapse_is_given_up():
+    """The block all but passes the rod's pivot: the rod is struck a million times as fast."""
+    long = {**free_free_loads.ROD, "length": 1.3}
+    found = constrained_motion(free_free_rod(2, crank_ratio=0.999999, speed=20.0, **long))
+    assert found.status == 2 and "steps away" in found.message
+    assert 0.15 < found.time[-1] < 0.158 and np.all(np.isfinite(found.q))

@@ -41,6 +41,7 @@ def own_system(scene: Scene) -> LinearPeriodic:
         parameters={name: numbers[name] for name in parameters},
         modes=scene.model.get("modes"),
         drop=emitted.dropped,
+        limits=_limits(scene, parameters),
         provenance={"scene": scene.name, "scene_digest": scene.digest(), **emitted.provenance},
     )
 
@@ -57,6 +58,15 @@ def _numbers(scene: Scene) -> dict[str, float]:
                 if shared[key] == 1:
                     found[key] = float(value)
     return found
+
+
+def _limits(scene: Scene, parameters: list[str]) -> dict[str, str]:
+    """Return the declared limits of parameters, by the names that :func:`_numbers` gives them."""
+    declared: dict[str, str] = {}
+    for table in scene.layout.tables:
+        for key in table.keys:
+            declared[f"{table.name}_{key.name}"] = declared[key.name] = key.limit
+    return {name: declared[name] for name in parameters if declared.get(name, "any") != "any"}
 
 
 def _arguments(module: ModuleType) -> set[str]:

@@ -18,6 +18,13 @@ if TYPE_CHECKING:
     from ..scenes import Scene
 
 
+# As in the tables of a scene; a first moment may have either sign.
+_COUPLER_LIMITS = {
+    **dict.fromkeys(("bending_stiffness", "mass_per_length"), "positive"),
+    **dict.fromkeys(("damping", "coupler_inertia", "follower_inertia"), "non-negative"),
+}
+
+
 def coupler_system(scene: Scene) -> LinearPeriodic:
     """Return the transverse vibration of the coupler (Smith 6.6, corrected; 6.17; 6.18).
 
@@ -42,6 +49,7 @@ def coupler_system(scene: Scene) -> LinearPeriodic:
         parameters=parameters,
         modes=modes,
         labels=tuple(f"Y{m}/l3" for m in range(1, modes + 1)),
+        limits=_COUPLER_LIMITS,
         reference_length=linkage.lengths["coupler"],
         shape=PinnedModes(modes),
         provenance={**_origin(scene), **emitted.provenance},
@@ -74,6 +82,7 @@ def hill_system(scene: Scene) -> LinearPeriodic:
         geometry={},
         parameters=dict(scene["parameters"]),
         external={"f": PeriodicFunction(a=table["a"], b=table["b"])},
+        limits={"damping": "non-negative"},
         labels=("y",),
         provenance={**_origin(scene), **emitted.provenance},
     )

@@ -61,6 +61,7 @@ def with_modal_damping(system: LinearPeriodic, ratio: float) -> LinearPeriodic:
     if system.moving_shape is not None and system.has("A"):
         terms.append(Term("D", "damping_ratio", partial(_carried, system, matrices)))
     damped = system.with_terms(*terms, scales={"damping_ratio": float(ratio)})
+    damped = replace(damped, limits={**damped.limits, "damping_ratio": "non-negative"})
     return replace(damped, **system.remade(partial(_damped_again, system.parameters, ratio)))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import types
 
+import elastolink as el
 import numpy as np
 import pytest
 import scipy.linalg
@@ -168,3 +169,23 @@ def test_arguments_beside_the_frequency():
     np.testing.assert_array_equal(found.count(1.0), [0, 1])
     with pytest.raises(BadInput, match="theta"):
         Transcendental.from_module(emitted, given)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        "smith_1972_5152_sixteenth_inch",
+        "beale_1992_flexible_rod",
+        "aannaque_1996_table_4_1",
+        "hill_example",
+    ],
+)
+def test_parameters_given_at_a_call_obey_the_limits_of_the_scene(scene):
+    """Only what may have either sign has none."""
+    system = el.load_scene(scene).system()
+    free = {"coupler_first_moment", "lam2", "mu"}
+    assert set(system.parameters) == set(system.limits) | (free & set(system.parameters))
+    for name, limit in system.limits.items():
+        for value in (-1.0, np.nan, *([0.0] if limit == "positive" else [])):
+            with pytest.raises(BadInput, match=f"{name}: found"):
+                el.floquet_multipliers(system, 80.0, **{name: [1.0, value]})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import contextlib
 import importlib
 import inspect
 import pkgutil
@@ -87,3 +88,37 @@ def test_every_public_name_is_on_the_page_of_the_interface():
     page = (ROOT / "docs" / "api.md").read_text()
     missing = [name for name in el.__all__ if name not in page and name != "__version__"]
     assert missing == []
+
+
+# A likely second argument of each name, so that the first one is what is refused.
+SECOND = {
+    "speed": 50.0,
+    "speeds": (40.0, 50.0),
+    "speed_range": (40.0, 50.0),
+    "x": ("speed", [40.0, 50.0]),
+    "y": ("mu", [0.0, 1.0]),
+    "regions": (1,),
+    "path": "motion.gif",
+}
+
+
+@pytest.mark.parametrize("name", el.__all__)
+@pytest.mark.parametrize(
+    "wrong", [None, "x", 1.5, {}, el.load_scene("mathieu")], ids=lambda wrong: type(wrong).__name__
+)
+def test_what_is_nothing_of_the_kind_is_refused_in_words(name, wrong, tmp_path, monkeypatch):
+    """Never by an error of Python's own; what a name can use is answered."""
+    monkeypatch.chdir(tmp_path)
+    call = getattr(el, name)
+    if not callable(call) or (inspect.isclass(call) and issubclass(call, BaseException)):
+        return
+    wanted = [
+        parameter
+        for parameter in inspect.signature(call).parameters.values()
+        if parameter.default is parameter.empty
+        and parameter.kind not in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD)
+    ]
+    given = {one.name: SECOND.get(one.name, 1.0) for one in wanted[1:]}
+    if wanted:
+        with contextlib.suppress(el.ElastolinkError):
+            call(**{wanted[0].name: wrong}, **given)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import BadInput, Problem, bad
-from ..core.inputs import are_finite, is_finite, names_problems
+from ..core.inputs import are_finite, is_finite, names_problems, require_kind
 from ..linkages.linkage import LinkMotion
 from .elements import KINDS
 from .section import Section
@@ -349,6 +349,10 @@ class Structure:
     provenance: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        for what, given, kind in (("beams", self.beams, Beam), ("nodes", self.nodes, Node)):
+            require_kind(what, given, (tuple, list), "give them in a row")
+            for one in given:
+                require_kind(what, one, kind, f"make each with {kind.__name__}")
         problems = _name_problems(self.beams, self.nodes)
         if problems:
             raise BadInput(*problems)

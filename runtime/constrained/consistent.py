@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from ..core.errors import Problem, RedundantConstraints, bad
 from ..core.families import Constrained
 from ..core.families.multipliers import check_rank, scaling
-from ..core.inputs import numbers
+from ..core.inputs import numbers, require_kind
 from ..core.results import Check, Result, provenance
 from .equations import Array, Equations, NoConvergence, constraint_norms
 
@@ -92,6 +92,7 @@ def consistent_state(
     RedundantConstraints
         If the constraints repeat or contradict each other there.
     """
+    require_kind("system", system, Constrained, "take the .system() of a scene with constraints")
     q0, qd0, time = _given(system, q, qd, t)
     free = _free(system, hold)
     place, speed, count = q0, qd0, 0

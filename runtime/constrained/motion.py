@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from ..core.errors import LINEAR_RANGE, LinearRangeWarning, bad
 from ..core.families import Constrained, Guard
-from ..core.inputs import numbers
+from ..core.inputs import numbers, require_kind
 from ..core.results import Check, Result, provenance
 from .collocation import collocation
 from .consistent import consistent_state
@@ -173,6 +173,7 @@ def constrained_motion(
     RedundantConstraints
         If the constraints depend on each other at the start.
     """
+    require_kind("system", system, Constrained, "take the .system() of a scene with constraints")
     first, last = _span(system.period if span is None else span)
     times = _times(samples, first, last)
     _check_numbers(rtol, bound)

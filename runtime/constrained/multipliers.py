@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
+from ..core.inputs import require_kind
 from ..core.results import Check, Result, provenance
 from .equations import EPS, Array
 from .orbits import LEFT, OrbitSource, PeriodicOrbit, Shooting, Shot, Tangent
@@ -142,6 +143,7 @@ def orbit_multipliers(orbit: PeriodicOrbit) -> ConstrainedMultipliers:
     BadInput
         If the orbit did not converge.
     """
+    require_kind("orbit", orbit, PeriodicOrbit, "make one with periodic_orbit")
     if orbit.message:
         raise bad("orbit", orbit.message, "a periodic motion", "mend the shooting first")
     source, accuracy = orbit.source, orbit.checks["accuracy"]

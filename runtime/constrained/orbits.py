@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from ..core.errors import SelfCheckFailed, bad
 from ..core.families import Constrained
 from ..core.families.multipliers import check_rank, scaling
-from ..core.inputs import numbers
+from ..core.inputs import numbers, require_kind
 from ..core.results import Check, Result, provenance
 from ..periodic.ring import solve_ring
 from .collocation import Nodes, integrals, nodes, stage_matrix
@@ -470,6 +470,7 @@ def periodic_orbit(
         If a number is unusable, shapes do not fit, the system has no variations, or it does not
         repeat after the period.
     """
+    require_kind("system", system, Constrained, "take the .system() of a scene with constraints")
     if not (isinstance(rtol, Real) and 0 < rtol < 1):
         raise bad("rtol", repr(rtol), "a number between 0 and 1", "try 1e-10")
     guess = _checked(system, period, q, qd, advance)

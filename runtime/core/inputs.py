@@ -109,10 +109,11 @@ def require_positive(where: str, **values: float) -> None:
         raise BadInput(*problems)
 
 
-def require_kind(where: str, value: object, kind: type, fix: str) -> None:
-    """Refuse what is not an instance of a class."""
+def require_kind(where: str, value: object, kind: type | tuple[type, ...], fix: str) -> None:
+    """Refuse what is not an instance of a class, or of one of several."""
     if not isinstance(value, kind):
-        raise bad(where, type(value).__name__, f"a {kind.__name__}", fix)
+        names = " or ".join(one.__name__ for one in (kind if isinstance(kind, tuple) else (kind,)))
+        raise bad(where, type(value).__name__, f"a {names}", fix)
 
 
 def require_mapping(where: str, value: object, fix: str) -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..core.errors import bad
-from ..core.families import Array, LinearPeriodic, Term
+from ..core.families import Array, LinearPeriodic, Term, require_system
 from ..core.periodic_function import PeriodicFunction
 
 
@@ -76,6 +76,7 @@ def hill_form(system: LinearPeriodic) -> HillForm:
     BadInput
         If the system has several modes, or a mass or damping that changes over the cycle.
     """
+    require_system(system)
     if not is_hill(system):
         raise bad(
             "system",

@@ -374,7 +374,7 @@ def _four_bar_of(lengths: Iterable[float]) -> FourBar:
     wanted = "4 lengths: frame, crank, coupler, follower"
     try:
         four: list[Any] = [*lengths]
-    except TypeError as refusal:
+    except (TypeError, KeyError) as refusal:
         found = repr(lengths)[:60]
         raise bad("lengths", found, f"a linkage, or {wanted}", "give four lengths") from refusal
     if len(four) != 4:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import bad
+from ..core.inputs import require_kind
 from ..core.results import Check, Result, provenance
 from .linkage import Array, finite_array
 
@@ -70,6 +71,10 @@ def mobility(
         If a pin joins fewer than two links or one twice, the frame is no link, or the coordinates
         are not finite pairs, one for each pin.
     """
+    fix = 'name links by joint: [("frame", "crank"), ...]'
+    require_kind("pins", pins, (tuple, list), fix)
+    for pin in pins:
+        require_kind("pin", pin, (tuple, list), fix)
     joined = [tuple(pin) for pin in pins]
     for pin in joined:
         if len(pin) < 2 or len(set(pin)) < len(pin):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 from collections.abc import Iterable, Sequence
 from math import pi
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..core.errors import bad
-from ..core.inputs import require_whole
+from ..core.inputs import require_kind, require_whole
 from ..core.plotting import new_figure, require_writable
 from ..core.results import write_whole
 from .circuits import Circuit, Complex
@@ -106,6 +107,7 @@ def animate(
 
 def check_animation_path(path: str | Path) -> Path:
     """Return the path of a GIF; refuse another ending and a folder that is missing or read-only."""
+    require_kind("path", path, (str, os.PathLike), "give the path of a GIF")
     target = Path(path)
     if target.suffix != ".gif":
         raise bad(str(target), repr(target.suffix), "the ending '.gif'", "rename the file")

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..core.errors import BadInput, Problem, bad
+from ..core.inputs import require_kind
 from .derived import complete
 from .scene import ReadOnlyTable, Scene
 from .validation import find_layout, nearest, show, validate
@@ -127,6 +128,7 @@ def _override(tables: dict[str, Any], overrides: Mapping[str, Any]) -> None:
 
 def _find(name_or_path: str | os.PathLike[str]) -> tuple[str, bytes]:
     """Return the name and the bytes of a scene."""
+    require_kind("scene", name_or_path, (str, os.PathLike), "name a scene or a TOML file")
     given = os.fspath(name_or_path)
     if given in list_scenes():
         return given, _built_in(given)

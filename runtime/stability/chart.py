@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..core.families import Array, LinearPeriodic
+from ..core.families import Array, LinearPeriodic, require_system
 from ..core.inputs import numbers_in_a_row
 from ..core.results import Check, Result
 from ..hill.form import is_hill
@@ -216,6 +216,7 @@ def stability_chart(
         If an axis or option is unusable; if a crank speed is wanted and missing; if modes and
         axes would take an hour or so.
     """
+    require_system(system)
     names, axes = _axes(system, x, y)
     _check_options(system, rtol, order, edges, names)
     named = {k: tuple(float(v) for v in vs) for k, vs in (marks or {}).items()}

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad
 from ..core.families import LinearPeriodic, Term
 from ..core.families.emitted import check_module, dropped_names
+from ..core.inputs import require_kind
 
 Array = NDArray[np.float64]
 
@@ -70,6 +71,7 @@ def assemble(
         If the module is of another family, if a parameter, argument, function or basis is missing,
         or if the module cannot leave out a term.
     """
+    require_kind("module", module, ModuleType, "import one of elastolink.generated")
     check_module(module, "linear_periodic", parameters)
     missing = sorted(set(module.EXTERNAL) - set(external or {}))
     if missing:

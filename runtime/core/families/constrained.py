@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import bad
+from ..inputs import require_whole
 from .emitted import Places, Values, dropped_names, nothing, parameter_values, stacked
 from .linear_periodic import Array
 from .multipliers import solve_multipliers
@@ -87,6 +88,7 @@ class Constrained:
     guards: tuple[Guard, ...] = ()
 
     def __post_init__(self) -> None:
+        require_whole("size", self.size, 1, 100_000)
         if not self.labels:
             object.__setattr__(self, "labels", tuple(f"q{i + 1}" for i in range(self.size)))
 

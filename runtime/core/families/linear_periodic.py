@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
-from ..inputs import as_numpy, require_kind
+from ..inputs import as_numpy, require_kind, require_whole
 from .spectrum import term_spectrum
 
 if TYPE_CHECKING:
@@ -150,7 +150,10 @@ class LinearPeriodic:
     remesh: Callable[[Callable[[Structure], Structure]], LinearPeriodic] | None = None
 
     def __post_init__(self) -> None:
+        require_whole("size", self.size, 1, 100_000)
+        require_kind("terms", self.terms, (tuple, list), "give terms in a row")
         for term in self.terms:
+            require_kind("terms", term, Term, "make each with Term")
             if term.array not in MATRICES + VECTORS:
                 raise bad(
                     "Term.array", repr(term.array), f"one of {MATRICES + VECTORS}", "rename it"

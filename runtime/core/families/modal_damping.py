@@ -10,7 +10,7 @@ from numbers import Real
 import numpy as np
 
 from ..errors import bad
-from .linear_periodic import Array, LinearPeriodic, Term
+from .linear_periodic import Array, LinearPeriodic, Term, require_system
 
 
 def with_modal_damping(system: LinearPeriodic, ratio: float) -> LinearPeriodic:
@@ -50,6 +50,7 @@ def with_modal_damping(system: LinearPeriodic, ratio: float) -> LinearPeriodic:
     BadInput
         If the ratio is no number, negative or not finite, or the system has that parameter already.
     """
+    require_system(system)
     if not (isinstance(ratio, Real) and np.isfinite(ratio) and ratio >= 0.0):
         raise bad("ratio", repr(ratio), "a finite number, 0 or more", "correct it")
     if "damping_ratio" in system.parameters:

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import bad
-from ..core.inputs import require_kind
 from ..core.results import Check, Result, provenance
 from .linkage import Array, finite_array
 
@@ -71,11 +70,11 @@ def mobility(
         If a pin joins fewer than two links or one twice, the frame is no link, or the coordinates
         are not finite pairs, one for each pin.
     """
-    fix = 'name links by joint: [("frame", "crank"), ...]'
-    require_kind("pins", pins, (tuple, list), fix)
-    for pin in pins:
-        require_kind("pin", pin, (tuple, list), fix)
-    joined = [tuple(pin) for pin in pins]
+    try:
+        joined = [tuple(pin) for pin in pins]
+    except (TypeError, KeyError) as refusal:
+        fix = 'name links by joint: [("frame", "crank"), ...]'
+        raise bad("pins", type(pins).__name__, "links in rows", fix) from refusal
     for pin in joined:
         if len(pin) < 2 or len(set(pin)) < len(pin):
             raise bad("pins", repr(pin), "two or more different links", "name the links it joins")

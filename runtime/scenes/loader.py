@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from ..core.errors import BadInput, Problem, bad
-from ..core.inputs import require_kind
 from .derived import complete
 from .scene import ReadOnlyTable, Scene
 from .validation import find_layout, nearest, show, validate
@@ -128,7 +127,9 @@ def _override(tables: dict[str, Any], overrides: Mapping[str, Any]) -> None:
 
 def _find(name_or_path: str | os.PathLike[str]) -> tuple[str, bytes]:
     """Return the name and the bytes of a scene."""
-    require_kind("scene", name_or_path, (str, os.PathLike), "name a scene or a TOML file")
+    if not isinstance(name_or_path, (str, os.PathLike)):
+        expected = "a name or a path"
+        raise bad("scene", type(name_or_path).__name__, expected, "name a scene or a TOML file")
     given = os.fspath(name_or_path)
     if given in list_scenes():
         return given, _built_in(given)

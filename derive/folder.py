@@ -19,6 +19,9 @@ from .jobs import Job, UsageError
 from .manifest import is_current, manifest_text, text_hash
 from .spec import MANIFEST, Entry, read_manifest
 
+# What every emitted module says of itself: files without it are not replaced.
+_MARK = b"Emitted by regenerate-equations"
+
 
 def update(
     folder: Path, jobs: Sequence[Job], processes: int, *, whole: bool, force: bool = False
@@ -40,6 +43,10 @@ def update(
     if not stale and not left_over:
         print(f"nothing to do: all is current in {folder} ({len(jobs)} modules)")
         return
+    for job in stale:
+        path = folder / f"{job.name}.py"
+        if path.is_file() and path.stat().st_size and _MARK not in path.read_bytes():
+            raise UsageError(f"{path}: found a file that was not emitted; choose another --out")
     _make(folder)
     with _derived(stale, processes) as texts:
         for count, (job, text) in enumerate(zip(stale, texts, strict=True), start=1):

@@ -319,6 +319,7 @@ def _stored(
         f"{left:.3g} % undecided",
         f"{chart.pieces} pieces, {chart.resumed} of them found there, in {chart.store}: "
         + ", ".join(sorted(chart.outputs)),
+        *(f"damaged, and done anew: {what}" for what in chart.damaged),
     ]
     return opt.finish(options, chart, lines)
 

@@ -17,7 +17,7 @@ from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from .pieces import Grid
 
-FORMAT = 1
+FORMAT = 2
 # Angles by the golden section, at which functions of the angle are told apart.
 _ANGLES = 16
 _GOLDEN = 0.6180339887498949

@@ -39,6 +39,8 @@ class Sweep(Result):
         How many of them were in the store beforehand.
     store : Path or None
         Where it is kept.
+    damaged : tuple of str
+        What of the store was not as it had been written, and was done anew.
     error : float
         Largest error estimate of the pieces, in the norm of what was worked out; NaN where that has
         none.
@@ -50,6 +52,7 @@ class Sweep(Result):
     pieces: int
     resumed: int = 0
     store: Path | None = None
+    damaged: tuple[str, ...] = ()
 
     def __getitem__(self, name: str) -> AnyArray:
         """Return one array by name.

@@ -71,7 +71,7 @@ def sweep(
     store : path, optional
         Where finished pieces are kept: a folder, at the end with one ``.npy`` file per array, or
         a path ending in ``.npz``.  The same sweep goes on from there after it was killed, or
-        gives what is complete there.
+        gives what is complete there; what was damaged since is told as ``damaged`` and done anew.
     progress : bool
         Whether to show a progress bar with the time left.
 
@@ -250,7 +250,8 @@ def _through_store(plan: Plan, kept: Store, executor: Executor | None, progress:
         summary.add(number, piece)
         kept.write(number, piece)
     joined = kept.join(summary.shapes, summary.whole({}))
-    return _assembled(plan, joined, kept.path, plan.grid.pieces - len(wanted))
+    found = _assembled(plan, joined, kept.path, plan.grid.pieces - len(wanted))
+    return replace(found, damaged=tuple(kept.damaged))
 
 
 def _assembled(plan: Plan, whole: Piece, place: Path | None, resumed: int) -> Sweep:

@@ -54,7 +54,7 @@ class Piece:
         """Return what holds for all parts, with the arrays of all."""
         return cls(
             arrays,
-            "; ".join(dict.fromkeys(part.method for part in parts)),
+            "; ".join(dict.fromkeys(m for part in parts for m in part.method.split("; "))),
             _largest([part.error for part in parts]),
             parts[0].error_norm,
             _worst(part.checks for part in parts),

@@ -402,3 +402,11 @@ def test_models_of_one_name_are_refused(own, tmp_path, capsys):
     own.write_text(text.partition("SPECS")[0] + f"SPECS = ({specs})\n")
     assert main(["--model", str(own), "--out", str(tmp_path / "out")]) == 2
     assert "would both be called ['pair_plain_for_stability']" in capsys.readouterr().err
+
+
+def test_a_module_that_was_not_emitted_stays(tmp_path, capsys):
+    mine = tmp_path / f"{QUICK}.py"
+    mine.write_text("MINE = 1\n")
+    assert main(["--out", str(tmp_path), QUICK]) == 2
+    assert f"{mine}: found a file that was not emitted" in capsys.readouterr().err
+    assert texts(tmp_path) == {mine.name: b"MINE = 1\n"}

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -219,6 +221,147 @@ def test_what_is_no_store_is_left_alone(tmp_path, mathieu, name):
     with pytest.raises(BadInput, match="taken"):
         el.sweep("stability_chart", mathieu, VALUES, store=place)
     assert contents(place) == before
+
+
+def flipped(data: bytes, rng: np.random.Generator) -> bytes:
+    """Return a file's bytes with one bit turned over."""
+    place = int(rng.integers(8 * len(data)))
+    changed = bytearray(data)
+    changed[place // 8] ^= 1 << place % 8
+    return bytes(changed)
+
+
+def other_array(data: bytes) -> bytes:
+    """Return a sound file with an array of another shape."""
+    stream = io.BytesIO()
+    np.save(stream, np.zeros((3, 2)))
+    return stream.getvalue()
+
+
+def odd_compression(data: bytes) -> bytes:
+    """Return an archive whose entries name a compression that there is not."""
+    changed = bytearray(data)
+    for mark, place in ((b"PK\x03\x04", 8), (b"PK\x01\x02", 10)):
+        at = -1
+        while (at := changed.find(mark, at + 1)) >= 0:
+            changed[at + place] = 77
+    return bytes(changed)
+
+
+SUM = (square_sum, 2.0, {"a": [1.0, 2.0, 3.0], "b": [0.0, 1.0, 2.0, 5.0]})
+
+
+def stopped(store: Path, monkeypatch) -> None:
+    """Leave a store whose user stopped the program when all pieces were there."""
+
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(sweeping.Store, "join", stop)
+        el.sweep(*SUM, chunk=4, store=store)
+
+
+@pytest.mark.parametrize("name", ["whole.npz", "folder"])
+@pytest.mark.parametrize("complete", [True, False])
+@pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2, 3))])
+def test_a_damaged_store_is_refused_or_done_anew(tmp_path, monkeypatch, name, complete, seed):
+    """Bits, truncations, strange files, swaps: what is answered is right, and the store mended."""
+    rng = np.random.default_rng(seed)
+    good, store = tmp_path / "good" / name, tmp_path / "bad" / name
+    good.parent.mkdir()
+    right = el.sweep(*SUM, chunk=4, store=good)
+    refused = mended = 0
+    for turn in range(40):
+        shutil.rmtree(store.parent, ignore_errors=True)
+        store.parent.mkdir()
+        if complete:
+            (shutil.copytree if good.is_dir() else shutil.copy)(good, store)
+        else:
+            stopped(store, monkeypatch)
+        every = sorted(p for p in store.parent.rglob("*") if p.is_file())
+        path = every[int(rng.integers(len(every)))]
+        data = path.read_bytes()
+        other = every[int(rng.integers(len(every)))].read_bytes()
+        kinds = [
+            lambda d: flipped(d, rng),
+            lambda d: d[: int(rng.integers(len(d)))],
+            other_array,
+            odd_compression,
+            lambda d: other,  # noqa: B023
+            lambda d: b"[" * 100_000,
+            lambda d: b"[1, 2]",
+            lambda d: b"{}",
+            lambda d: d + b"more",
+        ]
+        new = kinds[0 if turn % 2 else turn // 2 % len(kinds)](data)
+        path.write_bytes(new)
+        try:
+            found = el.sweep(*SUM, chunk=4, store=store)
+        except BadInput as refusal:
+            assert "\n" not in str(refusal)
+            assert path.name in str(refusal) or path.parent.name in str(refusal)
+            assert path.read_bytes() == new
+            refused += 1
+            continue
+        assert same_bytes(found, right)
+        assert {n: a.shape for n, a in found.outputs.items()} == {"sum": (3, 4), "pair": (3, 4, 2)}
+        if path.suffix == ".npy" and new != data:
+            assert found.damaged[0].startswith(path.name)
+        if found.damaged or not complete:  # else where nothing is kept: a date, a space
+            assert contents(store) == contents(good)
+        del found
+        mended += 1
+    assert mended or name == "whole.npz"
+    assert refused or not complete
+
+
+def test_only_damaged_pieces_are_done_anew_and_told(tmp_path, monkeypatch):
+    """One bit in an array, one in a piece, a piece in the place of its neighbour."""
+    store = tmp_path / "store"
+    el.sweep(*SUM, chunk=4, store=store)
+    array = store / "sum.npy"
+    array.write_bytes(array.read_bytes()[:-1] + b"?")
+    found = el.sweep(*SUM, chunk=4, store=store)
+    assert (found.resumed, found.pieces) == (2, 3)
+    assert found.damaged == ("sum.npy (1 of 3 pieces)",)
+    begun = tmp_path / "begun"
+    stopped(begun, monkeypatch)
+    first, second, third = sorted((begun / "pieces").iterdir())
+    shutil.copy(first, second)
+    third.write_bytes(third.read_bytes()[:200] + b"!" + third.read_bytes()[201:])
+    found = el.sweep(*SUM, chunk=4, store=begun)
+    assert found.resumed == 1
+    assert found.damaged == ("pieces/00000001.npz", "pieces/00000002.npz")
+    assert contents(begun) == contents(store)
+
+
+def test_files_of_others_in_a_store_stay(tmp_path, monkeypatch):
+    """Beside its own a store neither takes nor removes what lies in its folders."""
+    foreign = tmp_path / "foreign"
+    (foreign / "pieces").mkdir(parents=True)
+    (foreign / "pieces" / "keep.txt").write_text("mine")
+    with pytest.raises(BadInput, match="something that is no sweep"):
+        el.sweep(*SUM, chunk=4, store=foreign)
+    assert contents(foreign) == {str(Path("pieces", "keep.txt")): b"mine"}
+    for name in ("folder", "whole.npz"):
+        store = tmp_path / name
+        stopped(store, monkeypatch)
+        folder = store if name == "folder" else tmp_path / "whole.npz.parts"
+        kept = [folder / "pieces" / "keep.txt", folder / "pieces" / "00009999.npz"]
+        kept += [folder / ".keep.me.settings", folder / "notes.npy", folder / "pieces" / "0.npz"]
+        for path in kept:
+            path.write_text("mine")
+        for _ in range(2):
+            el.sweep(*SUM, chunk=4, store=store)
+            assert [path.read_text() for path in kept] == ["mine"] * len(kept)
+    whole = tmp_path / "again.npz"
+    el.sweep(*SUM, chunk=4, store=whole)
+    beside = tmp_path / "again.npz.parts"
+    beside.mkdir()
+    (beside / "manifest.json").write_text("[]")
+    el.sweep(*SUM, chunk=4, store=whole)
+    assert contents(beside) == {"manifest.json": b"[]"}
 
 
 def test_a_function_of_ones_own_and_results_of_public_ones(tmp_path, pool):

@@ -285,32 +285,40 @@ def _hodograph(ax: Axes, theta: Array, x: Array, y: Array, label: str) -> Axes:
 
 
 def _mark(ax: Axes, theta: Array, x: Array, y: Array) -> None:
-    """Mark every 30 degrees of a rising crank angle; no text where the marks crowd."""
+    """Mark every 30 degrees of a rising crank angle, each text where curve and texts leave room."""
     if theta.size < 2 or not np.all(np.diff(theta) > 0):
         return
-    written: list[tuple[float, float]] = []
-    # Labels keep this share of the picture away from each other.
-    apart = 0.06 * float(max(np.ptp(x), np.ptp(y)))
+    # Places in points of type: the curve takes some four fifths of the axes.
+    size = ax.get_window_extent()
+    points = 0.8 * min(size.width, size.height) * 72.0 / ax.figure.get_dpi()
+    scale = points / (float(max(np.ptp(x), np.ptp(y))) or 1.0)
+    taken = scale * np.stack([x, y], axis=-1)
+    around = np.linspace(0.0, TURN, 16, endpoint=False)
+    circle = np.stack([np.cos(around), np.sin(around)], axis=-1)
+    offsets = np.concatenate([far * circle for far in (11.0, 17.0, 25.0, 36.0, 50.0, 70.0)])
+    width = np.array([[-9.0, 0.0], [0.0, 0.0], [9.0, 0.0]])
     for degrees in range(0, 360, 30):
         angle = np.radians(degrees)
         angle += TURN * np.ceil((theta[0] - angle) / TURN - 1e-12)
         if angle > theta[-1]:
             continue
-        px, py = (float(np.interp(angle, theta, values)) for values in (x, y))
-        ax.plot(px, py, "o", color="k", markersize=3)
-        if any(np.hypot(px - qx, py - qy) < apart for qx, qy in written):
-            continue
-        written.append((px, py))
-        # Away from the origin, where the curve seldom goes.
-        size = float(np.hypot(px, py)) or 1.0
+        place = np.array([np.interp(angle, theta, values) for values in (x, y)])
+        ax.plot(*place, "o", color="k", markersize=3)
+        texts = scale * place + offsets[:, None, :] + width
+        gaps = texts[:, :, None, :] - taken
+        room = np.min(np.hypot(gaps[..., 0], gaps[..., 1]), axis=(1, 2))
+        best = int(np.argmax(np.minimum(room, 8.0)))
+        taken = np.concatenate([taken, texts[best]])
+        line = {"arrowstyle": "-", "lw": 0.5, "color": "0.5"}
         ax.annotate(
             f"{degrees}°",
-            (px, py),
-            xytext=(14.0 * px / size, 10.0 * py / size),
+            tuple(place),
+            xytext=tuple(offsets[best]),
             textcoords="offset points",
             fontsize=7,
             ha="center",
             va="center",
+            arrowprops=line if np.hypot(*offsets[best]) > 12.0 else None,
         )
 
 

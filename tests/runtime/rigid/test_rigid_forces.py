@@ -25,6 +25,7 @@ from elastolink.runtime.rigid import (
     shaking_moment,
 )
 from elastolink.runtime.rigid.force_errors import checks
+from matplotlib.text import Text
 
 TURN = 2.0 * np.pi
 THETA = np.linspace(0.0, TURN, 256, endpoint=False)
@@ -190,8 +191,11 @@ def test_pictures() -> None:
     polar = found.plot(joint="34")
     curve = polar.lines[0].get_xydata()
     np.testing.assert_array_equal(curve, found.f34)
-    texts = {item.get_text() for item in polar.texts}
-    assert {"0°", "30°", "330°"} <= texts
+    # Every mark has its text, clear of all others.
+    assert [item.get_text() for item in polar.texts] == [f"{angle}°" for angle in range(0, 360, 30)]
+    polar.figure.draw_without_rendering()
+    boxes = [Text.get_window_extent(item) for item in polar.texts]
+    assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))
     torque = found.plot(joint="torque")
     np.testing.assert_array_equal(torque.lines[0].get_ydata(), found.torque)
     assert found.plot().get_title() == "force on the frame"

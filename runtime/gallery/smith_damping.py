@@ -69,12 +69,18 @@ ESTIMATES = tuple(Estimate(**row) for row in contents("smith")["estimate"])
 def critical(estimate: Estimate, inertia: float, equation: str, order: int | None) -> float:
     """Return the damping K at which the region of an estimate closes, at an inertia [lbf in s^2].
 
-    By ``reduced``, (6.18), the equation of the thesis' charts, or ``complete``; to an order of the
-    perturbation, whether or not it converges at so large a parameter, NaN where that order leaves
-    the region open at any damping, or exactly (None).
+    By ``reduced``, (6.18), the equation of the thesis' charts, or ``complete``.
     """
     f = estimate.rig.function(equation, inertia * LBF_IN_S2)
-    n = estimate.region
+    return closing(f, estimate.region, order)
+
+
+def closing(f: PeriodicFunction, n: int, order: int | None) -> float:
+    """Return the damping K at which region n of a coefficient closes.
+
+    To an order of the perturbation, whether or not it converges at so large a parameter, NaN where
+    that order leaves the region open at any damping, or exactly (None).
+    """
     if order is None:
         return float(critical_damping(f, 1.0, (n,)).damping[0])
     # Up to K = 0.5, several times what was measured.
@@ -102,8 +108,8 @@ def estimates_table(axes: Panels) -> Drawn:
             ("reduced", None, "-", COLOURS[5], "exact, (6.18)"),
             ("complete", None, "-", COLOURS[3], "exact, complete equation"),
         ):
-            closing = [critical(one, float(value), equation, order) for value in inertia]
-            ax.plot(inertia, closing, style, color=colour, label=label)
+            damping = [critical(one, float(value), equation, order) for value in inertia]
+            ax.plot(inertia, damping, style, color=colour, label=label)
         ax.fill_between(inertia, *one.at_rest, color="0.92", lw=0, label="decrements at rest")
         ax.hlines(one.quoted, one.stable, one.unstable, color="black", lw=3.0, label="quoted")
         panel_title(ax, f"{one.name}, {one.rig.name}")
@@ -134,6 +140,19 @@ def _estimates() -> list[list[str]]:
     return rows
 
 
+def _exact_over_first(estimate: Estimate, hertz: float) -> float:
+    """Return exact over first-order K of (6.18), were the coupler's frequency another one [Hz]."""
+    rig = estimate.rig
+    lighter = (rig.frequency / (2.0 * pi * hertz)) ** 2
+    mass = lighter * float(rig.system("reduced").parameters["mass_per_length"])
+    first, exact = 0.0, 0.0
+    for inertia in (estimate.stable, estimate.unstable):
+        f = rig.function("reduced", inertia * LBF_IN_S2, mass_per_length=mass)
+        first += closing(f, estimate.region, 1)
+        exact += closing(f, estimate.region, None)
+    return exact / first
+
+
 def _estimate_words() -> dict[str, object]:
     """Return the numbers of the conclusion."""
 
@@ -150,7 +169,10 @@ def _estimate_words() -> dict[str, object]:
     )
     spans = [end for one in ESTIMATES for end in one.both("reduced", None)]
     middles = [0.5 * sum(one.at_rest) for one in ESTIMATES]
+    third = ESTIMATES[2]
+    third_ratios = [_exact_over_first(third, hertz) for hertz in (12.2, 13.25)]
     return {
+        "third": texts(third_ratios, 1),
         "exact": texts(exact),
         "first": texts(first),
         "ratio": texts([b / a for a, b in zip(first, exact, strict=True)], 1),

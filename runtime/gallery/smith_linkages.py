@@ -110,9 +110,12 @@ class Rig:
         """
         return _system(self.scene, equation, modes, decrement, inertia)
 
-    def function(self, equation: str, inertia: float | None = None) -> PeriodicFunction:
+    def function(
+        self, equation: str, inertia: float | None = None, **changes: float
+    ) -> PeriodicFunction:
         """Return the periodic coefficient at a follower inertia [kg m^2], or the scene's."""
-        changes = {} if inertia is None else {"follower_inertia": inertia}
+        if inertia is not None:
+            changes["follower_inertia"] = inertia
         return _form(self.scene, equation).function(1.0, **changes)
 
     def ends(self, equation: str, inertia: ArrayLike, regions: tuple[int, ...]) -> Array:

@@ -132,8 +132,9 @@ def test_the_numbers_of_the_page():
         found = about(loaded(rod(1, 0.1, SPEED), part_of_inertia(float(part))))[1]
         for cell, drop in zip(cells, ((), ("frame",)), strict=True):
             assert_written(cell, away(found, 1, 0.1, drop=drop))
-    for ratio, *cells in rows("tongue"):
-        orbit, found = about(rod(2, float(ratio), 1725.0))
-        growth = np.max(np.abs(linear(2, float(ratio), 1725.0).multipliers))
+    for modes, ratio, speed, *cells in rows("tongue"):
+        place = int(modes), float(ratio), float(speed)
+        orbit, found = about(rod(*place))
+        growth = np.max(np.abs(linear(*place).multipliers))
         for cell, value in zip(cells, (orbit.deflection, found.largest, growth), strict=True):
             assert_written(cell, value)

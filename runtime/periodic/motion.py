@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
-from math import ceil, fmod
+from math import ceil, factorial, fmod
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -45,8 +45,11 @@ _STIFF = 7
 _DEAD, _MOST_DIVISIONS = 20.0, 4096
 # Error, over the peak, that a motion may have and still be told.
 _FAIR = 0.01
-# Least share of the difference between two levels that the finer one is taken to be in error by.
-_LEAST = 0.05
+# The finer of two levels is taken to be in error by this times the predicted share of their
+# difference, but at least by a share: a larger one where modes that are dead follow their load
+# unresolved.  Of 160 random motions of four scenes, on every level, 99 of 100 errors above
+# round-off are covered, 15 times in the middle (0.05 for both: 98 of 100, and 1500 times).
+_MARGIN, _LEAST, _UNRESOLVED = 10.0, 1e-4, 0.3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -243,6 +246,8 @@ class _Grid:
         self.theta = start + self.step * np.arange(self.intervals + 1.0)
         self.theta[-1] = start + revolutions * 2.0 * np.pi
         # Intervals after which the coefficients repeat; all of them, where at no given angle.
+        self.lengths = np.diff(self.theta)
+        self.short = self.lengths < (1.0 - 1e-8) * self.step
         cycle = period / self.step
         repeats = abs(cycle - round(cycle)) < 1e-9 * cycle
         self.cycle = round(cycle) if repeats else self.intervals
@@ -285,20 +290,41 @@ def _converged(
     """Return a motion, its error and what it may be: levels are compared until they agree."""
     kind = "radau" if equation.damped else "gauss"
     turned = float(np.max(equation.frequency)) * (grid.theta[-1] - grid.start)
-    rounding = _EPS * (32.0 + turned)
+    rounding = _EPS * (64.0 + 2.0 * turned)
     level = _first_level(equation, grid, kind, rtol)
     coarse = _march(equation, grid, state, kind, level - 1, bound, None)
     before = np.inf
     while True:
         fine = _march(equation, grid, state, kind, level, bound, tick)
-        likely = [_predicted(equation, grid, kind, at) for at in (level - 1, level)]
-        share = max(_LEAST, min(1.0, 5.0 * likely[1] / max(likely[0], 1e-300)))
+        _, likely, share = _likely(equation, grid, kind, level)
         error = _gap(equation, coarse, fine, share) + rounding
         worst = float(np.max(error))
-        stuck = worst > 0.5 * before and worst < 1e-3 and likely[1] < worst
+        stuck = worst > 0.5 * before and worst < 1e-3 and likely < worst
         if worst <= rtol or stuck or level + 1 >= len(_LEVELS):
             return fine, error, max(rtol, 100.0 * rounding)
         coarse, before, level = fine, worst, level + 1
+
+
+def _likely(equation: Equation, grid: _Grid, kind: str, level: int) -> tuple[float, float, float]:
+    """Return the likely errors of the level below and of a level, and the share of their gap."""
+    coarse, fine = (_predicted(equation, grid, kind, at) for at in (level - 1, level))
+    turned = float(np.max(equation.frequency, initial=0.0)) * grid.step
+    unresolved = kind == "radau" and turned > _PHASE * _LEVELS[level][1]
+    least = _UNRESOLVED if unresolved else _LEAST
+    missed = [_missed(equation, grid, at) for at in (level - 1, level)]
+    part = max(_MARGIN * fine / max(coarse, 1e-300), missed[1] / max(missed[0], 1e-300))
+    return coarse, fine, float(np.clip(part, least, 1.0))
+
+
+def _missed(equation: Equation, grid: _Grid, level: int) -> float:
+    """Return what the nodes of a step miss of the coefficients' waves, at most 1.
+
+    The polynomial through s nodes misses ``2 (R h/4)^s / s!`` of a wave R; of amplitudes that fall
+    to a millionth at the reach the worst is that of about s/14 of it.
+    """
+    stages, fineness = _LEVELS[level]
+    wave = equation.reach * min(1.0, stages / 14.0) * grid.step / ceil(fineness)
+    return min(1.0, 2.0 * (0.25 * wave) ** stages / factorial(stages))
 
 
 def _predicted(equation: Equation, grid: _Grid, kind: str, level: int) -> float:
@@ -323,8 +349,8 @@ def _first_level(equation: Equation, grid: _Grid, kind: str, rtol: float) -> int
         # How far fast modes are excited is not known beforehand: seldom much.
         return _STIFF
     for level in range(1, len(_LEVELS) - 1):
-        fine, coarse = (_predicted(equation, grid, kind, at) for at in (level, level - 1))
-        if 5.0 * fine * adding <= rtol and _LEAST * coarse * adding <= rtol:
+        coarse, fine, share = _likely(equation, grid, kind, level)
+        if max(_MARGIN * fine, share * coarse) * adding <= rtol:
             return level
     return len(_LEVELS) - 2
 
@@ -364,9 +390,9 @@ def _march(
     steps = int(round(2.0 * np.pi / grid.step) * divisions[-1])
     pieces, done = [state[None]], 0
     limit = bound / equation.scale[0]
-    known: dict[tuple[int, int], Array] = {}
+    known: dict[tuple[int, int, bool], Array] = {}
     for begin, end in grid.blocks():
-        key = (end - begin, int(np.max(divisions[begin:end])))
+        key = (end - begin, int(np.max(divisions[begin:end])), bool(grid.short[end - 1]))
         same = key in known and bool(np.all(divisions[begin:end] == divisions[-1]))
         if not same:
             known[key] = _flows(equation, grid, (begin, end), divisions[begin:end], way)
@@ -401,8 +427,8 @@ def _flows(
     begin, end = block
     m = 2 * equation.size + equation.forced
     single = np.empty((end - begin, m, m))
-    lengths = np.diff(grid.theta[begin : end + 1])
-    kinds = np.stack([divisions.astype(float), np.where(lengths < 0.999 * grid.step, 1.0, 0.0)])
+    lengths = grid.lengths[begin:end]
+    kinds = np.stack([divisions, grid.short[begin:end]])
     for parts, short in np.unique(kinds, axis=1).T:
         places = np.flatnonzero((kinds[0] == parts) & (kinds[1] == short))
         count = int(parts)

@@ -71,8 +71,18 @@ def test_a_wanted_error_is_reached_down_to_round_off():
     assert set(run.checks) == {"accuracy", "energy balance"} and run.passed
 
 
+@pytest.mark.parametrize("revolutions", [0.3, 0.9999, 1.0, 1.9877, 2.0 - 1e-5, 3.0001])
+def test_the_last_interval_may_be_a_part_of_one(revolutions):
+    """In the last interval of a revolution too, where those before it repeat earlier ones."""
+    run = simulate(_driven(), 2.0, revolutions, initial=(0.1, -0.3), samples=64)
+    q, qd = _by_hand(run.theta, 2.0, 0.1, -0.3)
+    assert run.theta[-1] == pytest.approx(2.0 * np.pi * revolutions, rel=1e-14)
+    np.testing.assert_allclose(run.q[:, 0], q, atol=run.error[0] * np.max(np.abs(q)) + 1e-13)
+    np.testing.assert_allclose(run.qd[:, 0], qd, atol=1e-8 * np.max(np.abs(qd)))
+
+
 def test_forcing_can_be_left_out():
-    run = simulate(_driven(), 2.0, 1.0, initial=(0.1, 0.0), forcing=False)
+    run = simulate(_driven(), 2.0, 1.0, initial=(0.1, 0.0), forcing=False, rtol=1e-13)
     np.testing.assert_allclose(run.q[:, 0], 0.1 * np.cos(2.5 * run.theta), atol=1e-14)
 
 

@@ -153,26 +153,16 @@ def _rings(a, b, digits):
     return max(1, math.ceil(0.7 * digits / max(each, 1.0)))
 
 
-def boundary(functions, weights, drag, n, side, steps=None, digits=DIGITS):
-    """Return one boundary of region n to 90 digits; None where damping has closed the region.
+def boundary(functions, weights, drag, n, side, digits=DIGITS):
+    """Return the lower (side -1) or upper (+1) end of region n; None where damping has closed it.
 
-    Parameters
-    ----------
-    functions : sequence of PeriodicFunction
-        Taken as exact; the weights multiply them.
-    weights, drag : sequence of float or Fraction, float or Fraction
-        Values of the parameters, and K.
-    n, side : int
-        Region, and -1 for the lower or +1 for the upper end.
-    steps : int, optional
-        Harmonics beyond ``n/2`` to begin with.
-    digits : int
-        The truncation and the iteration are accepted below ``10^-digits``.
+    The functions, taken as exact, are multiplied by the weights; the drag is K.  Truncation and
+    iteration are accepted below ``10^-digits``.
     """
     a, b = combined(functions, weights)
     friction = fixed(drag)
     width = max(1, len(a) - 1)
-    reach = steps or width * _rings(a, b, digits)
+    reach = width * _rings(a, b, digits)
     small, before = ONE // 10**digits, None
     while True:
         start = (n * n << BITS) // 4 if before is None else before

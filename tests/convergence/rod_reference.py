@@ -147,17 +147,10 @@ _A = np.array(
 def tip_motion(
     rod: Rod, mesh: Mesh, revolutions: int, steps: int, samples: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return v(L)/L from rest at ``samples`` even crank angles a revolution, and the constraint.
+    """Return the deflections over L of the tip and, which should be zero, at the block, from rest.
 
-    Parameters
-    ----------
-    steps : int
-        Steps of the Radau rule per revolution, a multiple of ``samples``.
-
-    Returns
-    -------
-    tip, constraint : ndarray, shape (revolutions * samples + 1,)
-        Tip deflection over L; deflection at the block over L, which should be zero.
+    At ``samples`` even crank angles a revolution; ``steps`` of the Radau rule a revolution, a
+    multiple of these.
     """
     n = mesh.size
     inertia = sp.block_diag([mesh.mass, mesh.mass, sp.csc_matrix((2, 2))], format="csc")

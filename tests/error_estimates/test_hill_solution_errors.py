@@ -9,16 +9,13 @@ from __future__ import annotations
 
 import mpmath
 import numpy as np
-import pytest
 from boundary_truth import BITS, combined, fixed, hill_rows
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import boundary_solution, hill_boundaries
-from honesty import over_scenes
+from honesty import extended, over_scenes
 
-pytestmark = pytest.mark.skipif(
-    np.finfo(np.longdouble).eps > 1e-18, reason="the reference needs a long double of 80 bits"
-)
+pytestmark = extended
 THETA = np.linspace(0.0, 4.0 * np.pi, 61)
 CLOSE = 1e-4
 

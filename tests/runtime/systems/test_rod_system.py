@@ -12,6 +12,7 @@ from elastolink.runtime.core.families import DAMPING, Term
 from elastolink.runtime.hill.form import is_hill
 from elastolink.runtime.stability import resonances, tongue
 from elastolink.runtime.systems import rod_system
+from free_free_loads import ROD
 from numpy.polynomial.legendre import leggauss
 from periodic_systems import second_order
 from plain_basis import PlainBasis
@@ -26,13 +27,7 @@ NUMBERS = {
     "damping": 3.0,
     "internal_damping": 0.07,
 }
-FLEXIBLE = {
-    "crank_ratio": 0.2,
-    "frame": 0.59997,
-    "length": 1.0,
-    "bending_stiffness": 0.7e11 * 0.5208e-6,
-    "mass_per_length": 7.15,
-}
+FLEXIBLE = {"crank_ratio": 0.2, **ROD}
 
 
 # ---------------------------------------------------------------- against Newton's law

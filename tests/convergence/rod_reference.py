@@ -54,7 +54,7 @@ def flexible(ratio: float, speed: float, tension: bool = True) -> Rod:
     return Rod(ratio * 0.59997, 0.59997, 1.0, 0.7e11 * 0.5208e-6, 7.15, speed, tension)
 
 
-def stiff(tension: bool = True) -> Rod:
+def stiff() -> Rod:
     """The rod of Bahgat & Willmert, 0.1268 lbm/in read as a mass, 90 rad/s."""
     return Rod(
         1.5 * INCH,
@@ -63,7 +63,6 @@ def stiff(tension: bool = True) -> Rod:
         2.91992e6 * POUND_FORCE * INCH**2,
         0.1268 * POUND / INCH,
         90.0,
-        tension,
     )
 
 
@@ -78,21 +77,20 @@ def kinematics(rod: Rod, theta: float) -> tuple[float, float, float, float]:
 
 
 class Mesh:
-    """Hermite elements over 0 <= x <= 1, pinned at 0."""
+    """Quintic Hermite elements over 0 <= x <= 1, pinned at 0."""
 
-    def __init__(self, nodes: np.ndarray, degree: int = 5) -> None:
-        self.nodes, self.degree = nodes, degree
-        self.half = (degree + 1) // 2
-        ends = [monomials([s], degree + 1, k)[0] for s in (0.0, 1.0) for k in range(self.half)]
+    def __init__(self, nodes: np.ndarray) -> None:
+        self.nodes = nodes
+        ends = [monomials([s], 6, k)[0] for s in (0.0, 1.0) for k in range(3)]
         self.powers = np.linalg.inv(np.array(ends))
-        self.size = self.half * len(nodes) - 1
-        point, weight = np.polynomial.legendre.leggauss(degree + 2)
+        self.size = 3 * len(nodes) - 1
+        point, weight = np.polynomial.legendre.leggauss(7)
         point, weight = 0.5 * (point + 1), 0.5 * weight
         found = {name: sp.lil_matrix((self.size + 1,) * 2) for name in ("mass", "bend", "pull")}
         self.moment = np.zeros(self.size + 1)
         for e, (left, right) in enumerate(pairwise(nodes)):
             x, w = left + (right - left) * point, (right - left) * weight
-            at = slice(self.half * e, self.half * (e + 2))
+            at = slice(3 * e, 3 * (e + 2))
             value, slope, bend = (self._local(e, point, k) for k in (0, 1, 2))
             found["mass"][at, at] += (value * w) @ value.T
             found["bend"][at, at] += (bend * w) @ bend.T
@@ -103,21 +101,21 @@ class Mesh:
 
     def _local(self, element: int, s: np.ndarray, times: int) -> np.ndarray:
         long = self.nodes[element + 1] - self.nodes[element]
-        scale = np.tile(long ** np.arange(self.half), 2) / long**times
-        return scale[:, None] * (monomials(s, self.degree + 1, times) @ self.powers).T
+        scale = np.tile(long ** np.arange(3), 2) / long**times
+        return scale[:, None] * (monomials(s, 6, times) @ self.powers).T
 
     def row(self, x: float, times: int) -> sp.csr_matrix:
         """Return the shape functions, or a derivative, at a place as a sparse row."""
         element = int(np.clip(np.searchsorted(self.nodes, x, "right") - 1, 0, len(self.nodes) - 2))
         s = (x - self.nodes[element]) / (self.nodes[element + 1] - self.nodes[element])
         values = self._local(element, np.array([s]), times)[:, 0]
-        columns = self.half * element - 1 + np.arange(2 * self.half)
+        columns = 3 * element - 1 + np.arange(2 * 3)
         kept = columns >= 0
         place = (np.zeros(kept.sum(), dtype=int), columns[kept])
         return sp.csr_matrix((values[kept], place), shape=(1, self.size))
 
 
-def mesh_for(rod: Rod, fine: int, coarse: int = 12, degree: int = 5) -> Mesh:
+def mesh_for(rod: Rod, fine: int, coarse: int = 12) -> Mesh:
     """Return ``fine`` elements where the block passes and about ``coarse`` on the rest."""
     low, high = (rod.frame - rod.crank) / rod.length, (rod.frame + rod.crank) / rod.length
     # A margin keeps the block away from the places where the element length jumps.
@@ -130,7 +128,7 @@ def mesh_for(rod: Rod, fine: int, coarse: int = 12, degree: int = 5) -> Mesh:
         np.linspace(low, high, fine + 1)[:-1],
         np.linspace(high, 1.0, after + 1),
     )
-    return Mesh(np.concatenate(parts), degree)
+    return Mesh(np.concatenate(parts))
 
 
 _S6 = np.sqrt(6.0)

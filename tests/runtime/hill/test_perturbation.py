@@ -158,7 +158,11 @@ class Upwards(np.ndarray):
 
 
 def operators(parts, values, n, order, damped):
-    """Return ``h_1 ... h_order`` in extended precision, and the sums of the sizes of all terms."""
+    """Return ``h_1 ... h_order`` in extended precision, and the sums of the sizes of all terms.
+
+    The whole recursion on both columns, for the one function that the values make of the parts;
+    where damped, the last of them is K.
+    """
     harmonics = max(len(a) for _, a, _ in parts)
     weighted = [(x * a, x * b) for x, (_, a, b) in zip(values, parts, strict=False)]
     c = 0.5 * sum(a - 1j * b for a, b in weighted)
@@ -187,8 +191,8 @@ def operators(parts, values, n, order, damped):
     first, *rest = run(v, r, np.ndarray)
     # The mean of f commutes with everything.
     mean = sum(x * part[0] for x, part in zip(values, parts, strict=False))
-    sizes = [float(np.max(h)) for h in run(steps, np.abs(r), Upwards)]
-    return [first - mean * np.eye(len(rows)), *rest], [max(sizes[0], abs(mean)), *sizes[1:]]
+    largest = [float(np.max(h)) for h in run(steps, np.abs(r), Upwards)]
+    return [first - mean * np.eye(len(rows)), *rest], [max(largest[0], abs(mean)), *largest[1:]]
 
 
 @extended
@@ -197,7 +201,8 @@ def operators(parts, values, n, order, damped):
 def test_coefficients_are_the_exact_ones_to_a_few_roundings(count, damped, order, seed):
     """At random points; a few roundings of the sum of the sizes of the terms."""
     parts = random_parts(100 * count + seed, count)
-    values = np.random.default_rng(seed).integers(-16, 17, (3, count + damped)) / 16
+    rng, shape = np.random.default_rng(seed), (3, count + damped)
+    values = rng.choice([-1.0, 1.0], shape) * rng.integers(8, 17, shape) / 16
     for n, point in itertools.product(range(7), values):
         exact, allowed = operators(parts, point, n, order, damped)
         found = effective_operator(periodic(parts), n, order, damped).components(point)

@@ -37,7 +37,7 @@ def number(value):
 
 
 def combined(functions, weights):
-    """Return cosine and sine coefficients of a weighted sum of periodic functions."""
+    """Return cosine and sine coefficients of a weighted sum of functions, in fixed point."""
     size = max(len(f.a) for f in functions)
     rows = [[Fraction(0)] * size, [Fraction(0)] * size]
     for f, weight in zip(functions, weights, strict=True):

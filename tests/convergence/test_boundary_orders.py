@@ -22,8 +22,8 @@ def observed(parts, weights, n, order, friction, power):
 
     The parameters are the weights times t, K is ``friction t^power``.
     """
-    # Errors of some 1e-10: above round-off, and the next power is out of the way.
-    times = 2.0 ** -(30 // (order + 1) + np.arange(2.0))
+    # Errors of some 1e-9, far above round-off; the next power bends their slopes by 0.16 at most.
+    times = 2.0 ** -(26 // (order + 1) + np.arange(2.0))
     parameters, drags = np.multiply.outer(weights, times), friction * times**power
     found = perturbation_boundaries(parts, list(parameters), (n,), order, drags)
     slopes = []
@@ -52,4 +52,4 @@ def observed(parts, weights, n, order, friction, power):
 def test_the_first_order_left_out_is_the_error(parts, n, friction, power):
     for order in range(power, 7):
         slopes = observed(parts, [1.0, -0.625, 0.75][: len(parts)], n, order, friction, power)
-        np.testing.assert_allclose(slopes, order + 1, atol=0.1)
+        np.testing.assert_allclose(slopes, order + 1, atol=0.2)

@@ -99,14 +99,8 @@ def monomials(x, count, times):
 def interpolation(kind, length, ratio):
     """Return the powers of x in an element's deflection per nodal value: ``(powers, values)``.
 
-    Parameters
-    ----------
-    kind : str
-        Of the element; values in the order ``v1, r1, v2, r2`` and the further ones.
-    length : float
-        Of the element [m].
-    ratio : float
-        EI over k G A [m^2] for a sheared element, else 0.
+    Values in the order ``v1, r1, v2, r2`` and the further ones; the ratio is EI over k G A [m^2]
+    for a sheared element, else 0.
     """
     count = {"cubic": 4, "timoshenko": 4}.get(kind, 6)
 
@@ -142,12 +136,8 @@ class Points(NamedTuple):
 class Energies:
     """A structure's energies, for m states at once: angles ``(m,)``, displacements ``(size, m)``.
 
-    Parameters
-    ----------
-    structure : Structure
-        Read for names, lengths, sections and lumped values alone.
-    places : callable
-        Crank angles (complex) to places of the nodes as ``(x, y)``.
+    The structure is read for names, lengths, sections and lumped values alone; ``places`` gives
+    places of the nodes as ``(x, y)`` at complex crank angles.
     """
 
     structure: object

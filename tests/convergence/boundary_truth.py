@@ -37,16 +37,14 @@ def number(value):
 
 
 def combined(functions, weights):
-    """Return mean, cosine and sine coefficients of a weighted sum, as fractions."""
-    size = max(len(f.cosine) for f in functions)
-    pairs = [(f, Fraction(w)) for f, w in zip(functions, weights, strict=True)]
-    rows = [[Fraction(0)] * (size + 1) for _ in range(2)]
-    for f, w in pairs:
-        rows[0][0] += w * f.mean
-        for m, (a, b) in enumerate(zip(f.cosine, f.sine, strict=True), 1):
-            rows[0][m] += w * a
-            rows[1][m] += w * b
-    return rows[0], rows[1]
+    """Return cosine and sine coefficients of a weighted sum of functions, in fixed point."""
+    size = max(len(f.a) for f in functions)
+    rows = [[Fraction(0)] * size, [Fraction(0)] * size]
+    for f, weight in zip(functions, weights, strict=True):
+        for row, part in zip(rows, (f.a, f.b), strict=True):
+            for m, value in enumerate(part.tolist()):
+                row[m] += Fraction(weight) * Fraction(value)
+    return [[fixed(value) for value in row] for row in rows]
 
 
 def hill_rows(a, b, drag, n, steps):
@@ -126,13 +124,14 @@ def eigenvalue(matrix, side):
     return (p + s + side * root) // 2
 
 
-def _fixed_point(rows, n, side, small):
-    """Solve ``eigenvalue(schur(x)) = x`` by the secant method, from the unperturbed level."""
-    x = (n * n << BITS) // 4
+def _fixed_point(rows, n, side, small, x):
+    """Solve ``eigenvalue(schur(x)) = x`` by the secant method, from x."""
     found = eigenvalue(schur(rows, n, x), side)
     if found is None:
         return None
     gap, before = found - x, x
+    if abs(gap) < small:
+        return found
     x = found
     for _ in range(60):
         found = eigenvalue(schur(rows, n, x), side)
@@ -154,29 +153,33 @@ def _rings(a, b, digits):
     return max(1, math.ceil(0.7 * digits / max(each, 1.0)))
 
 
-def boundary(functions, weights, drag, n, side, steps=None, digits=DIGITS):
-    """Return one boundary of region n to 90 digits; None where damping has closed the region.
+def boundary(functions, weights, drag, n, side, digits=DIGITS):
+    """Return the lower (side -1) or upper (+1) end of region n; None where damping has closed it.
 
-    Parameters
-    ----------
-    functions : sequence
-        With ``mean``, ``cosine``, ``sine`` (rational), which the weights multiply.
-    weights, drag : sequence of Fraction, Fraction
-        Values of the parameters, and K.
-    n, side : int
-        Region, and -1 for the lower or +1 for the upper end.
-    steps : int, optional
-        Harmonics beyond ``n/2`` to begin with.
-    digits : int
-        The truncation and the iteration are accepted below ``10^-digits``.
+    The functions, taken as exact, are multiplied by the weights; the drag is K.  Truncation and
+    iteration are accepted below ``10^-digits``.
     """
-    a, b = ([fixed(x) for x in row] for row in combined(functions, weights))
+    a, b = combined(functions, weights)
     friction = fixed(drag)
     width = max(1, len(a) - 1)
-    reach = steps or width * _rings(a, b, digits)
+    reach = width * _rings(a, b, digits)
     small, before = ONE // 10**digits, None
     while True:
-        found = _fixed_point(hill_rows(a, b, friction, n, reach), n, side, small)
+        start = (n * n << BITS) // 4 if before is None else before
+        found = _fixed_point(hill_rows(a, b, friction, n, reach), n, side, small, start)
         if found is None or (before is not None and abs(found - before) < 4 * small):
             return None if found is None else number(found)
         before, reach = found, reach + width
+
+
+def coefficients(f, drag, n, side, order):
+    """Return those of mu, mu^2, ... mu^order of one end, with K = drag mu, to 20 digits.
+
+    The polynomial through the ends at mu = 2^-20, 2 2^-20, ...
+    """
+    step, count = Fraction(1, 2**20), order + 4
+    places = range(1, count + 1)
+    ends = [boundary((f,), (j * step,), Fraction(drag) * j * step, n, side) for j in places]
+    powers = MP.matrix([[MP.mpf(j) ** k for k in places] for j in places])
+    found = MP.lu_solve(powers, MP.matrix(ends) - MP.mpf(n * n) / 4)
+    return [found[k] * 2 ** (20 * (k + 1)) for k in range(order)]

@@ -3,6 +3,7 @@
 import elastolink as el
 import numpy as np
 from elastolink.runtime.systems.rod import rod_system
+from free_free_loads import ROD
 
 RIG = "smith_1972_5152_sixteenth_inch"
 
@@ -14,15 +15,7 @@ def rig(**overrides):
 
 def flexible_rod(basis, crank_ratio=0.1, **changes):
     """Return Beale & Scott's very flexible rod."""
-    return rod_system(
-        basis,
-        crank_ratio=crank_ratio,
-        frame=0.59997,
-        length=1.0,
-        bending_stiffness=0.7e11 * 0.5208e-6,
-        mass_per_length=7.15,
-        **changes,
-    )
+    return rod_system(basis, crank_ratio=crank_ratio, **ROD, **changes)
 
 
 def region_of(found, kind, harmonic):

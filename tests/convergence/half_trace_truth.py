@@ -11,20 +11,8 @@ from taylor_truth import Equation, Reals, flows
 def half_traces(f: PeriodicFunction, lam2: ArrayLike, mu: ArrayLike, damping: float = 0.0) -> Reals:
     """Return half traces of y'' + 2 K y' + (lam2 + mu f) y = 0 in extended precision.
 
-    Parameters
-    ----------
-    f : PeriodicFunction
-        Taken as exact.
-    lam2, mu : array_like
-        Broadcast together.
-    damping : float
-        K.
-
-    Returns
-    -------
-    ndarray of longdouble
-        On machines whose long double has 64 bits of fraction good to about 1e-17 times the
-        growth of the solutions; elsewhere no better than doubles.
+    lam2 and mu broadcast together.  On machines whose long double has 64 bits of fraction good to
+    about 1e-17 times the growth of the solutions; elsewhere no better than doubles.
     """
     x, y = np.broadcast_arrays(np.asarray(lam2, dtype=float), np.asarray(mu, dtype=float))
     real, loss = np.longdouble, np.longdouble(damping)

@@ -20,8 +20,7 @@ def functions():
     out = {"24 harmonics": el.PeriodicFunction(a, b)}
     for lengths in ((5, 1, 5, 2), (10, 1, 10, 4), (2, 1, 2, 2)):
         name = f"f3 ({','.join(map(str, lengths))})"
-        motion = el.FourBar(*map(float, lengths)).motion
-        out[name] = el.PeriodicFunction.from_callable(_end_load(motion), name=name)
+        out[name] = el.PeriodicFunction.from_callable(end_load(*lengths), name=name)
     return out
 
 
@@ -33,9 +32,12 @@ def general(harmonics, fall=0.7, seed=0):
     return el.PeriodicFunction(a, b)
 
 
-def _end_load(motion):
+def end_load(*lengths):
+    """Return Smith's f3 of a four-bar as a function of the crank angle."""
+    linkage = el.FourBar(*map(float, lengths))
+
     def f3(theta):
-        at = motion(theta)
+        at = linkage.motion(theta)
         return -at.alpha4 / np.sin(at.theta3 - at.theta4)
 
     return f3

@@ -1,4 +1,4 @@
-"""Random linkages of every kind, class and assembly."""
+"""Random linkages of every kind, class and assembly; the class of a four-bar by its table."""
 
 from __future__ import annotations
 
@@ -22,3 +22,20 @@ def random_linkage(rng, kind, size=1.0):
             return QuickReturn(*lengths[:2], float(rng.uniform(1.0, 4.0)) * sum(lengths[:2]))
         except BadInput:
             continue
+
+
+def grashof_symbol(lengths):
+    """Barker's table word by word; '' where the four cannot move."""
+    s, p, q, longest = sorted(lengths)
+    lengths = list(lengths)
+    if longest >= s + p + q:
+        return ""
+    if s + longest < p + q:
+        return ("GCCC", "GCRR", "GRCR", "GRRC")[lengths.index(s)]
+    if s + longest > p + q:
+        return f"RRR{lengths.index(longest) + 1}"
+    if s == longest:
+        return "CP3X"
+    if s == p:
+        return "CP2X"
+    return ("CPCCC", "CPCRR", "CPRCR", "CPRRC")[lengths.index(s)]

@@ -99,14 +99,7 @@ def _deflection(rod_name: str, basis, kind: str) -> np.ndarray:
 def deflection_error(rod_name: str, basis, kind: str) -> float:
     """Return the largest error of the tip deflection over its peak.
 
-    Parameters
-    ----------
-    rod_name : str
-        ``flexible`` or ``stiff``.
-    basis : MovingBasis
-        Shapes of the rod.
-    kind : str
-        ``steady``, or ``from rest`` over the first turn.
+    The motion is ``steady``, or ``from rest`` over the first turn.
     """
     truth = reference(rod_name, kind)
     ours = _deflection(rod_name, basis, kind)
@@ -123,18 +116,7 @@ def condition(basis, place: float) -> float:
 def tongue(basis, around: float, ratio: float = 0.05, growth: float = 1.01) -> tuple[float, float]:
     """Return the crank speeds between which the flexible rod grows by more than a factor a turn.
 
-    The region about a speed inside it, its ends to 0.13 rad/s.
-
-    Parameters
-    ----------
-    basis : MovingBasis
-        Shapes of the rod.
-    around : float
-        A crank speed [rad/s] inside.
-    ratio : float
-        Crank over base length.
-    growth : float
-        Factor a turn.
+    The region about a speed [rad/s] inside it, its ends to 0.13 rad/s.
     """
     system = made(flexible(ratio, around), basis)
 

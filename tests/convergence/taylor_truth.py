@@ -107,14 +107,7 @@ _PHASE, _WAVES = 3.0, 0.35
 def flows(equation: Equation, turn: float, count: int) -> Reals:
     """Return the transition matrices from angle 0 to even angles, ``(count + 1, m, m)``.
 
-    Parameters
-    ----------
-    equation : Equation
-        The equation.
-    turn : float
-        Multiple of its period at which the angles end.
-    count : int
-        Intervals between them.
+    The angles end at ``turn`` periods of the equation.
     """
     length = 2.0 * _PI * equation.turns * np.longdouble(turn)
     wave = 2.0 * np.pi * equation.harmonics / equation.period

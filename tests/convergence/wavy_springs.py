@@ -62,27 +62,8 @@ class Wavy:
         coordinates = WavyCoordinates(fixed, np.swapaxes(waves, 0, 1))
         self.turn, self.system = coordinates.turn, system_of(**coordinates.arrays(squares))
 
-    def exact(self, speed):
-        """Return the monodromy matrix in extended precision until the last product."""
-        extended = np.longdouble
-        period = 8 * np.arctan(extended(1)) / extended(speed)
-        n = len(self.squares)
-        flow = np.zeros((2 * n, 2 * n))
-        for i, square in enumerate(self.squares):
-            w = np.sqrt(abs(extended(square)))
-            if square > 0:
-                c, s = np.cos(w * period), np.sin(w * period)
-                block = [[c, s / w * speed], [-w * s / speed, c]]
-            else:
-                c, s = np.cosh(w * period), np.sinh(w * period)
-                block = [[c, s / w * speed], [w * s / speed, c]]
-            flow[np.ix_([i, n + i], [i, n + i])] = np.array(block, dtype=float)
-        start = self.turn(np.zeros(1))[0]
-        zero = np.zeros((n, n))
-        into = np.block([[start, zero], [zero, np.linalg.inv(start).T]])
-        return np.linalg.solve(into, flow @ into)
-
     def multipliers(self, speed):
+        """Return all of them, from extended precision."""
         extended = np.longdouble
         found = []
         for square in self.squares:

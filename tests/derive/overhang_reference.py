@@ -1,4 +1,4 @@
-"""Modes of the beam with an overhang from six conditions: in doubles, as textbooks do, and exact.
+"""Modes of the beam with an overhang from six conditions, in many digits.
 
 Sine and hyperbolic sine from the pin up to the support, all four waves of ``beta eta`` beyond it;
 the conditions are six linear equations.  Shares nothing with the package but the conditions.
@@ -14,25 +14,25 @@ import numpy as np
 DIGITS = 60
 
 
-def _waves(lib, phase, order):
+def _waves(phase, order):
     """Return sin, cos, sinh, cosh or a derivative of them."""
-    s, c, sh, ch = lib.sin(phase), lib.cos(phase), lib.sinh(phase), lib.cosh(phase)
+    (c, s), ch, sh = mpmath.cos_sin(phase), mpmath.cosh(phase), mpmath.sinh(phase)
     circular = ((s, c), (c, -s), (-s, -c), (-c, s))[order % 4]
     return (*circular, *((sh, ch) if order % 2 == 0 else (ch, sh)))
 
 
-def conditions(lib, xi, beta):
+def conditions(xi, beta):
     """Return six rows on two waves before the support and four beyond it."""
     rows = []
     at, tip = beta * xi, beta
     for order in (0, 1, 2):
-        sine, _, rise, _ = _waves(lib, at, order)
-        beyond = _waves(lib, at, order)
+        sine, _, rise, _ = _waves(at, order)
+        beyond = _waves(at, order)
         if order == 0:
             rows += [[sine, rise, 0, 0, 0, 0], [0, 0, *beyond]]
         else:
             rows.append([sine, rise, *(-w for w in beyond)])
-    rows += [[0, 0, *_waves(lib, tip, order)] for order in (2, 3)]
+    rows += [[0, 0, *_waves(tip, order)] for order in (2, 3)]
     return rows
 
 
@@ -44,17 +44,14 @@ def gauss(place, count):
     return np.concatenate([place * s, place + rest * s]), np.concatenate([place * w, rest * w])
 
 
-# ---------------------------------------------------------------- many digits
-
-
 class Mode:
     """One mode in many digits, of unit square, positive at the tip."""
 
     def __init__(self, xi, beta):
         self.xi, self.beta = xi, beta
-        rows = conditions(mpmath, xi, beta)
+        rows = conditions(xi, beta)
         # At a root one of the six follows from the others; the tip is 1 instead.
-        rows[2] = [0, 0, *_waves(mpmath, beta, 0)]
+        rows[2] = [0, 0, *_waves(beta, 0)]
         self.factors = mpmath.lu_solve(mpmath.matrix(rows), mpmath.matrix([0, 0, 1, 0, 0, 0]))
         self.scale = 1 / mpmath.sqrt(product(self, self, (0, 0)))
 
@@ -62,7 +59,7 @@ class Mode:
 
     def side(self, eta, order, beyond):
         """Return a derivative on one side of the support."""
-        waves = _waves(mpmath, self.beta * eta, order)
+        waves = _waves(self.beta * eta, order)
         parts = waves if beyond else (waves[0], waves[2])
         factors = self.factors[2:] if beyond else self.factors[:2]
         total = sum(f * w for f, w in zip(factors, parts, strict=True))
@@ -82,16 +79,11 @@ def product(one, two, orders, weight=lambda eta: 1):
     return total
 
 
-def determinant(xi, beta):
-    """Return the determinant of the six conditions."""
-    return mpmath.det(mpmath.matrix(conditions(mpmath, xi, beta)))
-
-
 def root(xi, start):
     """Return a root to many digits, by secants."""
     step = mpmath.mpf(start) * mpmath.mpf(10) ** -12
     return mpmath.findroot(
-        lambda beta: determinant(xi, beta) * mpmath.exp(-2 * beta),
+        lambda beta: mpmath.det(mpmath.matrix(conditions(xi, beta))) * mpmath.exp(-2 * beta),
         (mpmath.mpf(start), mpmath.mpf(start) + step),
         tol=mpmath.mpf(10) ** (2 - 2 * mpmath.mp.dps),
         verify=False,
@@ -109,14 +101,10 @@ class Drift:
 
     STEP = mpmath.mpf(10) ** -12
 
-    def __init__(self, xi, start, second=False):
-        self.xi, self.second = xi, second
-        moves = (-1, 0, 1) if second else (-1, 1)
-        self.modes = [mode_at(xi + k * self.STEP, start) for k in moves]
+    def __init__(self, xi, start):
+        self.before, self.after = (mode_at(xi + move, start) for move in (-self.STEP, self.STEP))
 
     def side(self, eta, order, beyond):
         """Return a derivative by eta on one side of the support."""
-        values = [mode.side(eta, order, beyond) for mode in self.modes]
-        if self.second:
-            return (values[0] - 2 * values[1] + values[2]) / self.STEP**2
-        return (values[1] - values[0]) / (2 * self.STEP)
+        before, after = (mode.side(eta, order, beyond) for mode in (self.before, self.after))
+        return (after - before) / (2 * self.STEP)

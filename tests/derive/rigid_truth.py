@@ -1,4 +1,4 @@
-"""Forces of a machine in many digits: free bodies as in ``forces_truth``, gravity and springs."""
+"""Forces of a machine in many digits: free bodies as in ``forces_truth``, gravity and loads."""
 
 from __future__ import annotations
 
@@ -8,14 +8,13 @@ from forces_truth import cross, inertia_pushes, links, reactions
 
 DIGITS = 60
 _NAMES = {"FourBar": "four_bar", "SliderCrank": "slider_crank", "QuickReturn": "quick_return"}
-_SHAKING = ("shaking_x", "shaking_y", "shaking_moment")
 
 
-def forces(machine, theta, speed, acceleration=0.0, outside=None, springs=None):
+def forces(machine, theta, speed, acceleration, outside):
     """Return every force by name, as mpmath numbers.
 
-    Masses and gravity are the machine's; ``outside`` and ``springs`` are, by link, force and couple
-    at its first joint.
+    Masses and gravity are the machine's; ``outside`` is, by link, force and couple at its first
+    joint.
     """
     mechanism = _NAMES[type(machine.linkage).__name__]
     numbers = {**machine.linkage.geometry, "theta2": theta}
@@ -27,26 +26,18 @@ def forces(machine, theta, speed, acceleration=0.0, outside=None, springs=None):
         numbers = {name: mpmath.mpf(float(value)) for name, value in numbers.items()}
         bodies, _ = links(mechanism, numbers)
         gravity = mpmath.mpc(*machine.gravity)
-        free, held = [], []
+        pushes = []
         for n, (link, body, (force, moment)) in enumerate(
             zip(machine.linkage.links, bodies, inertia_pushes(numbers, bodies), strict=True), 2
         ):
+            fx, fy, couple = map(mpmath.mpf, outside.get(link, (0.0, 0.0, 0.0)))
             arm = mpmath.mpc(numbers[f"along{n}"], numbers[f"across{n}"]) * body[2]
-            push = force - numbers[f"mass{n}"] * gravity, moment - cross(arm, gravity)
-            free.append(_less(push, (outside or {}).get(link)))
-            held.append(_less(free[-1], (springs or {}).get(link)))
-        # Springs stand on the frame: what they take from the joints they give it themselves.
-        shaking = reactions(mechanism, numbers, free)
-        return reactions(mechanism, numbers, held) | {name: shaking[name] for name in _SHAKING}
+            push = force - numbers[f"mass{n}"] * gravity - mpmath.mpc(fx, fy)
+            pushes.append((push, moment - cross(arm, gravity) - couple))
+        return reactions(mechanism, numbers, pushes)
 
 
-def _less(push, wrench):
-    """Return what a link takes once a wrench acts on it."""
-    fx, fy, couple = wrench or (0.0, 0.0, 0.0)
-    return push[0] - mpmath.mpc(fx, fy), push[1] - mpmath.mpf(couple)
-
-
-def errors(machine, found, outside=None, springs=None):
+def errors(machine, found, outside=None):
     """Return the actual error at each angle in the norm of the error estimate, and the estimate."""
     longest = max(abs(length) for length in machine.linkage.lengths.values())
     worst = []
@@ -54,7 +45,7 @@ def errors(machine, found, outside=None, springs=None):
         speed = np.broadcast_to(found.speed, found.theta2.shape)[i]
         acceleration = np.broadcast_to(found.acceleration, found.theta2.shape)[i]
         with mpmath.workdps(DIGITS):
-            exact = forces(machine, theta, speed, acceleration, outside, springs)
+            exact = forces(machine, theta, speed, acceleration, outside or {})
             gaps = [
                 abs(mpmath.mpf(float(value[i])) - exact[name])
                 / (longest if name in ("torque", "shaking_moment", "couple34", "couple41") else 1)

@@ -16,7 +16,7 @@ from elastolink.derive.records import EndForce, Essential, PointTerm, Support
 from elastolink.derive.spec import ModelSpec
 from elastolink.derive.variational import hamilton
 from numpy.polynomial.legendre import leggauss
-from rod_newton import PlainBasis
+from plain_basis import PlainBasis
 
 SPEC = ModelSpec("quick_return", "moving_basis", flexible=("rod",))
 PRINTED = SPEC.with_(drop=("frame", "tension"))

@@ -9,17 +9,13 @@ from __future__ import annotations
 
 import mpmath
 import numpy as np
-import pytest
 from boundary_truth import BITS, combined, fixed, hill_rows
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import boundary_solution, hill_boundaries
-from exact_hill import ExactHarmonics
-from honesty import over_scenes
+from honesty import extended, over_scenes
 
-pytestmark = pytest.mark.skipif(
-    np.finfo(np.longdouble).eps > 1e-18, reason="the reference needs a long double of 80 bits"
-)
+pytestmark = extended
 THETA = np.linspace(0.0, 4.0 * np.pi, 61)
 CLOSE = 1e-4
 
@@ -61,9 +57,7 @@ def fourier_matrix(functions, mu, damping, n, highest, exact):
 
     In long doubles, or in numbers of 60 digits.
     """
-    parts = [ExactHarmonics.of(f.mean, f.a[1:].tolist(), f.b[1:].tolist()) for f in functions]
-    series = ([fixed(x) for x in part] for part in combined(parts, mu))
-    rows = hill_rows(*series, fixed(damping), n % 2, highest - 1)
+    rows = hill_rows(*combined(functions, mu), fixed(damping), n % 2, highest - 1)
     columns = {key: place for place, key in enumerate(rows)}
     out = np.full((len(rows), len(rows)), mpmath.mpf(0))
     for row, entries in zip(out, rows.values(), strict=True):

@@ -11,7 +11,7 @@ from elastolink.derive.spec import ModelSpec
 from elastolink.derive.variational import hamilton, linearise, quadratic_action
 from elastolink.runtime.linkages import QuickReturn
 from elastolink.runtime.systems.rod import OverhangBasis, rod_system
-from rod_newton import PlainBasis
+from plain_basis import PlainBasis
 from seed_ledger import Ledger, by_differences, hold, holds, is_zero, quoted, same
 
 row = Ledger("Beale & Scott", __file__)

@@ -151,30 +151,6 @@ def test_one_mode_at_a_given_speed_agrees_with_multipliers():
     assert np.allclose(chart.invariants[..., 0], wanted, rtol=1e-8, atol=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("axes", "speed", "match"),
-    [
-        (("crank_ratio", "mass_per_length"), None, "give speed"),
-        (("damping", "mass_per_length"), None, "give speed"),
-        (("speed", "mass_per_length"), 100.0, "leave it out"),
-        (("crank_ratio", "mass_per_length"), -5.0, "positive number"),
-        (("crank_ratio", "mass_per_length"), np.nan, "positive number"),
-        (("crank_ratio", "mass_per_length"), "fast", "positive number"),
-    ],
-)
-def test_a_missing_or_useless_speed_is_refused(axes, speed, match):
-    values = {
-        "speed": [900.0, 1000.0],
-        "crank_ratio": [0.1, 0.2],
-        "mass_per_length": [7.0, 8.0],
-        "damping": [0.0, 1.0],
-    }
-    with pytest.raises(el.BadInput, match=match):
-        el.stability_chart(
-            rod(PolynomialBasis(1)), *((name, values[name]) for name in axes), speed=speed
-        )
-
-
 def test_two_axes_of_geometry_are_weighed_before_work():
     ratios, frames = np.linspace(0.05, 0.2, 50), np.linspace(0.5, 0.6, 20000)
     with pytest.raises(el.BadInput, match="fewer modes or points"):

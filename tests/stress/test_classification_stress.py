@@ -7,10 +7,12 @@ import math
 from fractions import Fraction
 
 import numpy as np
+import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages.classification import LINKS, SYMBOLS, classify
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from random_linkages import grashof_symbol
 
 LENGTHS = st.one_of(
     st.integers(1, 6).map(float),
@@ -41,47 +43,27 @@ def turns_fully(exact, i, j):
     return least <= (one - two) ** 2 and (one + two) ** 2 <= most
 
 
-def symbol_of(turns, exact):
-    """Return the class from which links turn against which, and how many change conditions hold."""
-    flat = sum(
-        exact[0] + exact[i] == sum(exact[j] for j in range(1, 4) if j != i) for i in range(1, 4)
-    )
-    if flat >= 2:
-        return f"CP{flat}X"
-    # The link that turns against all three others is the shortest of a Grashof linkage.
-    for i, letters in enumerate(("CCC", "CRR", "RCR", "RRC")):
-        if all(turns[tuple(sorted((i, j)))] for j in range(4) if j != i):
-            return ("CP" if flat else "G") + letters
-    return f"RRR{exact.index(max(exact)) + 1}"
-
-
-def judge(lengths):
-    """Compare the class with brute force in fractions."""
+@settings(
+    max_examples=300,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.too_slow],
+)
+@given(four_lengths())
+def test_classified_as_in_fractions_or_refused(lengths):
     exact = [Fraction(value) for value in lengths]
     many = SYMBOLS[classify(np.array([lengths]))[0]]
-    if 2 * max(exact) >= sum(exact):
-        assert many == ""
-        try:
+    assert many == grashof_symbol(exact)
+    if not many:
+        with pytest.raises(BadInput, match="cannot"):
             classify(lengths)
-        except BadInput as refusal:
-            assert "cannot" in str(refusal)
-            return
-        raise AssertionError("an impossible linkage was classified")
+        return
     turns = {(i, j): turns_fully(exact, i, j) for i, j in itertools.combinations(range(4), 2)}
     found = classify(lengths)
-    assert found.symbol == many == symbol_of(turns, exact)
+    assert found.symbol == many
     assert found.relative_turns == {
         f"{LINKS[i]}-{LINKS[j]}": full for (i, j), full in turns.items()
     }
     numbers = [found.distance, *found.change_distances.values(), *found.closing_distances.values()]
     assert all(math.isfinite(number) for number in numbers)
     assert max(found.closing_distances.values()) <= 0.0
-
-
-QUIET = {"deadline": None, "derandomize": True, "suppress_health_check": [HealthCheck.too_slow]}
-
-
-@settings(max_examples=300, **QUIET)
-@given(four_lengths())
-def test_classified_or_refused(lengths):
-    judge(lengths)

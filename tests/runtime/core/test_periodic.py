@@ -2,22 +2,11 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction, segment_values
-from elastolink.runtime.linkages import FourBar
+from hill_functions import end_load
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 coefficients = st.lists(st.floats(-10, 10), min_size=1, max_size=12)
-
-
-def end_load(*lengths):
-    """Smith's f3 = -alpha4 / sin(theta3 - theta4), (6.16)."""
-    linkage = FourBar(*map(float, lengths))
-
-    def f3(theta):
-        motion = linkage.motion(theta)
-        return -motion.alpha4 / np.sin(motion.theta3 - motion.theta4)
-
-    return f3
 
 
 @given(a=coefficients, b=coefficients, theta=st.lists(st.floats(-20, 20), max_size=5))

@@ -17,7 +17,6 @@ from elastolink.runtime.hill import (
     critical_damping,
     hill_boundaries,
 )
-from exact_hill import ExactHarmonics
 from hill_functions import COSINE, GENERAL
 
 
@@ -27,8 +26,7 @@ def negative_pivots(f, mu, damping, odd, harmonic, places):
     Without damping as many eigenvalues lie below (Sylvester); in any case their parity is the sign
     of the determinant.
     """
-    parts = combined([ExactHarmonics.of(f.mean, f.a[1:].tolist(), f.b[1:].tolist())], [mu])
-    rows = hill_rows(*([fixed(x) for x in part] for part in parts), fixed(damping), odd, harmonic)
+    rows = hill_rows(*combined([f], [mu]), fixed(damping), odd, harmonic)
     for place in places:
         work, count, at = {key: dict(row) for key, row in rows.items()}, 0, fixed(place)
         for key in sorted(work):

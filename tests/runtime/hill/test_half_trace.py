@@ -10,13 +10,11 @@ from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import discriminant, hill_boundaries
 from half_trace_truth import half_traces
 from hill_functions import COSINE, functions, general
+from honesty import extended
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 FUNCTIONS = functions()
-extended = pytest.mark.skipif(
-    np.finfo(np.longdouble).eps > 1e-18, reason="the reference needs a long double of 80 bits"
-)
 
 
 @given(

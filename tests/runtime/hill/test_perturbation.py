@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import tracemalloc
 from fractions import Fraction
 
@@ -16,9 +17,9 @@ from elastolink.runtime.hill import (
     perturbation_boundaries,
 )
 from elastolink.runtime.hill.bloch import effective_operator
-from exact_hill import ExactHarmonics, exact_operator
 from hill_functions import ANOTHER as GENERAL
 from hill_functions import COSINE, general
+from honesty import extended
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -156,41 +157,57 @@ class Upwards(np.ndarray):
         return self + other
 
 
-def majorants(parts, n, order, damped):
-    """Return for each order the sum of the sizes of all terms, every parameter being 1."""
-    half = sum(0.5 * np.hypot(a, b) for _, a, b in parts)
-    reach = (order // 2) * len(half)
+def operators(parts, values, n, order, damped):
+    """Return ``h_1 ... h_order`` in extended precision, and the sums of the sizes of all terms.
+
+    The whole recursion on both columns, for the one function that the values make of the parts;
+    where damped, the last of them is K.
+    """
+    harmonics = max(len(a) for _, a, _ in parts)
+    weighted = [(x * a, x * b) for x, (_, a, b) in zip(values, parts, strict=False)]
+    c = 0.5 * sum(a - 1j * b for a, b in weighted)
+    reach = (order // 2) * harmonics
     m = np.arange(-reach, n + reach + 1)
-    v = sum(x * (np.eye(m.size, k=k) + np.eye(m.size, k=-k)) for k, x in enumerate(half, 1))
-    v = v + damped * np.diag(np.abs(2.0 * m - n))
-    levels = np.abs(m * (m - n)).astype(float)
-    r = 1.0 / np.where(levels == 0.0, np.inf, levels)
-    rows = np.flatnonzero(levels == 0.0)
-    effective, _ = getattr(hill_recursion, f"order_{order}")(
-        np.eye(m.size)[:, rows].view(Upwards),
-        lambda x: (v @ x).view(Upwards),
-        lambda x: (r[:, None] * x).view(Upwards),
-        lambda x: x[rows],
-        lambda x, h: (x @ h).view(Upwards),
-    )
-    return [float(np.max(h)) for h in effective]
+    v = np.zeros((m.size, m.size), dtype=np.clongdouble)
+    for k, x in enumerate(c, 1):
+        v -= x * np.eye(m.size, k=-k) + x.conj() * np.eye(m.size, k=k)
+    v -= 2j * damped * values[-1] * np.diag(m - 0.5 * n)
+    sizes = sum(0.5 * np.hypot(a, b) for a, b in weighted)
+    steps = sum(x * (np.eye(m.size, k=k) + np.eye(m.size, k=-k)) for k, x in enumerate(sizes, 1))
+    steps = steps + damped * abs(values[-1]) * np.diag(np.abs(2.0 * m - n))
+    levels = (m * (m - n)).astype(np.longdouble)
+    r = -1 / np.where(levels == 0, np.inf, levels)
+    rows = [reach + n, reach] if n else [reach]
+
+    def run(operator, resolvent, kind):
+        return getattr(hill_recursion, f"order_{order}")(
+            np.eye(m.size)[:, rows].view(kind),
+            lambda x: (operator @ x).view(kind),
+            lambda x: (resolvent[:, None] * x).view(kind),
+            lambda x: x[rows],
+            lambda x, h: (x @ h).view(kind),
+        )[0]
+
+    first, *rest = run(v, r, np.ndarray)
+    # The mean of f commutes with everything.
+    mean = sum(x * part[0] for x, part in zip(values, parts, strict=False))
+    largest = [float(np.max(h)) for h in run(steps, np.abs(r), Upwards)]
+    return [first - mean * np.eye(len(rows)), *rest], [max(largest[0], abs(mean)), *largest[1:]]
 
 
+@extended
 @pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2, 3))])
 @pytest.mark.parametrize("count, damped, order", KINDS)
 def test_coefficients_are_the_exact_ones_to_a_few_roundings(count, damped, order, seed):
-    """Measured over 4000 operators: at most 3.8 roundings of the sum of the sizes of the terms."""
+    """At random points; a few roundings of the sum of the sizes of the terms."""
     parts = random_parts(100 * count + seed, count)
-    exact_parts = [ExactHarmonics.of(mean, a.tolist(), b.tolist()) for mean, a, b in parts]
-    for n in range(7):
-        exact = exact_operator(exact_parts, n, order, damped)
-        found = effective_operator(periodic(parts), n, order, damped)
-        allowed = majorants(parts, n, order, damped)
-        allowed[0] = max(allowed[0], *(abs(mean) for mean, _, _ in parts))
-        for k in range(order):
-            for one, other in ((found.diagonal, exact.diagonal), (found.coupling, exact.coupling)):
-                wanted = np.array([complex(float(x), float(y)) for x, y in other[k]])
-                assert np.max(np.abs(one[k] - wanted)) <= 8 * UNIT * allowed[k]
+    rng, shape = np.random.default_rng(seed), (3, count + damped)
+    values = rng.choice([-1.0, 1.0], shape) * rng.integers(8, 17, shape) / 16
+    for n, point in itertools.product(range(7), values):
+        exact, allowed = operators(parts, point, n, order, damped)
+        found = effective_operator(periodic(parts), n, order, damped).components(point)
+        for a, b, h, size in zip(*found, exact, allowed, strict=True):
+            assert np.max(np.abs(h[0] - [a, b][: len(h)])) <= 8 * UNIT * size
 
 
 @pytest.mark.parametrize("order", [1, 4, 8])

@@ -10,24 +10,7 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import QuickReturn, SliderCrank
 from elastolink.runtime.linkages.base_planes import base_plane
 from elastolink.runtime.linkages.classification import CLASSES, SYMBOLS, classify
-
-
-def grashof_symbol(lengths):
-    """Barker's table word by word; '' where the four cannot move."""
-    s, p, q, longest = sorted(lengths)
-    lengths = list(lengths)
-    if longest >= s + p + q:
-        return ""
-    if s + longest < p + q:
-        return ("GCCC", "GCRR", "GRCR", "GRRC")[lengths.index(s)]
-    if s + longest > p + q:
-        return f"RRR{lengths.index(longest) + 1}"
-    if s == longest:
-        return "CP3X"
-    if s == p:
-        return "CP2X"
-    return ("CPCCC", "CPCRR", "CPRCR", "CPRRC")[lengths.index(s)]
-
+from random_linkages import grashof_symbol
 
 GRID = [*itertools.product(range(1, 7), repeat=4)]
 

@@ -21,7 +21,6 @@ from periodic_systems import forced_mathieu, system_of, wave
 SYSTEM = forced_mathieu()
 FREE = SYSTEM.without("p")
 STILL = FREE.with_terms(Term("p", None, lambda theta: np.zeros((len(theta), 1))))
-SHAPELESS = replace(SYSTEM, shape=None)
 BROKEN = FREE.with_terms(
     Term("Kg", None, lambda theta: np.where(theta > 3.0, np.nan, 1.0)[:, None, None])
 )

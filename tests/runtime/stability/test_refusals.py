@@ -7,6 +7,7 @@ from dataclasses import replace
 import elastolink as el
 import numpy as np
 import pytest
+from edge_truth import flexible_rod
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import Term
 from elastolink.runtime.stability import (
@@ -17,6 +18,7 @@ from elastolink.runtime.stability import (
     tongue,
     tongue_curves,
 )
+from elastolink.runtime.systems.rod import PolynomialBasis
 from periodic_systems import system_of, wave
 
 PAIR = system_of(
@@ -29,6 +31,11 @@ MATHIEU = {
     "system": el.load_scene("mathieu").system(),
     "x": ("lam2", [0.1, 0.6]),
     "y": ("mu", [0.01, 0.02]),
+}
+ROD = {
+    "system": flexible_rod(PolynomialBasis(1)),
+    "x": ("crank_ratio", [0.1, 0.2]),
+    "y": ("mass_per_length", [7.0, 8.0]),
 }
 
 # What is given where a case does not change it.
@@ -98,6 +105,10 @@ CASES = {
         ({**MATHIEU, "order": True}, "order"),
         ({**MATHIEU, "edges": True}, "edges"),
         ({**MATHIEU, "rtol": 0.5}, "rtol"),
+        (ROD, "give speed"),
+        ({**ROD, "x": ("damping", [0.0, 1.0])}, "give speed"),
+        ({**ROD, "x": ("speed", [900.0, 1000.0]), "speed": 100.0}, "leave it out"),
+        *(({**ROD, "speed": value}, "positive number") for value in (-5.0, np.nan, "fast")),
     ],
 }
 

@@ -228,21 +228,6 @@ def test_the_order_may_be_too_low_to_open_a_tongue():
     assert first.error > second.error
 
 
-def test_truncations_keep_the_pairs_of_a_conservative_system():
-    resonance = _resonance(_whole(), "w1 + w2 = w")
-    found = tongue(_whole(), resonance, parameter=("eps", 0.4), order=3)
-    operator = found.operators[0]
-    ends = operator.speed / np.array([found.lower, found.upper]) - 1
-    sigma = np.linspace(-0.1, 0.1, 41)
-    powers = sigma[:, None] ** np.arange(6)
-    values = np.linalg.eigvals(np.tensordot(powers, operator.polynomials(5), axes=1))
-    # s and -conj s: the real parts cancel, whatever the size of what is left out.
-    np.testing.assert_allclose(np.sum(values.real, axis=1), 0.0, atol=1e-14)
-    stable = values[np.abs(sigma - np.mean(ends)) > 0.6 * np.ptp(ends)]
-    assert 10 < len(stable) < 41
-    np.testing.assert_allclose(stable.real, 0.0, atol=1e-13)
-
-
 def test_a_parameter_beside_other_periodic_parts():
     system = FULL.with_terms(Term("K", None, wave([[0.05, 0.0], [0.0, 0.0]])))
     resonance = _resonance(system, "w1 + w2 = w")

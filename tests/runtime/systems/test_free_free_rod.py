@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
+import free_free_loads
 import numpy as np
 import pytest
 from elastolink.runtime.core.families import Constrained
 from elastolink.runtime.systems.rod import FreeFreeBasis, free_free_rod
 
-ROD = {
-    "crank_ratio": 0.3,
-    "frame": 0.59997,
-    "length": 1.1,
-    "bending_stiffness": 0.7e11 * 0.5208e-6,
-    "mass_per_length": 7.15,
-}
+ROD = {"crank_ratio": 0.3, **free_free_loads.ROD, "length": 1.1}
 SPEED = 140.0
 DROPS = [(), ("tension",)]
 

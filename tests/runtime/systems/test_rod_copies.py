@@ -12,15 +12,9 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import Term
 from elastolink.runtime.systems import rod_system, with_modal_damping
 from elastolink.runtime.systems.rod.linear import BASES
+from free_free_loads import ROD
 
-NUMBERS = {
-    "crank_ratio": 0.2,
-    "frame": 0.59997,
-    "length": 1.0,
-    "bending_stiffness": 36456.0,
-    "mass_per_length": 7.15,
-    "damping": 2.0,
-}
+NUMBERS = {"crank_ratio": 0.2, **ROD, "damping": 2.0}
 THETA = np.array([0.3, 2.0, 4.4])
 ARRAYS = ("M", "A", "B", "C", "D", "K", "f", "g")
 

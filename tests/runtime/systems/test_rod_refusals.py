@@ -17,14 +17,9 @@ from elastolink.runtime.systems.rod import (
     rod_system,
 )
 from elastolink.runtime.systems.rod.basis import MATRIX_ARRAYS, VECTOR_ARRAYS
+from free_free_loads import ROD
 
-NUMBERS = {
-    "crank_ratio": 0.2,
-    "frame": 0.59997,
-    "length": 1.0,
-    "bending_stiffness": 36456.0,
-    "mass_per_length": 7.15,
-}
+NUMBERS = {"crank_ratio": 0.2, **ROD}
 BASES = [OverhangBasis, PolynomialBasis, TwoSegmentBasis, FreeFreeBasis]
 HALF = np.array([0.5])
 

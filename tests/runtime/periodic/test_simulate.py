@@ -1,4 +1,4 @@
-"""Simulation against hand solutions and itself; its warnings, checks and refusals."""
+"""Simulation against hand solutions, heyoka and itself; its warnings, checks and refusals."""
 
 from __future__ import annotations
 
@@ -84,6 +84,21 @@ def test_the_last_interval_may_be_a_part_of_one(revolutions):
 def test_forcing_can_be_left_out():
     run = simulate(_driven(), 2.0, 1.0, initial=(0.1, 0.0), forcing=False, rtol=1e-13)
     np.testing.assert_allclose(run.q[:, 0], 0.1 * np.cos(2.5 * run.theta), atol=1e-14)
+
+
+def test_against_heyoka():
+    hy = pytest.importorskip("heyoka")
+    q, v = hy.make_vars("q", "v")
+    w = 1.3
+    force = 0.4 * w**2 * hy.cos(hy.time) + 3.0 * w * hy.sin(2.0 * hy.time) + 7.0
+    spring = 50.0 + 20.0 * hy.cos(hy.time)
+    # Per radian: w^2 (2 v') + w 0.6 v + spring q = force.
+    system = [(q, v), (v, (force - spring * q - 0.6 * w * v) / (2.0 * w**2))]
+    ta = hy.taylor_adaptive(system, [0.1, -0.3 / w], tol=1e-18)
+    run = simulate(_driven(damping=0.6, depth=20.0), w, 5.0, initial=(0.1, -0.3), rtol=1e-12)
+    _, states = ta.propagate_grid(run.theta)[-2:]
+    for found, exact in ((run.q, states[:, :1]), (run.qd / w, states[:, 1:])):
+        assert np.max(np.abs(found - exact)) < 1e-11 * np.max(np.abs(exact))
 
 
 @pytest.mark.parametrize("start", [0.0, 0.3, -2.0, 1000.3])

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..frequencies.multiplier_maxima import refined_maxima
 from ..periodic.multipliers import conditions
+from .labels import held_modes, meeting_labels, pair_shares
 from .over_speed import MatricesOverSpeed
 from .pairs import bracketed_roots, perturbation_size, phase_grid
 from .regions import Regions, joined
@@ -155,7 +156,12 @@ class Crossings:
     ) -> list[_Crossing]:
         """Return crossings by rising speed, one for two conjugates."""
         out = self._levels.outside
-        nearest = np.argmin(np.abs(last.value), axis=-1)
+        apart = np.abs(last.value)
+        if self._sharp:
+            # Those that stay rest on the circle too: the one that leaves is where it soon will be.
+            after = self._levels.multiplier[np.where(out[row, rank], row, row + 1), rank]
+            apart = np.abs(np.angle(last.multiplier * after.conj()[:, None]))
+        nearest = np.argmin(apart, axis=-1)
         found: list[_Crossing] = []
         halves: dict[tuple[int, bool], int] = {}
         for i in np.lexsort((rank, row)):
@@ -365,7 +371,24 @@ def mended(
     if not new:
         return regions.take(np.flatnonzero(kept))
     pool = regions.take(np.flatnonzero(~kept))
-    return joined(regions.take(np.flatnonzero(kept)), labelled(new, pool))
+    return joined(regions.take(np.flatnonzero(kept)), _named(matrices, labelled(new, pool)))
+
+
+def _named(matrices: MatricesOverSpeed, regions: Regions) -> Regions:
+    """Label regions by the modes with the crank held where those suit better, or nothing else."""
+    middle, turn = regions.middle, regions.multiplier
+    held, phase = held_modes(matrices, middle), np.angle(turn)
+    shares = pair_shares(matrices, held, middle, turn)
+    modes, harmonic, off = meeting_labels(held, phase, phase, shares)
+    total = np.sum(np.take_along_axis(held.turns, regions.modes - 1, axis=1), axis=1)
+    wrong = (2 * off < np.abs(total - regions.harmonic)) & (regions.kind == "sum")
+    better = wrong | (regions.modes[:, 0] == 0)
+    return regions._replace(
+        modes=np.where(better[:, None], modes, regions.modes),
+        harmonic=np.where(better, np.abs(harmonic), regions.harmonic),
+        detuning=np.where(better, off, regions.detuning),
+        kind=np.where(better, "sum", regions.kind),
+    )
 
 
 def _same(regions: Regions, index: int, span: Span) -> bool:

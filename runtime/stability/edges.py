@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import bad
+from ..core.errors import BadInput, bad
 from ..core.families import DAMPING, LinearPeriodic
 from ..core.inputs import is_finite, numbers, speed_span
 from ..core.results import Check, Result, provenance
@@ -40,6 +41,8 @@ Whole = NDArray[np.int64]
 
 # Relative width from which a tongue gets samples of its own on either side.
 _WIDE = 1e-6
+# Factor beyond the range up to which a region is followed that is wider than the search.
+_WIDEST = 5.0
 # Sine of the argument up to which two multipliers meet at +-1.
 _REAL = 1e-4
 _GAP = "multiplier +-1, and gap of multipliers of opposite Krein signature"
@@ -196,7 +199,8 @@ def stability_edges(
     rtol : float
         Wanted error of the monodromy matrices.
     margin : float
-        Factor beyond the range up to which is searched, so that regions are seen whole.
+        Factor beyond the range up to which is searched, so that regions are seen whole; up to five
+        where the checks tell of one that is wider.
     **parameters : float
         Parameter values that replace the system's own; geometry too, where it can be changed.
 
@@ -225,11 +229,10 @@ def stability_edges(
         raise bad("rtol", rtol, "a number from 1e-13 to 1e-6", "choose 1e-11")
     if not (is_finite(margin) and 1.0 < margin <= 10.0):
         raise bad("margin", margin, "a factor between 1 and 10", "leave it out")
-    span = (low / margin, high * margin)
-    slow = None
+    slow: SlowSystem | None = None
     if isinstance(system, SlowSystem):
+        _check_within(system, (low, high), parameters)
         slow, system = system, system.system
-        span = _within(slow, (low, high), span, parameters)
     else:
         system, values = at_geometry(system, parameters)
         parameters = {name: float(numbers(name, value)) for name, value in values.items()}
@@ -244,20 +247,17 @@ def stability_edges(
     damped = system.is_damped(**parameters)
     if damped:
         _check_damping(system, parameters)
-    matrices = MatricesOverSpeed(sharp, span, parameters, rtol)
-    checks: dict[str, Check] = {}
-    if slow is None:
-        ends = speed_boundaries(sharp, (1, -1), speed_range=span, **parameters)
-        checks.update(ends.checks)
-        regions, least = _undamped(matrices, _bounded(matrices, ends, span), span, whole=not damped)
-    else:
-        regions, least = _undamped(matrices, None, span, whole=not damped)
-        checks["decoupled"] = Check(slow.error, 1e-3)
-    if damped:
-        matrices = MatricesOverSpeed(system, span, parameters, rtol)
-        regions = damped_regions(matrices, regions, span)
-    regions = regions.overlapping(low, high)
-    checks.update(edge_checks(system, regions, (low, high), parameters))
+    search = partial(_searched, system, slow, (low, high), parameters, rtol)
+    regions, least, checks = search(margin)
+    while margin < _WIDEST and not all(checks[name].passed for name in ("samples", "verdicts")):
+        # What is unstable beyond all regions belongs to one that is wider than the search.
+        margin = min(1.0 + 3.0 * (margin - 1.0), _WIDEST)
+        try:
+            wider = search(margin)
+        except BadInput:  # too slow for a search
+            break
+        if _contradicted(wider[2]) < _contradicted(checks):
+            regions, least, checks = wider
     return StabilityEdges(
         method=("modulus 1 of a multiplier" if damped else _GAP)
         + (" of the slow modes" if slow is not None else ""),
@@ -272,13 +272,44 @@ def stability_edges(
     )
 
 
-def _within(
-    slow: SlowSystem,
+def _searched(
+    system: LinearPeriodic,
+    slow: SlowSystem | None,
     wanted: tuple[float, float],
-    span: tuple[float, float],
     parameters: Mapping[str, float],
-) -> tuple[float, float]:
-    """Return the part of a range that slow modes hold for."""
+    rtol: float,
+    margin: float,
+) -> tuple[Regions, float, dict[str, Check]]:
+    """Return the regions that overlap a range, the least width, and the checks."""
+    span = wanted[0] / margin, wanted[1] * margin
+    if slow is not None:
+        span = max(span[0], slow.speed_range[0]), min(span[1], slow.speed_range[1])
+    sharp, damped = system.without(*DAMPING), system.is_damped(**parameters)
+    matrices = MatricesOverSpeed(sharp, span, parameters, rtol)
+    checks: dict[str, Check] = {}
+    if slow is None:
+        ends = speed_boundaries(sharp, (1, -1), speed_range=span, **parameters)
+        checks.update(ends.checks)
+        regions, least = _undamped(matrices, _bounded(matrices, ends, span), span, whole=not damped)
+    else:
+        regions, least = _undamped(matrices, None, span, whole=not damped)
+        checks["decoupled"] = Check(slow.error, 1e-3)
+    if damped:
+        matrices = MatricesOverSpeed(system, span, parameters, rtol)
+        regions = damped_regions(matrices, regions, span)
+    regions = regions.overlapping(*wanted)
+    checks.update(edge_checks(system, regions, wanted, parameters))
+    return regions, least, checks
+
+
+def _contradicted(checks: Mapping[str, Check]) -> float:
+    return checks["samples"].value + checks["verdicts"].value
+
+
+def _check_within(
+    slow: SlowSystem, wanted: tuple[float, float], parameters: Mapping[str, float]
+) -> None:
+    """Refuse a range that slow modes do not hold for."""
     if parameters:
         fix = "give them to slow_system"
         raise bad("parameters", sorted(parameters), "none beside a SlowSystem", fix)
@@ -290,7 +321,6 @@ def _within(
             f"speeds within {low:.4g} to {high:.4g} rad/s",
             "make the slow system for a wider range",
         )
-    return max(span[0], low), min(span[1], high)
 
 
 def _check_damping(system: LinearPeriodic, parameters: Mapping[str, float]) -> None:

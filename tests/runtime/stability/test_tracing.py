@@ -183,6 +183,52 @@ def test_every_unstable_speed_is_in_a_region_and_no_other(system):
     assert found.passed, found.checks
 
 
+def _pulled(frequencies, matrix) -> LinearPeriodic:
+    return system_of(M=np.eye(len(matrix)), K=np.diag(frequencies) ** 2, Kg=wave(matrix))
+
+
+@pytest.mark.parametrize(
+    ("system", "span", "label"),
+    [
+        (
+            _pulled([1.0, np.sqrt(12.0)], np.array([[0.9, 0.05], [0.05, 0.3]])),
+            (1.95, 2.05),
+            "region 1 of mode 1",
+        ),
+        (
+            el.load_scene(
+                "smith_1972_5152_thirtysecond_inch", overrides={"model.modes": 2}
+            ).system(),
+            (84.0, 92.0),
+            "region 2 of mode 1",
+        ),
+    ],
+)
+def test_a_region_wider_than_the_search_is_found(system, span, label):
+    found = stability_edges(system, span)
+    assert label in found.labels
+    assert found.passed, found.checks
+    speeds = np.linspace(*span, 101)
+    assert contradictions(system, found, speeds) == 0
+
+
+def test_four_multipliers_that_leave_at_minus_one_are_a_sum_of_their_modes():
+    """Two modes of nearly one frequency: between their principal regions lies their sum's."""
+    rng = np.random.default_rng(1)
+    matrix = rng.normal(size=(3, 3))
+    phase, turned = rng.uniform(0, 6), rng.normal(size=(3, 3))
+    system = _pulled([2.546, 3.415, 3.424], (matrix + matrix.T) / 2).with_terms(
+        Term("K", None, wave((turned + turned.T) / 2, 1, phase))
+    )
+    found = stability_edges(system, (6.5, 7.2))
+    assert found.passed, found.checks
+    at = region_of(found, "sum", 1)
+    assert found.modes[at].tolist() == [2, 3]
+    # Where the region begins: at those of the two modes, not at what stays on the circle.
+    assert abs(found.multiplier[at] + 1.0) < 0.1
+    assert contradictions(system, found, np.linspace(6.5, 7.2, 501)) == 0
+
+
 def test_a_mode_of_negative_energy_makes_a_difference_region():
     """In turns the whirl w0/w - 1 is negative above w0; with an oscillator w3/w it sums to 1."""
     pull, stiff = 0.05, np.diag([2.0, 2.0, 16.0])

@@ -170,22 +170,10 @@ def _check(
 def without_stretching(system: LinearPeriodic) -> LinearPeriodic:
     """Return the vibration of a frame whose members keep their lengths.
 
-    The displacements that follow from the others are eliminated; what is left keeps its labels.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a frame that stands still, from :func:`linear_system`.
-
-    Returns
-    -------
-    LinearPeriodic
-        Of fewer coordinates; without ``structure``, whose coordinates are others.
-
-    Raises
-    ------
-    BadInput
-        If the system is not of such a frame, or nothing is left that moves.
+    The displacements that follow from the others are eliminated; what is left keeps its labels, and
+    the system keeps no ``structure``, whose coordinates are others.  Refused is a system, of
+    :func:`linear_system`, that is not of a frame that stands still, or of which nothing is left
+    that moves.
     """
     structure = system.structure if isinstance(system, LinearPeriodic) else None
     if structure is None or structure.moving:

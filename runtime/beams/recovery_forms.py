@@ -23,11 +23,8 @@ RIGID = "1"
 class LinearForm:
     """Rows linear in the coordinates and their derivatives at given crank angles.
 
-    Attributes
-    ----------
-    parts : mapping of (str, int) to ndarray
-        What it multiplies (``q``, ``dq``, ``ddq`` or ``1``) and the power of the crank speed, to
-        ``(nt, rows, n)``, of ``1`` to ``(nt, rows)``.
+    The parts go by what they multiply (``q``, ``dq``, ``ddq`` or ``1``) and the power of the crank
+    speed: ``(nt, rows, n)`` each, of ``1`` ``(nt, rows)``.
     """
 
     parts: Mapping[Key, Array] = field(default_factory=dict)

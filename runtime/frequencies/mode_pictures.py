@@ -97,26 +97,7 @@ def draw_mode(
 def draw_modes(
     system: LinearPeriodic, theta: Sequence[float] | Array | None = None, modes: int = 3
 ) -> Figure:
-    """Return a figure of the first modes, a row to a crank angle.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        A linkage or frame of beams.
-    theta : array_like, optional
-        Crank angles [rad]; ten even ones by default, every 36 degrees.
-    modes : int
-        How many modes.
-
-    Returns
-    -------
-    Figure
-
-    Raises
-    ------
-    BadInput
-        As :func:`draw_mode`.
-    """
+    """Return a figure of modes, a row to a crank angle [rad], every 36 degrees by default."""
     from ..core.plotting import new_figure
 
     required_structure(system)

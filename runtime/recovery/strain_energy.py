@@ -207,42 +207,23 @@ def _square(direct: Array, mass: Array, spun: Array, across: Array, centre: Arra
 
 @dataclass(frozen=True, kw_only=True)
 class BeamEnergies(BeamResult):
-    """Energies of a structure of beams in a motion.
+    """Energies of a structure of beams in a motion, ``(nt,)`` each but for ``strain``.
 
-    Speed and crank angles: see :class:`BeamResult`.
-
-    Attributes
-    ----------
-    links : tuple of str
-        The beams.
-    strain : ndarray
-        Strain energy of each beam [J], shape ``(nt, links)``.
-    springs : ndarray
-        Energy of springs at nodes [J], ``(nt,)``.
-    stiffening : ndarray
-        Energy that axial forces give to beams which bend [J]: of constant loads a potential, of
-        inertia what the shortening takes from the kinetic energy.
-    kinetic : ndarray
-        Kinetic energy [J] of the rigid and the elastic motion together.
-    dissipated : ndarray
-        Power that damping takes [W].
-    loads : ndarray
-        Power of weight and constant loads [W].
-    drive : ndarray
-        Power of the drive [W]: the generalised force of the crank angle times the speed.
-    error : float
-        Largest error of the whole strain energy [J]: by the error of the motion and, where it was
-        found on a finer mesh too, by that of the mesh.
+    Speed and crank angles: see :class:`BeamResult`.  The error is the largest of the whole strain
+    energy [J]: by the error of the motion and, where it was found on a finer mesh too, by that of
+    the mesh.
     """
 
     links: tuple[str, ...]
-    strain: Array
-    springs: Array
+    strain: Array  # strain energy of each beam [J], (nt, links)
+    springs: Array  # energy of springs at nodes [J]
+    # Energy that axial forces give to beams which bend [J]: of constant loads a potential, of
+    # inertia what the shortening takes from the kinetic energy.
     stiffening: Array
-    kinetic: Array
-    dissipated: Array
-    loads: Array
-    drive: Array
+    kinetic: Array  # of the rigid and the elastic motion together [J]
+    dissipated: Array  # power that damping takes [W]
+    loads: Array  # power of weight and constant loads [W]
+    drive: Array  # power of the drive [W]: generalised force of the crank angle times the speed
 
     dimensions: ClassVar[dict[str, tuple[str, ...]]] = {
         **BeamResult.dimensions,
@@ -289,31 +270,14 @@ class BeamEnergies(BeamResult):
 def beam_energies(system: LinearPeriodic, motion: Motion | float | None = None) -> BeamEnergies:
     """Return the energies of a structure of beams over the cycle.
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a structure of beams.
-    motion : SteadyState, Trajectory, BeamMotion, float or None
-        A computed motion; a crank speed [rad/s], for the steady state there; None for a frame.
+    The motion is a computed one; a crank speed [rad/s], for the steady state there; None for a
+    frame.  Of a periodic motion in the full form the check ``balance`` compares the power of drive
+    and loads, less what damping takes, with the rate of the energy, over the largest power: the
+    former comes from virtual work, the rate from the Fourier series of the energy.  The
+    instantaneous form has no energy that its equation keeps, and no check.
 
-    Returns
-    -------
-    BeamEnergies
-        Of a periodic motion in the full form its check ``balance`` compares the power of drive and
-        loads, less what damping takes, with the rate of the energy, over the largest power.  The
-        power of the drive comes from virtual work, the rate from the Fourier series of the energy.
-
-    Raises
-    ------
-    BadInput
-        If an argument is unusable.
-
-    Notes
-    -----
-    The energy holds the squares of the elastic motion; the moment that :func:`pin_reactions`
-    finds at the clamp is linear in it.  The two torques differ by these squares.
-
-    The instantaneous form has no energy that its equation keeps, and no check.
+    The energy holds the squares of the elastic motion; the moment that :func:`pin_reactions` finds
+    at the clamp is linear in it.  The two torques differ by these squares.
     """
     moving = beam_motion(system, motion)
     structure = required_structure(system)

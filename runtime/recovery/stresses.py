@@ -141,28 +141,13 @@ _LATER = {
 
 @dataclass(frozen=True)
 class StressPeak:
-    """The largest size of a stress.
+    """The largest size of a stress."""
 
-    Attributes
-    ----------
-    value : float
-        Stress [Pa], tension positive.
-    theta : float
-        Crank angle [rad].
-    link : str
-        The beam.
-    place : float
-        x over its length.
-    fibre : str
-        ``positive``: the outer fibre on the beam's positive side, to the left of its direction;
-        or ``negative``.
-    """
-
-    value: float
-    theta: float
+    value: float  # stress [Pa], tension positive
+    theta: float  # crank angle [rad]
     link: str
-    place: float
-    fibre: str
+    place: float  # x over the beam's length
+    fibre: str  # ``positive``, the outer fibre to the left of the beam's direction, or ``negative``
 
 
 @dataclass(frozen=True, kw_only=True)

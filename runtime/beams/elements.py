@@ -21,8 +21,6 @@ from ..core.families.emitted import array_function
 from ..core.inputs import is_finite, numbers_in_a_row, require_positive
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
     from .structure import PlacedElement
 
 Array: TypeAlias = NDArray[np.float64]

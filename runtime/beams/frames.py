@@ -48,7 +48,7 @@ def frame(
     pins : sequence of str
         Nodes at which every member turns by itself.
     elements, kind
-        As :func:`beam_linkage` takes them.
+        As :func:`linkage_system` takes them.
     nodes : mapping of str to mapping, optional
         By node, further values of :class:`Node`: masses, springs, loads.
     provenance : mapping, optional

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...generated import beam_section_sandwich
 from ..core.errors import BadInput, Problem, bad
-from ..core.inputs import is_finite, require_kind, sign_problems
+from ..core.inputs import is_finite, require_kind, require_positive, sign_problems
 from .section import Section
 
 Array = NDArray[np.float64]
@@ -115,13 +115,7 @@ def sandwich_section(
     require_kind("core", core, ViscoelasticLayer, "make one with ViscoelasticLayer")
     given = {"width": width, "wave_number": wave_number, "frequency": frequency}
     numbers = {name: value for name, value in given.items() if value is not None or name == "width"}
-    _refuse(
-        [
-            Problem(name, repr(value), "a positive number", _SI)
-            for name, value in numbers.items()
-            if value is None or not (is_finite(value) and value > 0)
-        ]
-    )
+    require_positive("sandwich_section", **numbers)
     mass = width * sum(layer.density * layer.thickness for layer in (base, core, cover))
     stiffness = _stiffness(base, core, cover, width)
     if wave_number is None:

@@ -80,14 +80,9 @@ class ConstrainedMotion(Result):
     labels: tuple[str, ...]
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "time": ("sample",),
-        "q": ("sample", "coordinate"),
-        "qd": ("sample", "coordinate"),
-        "qdd": ("sample", "coordinate"),
+        **dict.fromkeys(("q", "qd", "qdd"), ("sample", "coordinate")),
         "multipliers": ("sample", "constraint"),
-        "position_norm": ("sample",),
-        "velocity_norm": ("sample",),
-        "acceleration_norm": ("sample",),
+        **dict.fromkeys(("time", *(f"{level}_norm" for level in LEVELS)), ("sample",)),
         "error": ("coordinate",),
     }
 

@@ -386,9 +386,7 @@ class PeriodicOrbit(Result):
 
     dimensions: ClassVar = {
         "t": ("t",),
-        "q": ("t", "coordinate"),
-        "qd": ("t", "coordinate"),
-        "qdd": ("t", "coordinate"),
+        **dict.fromkeys(("q", "qd", "qdd"), ("t", "coordinate")),
         "multipliers": ("t", "constraint"),
         "advance": ("coordinate",),
     }

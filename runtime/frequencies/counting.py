@@ -382,10 +382,7 @@ class FrameFrequencies(Result):
     problem: Transcendental
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "frequencies": ("mode",),
-        "multiplicity": ("mode",),
-        "error": ("mode",),
-        "hertz": ("mode",),
+        **dict.fromkeys(("frequencies", "multiplicity", "error", "hertz"), ("mode",)),
     }
     exported: ClassVar[tuple[str, ...]] = ("hertz",)
 

@@ -72,17 +72,11 @@ class ResonanceCurve(Result):
     x: float
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "speed": ("speed",),
-        "peak": ("speed",),
-        "stable": ("speed",),
-        "error": ("speed",),
-        "maxima": ("maximum",),
-        "maxima_peak": ("maximum",),
-        "maxima_error": ("maximum",),
-        "order": ("maximum",),
-        "mode": ("maximum",),
+        **dict.fromkeys(("speed", "peak", "stable", "error"), ("speed",)),
+        **dict.fromkeys(
+            ("maxima", "maxima_peak", "maxima_error", "order", "mode", "ratio"), ("maximum",)
+        ),
         "mean_frequency": ("frequency",),
-        "ratio": ("maximum",),
     }
 
     @property

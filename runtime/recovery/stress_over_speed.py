@@ -87,12 +87,8 @@ class StressCurve(Result):
 
     exported: ClassVar[tuple[str, ...]] = ("stable",)
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "speed": ("speed",),
-        "modes": ("speed",),
-        "deflection": ("speed",),
-        "stable": ("speed",),
-        "multiplier": ("speed",),
-        "multiplier_error": ("speed",),
+        **dict.fromkeys(("speed", "modes", "deflection", "stable"), ("speed",)),
+        **dict.fromkeys(("multiplier", "multiplier_error"), ("speed",)),
         **dict.fromkeys(("maximum", "theta", "place", "fibre", "error"), ("speed", "link")),
     }
 

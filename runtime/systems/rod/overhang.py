@@ -157,9 +157,7 @@ class OverhangFrequencies(Result):
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
         "place": ("place",),
-        "roots": ("place", "mode"),
-        "frequencies": ("place", "mode"),
-        "error": ("place", "mode"),
+        **dict.fromkeys(("roots", "frequencies", "error"), ("place", "mode")),
     }
 
     def plot(self, ax: Axes | None = None) -> Axes:

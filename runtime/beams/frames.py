@@ -158,11 +158,6 @@ def _check(
             problems.append(
                 Problem("sections", f"none for {', '.join(missing)}", "one each", "add")
             )
-    for name, (first, second) in members.items():
-        known = first in places and second in places
-        if known and not problems and places[first] == places[second]:
-            found = f"of no length, from {first} to {second}"
-            problems.append(Problem(f"member {name}", found, "two places", "move a node"))
     if problems:
         raise BadInput(*problems)
 

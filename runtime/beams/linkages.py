@@ -123,9 +123,8 @@ def linkage_system(
         "rayleigh": rayleigh,
         "gravity": gravity,
     }
-    require_mapping("sections", sections, "give each link one by name")
     require_kind("linkage", linkage, Linkage, "make a FourBar, SliderCrank or QuickReturn")
-    return _made(linkage, dict(sections), dict(structure), options, linkage.lengths)
+    return _made(linkage, sections, structure, options, linkage.lengths)
 
 
 def _made(
@@ -173,9 +172,7 @@ def _check_names(
     masses: Mapping[str, float] | None,
     nodes: Mapping[str, Mapping[str, Any]] | None,
 ) -> None:
-    if not isinstance(sections, Mapping):
-        found, fix = type(sections).__name__, 'say {"crank": Section(...), ...}'
-        raise bad("sections", found, "a Section by link", fix)
+    require_mapping("sections", sections, 'say {"crank": Section(...), ...}')
     if masses is not None:
         require_mapping("joint_masses", masses, 'say {"B": 0.2}, for example')
     problems = node_value_problems(nodes)

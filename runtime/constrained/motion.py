@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from ..core.errors import LINEAR_RANGE, LinearRangeWarning, bad
 from ..core.families import Constrained, Guard
 from ..core.inputs import numbers, require_kind
+from ..core.plotting import axes_or_new
 from ..core.results import Check, Result, provenance
 from .collocation import collocation
 from .consistent import consistent_state
@@ -98,8 +99,6 @@ class ConstrainedMotion(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the coordinates over time and return the axes."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         for label, values in zip(self.labels, self.q.T, strict=True):
             ax.plot(self.time, values, label=label, linewidth=0.9)

@@ -13,6 +13,7 @@ from ..core.errors import SelfCheckFailed, bad
 from ..core.families import Constrained
 from ..core.families.multipliers import check_rank, scaling
 from ..core.inputs import numbers, require_kind
+from ..core.plotting import axes_or_new
 from ..core.results import Check, Result, provenance
 from ..periodic.ring import solve_ring
 from .collocation import Nodes, integrals, nodes, stage_matrix
@@ -410,8 +411,6 @@ class PeriodicOrbit(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the coordinates over one period, each less its mean, and return the axes."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         t = np.linspace(0.0, self.period, 1001)
         q = self.at(t)[0] - np.multiply.outer(t / self.period, self.advance)

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import Transcendental
-from ..core.inputs import is_finite, is_whole, numbers_in_a_row
+from ..core.inputs import is_finite, is_whole, numbers_in_a_row, require_kind
 from ..core.plotting import axes_or_new
 from ..core.results import Check, Result, provenance
 from .frames import Assembly, DynamicStiffness, divided_for, narrow_enough
@@ -511,9 +511,7 @@ def wittrick_williams(
         If not exactly one of ``upto`` and ``count`` is given, or one is not usable.
     """
     _check(upto, count)
-    if not isinstance(problem, Transcendental):
-        found = type(problem).__name__
-        raise bad("problem", found, "a Transcendental", "make one with dynamic_stiffness")
+    require_kind("problem", problem, Transcendental, "make one with dynamic_stiffness")
     if not isinstance(problem, DynamicStiffness):
         return bisected(problem, upto, count)
     modes = rigid_motions(problem)

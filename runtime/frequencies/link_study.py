@@ -16,6 +16,7 @@ from ..beams.structure import Structure
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers, require_kind, require_positive, require_whole
+from ..core.plotting import axes_or_new
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
 from .held import held_frequencies, mean_frequencies
@@ -58,8 +59,6 @@ class LinkFrequencies(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the means with their ranges, and the pinned links dashed (Fig. 9.1)."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         for k in range(self.mean.shape[1]):
             colour = f"C{k}"

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad
 from ..core.families import LinearPeriodic, require_system
 from ..core.inputs import require_whole
+from ..core.plotting import axes_or_new
 from ..core.results import Check, Result, provenance
 from .held import (
     assurance,
@@ -136,8 +137,6 @@ class NaturalFrequencies(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the curves over the crank angle, crossings and veerings marked."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         for k in range(self.tracked.shape[1]):
             ax.plot(np.degrees(self.theta), self.tracked[:, k], lw=1.2, label=f"mode {k + 1}")

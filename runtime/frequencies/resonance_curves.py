@@ -14,6 +14,7 @@ from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.maxima import local_maxima, narrowed
+from ..core.plotting import axes_or_new
 from ..core.results import Result, provenance
 from ..periodic.periodic_motion import SteadyState, quiet_state
 from .critical import label_speeds
@@ -89,8 +90,6 @@ class ResonanceCurve(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the curve with its maxima labelled by n and return the axes."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         ax.semilogy(*self.joined, linewidth=0.9)
         for speed, peak, order, mode in zip(

@@ -15,6 +15,7 @@ from ..beams.structure import Beam
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite
+from ..core.plotting import axes_or_new
 from .beam_forces import recovery, stations_of
 from .beam_motion import BeamMotion, beam_motion, chunks
 from .beam_result import BeamResult, checked_forms, in_motion
@@ -59,8 +60,6 @@ class ElasticCurve(BeamResult):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw both curves, the rigid one dashed."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         for values, style, label in ((self.rigid, "--", "rigid"), (self.elastic, "-", "elastic")):
             closed = np.vstack([values, values[:1]])

@@ -14,6 +14,7 @@ from ..beams.element_forms import ElementForms, required_structure
 from ..beams.recovery_forms import LinearForm
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
+from ..core.plotting import axes_or_new
 from ..core.results import Check
 from ..core.trigonometric import differentiated, even_angles, interpolated
 from .beam_motion import BeamMotion, beam_motion, chunks
@@ -32,13 +33,11 @@ Slopes = Mapping[int, Callable[[Array], Array]]
 def force_slopes(system: LinearPeriodic) -> Slopes:
     """Return how the axial forces of the geometric stiffness change with the crank angle.
 
-    By power of the speed, from angles ``(nt,)`` to ``(nt, elements, 3)``.
+    By power of the speed, from angles ``(nt,)`` to ``(nt, elements, 3)``; none where nothing moves.
     """
-    powers = ElementForms(system, np.zeros(1)).stiffening
-    if not (system.structure and system.structure.moving):
-        return {power: _none(value.shape[1]) for power, value in powers.items()}
-
-    return {power: _slope(system, power) for power in powers}
+    if not required_structure(system).moving:
+        return {}
+    return {power: _slope(system, power) for power in ElementForms(system, np.zeros(1)).stiffening}
 
 
 def _slope(system: LinearPeriodic, power: int) -> Callable[[Array], Array]:
@@ -61,10 +60,6 @@ def _slope(system: LinearPeriodic, power: int) -> Callable[[Array], Array]:
         if count > 4096:
             found = "axial forces that 4096 samples do not resolve"
             raise bad("structure", found, "a smooth motion", "keep off dead points")
-
-
-def _none(elements: int) -> Callable[[Array], Array]:
-    return lambda theta: np.zeros((len(theta), elements, 3))
 
 
 class Energies:
@@ -152,8 +147,11 @@ class Energies:
             weights = forces[:, e] * self.speed**power
             kernel = np.tensordot(weights, geometric, axes=1)
             pull = np.einsum("tij,tj->ti", kernel, local)
-            slope = np.tensordot(self.changing[power][:, e] * self.speed**power, geometric, axes=1)
-            change = 0.5 * np.einsum("ti,tij,tj->t", local, slope, local) + _dot(turned, pull)
+            change = _dot(turned, pull)
+            if power in self.changing:
+                rates = self.changing[power][:, e] * self.speed**power
+                slope = np.tensordot(rates, geometric, axes=1)
+                change = 0.5 * np.einsum("ti,tij,tj->t", local, slope, local) + change
             energy = 0.5 * _dot(local, pull)
             if power == 0:
                 sums["stiffening"] += energy
@@ -253,8 +251,6 @@ class BeamEnergies(BeamResult):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the strain energy of each beam and of all over the crank angle."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         degrees = np.degrees(self.theta)
         for link, values in zip(self.links, self.strain.T, strict=True):

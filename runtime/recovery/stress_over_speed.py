@@ -15,6 +15,7 @@ from ..beams.recovery_forms import RIGID, LinearForm
 from ..core.errors import LINEAR_RANGE, bad
 from ..core.families import DAMPING, LinearPeriodic
 from ..core.inputs import numbers
+from ..core.plotting import axes_or_new
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import differentiated, even_angles, resampled
 from ..periodic.equation import equation_of
@@ -146,8 +147,6 @@ class StressCurve(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the largest stress of each link over the speed, unstable ranges shaded."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         order = np.argsort(self.speed)
         for link, values in zip(self.links, self.maximum.T, strict=True):

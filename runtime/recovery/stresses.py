@@ -17,6 +17,7 @@ from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite, numbers_in_a_row
+from ..core.plotting import axes_or_new
 from ..core.trigonometric import even_angles, resampled
 from .beam_forces import (
     METHODS,
@@ -300,8 +301,6 @@ class StressResult(StationResult):
 
         Of a structure that stands still, the stress along the beams.
         """
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         if len(self.theta) == 1:
             for link in self.maxima:

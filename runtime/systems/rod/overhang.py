@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ....generated import quick_return_overhang_modes as emitted
 from ...core.errors import bad
+from ...core.plotting import axes_or_new
 from ...core.results import Check, DeferredChecks, Result, provenance
 from .basis import (
     Array,
@@ -162,8 +163,6 @@ class OverhangFrequencies(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies against the block's place."""
-        from ...core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         order = np.argsort(self.place)
         for mode in range(self.frequencies.shape[1]):

@@ -102,8 +102,7 @@ class ConstrainedMotion(Result):
         ax = axes_or_new(ax)
         for label, values in zip(self.labels, self.q.T, strict=True):
             ax.plot(self.time, values, label=label, linewidth=0.9)
-        ax.set_xlabel("time [s]")
-        ax.set_ylabel("coordinate")
+        ax.set(xlabel="time [s]", ylabel="coordinate")
         if len(self.labels) > 1:
             ax.legend()
         return ax

@@ -416,8 +416,7 @@ class PeriodicOrbit(Result):
         q = self.at(t)[0] - np.multiply.outer(t / self.period, self.advance)
         for values, name in zip((q - q.mean(axis=0)).T, self.labels, strict=True):
             ax.plot(t / self.period, values, linewidth=1.0, label=name)
-        ax.set_xlabel("time over period")
-        ax.set_ylabel("coordinates less their means")
+        ax.set(xlabel="time over period", ylabel="coordinates less their means")
         ax.legend(frameon=False, fontsize="small")
         return ax
 

@@ -187,8 +187,7 @@ class Campbell(Result):
             ax.axvline(self.buckling, color="0.5", lw=0.8, ls=":")
         ax.set_xlim(self.speed[0], self.speed[-1])
         ax.set_ylim(0.0, 1.05 * top)
-        ax.set_xlabel("crank speed [rad/s]")
-        ax.set_ylabel("frequency [rad/s]")
+        ax.set(xlabel="crank speed [rad/s]", ylabel="frequency [rad/s]")
         return ax
 
 

@@ -451,8 +451,7 @@ class FrameFrequencies(Result):
         axes.plot(number[several], self.hertz[several], "s", ms=9, mfc="none", label="multiple")
         if several.any():
             axes.legend()
-        axes.set_xlabel("mode")
-        axes.set_ylabel("natural frequency [Hz]")
+        axes.set(xlabel="mode", ylabel="natural frequency [Hz]")
         return axes
 
 

@@ -152,8 +152,7 @@ class NaturalFrequencies(Result):
                 ax.scatter(
                     places, [one.frequency for one in seen], s=36, label=name, zorder=3, **style
                 )
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel("natural frequency [rad/s]")
+        ax.set(xlabel="crank angle [deg]", ylabel="natural frequency [rad/s]")
         ax.set_ylim(bottom=0.0)
         ax.legend(fontsize=8, ncols=2)
         return ax

@@ -103,8 +103,7 @@ class ResonanceCurve(Result):
                 ha="center",
                 fontsize=7,
             )
-        ax.set_xlabel("crank speed [rad/s]")
-        ax.set_ylabel("largest deflection [m]")
+        ax.set(xlabel="crank speed [rad/s]", ylabel="largest deflection [m]")
         return ax
 
 

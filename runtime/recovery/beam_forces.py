@@ -268,8 +268,7 @@ class BeamForces(StationResult):
             lines = ax.plot(self.places[own], values.max(axis=0), label=link, linewidth=0.9)
             ax.plot(self.places[own], values.min(axis=0), color=lines[0].get_color(), linewidth=0.9)
         ax.axhline(0.0, color="0.7", linewidth=0.6)
-        ax.set_xlabel("place x/length")
-        ax.set_ylabel(f"extremes of {quantity} [{_UNITS[quantity]}]")
+        ax.set(xlabel="place x/length", ylabel=f"extremes of {quantity} [{_UNITS[quantity]}]")
         ax.legend()
         return ax
 

@@ -110,8 +110,7 @@ class PinReactions(BeamResult):
             if node not in self.of_ground:
                 size = np.hypot(value[:, 0], value[:, 1])
                 ax.plot(degrees, size, "--", label=f"{node} on {beam}", linewidth=0.9)
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel("force [N]")
+        ax.set(xlabel="crank angle [deg]", ylabel="force [N]")
         ax.legend()
         return ax
 

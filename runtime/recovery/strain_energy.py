@@ -256,8 +256,7 @@ class BeamEnergies(BeamResult):
         for link, values in zip(self.links, self.strain.T, strict=True):
             ax.plot(degrees, values, label=link, linewidth=0.9)
         ax.plot(degrees, np.sum(self.strain, axis=1), "k", label="all", linewidth=0.9)
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel("strain energy [J]")
+        ax.set(xlabel="crank angle [deg]", ylabel="strain energy [J]")
         ax.set_title(f"{self.speed:.4g} rad/s", fontsize="medium")
         ax.legend()
         return ax

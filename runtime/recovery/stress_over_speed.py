@@ -152,8 +152,7 @@ class StressCurve(Result):
         for link, values in zip(self.links, self.maximum.T, strict=True):
             ax.semilogy(self.speed[order], values[order] / 1e6, label=link, linewidth=0.9)
         shade_unstable(ax, self.unstable_ranges)
-        ax.set_xlabel("crank speed [rad/s]")
-        ax.set_ylabel("largest stress [MPa]")
+        ax.set(xlabel="crank speed [rad/s]", ylabel="largest stress [MPa]")
         ax.legend()
         return ax
 

@@ -306,8 +306,7 @@ class StressResult(StationResult):
             for link in self.maxima:
                 own = stations_on(self.links, link)
                 ax.plot(self.places[own], 1e-6 * self.stress[0, own], label=link, linewidth=0.9)
-            ax.set_xlabel("place x/length")
-            ax.set_ylabel("largest stress [MPa]")
+            ax.set(xlabel="place x/length", ylabel="largest stress [MPa]")
             ax.legend()
             return ax
         period, closed = self.period, self.period is not None
@@ -319,8 +318,7 @@ class StressResult(StationResult):
             line = ax.plot(angles, whole, label=label, linewidth=0.9)[0]
             ax.plot(angles, still, "--", color=line.get_color(), linewidth=0.7)
             ax.plot(np.degrees(peak.theta), 1e-6 * peak.value, "o", color=line.get_color(), ms=3)
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel("stress at the worst fibre [MPa]")
+        ax.set(xlabel="crank angle [deg]", ylabel="stress at the worst fibre [MPa]")
         ax.set_title(f"{self.speed:.4g} rad/s; dashed: quasi-static", fontsize="medium")
         ax.legend()
         return ax

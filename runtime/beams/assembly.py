@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.sampling import Remembered
 from .elements import ElementArrays, element_arrays
 from .structure import Beam, PlacedElement, Structure
 
@@ -105,15 +106,9 @@ class AngleArrays:
         self.structure = structure
         self.free = structure.freedoms.free
         self.count = len(structure.freedoms.all)
-        self._last: tuple[Array, RigidMotion] | None = None
+        # The rigid motion at crank angles (nt,).
+        self.motion = Remembered(partial(rigid_motion, structure))
         self._made: dict[str, tuple[Kernel, ...]] = {}
-
-    def motion(self, theta: Array) -> RigidMotion:
-        """Return the rigid motion at crank angles ``(nt,)``; the last one is kept."""
-        last = self._last
-        if last is None or not np.array_equal(last[0], theta):
-            last = self._last = (theta.copy(), rigid_motion(self.structure, theta))
-        return last[1]
 
     @cached_property
     def local(self) -> tuple[tuple[PlacedElement, ElementArrays], ...]:

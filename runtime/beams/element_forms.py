@@ -253,8 +253,8 @@ class ElementForms:
             found = found + LinearForm({("dq", 1): share * at.own})
         return found.scaled(self.factor["elasticity"])
 
-    def has_damping(self, scale: str) -> bool:
-        """Return True where the system has a damping of that kind."""
+    def has_damping(self, scale: str | None) -> bool:
+        """Return True where the system has a damping of that kind; None is that of dampers."""
         return any(term.array == "C" and term.scale == scale for term in self.system.terms)
 
     def end_forces(self, e: int) -> LinearForm:
@@ -285,16 +285,12 @@ class ElementForms:
         """Return the forces of springs and dampers at the nodes, of every coordinate."""
         pick = np.tile(self.spread, (len(self.theta), 1, 1))
         parts = {("q", 0): self.springs[:, None] * pick}
-        drag = self.dampers if self._has_dampers else np.zeros(len(self.dampers))
+        drag = self.dampers if self.has_damping(None) else np.zeros(len(self.dampers))
         if self.has_damping("rayleigh springs"):
             drag = drag + self.factor["rayleigh_stiffness"] * self.springs
         if np.any(drag):
             parts["dq", 1] = drag[:, None] * pick
         return LinearForm(parts)
-
-    @property
-    def _has_dampers(self) -> bool:
-        return any(t.array == "C" and t.scale is None for t in self.system.terms)
 
     def node_loads(self) -> LinearForm:
         """Return constant loads on the nodes, of every coordinate."""

@@ -21,8 +21,6 @@ from ..core.families.emitted import array_function
 from ..core.inputs import is_finite, numbers_in_a_row, require_positive
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
     from .structure import PlacedElement
 
 Array: TypeAlias = NDArray[np.float64]
@@ -50,29 +48,16 @@ class ElementArrays:
     In axes that turn at the rate w the element has ``mass qdd + 2 w coupling qd + (stiffness + Kg -
     w^2 centripetal + wd coupling) q``, with ``Kg = sum_k P_k geometric[k]`` for an axial force
     ``P_0 + P_1 s + P_2 s^2`` [N], tension positive, s from 0 to 1.
-
-    Attributes
-    ----------
-    mass : ndarray, shape (n, n)
-        M: [kg] for displacements, [kg m], [kg m^2] where rotations enter.
-    coupling : ndarray, shape (n, n)
-        W, skew: ``int rho A N^T J N dx``, J = [[0, -1], [1, 0]].
-    centripetal : ndarray, shape (n, n)
-        The mass matrix without rotary inertia: the same as ``mass`` but for "timoshenko".
-    stiffness : ndarray, shape (n, n)
-        K [N/m], [N], [N m].
-    geometric : ndarray, shape (3, n, n)
-        Stiffness [1/m], ... per constant, linear and quadratic part of the axial force.
-    load : ndarray, shape (n, 4)
-        Nodal forces [N], [N m] per end values px1, px2, py1, py2 [N/m] of a force per length along
-        (x) and across (y) the element, linear between its ends.
     """
 
-    mass: Array
-    coupling: Array
-    centripetal: Array
-    stiffness: Array
+    mass: Array  # M, (n, n): [kg] for displacements, [kg m], [kg m^2] where rotations enter
+    coupling: Array  # W, skew, (n, n): ``int rho A N^T J N dx``, J = [[0, -1], [1, 0]]
+    centripetal: Array  # mass without rotary inertia, (n, n): as M but for "timoshenko"
+    stiffness: Array  # K, (n, n) [N/m], [N], [N m]
+    # (3, n, n) [1/m], ...: per constant, linear, quadratic part of the axial force
     geometric: Array
+    # (n, 4): nodal forces [N], [N m] per end values px1, px2, py1, py2 [N/m] of a force per length
+    # along (x) and across (y) the element, linear between its ends
     load: Array
 
 
@@ -86,40 +71,14 @@ def element_arrays(
     shear_stiffness: float | None = None,
     rotary_inertia: float = 0.0,
 ) -> ElementArrays:
-    """Return the matrices of a beam element.
+    """Return the matrices of a beam element, in local axes.
 
-    Parameters
-    ----------
-    kind : str
-        "cubic" (Hermite), "internal_node" (quintic, with a node in the middle), "curvature"
-        (quintic, with the curvatures of the ends) or "timoshenko" (shear and rotary inertia, free
-        of locking).  Axially all are linear.
-    length : float
-        Of the element [m].
-    mass_per_length : float
-        rho A [kg/m].
-    axial_stiffness : float
-        EA [N].
-    bending_stiffness : float
-        EI [N m^2].
-    shear_stiffness : float, optional
-        k G A [N]; "timoshenko" needs it, the other kinds do not use it.
-    rotary_inertia : float
-        rho I [kg m] per length; "timoshenko" alone uses it.
+    The kinds are "cubic" (Hermite), "internal_node" (quintic, with a node in the middle),
+    "curvature" (quintic, with the curvatures of the ends) and "timoshenko" (shear and rotary
+    inertia, free of locking); axially all are linear.  From the element's length [m], rho A [kg/m],
+    EA [N] and EI [N m^2]; "timoshenko" alone needs k G A [N] and uses rho I [kg m] per length.
+    Refused are sizes that are not positive, inertias that are negative, and entries beyond doubles.
 
-    Returns
-    -------
-    ElementArrays
-        In local axes.
-
-    Raises
-    ------
-    BadInput
-        If the kind is unknown, a length or stiffness is not positive and finite, an inertia is
-        negative, or an entry exceeds the range of doubles.
-
-    Notes
-    -----
     Aannaque (4.11)-(4.24), (4.38), (4.39), (A.3), (A.4), (A.7), (A.8), the slips mended.
     """
     _check_kind(kind)

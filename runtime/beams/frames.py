@@ -48,7 +48,7 @@ def frame(
     pins : sequence of str
         Nodes at which every member turns by itself.
     elements, kind
-        As :func:`beam_linkage` takes them.
+        As :func:`linkage_system` takes them.
     nodes : mapping of str to mapping, optional
         By node, further values of :class:`Node`: masses, springs, loads.
     provenance : mapping, optional
@@ -158,11 +158,6 @@ def _check(
             problems.append(
                 Problem("sections", f"none for {', '.join(missing)}", "one each", "add")
             )
-    for name, (first, second) in members.items():
-        known = first in places and second in places
-        if known and not problems and places[first] == places[second]:
-            found = f"of no length, from {first} to {second}"
-            problems.append(Problem(f"member {name}", found, "two places", "move a node"))
     if problems:
         raise BadInput(*problems)
 
@@ -170,22 +165,10 @@ def _check(
 def without_stretching(system: LinearPeriodic) -> LinearPeriodic:
     """Return the vibration of a frame whose members keep their lengths.
 
-    The displacements that follow from the others are eliminated; what is left keeps its labels.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a frame that stands still, from :func:`linear_system`.
-
-    Returns
-    -------
-    LinearPeriodic
-        Of fewer coordinates; without ``structure``, whose coordinates are others.
-
-    Raises
-    ------
-    BadInput
-        If the system is not of such a frame, or nothing is left that moves.
+    The displacements that follow from the others are eliminated; what is left keeps its labels, and
+    the system keeps no ``structure``, whose coordinates are others.  Refused is a system, of
+    :func:`linear_system`, that is not of a frame that stands still, or of which nothing is left
+    that moves.
     """
     structure = system.structure if isinstance(system, LinearPeriodic) else None
     if structure is None or structure.moving:

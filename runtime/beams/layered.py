@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...generated import beam_section_sandwich
 from ..core.errors import BadInput, Problem, bad
-from ..core.inputs import is_finite, require_kind, sign_problems
+from ..core.inputs import is_finite, require_kind, require_positive, sign_problems
 from .section import Section
 
 Array = NDArray[np.float64]
@@ -25,26 +25,11 @@ _LARGEST = 1e18
 
 @dataclass(frozen=True)
 class ElasticLayer:
-    """Outer layer of a sandwich.
+    """Outer layer of a sandwich; every number is positive."""
 
-    Parameters
-    ----------
-    thickness : float
-        Extent in the plane of bending [m].
-    modulus : float
-        Young's modulus [Pa].
-    density : float
-        Mass per volume [kg/m^3].
-
-    Raises
-    ------
-    BadInput
-        If a number is not positive.
-    """
-
-    thickness: float
-    modulus: float
-    density: float
+    thickness: float  # extent in the plane of bending [m]
+    modulus: float  # Young's modulus [Pa]
+    density: float  # mass per volume [kg/m^3]
 
     def __post_init__(self) -> None:
         _refuse(sign_problems("ElasticLayer", self, vars(self), positive=True, fix=_SI))
@@ -54,27 +39,13 @@ class ElasticLayer:
 class ViscoelasticLayer:
     """Core of a sandwich, of complex shear modulus ``shear_modulus (1 + i loss_factor)``.
 
-    Parameters
-    ----------
-    thickness : float
-        Extent in the plane of bending [m].
-    shear_modulus : float
-        Its real part [Pa].
-    loss_factor : float
-        Imaginary part of the modulus over the real part; 0 or more.
-    density : float
-        Mass per volume [kg/m^3].
-
-    Raises
-    ------
-    BadInput
-        If a number is not positive, or the loss factor negative.
+    Every number is positive, but the loss factor may be 0.
     """
 
-    thickness: float
-    shear_modulus: float
-    loss_factor: float
-    density: float
+    thickness: float  # extent in the plane of bending [m]
+    shear_modulus: float  # its real part [Pa]
+    loss_factor: float  # imaginary part of the modulus over the real part
+    density: float  # mass per volume [kg/m^3]
 
     def __post_init__(self) -> None:
         names = [name for name in vars(self) if name != "loss_factor"]
@@ -87,33 +58,17 @@ class ViscoelasticLayer:
 
 @dataclass(frozen=True)
 class SandwichSection:
-    """Equivalent uniform section of a sandwich at one wave number and one frequency.
+    """Equivalent uniform section of a sandwich at one wave number and one frequency."""
 
-    Attributes
-    ----------
-    bending_stiffness : float
-        Real part of EI [N m^2].
-    loss_factor : float
-        Imaginary part of EI over its real part.
-    mass_per_length : float
-        [kg/m].
-    axial_stiffness : float
-        EA of the outer layers [N].
-    area : float
-        Of all layers [m^2].
-    wave_number, frequency : float
-        [rad/m] and [rad/s], for which it holds.
-    slack, bonded : float
-        EI without any resistance of the core to shear, and with a core rigid in shear [N m^2].
-    """
-
-    bending_stiffness: float
-    loss_factor: float
-    mass_per_length: float
-    axial_stiffness: float
-    area: float
+    bending_stiffness: float  # real part of EI [N m^2]
+    loss_factor: float  # imaginary part of EI over its real part
+    mass_per_length: float  # [kg/m]
+    axial_stiffness: float  # EA of the outer layers [N]
+    area: float  # of all layers [m^2]
+    # [rad/m], and [rad/s], for which it holds
     wave_number: float
     frequency: float
+    # EI without any resistance of the core to shear, and with a core rigid in shear [N m^2]
     slack: float
     bonded: float
 
@@ -147,47 +102,20 @@ def sandwich_section(
     wave_number: float | None = None,
     frequency: float | None = None,
 ) -> SandwichSection:
-    """Return the equivalent section of a three-layer beam.
+    """Return the equivalent section of a three-layer beam (Aannaque 9.2).
 
-    Parameters
-    ----------
-    base, core, cover : ElasticLayer, ViscoelasticLayer, ElasticLayer
-        The layers in order.
-    width : float
-        Extent across the plane of bending [m].
-    wave_number : float, optional
-        Of the deflection [rad/m]: ``n pi / L`` for mode n of a pinned beam.  Without it, that of
-        free bending waves of the given frequency.
-    frequency : float, optional
-        Of the vibration [rad/s].  Without it, that of free bending waves of the wave number.
-
-    Returns
-    -------
-    SandwichSection
-        Stiffness, loss factor, mass, retardation time.
-
-    Raises
-    ------
-    BadInput
-        If neither wave number nor frequency is given, or a number is not positive.
-
-    Notes
-    -----
-    Aannaque 9.2.  The outer layers do not shear and the core is not stretched: the model holds for
-    a core that is soft beside the outer layers, and wave lengths long beside the thickness.
+    From the layers in order and the width across the plane of bending [m], for a wave number of the
+    deflection [rad/m], ``n pi / L`` for mode n of a pinned beam, and a frequency [rad/s]; where one
+    of the two is left out it is that of free bending waves.  The outer layers do not shear and the
+    core is not stretched: the model holds for a core that is soft beside the outer layers, and wave
+    lengths long beside the thickness.  Refused are numbers that are not positive.
     """
     for where, layer in (("base", base), ("cover", cover)):
         require_kind(where, layer, ElasticLayer, "make one with ElasticLayer")
     require_kind("core", core, ViscoelasticLayer, "make one with ViscoelasticLayer")
     given = {"width": width, "wave_number": wave_number, "frequency": frequency}
     numbers = {name: value for name, value in given.items() if value is not None or name == "width"}
-    _refuse(
-        [
-            Problem(name, repr(value), "a positive number", _SI)
-            for name, value in numbers.items()
-            if value is None or not (is_finite(value) and value > 0)
-        ]
-    )
+    require_positive("sandwich_section", **numbers)
     mass = width * sum(layer.density * layer.thickness for layer in (base, core, cover))
     stiffness = _stiffness(base, core, cover, width)
     if wave_number is None:

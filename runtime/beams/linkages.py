@@ -48,39 +48,10 @@ def beam_linkage(
     nodes: Mapping[str, Mapping[str, Any]] | None = None,
     provenance: Mapping[str, str] | None = None,
 ) -> Structure:
-    """Return a linkage all of whose links are beams.
+    """Return a linkage all of whose links are beams, from what :func:`linkage_system` takes.
 
     The crank is clamped to a shaft that turns as prescribed; the other joints are pins.  The block
     of a quick-return is one that slides along the rod without friction, a point of mass.
-
-    Parameters
-    ----------
-    linkage : FourBar, SliderCrank or QuickReturn
-        Lengths and assembly; the crank must be able to turn fully.
-    sections : mapping of str to Section
-        By link: crank, coupler and, of a four-bar, follower; of a quick-return crank and rod.
-    elements : int or mapping
-        Number of elements of every link, or by link as :class:`Beam` takes them.
-    kind : str
-        Element: ``cubic``, ``internal_node``, ``curvature`` or ``timoshenko``.
-    joint_masses : mapping of str to float, optional
-        Lumped masses [kg] by joint: A, B, C, D; of a slider-crank's slider at C.
-    nodes : mapping of str to mapping, optional
-        By joint, values of :class:`Node` that replace those of the linkage: ``{"A": {"held":
-        ("x", "y"), "stiffness": {"rotation": 2e4}}}`` puts the crank on a sprung shaft, ``{"D":
-        {"held": ("y",), "stiffness": {"x": 1e6}}}`` the follower's pivot on a spring.
-    provenance : mapping, optional
-        Scene and options to record.
-
-    Returns
-    -------
-    Structure
-
-    Raises
-    ------
-    BadInput
-        If the linkage is of another kind or its crank cannot turn fully, a link has no section, or
-        a name or value is unusable.
     """
     bars = BARS.get(type(linkage))
     if bars is None:
@@ -116,10 +87,24 @@ def linkage_system(
 
     Parameters
     ----------
-    linkage, sections, **structure
-        As :func:`beam_linkage` takes them.
+    linkage : FourBar, SliderCrank or QuickReturn
+        Lengths and assembly; the crank must be able to turn fully.
+    sections : mapping of str to Section
+        By link: crank, coupler and, of a four-bar, follower; of a quick-return crank and rod.
     form, geometric_stiffness, rayleigh, gravity
         As :func:`linear_system` takes them.
+    elements : int or mapping
+        Number of elements of every link, or by link as :class:`Beam` takes them; 3 by default.
+    kind : str
+        Element: ``cubic``, the default, ``internal_node``, ``curvature`` or ``timoshenko``.
+    joint_masses : mapping of str to float, optional
+        Lumped masses [kg] by joint: A, B, C, D; of a slider-crank's slider at C.
+    nodes : mapping of str to mapping, optional
+        By joint, values of :class:`Node` that replace those of the linkage: ``{"A": {"held":
+        ("x", "y"), "stiffness": {"rotation": 2e4}}}`` puts the crank on a sprung shaft, ``{"D":
+        {"held": ("y",), "stiffness": {"x": 1e6}}}`` the follower's pivot on a spring.
+    provenance : mapping, optional
+        Scene and options to record.
 
     Returns
     -------
@@ -129,7 +114,8 @@ def linkage_system(
     Raises
     ------
     BadInput
-        As :func:`beam_linkage` and :func:`linear_system`.
+        If the linkage is of another kind or its crank cannot turn fully, a link has no section, a
+        name or value is unusable, or a motion of the structure meets no stiffness.
     """
     options = {
         "form": form,
@@ -137,9 +123,8 @@ def linkage_system(
         "rayleigh": rayleigh,
         "gravity": gravity,
     }
-    require_mapping("sections", sections, "give each link one by name")
     require_kind("linkage", linkage, Linkage, "make a FourBar, SliderCrank or QuickReturn")
-    return _made(linkage, dict(sections), dict(structure), options, linkage.lengths)
+    return _made(linkage, sections, structure, options, linkage.lengths)
 
 
 def _made(
@@ -187,9 +172,7 @@ def _check_names(
     masses: Mapping[str, float] | None,
     nodes: Mapping[str, Mapping[str, Any]] | None,
 ) -> None:
-    if not isinstance(sections, Mapping):
-        found, fix = type(sections).__name__, 'say {"crank": Section(...), ...}'
-        raise bad("sections", found, "a Section by link", fix)
+    require_mapping("sections", sections, 'say {"crank": Section(...), ...}')
     if masses is not None:
         require_mapping("joint_masses", masses, 'say {"B": 0.2}, for example')
     problems = node_value_problems(nodes)

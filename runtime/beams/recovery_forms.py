@@ -23,11 +23,8 @@ RIGID = "1"
 class LinearForm:
     """Rows linear in the coordinates and their derivatives at given crank angles.
 
-    Attributes
-    ----------
-    parts : mapping of (str, int) to ndarray
-        What it multiplies (``q``, ``dq``, ``ddq`` or ``1``) and the power of the crank speed, to
-        ``(nt, rows, n)``, of ``1`` to ``(nt, rows)``.
+    The parts go by what they multiply (``q``, ``dq``, ``ddq`` or ``1``) and the power of the crank
+    speed: ``(nt, rows, n)`` each, of ``1`` ``(nt, rows)``.
     """
 
     parts: Mapping[Key, Array] = field(default_factory=dict)
@@ -41,13 +38,9 @@ class LinearForm:
     def __sub__(self, other: LinearForm) -> LinearForm:
         return self + other.scaled(-1.0)
 
-    def scaled(self, factor: float | Array) -> LinearForm:
-        """Return it times a number, or times a number per angle ``(nt,)``."""
-        found = {}
-        for key, value in self.parts.items():
-            shape = (-1,) + (1,) * (value.ndim - 1)
-            found[key] = value * (np.reshape(factor, shape) if np.ndim(factor) else factor)
-        return LinearForm(found)
+    def scaled(self, factor: float) -> LinearForm:
+        """Return it times a number."""
+        return LinearForm({key: value * factor for key, value in self.parts.items()})
 
     def turned(self, matrix: Array) -> LinearForm:
         """Return a matrix ``(rows, rows)`` or ``(nt, rows, rows)`` times it."""

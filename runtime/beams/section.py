@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import BadInput, bad
 from ..core.inputs import is_finite, require_positive, sign_problems
 
 
@@ -47,19 +47,14 @@ class Section:
 
     def __post_init__(self) -> None:
         names = ["area", "second_moment", "modulus", "density"]
-        names += [name for name in ("thickness", "shear_stiffness") if getattr(self, name)]
+        optional = ("thickness", "shear_stiffness")
+        names += [name for name in optional if getattr(self, name) is not None]
         problems = sign_problems(
             "Section", self, names, positive=True, fix="give SI units, lengths in metres"
         )
         problems += sign_problems(
             "Section", self, ["retardation"], positive=False, fix="correct it"
         )
-        for name in ("thickness", "shear_stiffness"):
-            value = getattr(self, name)
-            if value is not None and not value:
-                problems.append(
-                    Problem(f"Section.{name}", str(value), "a positive number", "omit it")
-                )
         if problems:
             raise BadInput(*problems)
 

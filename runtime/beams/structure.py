@@ -113,12 +113,10 @@ class _Numbering:
         places = beam.places
         points = [self._end_point(beam, beam.start, nodes)]
         for k in range(1, len(places) - 1):
-            parts = [(part, part) for part in ("x", "y", "rotation")]
-            if beam.kind == "curvature":
-                parts.append(("curvature", "curvature"))
+            parts = (*DIRECTIONS, "curvature") if beam.kind == "curvature" else DIRECTIONS
             point = [
-                self.add(Freedom(f"{beam.name}.{k}.{name}", beam.name, float(places[k]), part))
-                for name, part in parts
+                self.add(Freedom(f"{beam.name}.{k}.{part}", beam.name, float(places[k]), part))
+                for part in parts
             ]
             points.append(point)
         points.append(self._end_point(beam, beam.end, nodes))
@@ -332,13 +330,6 @@ class Structure:
     ------
     BadInput
         If names are unknown or occur twice, a node has no beam, or ends that should meet do not.
-
-    Attributes
-    ----------
-    labels : tuple of str
-        Names of the free coordinates: ``B.x``, ``B.y`` [m]; ``B.crank``, the rotation of the crank
-        at B [rad]; ``crank.1.x`` of its first inner node.  Of a node B that slides along a beam
-        there is one displacement, ``B.along`` that beam [m].
     """
 
     beams: tuple[Beam, ...]
@@ -366,7 +357,12 @@ class Structure:
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Names of the free coordinates."""
+        """Names of the free coordinates.
+
+        ``B.x``, ``B.y`` [m]; ``B.crank``, the rotation of the crank at B [rad]; ``crank.1.x`` of
+        its first inner node.  Of a node B that slides along a beam there is one displacement,
+        ``B.along`` that beam [m].
+        """
         found = self.freedoms.free_labels
         for name in self.sliding:
             kept = (label for label in found if label != f"{name}.y")

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from ..core.errors import LINEAR_RANGE, LinearRangeWarning, bad
 from ..core.families import Constrained, Guard
 from ..core.inputs import numbers, require_kind
+from ..core.plotting import axes_or_new
 from ..core.results import Check, Result, provenance
 from .collocation import collocation
 from .consistent import consistent_state
@@ -80,14 +81,9 @@ class ConstrainedMotion(Result):
     labels: tuple[str, ...]
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "time": ("sample",),
-        "q": ("sample", "coordinate"),
-        "qd": ("sample", "coordinate"),
-        "qdd": ("sample", "coordinate"),
+        **dict.fromkeys(("q", "qd", "qdd"), ("sample", "coordinate")),
         "multipliers": ("sample", "constraint"),
-        "position_norm": ("sample",),
-        "velocity_norm": ("sample",),
-        "acceleration_norm": ("sample",),
+        **dict.fromkeys(("time", *(f"{level}_norm" for level in LEVELS)), ("sample",)),
         "error": ("coordinate",),
     }
 
@@ -103,13 +99,10 @@ class ConstrainedMotion(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the coordinates over time and return the axes."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         for label, values in zip(self.labels, self.q.T, strict=True):
             ax.plot(self.time, values, label=label, linewidth=0.9)
-        ax.set_xlabel("time [s]")
-        ax.set_ylabel("coordinate")
+        ax.set(xlabel="time [s]", ylabel="coordinate")
         if len(self.labels) > 1:
             ax.legend()
         return ax

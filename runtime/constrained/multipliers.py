@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.inputs import require_kind
+from ..core.plotting import multiplier_plane
 from ..core.results import Check, Result, provenance
 from .equations import EPS, Array
 from .orbits import LEFT, OrbitSource, PeriodicOrbit, Shooting, Shot, Tangent
@@ -100,8 +101,6 @@ class ConstrainedMultipliers(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw physical and constraint multipliers and the unit circle; return the axes."""
-        from ..core.plotting import multiplier_plane
-
         ax = multiplier_plane(ax)
         ax.plot(self.physical.real, self.physical.imag, "o", markersize=4, label="physical")
         if len(self.others):

@@ -13,6 +13,7 @@ from ..core.errors import SelfCheckFailed, bad
 from ..core.families import Constrained
 from ..core.families.multipliers import check_rank, scaling
 from ..core.inputs import numbers, require_kind
+from ..core.plotting import axes_or_new
 from ..core.results import Check, Result, provenance
 from ..periodic.ring import solve_ring
 from .collocation import Nodes, integrals, nodes, stage_matrix
@@ -386,9 +387,7 @@ class PeriodicOrbit(Result):
 
     dimensions: ClassVar = {
         "t": ("t",),
-        "q": ("t", "coordinate"),
-        "qd": ("t", "coordinate"),
-        "qdd": ("t", "coordinate"),
+        **dict.fromkeys(("q", "qd", "qdd"), ("t", "coordinate")),
         "multipliers": ("t", "constraint"),
         "advance": ("coordinate",),
     }
@@ -412,15 +411,12 @@ class PeriodicOrbit(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the coordinates over one period, each less its mean, and return the axes."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         t = np.linspace(0.0, self.period, 1001)
         q = self.at(t)[0] - np.multiply.outer(t / self.period, self.advance)
         for values, name in zip((q - q.mean(axis=0)).T, self.labels, strict=True):
             ax.plot(t / self.period, values, linewidth=1.0, label=name)
-        ax.set_xlabel("time over period")
-        ax.set_ylabel("coordinates less their means")
+        ax.set(xlabel="time over period", ylabel="coordinates less their means")
         ax.legend(frameon=False, fontsize="small")
         return ax
 

@@ -17,24 +17,12 @@ class ElastolinkError(Exception):
 
 @dataclass(frozen=True)
 class Problem:
-    """One thing wrong with an input.
+    """One thing wrong with an input."""
 
-    Attributes
-    ----------
-    where : str
-        The object or key concerned, for example ``links.crank``.
-    found : str
-        What was given.
-    expected : str
-        What would have been accepted.
-    fix : str
-        The likely remedy, in one sentence.
-    """
-
-    where: str
-    found: str
-    expected: str
-    fix: str
+    where: str  # the object or key concerned, for example ``links.crank``
+    found: str  # what was given
+    expected: str  # what would have been accepted
+    fix: str  # the likely remedy, in one sentence
 
     def __str__(self) -> str:
         """Return the one-line form shown to the user."""

@@ -98,7 +98,7 @@ def names_problems(where: str, value: object) -> list[Problem]:
     return [Problem(where, repr(value), "names in a row", 'write ("x", "y"), for example')]
 
 
-def require_positive(where: str, **values: float) -> None:
+def require_positive(where: str, **values: Any) -> None:
     """Refuse values that are not positive numbers, all of them in one error."""
     problems = [
         Problem(f"{where}: {name}", repr(value), "a positive number", "give it in SI units")

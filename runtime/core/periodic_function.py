@@ -42,17 +42,10 @@ class PeriodicFunction:
         Cosine coefficients; ``a[0]`` is the mean itself (no factor 1/2).
     b : array_like, shape (nb,), optional
         Sine coefficients; ``b[0]`` must be zero.  The shorter of ``a`` and ``b`` is filled with
-        zeros.
+        zeros: both are kept as read-only arrays of shape ``(harmonics + 1,)``.
     error : float
         Estimate of the largest deviation, over all angles, from the function that is meant; zero
         where the coefficients define the function.
-
-    Attributes
-    ----------
-    a, b : ndarray, shape (harmonics + 1,)
-        The coefficients, read-only.
-    error : float
-        As above.
 
     Raises
     ------

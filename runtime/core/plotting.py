@@ -41,8 +41,7 @@ def multiplier_plane(ax: Axes | None) -> Axes:
     circle = np.exp(1j * np.linspace(0.0, 2 * np.pi, 361))
     ax.plot(circle.real, circle.imag, color="0.6", linewidth=0.8)
     ax.set_aspect("equal")
-    ax.set_xlabel("real part of multiplier")
-    ax.set_ylabel("imaginary part of multiplier")
+    ax.set(xlabel="real part of multiplier", ylabel="imaginary part of multiplier")
     return ax
 
 

@@ -28,18 +28,10 @@ BROADCAST = ("...",)
 
 @dataclass(frozen=True)
 class Check:
-    """One self-check of a result.
+    """One self-check of a result."""
 
-    Attributes
-    ----------
-    value : float
-        What was measured, for example ``|det(monodromy) - 1|``.
-    limit : float
-        The largest value that passes.
-    """
-
-    value: float
-    limit: float
+    value: float  # what was measured, for example ``|det(monodromy) - 1|``
+    limit: float  # the largest value that passes
 
     @property
     def passed(self) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,6 +11,22 @@ from numpy.typing import ArrayLike, NDArray
 from .errors import bad
 
 Array = NDArray[np.float64]
+_Values = TypeVar("_Values")
+
+
+class Remembered(Generic[_Values]):
+    """A function of angles ``(nt,)`` that keeps its last values, for all who ask at the same."""
+
+    def __init__(self, function: Callable[[Array], _Values]) -> None:
+        self._function = function
+        self._last: tuple[Array, _Values] | None = None
+
+    def __call__(self, theta: Array) -> _Values:
+        """Return the values at angles, the last ones where these are the same."""
+        last = self._last
+        if last is None or not np.array_equal(last[0], theta):
+            last = self._last = (np.array(theta), self._function(theta))
+        return last[1]
 
 
 def finite_angles(theta: ArrayLike) -> Array:

@@ -103,31 +103,13 @@ _TOKEN = re.compile(r"\s*(?:(\*\*|\^)\s*([+-]?\d{1,2})(?!\d)|([*/()·])|([^\W\d_
 
 
 def to_si(value: object, dimension: str = "dimensionless", where: str = "quantity") -> float:
-    """Convert a quantity to a float in SI units.
+    """Convert a quantity to a float in SI units; a ``"frequency"`` comes back in rad/s.
 
-    Parameters
-    ----------
-    value : float, int or str
-        A number in SI units, or text: a number, a space, and a unit.  A unit is made of names,
-        ``*``, ``/``, ``**`` (or ``^``) with whole exponents, parentheses and blanks, which
-        multiply: ``"171.5 lbf*in**2"``, ``"0.31 kg/m"``, ``"0.0058 lbf in s^2"``.
-    dimension : str
-        One of :data:`DIMENSIONS`.  A ``"frequency"`` comes back in rad/s.
-    where : str
-        The key concerned, for the message.
+    It is a number in SI units, or text: a number, a space, and a unit.  A unit is made of names,
+    ``*``, ``/``, ``**`` (or ``^``) with whole exponents, parentheses and blanks, which multiply:
+    ``"171.5 lbf*in**2"``, ``"0.31 kg/m"``, ``"0.0058 lbf in s^2"``.  The dimension is one of
+    :data:`DIMENSIONS`, ``where`` the key concerned, for the message.
 
-    Returns
-    -------
-    float
-        The value in the SI unit of the dimension.
-
-    Raises
-    ------
-    BadInput
-        If the value is no finite quantity, a unit is unknown, or the dimension is another one.
-
-    Examples
-    --------
     >>> to_si("15 in", "length")
     0.381
     >>> round(to_si("60 rpm", "frequency"), 6), round(to_si("1 Hz", "frequency"), 6)

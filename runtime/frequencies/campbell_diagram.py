@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad
 from ..core.families import LinearPeriodic, require_system
 from ..core.inputs import numbers, require_whole
+from ..core.plotting import axes_or_new
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
@@ -163,8 +164,6 @@ class Campbell(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the diagram and return the axes."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         top = 1.1 * float(np.nanmax(self.running))
         last = int(self.crossing_order.max(initial=1))
@@ -188,8 +187,7 @@ class Campbell(Result):
             ax.axvline(self.buckling, color="0.5", lw=0.8, ls=":")
         ax.set_xlim(self.speed[0], self.speed[-1])
         ax.set_ylim(0.0, 1.05 * top)
-        ax.set_xlabel("crank speed [rad/s]")
-        ax.set_ylabel("frequency [rad/s]")
+        ax.set(xlabel="crank speed [rad/s]", ylabel="frequency [rad/s]")
         return ax
 
 

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import Transcendental
-from ..core.inputs import is_finite, is_whole, numbers_in_a_row
+from ..core.inputs import is_finite, is_whole, numbers_in_a_row, require_kind
 from ..core.plotting import axes_or_new
 from ..core.results import Check, Result, provenance
 from .frames import Assembly, DynamicStiffness, divided_for, narrow_enough
@@ -143,27 +143,13 @@ def projected(
 
 @dataclass(frozen=True)
 class Mode:
-    """One natural frequency of a structure.
+    """One natural frequency of a structure."""
 
-    Attributes
-    ----------
-    omega : float
-        Frequency [rad/s].
-    error : float
-        Bound of its error [rad/s].
-    problem : DynamicStiffness
-        The structure, divided so that the frequency is no pole.
-    vector : ndarray, shape (problem.size,)
-        Coordinates of that, of unit generalised mass.
-    certified : bool
-        Whether the counts on both sides confirm the bound.
-    """
-
-    omega: float
-    error: float
-    problem: DynamicStiffness
-    vector: Array
-    certified: bool
+    omega: float  # frequency [rad/s]
+    error: float  # bound of its error [rad/s]
+    problem: DynamicStiffness  # the structure, divided so that the frequency is no pole
+    vector: Array  # coordinates of that, of unit generalised mass, (problem.size,)
+    certified: bool  # whether the counts on both sides confirm the bound
 
 
 @dataclass(frozen=True)
@@ -302,30 +288,18 @@ def _signed(vector: Array) -> Array:
 
 @dataclass(frozen=True)
 class MemberShape:
-    """Displacement of a beam along its length.
+    """Displacement of a beam along its length, at m places."""
 
-    Attributes
-    ----------
-    eta : ndarray, shape (m,)
-        Places, in lengths.
-    along, across : ndarray, shape (m,)
-        Displacement in the beam's own axes [m].
-    slope, curvature, third : ndarray, shape (m,)
-        Derivatives of ``across`` by the place [rad, 1/m, 1/m^2].
-    strain : ndarray, shape (m,)
-        Derivative of ``along`` by the place.
-    displacement : ndarray, shape (m, 2)
-        In the fixed axes [m].
-    """
-
-    eta: Array
+    eta: Array  # places, in lengths, (m,)
+    # displacement in the beam's own axes [m], (m,)
     along: Array
     across: Array
+    # derivatives of ``across`` by the place [rad, 1/m, 1/m^2], (m,)
     slope: Array
     curvature: Array
     third: Array
-    strain: Array
-    displacement: Array
+    strain: Array  # derivative of ``along`` by the place, (m,)
+    displacement: Array  # in the fixed axes [m], (m, 2)
 
 
 def member_shape(
@@ -408,10 +382,7 @@ class FrameFrequencies(Result):
     problem: Transcendental
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "frequencies": ("mode",),
-        "multiplicity": ("mode",),
-        "error": ("mode",),
-        "hertz": ("mode",),
+        **dict.fromkeys(("frequencies", "multiplicity", "error", "hertz"), ("mode",)),
     }
     exported: ClassVar[tuple[str, ...]] = ("hertz",)
 
@@ -480,8 +451,7 @@ class FrameFrequencies(Result):
         axes.plot(number[several], self.hertz[several], "s", ms=9, mfc="none", label="multiple")
         if several.any():
             axes.legend()
-        axes.set_xlabel("mode")
-        axes.set_ylabel("natural frequency [Hz]")
+        axes.set(xlabel="mode", ylabel="natural frequency [Hz]")
         return axes
 
 
@@ -540,9 +510,7 @@ def wittrick_williams(
         If not exactly one of ``upto`` and ``count`` is given, or one is not usable.
     """
     _check(upto, count)
-    if not isinstance(problem, Transcendental):
-        found = type(problem).__name__
-        raise bad("problem", found, "a Transcendental", "make one with dynamic_stiffness")
+    require_kind("problem", problem, Transcendental, "make one with dynamic_stiffness")
     if not isinstance(problem, DynamicStiffness):
         return bisected(problem, upto, count)
     modes = rigid_motions(problem)

@@ -14,6 +14,7 @@ from ..core.errors import BadInput, bad
 from ..core.families import DAMPING, LinearPeriodic, require_system
 from ..core.inputs import require_whole, speed_span
 from ..core.maxima import local_maxima
+from ..core.plotting import axes_or_new
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
@@ -81,8 +82,6 @@ class CriticalSpeeds(Result):
 
         Where nothing was scanned, the order n of each speed, mode by mode.
         """
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         ax.set_xlabel("crank speed [rad/s]")
         if not len(self.scan):

@@ -228,18 +228,10 @@ def _panel_integrals(values: Values, panels: Array, nodes: int) -> tuple[Array, 
 
 @dataclass(frozen=True)
 class Buckling:
-    """Least crank speed at which ``K + Kg`` is singular at some crank angle.
+    """Least crank speed at which ``K + Kg`` is singular at some crank angle."""
 
-    Attributes
-    ----------
-    speed : float
-        Crank speed [rad/s]; inf where no speed buckles the mechanism.
-    angle : float
-        Crank angle [rad].
-    """
-
-    speed: float
-    angle: float
+    speed: float  # [rad/s]; inf where no speed buckles the mechanism
+    angle: float  # crank angle [rad]
 
 
 def buckling_speed(system: LinearPeriodic, **parameters: float) -> Buckling:
@@ -247,23 +239,8 @@ def buckling_speed(system: LinearPeriodic, **parameters: float) -> Buckling:
 
     Beyond it a link that is pressed has, over a part of the turn, no natural frequency: frozen
     analyses end there.  The moving mechanism need not be unstable, as it passes that part quickly.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Its geometric stiffness is to grow with the square of the speed, constant loads aside.
-    **parameters : float
-        Parameter values that replace the system's own.
-
-    Returns
-    -------
-    Buckling
-        The speed is exact to round-off at its angle, which is the worst one to 1e-6 of the period.
-
-    Raises
-    ------
-    BadInput
-        If a parameter is unknown, or mass or stiffness is not positive definite at rest.
+    The geometric stiffness is to grow with the square of the speed, constant loads aside.  The
+    speed is exact to round-off at its angle, which is the worst one to 1e-6 of the period.
     """
     require_system(system)
     if not system.has("Kg"):

@@ -16,6 +16,7 @@ from ..beams.structure import Structure
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers, require_kind, require_positive, require_whole
+from ..core.plotting import axes_or_new
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
 from .held import held_frequencies, mean_frequencies
@@ -36,32 +37,17 @@ _STEPS = (0.02, 0.01)
 class LinkFrequencies(Result):
     """Mean natural frequencies of a mechanism against one number of one link.
 
-    Attributes
-    ----------
-    link, quantity : str
-        What varies: ``length`` [m], or ``thickness`` or ``width`` over the link's own.
-    value : ndarray
-        Its values, ``(nv,)``.
-    mean : ndarray
-        Mean natural frequencies over the period, crank held, rank by rank [rad/s],
-        ``(nv, count)``.
-    least, largest : ndarray
-        Their range over the period [rad/s], ``(nv, count)``, from 64 angles.
-    pinned : ndarray
-        First natural frequency of each link by itself, pinned at both ends [rad/s],
-        ``(nv, links)``.
-    links : tuple of str
-        Names of the links.
-    error : ndarray
-        Error of ``mean`` [rad/s], ``(nv, count)``: of the integral and of round-off.
+    The error is that of ``mean`` [rad/s], ``(nv, count)``: of the integral and of round-off.
     """
 
     link: str
-    quantity: str
-    value: Array
-    mean: Array
+    quantity: str  # ``length`` [m], or ``thickness`` or ``width`` over the link's own
+    value: Array  # its values, (nv,)
+    mean: Array  # over the period, crank held, rank by rank [rad/s], (nv, count)
+    # range over the period [rad/s], (nv, count), from 64 angles
     least: Array
     largest: Array
+    # first frequency of each link by itself, pinned at both ends [rad/s], (nv, links)
     pinned: Array
     links: tuple[str, ...]
 
@@ -73,8 +59,6 @@ class LinkFrequencies(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the means with their ranges, and the pinned links dashed (Fig. 9.1)."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         for k in range(self.mean.shape[1]):
             colour = f"C{k}"
@@ -96,22 +80,14 @@ class LinkFrequencies(Result):
 class FrequencyExponents(Result):
     """How the mean natural frequencies depend on each number of each link.
 
-    Attributes
-    ----------
-    rows : tuple of str
-        What varies, ``"coupler length"`` and so on, and lumped masses as ``"mass at B"``.
-    exponent : ndarray
-        ``d ln(mean)/d ln(quantity)``, ``(rows, count)``: -2 where a frequency is all that of one
-        pinned link and the quantity its length.
-    mean : ndarray
-        The means [rad/s], ``(count,)``.
-    error : ndarray
-        Error of each exponent, ``(rows, count)``: of the differences, and of the means.
+    The error is that of each exponent, ``(rows, count)``: of the differences, and of the means.
     """
 
-    rows: tuple[str, ...]
+    rows: tuple[str, ...]  # what varies: ``"coupler length"`` ..., lumped masses as ``"mass at B"``
+    # ``d ln(mean)/d ln(quantity)``, (rows, count): -2 where a frequency is all that of one pinned
+    # link and the quantity its length
     exponent: Array
-    mean: Array
+    mean: Array  # the means [rad/s], (count,)
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
         **dict.fromkeys(("exponent", "error"), ("row", "mode")),
@@ -148,34 +124,13 @@ def link_frequencies(
     *,
     count: int = 1,
 ) -> LinkFrequencies:
-    """Return the mean natural frequencies against the length or section of a link.
+    """Return the mean natural frequencies against the length or section of a link of a linkage.
 
-    All else stays: parameters, lumped masses, and weight and constant loads with the stiffening
-    by their axial forces.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        A linkage of beams, from ``linkage_system`` or a scene.
-    link : str
-        Its link; of ``length`` also ``frame``.
-    quantity : str
-        ``length`` [m]; ``thickness`` or ``width``, over the link's own, of a flat bar: the area
-        goes with both, the second moment with the cube of the thickness.
-    value : array_like
-        Its values, ``(nv,)``.
-    count : int
-        Number of modes.
-
-    Returns
-    -------
-    LinkFrequencies
-
-    Raises
-    ------
-    BadInput
-        If the system has no such link, a value is not positive, or the crank cannot turn fully
-        with it.
+    The quantity is ``length`` [m], also of the ``frame``; or ``thickness`` or ``width``, over the
+    link's own, of a flat bar: the area goes with both, the second moment with the cube of the
+    thickness.  All else stays: parameters, lumped masses, and weight and constant loads with the
+    stiffening by their axial forces.  Refused are values ``(nv,)`` that are not positive, or with
+    which the crank cannot turn fully.
     """
     names = tuple(beam.name for beam in required_structure(system).beams)
     if not isinstance(quantity, str) or quantity not in QUANTITIES:
@@ -215,24 +170,7 @@ def link_frequencies(
 
 
 def frequency_exponents(system: LinearPeriodic, *, count: int = 4) -> FrequencyExponents:
-    """Return how the mean natural frequencies depend on every length, section and lumped mass.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        A linkage of beams, from ``linkage_system`` or a scene.
-    count : int
-        Number of modes.
-
-    Returns
-    -------
-    FrequencyExponents
-
-    Raises
-    ------
-    BadInput
-        If the system is not a linkage of beams, or the number of modes is unusable.
-    """
+    """Return how a linkage's means depend on every length, section and lumped mass."""
     structure = required_structure(system)
     names = [beam.name for beam in structure.beams]
     require_whole("count", count, 1, system.size)

@@ -15,6 +15,7 @@ from ..beams.structure import Structure
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite, require_whole
+from ..core.plotting import axes_or_new, new_figure
 from .held import crank_angles
 from .natural import NaturalFrequencies, natural_frequencies
 
@@ -64,8 +65,6 @@ def draw_mode(
     steady from angle to angle.  BadInput is raised if the system has no beams, or the mode or the
     angle is not there.
     """
-    from ..core.plotting import axes_or_new
-
     structure = required_structure(system)
     require_whole("mode", mode, 1, system.size)
     if not is_finite(theta):
@@ -97,28 +96,7 @@ def draw_mode(
 def draw_modes(
     system: LinearPeriodic, theta: Sequence[float] | Array | None = None, modes: int = 3
 ) -> Figure:
-    """Return a figure of the first modes, a row to a crank angle.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        A linkage or frame of beams.
-    theta : array_like, optional
-        Crank angles [rad]; ten even ones by default, every 36 degrees.
-    modes : int
-        How many modes.
-
-    Returns
-    -------
-    Figure
-
-    Raises
-    ------
-    BadInput
-        As :func:`draw_mode`.
-    """
-    from ..core.plotting import new_figure
-
+    """Return a figure of modes, a row to a crank angle [rad], every 36 degrees by default."""
     required_structure(system)
     if theta is None:
         angles = np.linspace(0.0, system.period, 10, endpoint=False)

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad
 from ..core.families import LinearPeriodic, require_system
 from ..core.inputs import require_whole
+from ..core.plotting import axes_or_new
 from ..core.results import Check, Result, provenance
 from .held import (
     assurance,
@@ -136,8 +137,6 @@ class NaturalFrequencies(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the curves over the crank angle, crossings and veerings marked."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         for k in range(self.tracked.shape[1]):
             ax.plot(np.degrees(self.theta), self.tracked[:, k], lw=1.2, label=f"mode {k + 1}")
@@ -153,8 +152,7 @@ class NaturalFrequencies(Result):
                 ax.scatter(
                     places, [one.frequency for one in seen], s=36, label=name, zorder=3, **style
                 )
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel("natural frequency [rad/s]")
+        ax.set(xlabel="crank angle [deg]", ylabel="natural frequency [rad/s]")
         ax.set_ylim(bottom=0.0)
         ax.legend(fontsize=8, ncols=2)
         return ax

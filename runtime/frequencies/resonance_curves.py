@@ -14,6 +14,7 @@ from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.maxima import local_maxima, narrowed
+from ..core.plotting import axes_or_new
 from ..core.results import Result, provenance
 from ..periodic.periodic_motion import SteadyState, quiet_state
 from .critical import label_speeds
@@ -72,17 +73,11 @@ class ResonanceCurve(Result):
     x: float
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "speed": ("speed",),
-        "peak": ("speed",),
-        "stable": ("speed",),
-        "error": ("speed",),
-        "maxima": ("maximum",),
-        "maxima_peak": ("maximum",),
-        "maxima_error": ("maximum",),
-        "order": ("maximum",),
-        "mode": ("maximum",),
+        **dict.fromkeys(("speed", "peak", "stable", "error"), ("speed",)),
+        **dict.fromkeys(
+            ("maxima", "maxima_peak", "maxima_error", "order", "mode", "ratio"), ("maximum",)
+        ),
         "mean_frequency": ("frequency",),
-        "ratio": ("maximum",),
     }
 
     @property
@@ -95,8 +90,6 @@ class ResonanceCurve(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the curve with its maxima labelled by n and return the axes."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         ax.semilogy(*self.joined, linewidth=0.9)
         for speed, peak, order, mode in zip(
@@ -110,8 +103,7 @@ class ResonanceCurve(Result):
                 ha="center",
                 fontsize=7,
             )
-        ax.set_xlabel("crank speed [rad/s]")
-        ax.set_ylabel("largest deflection [m]")
+        ax.set(xlabel="crank speed [rad/s]", ylabel="largest deflection [m]")
         return ax
 
 

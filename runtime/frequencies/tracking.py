@@ -28,48 +28,27 @@ Arrays = Callable[[Array], tuple[Array, Array]]
 class Encounter:
     """Two neighbouring natural frequencies that cross or veer away from each other.
 
-    Near it the squares differ by ``sqrt(gap^2 + slope^2 (theta - angle)^2)``.
-
-    Attributes
-    ----------
-    kind : {"crossing", "veering"}
-        A crossing has no gap beyond round-off: each shape goes on along its own curve.  At a
-        veering the curves stay apart and the modes trade their shapes.
-    lower : int
-        Rank of the lower frequency, from 1.
-    angle : float
-        Crank angle of the least gap [rad], within the period.
-    frequency : float
-        Mean of the two frequencies there [rad/s].
-    gap : float
-        Their least difference [rad/s].
-    gap_error : float
-        Round-off of it [rad/s]: a gap below is none.
-    slope : float
-        Difference of the slopes of the two curves away from it [rad/s per rad].
-    width : float
-        ``gap/slope`` [rad]: within so much of the angle the shapes trade; 0 of a crossing.
-    coupling : float
-        Rate [rad per rad] at which the two shapes turn into each other at the angle,
-        ``|u_2^T (K' - omega_1^2 M') u_1| / (omega_2^2 - omega_1^2)``; 0 of a crossing.
-    curvature : float
-        What the coupling adds to the second derivative of the upper frequency, and takes from the
-        lower [rad/s per rad^2]; 0 of a crossing.
-    trade : float
-        ``2 coupling width``: 1 where two modes veer and no third takes part; 0 of a crossing.
+    Near it the squares differ by ``sqrt(gap^2 + slope^2 (theta - angle)^2)``.  A crossing has no
+    gap beyond round-off: each shape goes on along its own curve.  At a veering the curves stay
+    apart and the modes trade their shapes; of a crossing width, coupling, curvature and trade are
+    0.
     """
 
     kind: Literal["crossing", "veering"]
-    lower: int
-    angle: float
-    frequency: float
-    gap: float
-    gap_error: float
-    slope: float
-    width: float
+    lower: int  # rank of the lower frequency, from 1
+    angle: float  # crank angle of the least gap [rad], within the period
+    frequency: float  # mean of the two frequencies there [rad/s]
+    gap: float  # their least difference [rad/s]
+    gap_error: float  # round-off of it [rad/s]: a gap below is none
+    slope: float  # difference of the slopes of the two curves away from it [rad/s per rad]
+    width: float  # ``gap/slope`` [rad]: within so much of the angle the shapes trade
+    # Rate [rad per rad] at which the two shapes turn into each other at the angle, ``|u_2^T (K' -
+    # omega_1^2 M') u_1| / (omega_2^2 - omega_1^2)``.
     coupling: float
+    # What the coupling adds to the second derivative of the upper frequency, and takes from the
+    # lower [rad/s per rad^2].
     curvature: float
-    trade: float
+    trade: float  # ``2 coupling width``: 1 where two modes veer and no third takes part
 
 
 def least_gap(modes: Modes, low: float, high: float, rank: int) -> tuple[float, float]:

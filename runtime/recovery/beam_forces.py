@@ -24,6 +24,7 @@ from ..beams.structure import Beam, PlacedElement, Structure
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
+from ..core.plotting import axes_or_new
 from .beam_motion import BeamMotion, beam_motion
 from .beam_result import (
     MotionValues,
@@ -260,8 +261,6 @@ class BeamForces(StationResult):
 
     def plot(self, ax: Axes | None = None, quantity: str = "moment") -> Axes:
         """Draw one quantity along each beam, between its extremes over the angles."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         for link in dict.fromkeys(self.links):
             own = stations_on(self.links, link)
@@ -269,8 +268,7 @@ class BeamForces(StationResult):
             lines = ax.plot(self.places[own], values.max(axis=0), label=link, linewidth=0.9)
             ax.plot(self.places[own], values.min(axis=0), color=lines[0].get_color(), linewidth=0.9)
         ax.axhline(0.0, color="0.7", linewidth=0.6)
-        ax.set_xlabel("place x/length")
-        ax.set_ylabel(f"extremes of {quantity} [{_UNITS[quantity]}]")
+        ax.set(xlabel="place x/length", ylabel=f"extremes of {quantity} [{_UNITS[quantity]}]")
         ax.legend()
         return ax
 

@@ -24,38 +24,18 @@ if TYPE_CHECKING:
 class BeamMotion:
     """Motion of the coordinates of a structure of beams.
 
-    Parameters
-    ----------
-    theta : ndarray
-        Crank angles [rad], shape ``(nt,)``.
-    q, qd : ndarray
-        Coordinates and their time derivatives, shape ``(nt, n)``.
-    speed : float
-        Crank speed [rad/s], positive.
-    error : ndarray
-        Error of each coordinate, absolute, shape ``(n,)``; 0 where it is not known.
-    period : float or None
-        Period [rad] that the angles divide evenly, from 0; None where the motion is not periodic.
-    solved : str or None
-        Method of :func:`steady_state` that found it.
-    provenance : mapping
-        Of the motion.
-    checks : mapping of str to Check
-        Self-checks of the motion.
-
-    Raises
-    ------
-    BadInput
-        If shapes do not agree, a value is not finite, or the speed is not positive.
+    Refused are shapes that do not agree, values that are not finite, and a speed that is not
+    positive.
     """
 
-    theta: Array
+    theta: Array  # crank angles [rad], (nt,)
+    # coordinates and their time derivatives, (nt, n)
     q: Array
     qd: Array
-    speed: float
-    error: Array | None = None
-    period: float | None = None
-    solved: str | None = None
+    speed: float  # crank speed [rad/s]
+    error: Array | None = None  # absolute, of each coordinate, (n,)
+    period: float | None = None  # [rad], divided evenly by the angles, from 0; None: not periodic
+    solved: str | None = None  # method of :func:`steady_state` that found it
     provenance: Mapping[str, str] = field(default_factory=dict)
     checks: Mapping[str, Check] = field(default_factory=dict)
 

@@ -26,20 +26,11 @@ _LATER = {name: DeferredField() for name in ("error", "error_norm")}
 class BeamResult(Result):
     """Base of what is found of a structure of beams in one motion.
 
-    Attributes
-    ----------
-    speed : float
-        Crank speed [rad/s].
-    theta : ndarray
-        Crank angles [rad], shape ``(nt,)``.
-
-    Notes
-    -----
     The error estimate is computed when it is first looked at.
     """
 
-    speed: float
-    theta: Array
+    speed: float  # crank speed [rad/s]
+    theta: Array  # crank angles [rad], (nt,)
     error: Any = _LATER["error"]
     error_norm: Any = _LATER["error_norm"]  # str
 
@@ -48,18 +39,10 @@ class BeamResult(Result):
 
 @dataclass(frozen=True, kw_only=True)
 class StationResult(BeamResult):
-    """Base of what is found at stations along the beams.
+    """Base of what is found at stations along the beams."""
 
-    Attributes
-    ----------
-    links : tuple of str
-        Beam of each station.
-    places : ndarray
-        x over the beam's length of each station, shape ``(stations,)``.
-    """
-
-    links: tuple[str, ...]
-    places: Array
+    links: tuple[str, ...]  # beam of each station
+    places: Array  # x over the beam's length of each station, (stations,)
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
         **BeamResult.dimensions,

@@ -15,6 +15,7 @@ from ..beams.structure import Beam
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite
+from ..core.plotting import axes_or_new
 from .beam_forces import recovery, stations_of
 from .beam_motion import BeamMotion, beam_motion, chunks
 from .beam_result import BeamResult, checked_forms, in_motion
@@ -30,24 +31,15 @@ if TYPE_CHECKING:
 class ElasticCurve(BeamResult):
     """Curve that a point of an elastic link draws, and that of the rigid linkage.
 
-    Speed and crank angles: see :class:`BeamResult`.
-
-    Attributes
-    ----------
-    link : str
-        The link.
-    along, across : float
-        Place of the point in the link's own axes [m].
-    rigid, elastic : ndarray
-        Places of the point in the fixed axes [m], shape ``(nt, 2)``.
-    error : float
-        Largest error of a place [m]: by the error of the motion and, where it was found on a finer
-        mesh too, by that of the mesh.
+    Speed and crank angles: see :class:`BeamResult`.  The error is the largest of a place [m]: by
+    the error of the motion and, where it was found on a finer mesh too, by that of the mesh.
     """
 
     link: str
+    # place of the point in the link's own axes [m]
     along: float
     across: float
+    # places of the point in the fixed axes [m], (nt, 2)
     rigid: Array
     elastic: Array
 
@@ -68,15 +60,12 @@ class ElasticCurve(BeamResult):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw both curves, the rigid one dashed."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         for values, style, label in ((self.rigid, "--", "rigid"), (self.elastic, "-", "elastic")):
             closed = np.vstack([values, values[:1]])
             ax.plot(closed[:, 0], closed[:, 1], style, label=label, linewidth=0.9)
         ax.set_aspect("equal")
-        ax.set_xlabel("x [m]")
-        ax.set_ylabel("y [m]")
+        ax.set(xlabel="x [m]", ylabel="y [m]")
         ax.set_title(f"{self.speed:.4g} rad/s", fontsize="medium")
         ax.legend()
         return ax
@@ -92,28 +81,10 @@ def elastic_coupler_curve(
 ) -> ElasticCurve:
     """Return the curve of a point of an elastic link, beside that of the rigid linkage.
 
-    A point off the axis is carried by the section at its foot; one beyond the ends by the end
-    section.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a linkage of beams.
-    motion : SteadyState, Trajectory, BeamMotion or float
-        A computed motion, or a crank speed [rad/s], for the steady state there.
-    along, across : float, optional
-        Place of the point in the link's own axes [m]; by default the middle of the axis.
-    link : str
-        Which link.
-
-    Returns
-    -------
-    ElasticCurve
-
-    Raises
-    ------
-    BadInput
-        If an argument is unusable, or the structure stands still.
+    The motion is a computed one, or a crank speed [rad/s], for the steady state there.  The point
+    lies ``along`` and ``across`` the link's own axes [m], by default in the middle of the axis; off
+    the axis it is carried by the section at its foot, beyond the ends by the end section.  A
+    structure that stands still is refused.
     """
     structure = required_structure(system)
     beam = structure.beam(link)

@@ -13,6 +13,7 @@ from ..beams.assembly import Array
 from ..beams.element_forms import ElementForms, required_structure
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
+from ..core.plotting import axes_or_new
 from ..core.results import Check
 from .beam_forces import propagated
 from .beam_motion import BeamMotion, beam_motion
@@ -100,8 +101,6 @@ class PinReactions(BeamResult):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the sizes of the forces of the ground and of the pins over the crank angle."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         degrees = np.degrees(self.theta)
         for node, value in self.of_ground.items():
@@ -111,8 +110,7 @@ class PinReactions(BeamResult):
             if node not in self.of_ground:
                 size = np.hypot(value[:, 0], value[:, 1])
                 ax.plot(degrees, size, "--", label=f"{node} on {beam}", linewidth=0.9)
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel("force [N]")
+        ax.set(xlabel="crank angle [deg]", ylabel="force [N]")
         ax.legend()
         return ax
 

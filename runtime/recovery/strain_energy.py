@@ -14,6 +14,7 @@ from ..beams.element_forms import ElementForms, required_structure
 from ..beams.recovery_forms import LinearForm
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
+from ..core.plotting import axes_or_new
 from ..core.results import Check
 from ..core.trigonometric import differentiated, even_angles, interpolated
 from .beam_motion import BeamMotion, beam_motion, chunks
@@ -32,13 +33,11 @@ Slopes = Mapping[int, Callable[[Array], Array]]
 def force_slopes(system: LinearPeriodic) -> Slopes:
     """Return how the axial forces of the geometric stiffness change with the crank angle.
 
-    By power of the speed, from angles ``(nt,)`` to ``(nt, elements, 3)``.
+    By power of the speed, from angles ``(nt,)`` to ``(nt, elements, 3)``; none where nothing moves.
     """
-    powers = ElementForms(system, np.zeros(1)).stiffening
-    if not (system.structure and system.structure.moving):
-        return {power: _none(value.shape[1]) for power, value in powers.items()}
-
-    return {power: _slope(system, power) for power in powers}
+    if not required_structure(system).moving:
+        return {}
+    return {power: _slope(system, power) for power in ElementForms(system, np.zeros(1)).stiffening}
 
 
 def _slope(system: LinearPeriodic, power: int) -> Callable[[Array], Array]:
@@ -61,10 +60,6 @@ def _slope(system: LinearPeriodic, power: int) -> Callable[[Array], Array]:
         if count > 4096:
             found = "axial forces that 4096 samples do not resolve"
             raise bad("structure", found, "a smooth motion", "keep off dead points")
-
-
-def _none(elements: int) -> Callable[[Array], Array]:
-    return lambda theta: np.zeros((len(theta), elements, 3))
 
 
 class Energies:
@@ -152,8 +147,11 @@ class Energies:
             weights = forces[:, e] * self.speed**power
             kernel = np.tensordot(weights, geometric, axes=1)
             pull = np.einsum("tij,tj->ti", kernel, local)
-            slope = np.tensordot(self.changing[power][:, e] * self.speed**power, geometric, axes=1)
-            change = 0.5 * np.einsum("ti,tij,tj->t", local, slope, local) + _dot(turned, pull)
+            change = _dot(turned, pull)
+            if power in self.changing:
+                rates = self.changing[power][:, e] * self.speed**power
+                slope = np.tensordot(rates, geometric, axes=1)
+                change = 0.5 * np.einsum("ti,tij,tj->t", local, slope, local) + change
             energy = 0.5 * _dot(local, pull)
             if power == 0:
                 sums["stiffening"] += energy
@@ -207,42 +205,23 @@ def _square(direct: Array, mass: Array, spun: Array, across: Array, centre: Arra
 
 @dataclass(frozen=True, kw_only=True)
 class BeamEnergies(BeamResult):
-    """Energies of a structure of beams in a motion.
+    """Energies of a structure of beams in a motion, ``(nt,)`` each but for ``strain``.
 
-    Speed and crank angles: see :class:`BeamResult`.
-
-    Attributes
-    ----------
-    links : tuple of str
-        The beams.
-    strain : ndarray
-        Strain energy of each beam [J], shape ``(nt, links)``.
-    springs : ndarray
-        Energy of springs at nodes [J], ``(nt,)``.
-    stiffening : ndarray
-        Energy that axial forces give to beams which bend [J]: of constant loads a potential, of
-        inertia what the shortening takes from the kinetic energy.
-    kinetic : ndarray
-        Kinetic energy [J] of the rigid and the elastic motion together.
-    dissipated : ndarray
-        Power that damping takes [W].
-    loads : ndarray
-        Power of weight and constant loads [W].
-    drive : ndarray
-        Power of the drive [W]: the generalised force of the crank angle times the speed.
-    error : float
-        Largest error of the whole strain energy [J]: by the error of the motion and, where it was
-        found on a finer mesh too, by that of the mesh.
+    Speed and crank angles: see :class:`BeamResult`.  The error is the largest of the whole strain
+    energy [J]: by the error of the motion and, where it was found on a finer mesh too, by that of
+    the mesh.
     """
 
     links: tuple[str, ...]
-    strain: Array
-    springs: Array
+    strain: Array  # strain energy of each beam [J], (nt, links)
+    springs: Array  # energy of springs at nodes [J]
+    # Energy that axial forces give to beams which bend [J]: of constant loads a potential, of
+    # inertia what the shortening takes from the kinetic energy.
     stiffening: Array
-    kinetic: Array
-    dissipated: Array
-    loads: Array
-    drive: Array
+    kinetic: Array  # of the rigid and the elastic motion together [J]
+    dissipated: Array  # power that damping takes [W]
+    loads: Array  # power of weight and constant loads [W]
+    drive: Array  # power of the drive [W]: generalised force of the crank angle times the speed
 
     dimensions: ClassVar[dict[str, tuple[str, ...]]] = {
         **BeamResult.dimensions,
@@ -272,15 +251,12 @@ class BeamEnergies(BeamResult):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the strain energy of each beam and of all over the crank angle."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         degrees = np.degrees(self.theta)
         for link, values in zip(self.links, self.strain.T, strict=True):
             ax.plot(degrees, values, label=link, linewidth=0.9)
         ax.plot(degrees, np.sum(self.strain, axis=1), "k", label="all", linewidth=0.9)
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel("strain energy [J]")
+        ax.set(xlabel="crank angle [deg]", ylabel="strain energy [J]")
         ax.set_title(f"{self.speed:.4g} rad/s", fontsize="medium")
         ax.legend()
         return ax
@@ -289,31 +265,14 @@ class BeamEnergies(BeamResult):
 def beam_energies(system: LinearPeriodic, motion: Motion | float | None = None) -> BeamEnergies:
     """Return the energies of a structure of beams over the cycle.
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a structure of beams.
-    motion : SteadyState, Trajectory, BeamMotion, float or None
-        A computed motion; a crank speed [rad/s], for the steady state there; None for a frame.
+    The motion is a computed one; a crank speed [rad/s], for the steady state there; None for a
+    frame.  Of a periodic motion in the full form the check ``balance`` compares the power of drive
+    and loads, less what damping takes, with the rate of the energy, over the largest power: the
+    former comes from virtual work, the rate from the Fourier series of the energy.  The
+    instantaneous form has no energy that its equation keeps, and no check.
 
-    Returns
-    -------
-    BeamEnergies
-        Of a periodic motion in the full form its check ``balance`` compares the power of drive and
-        loads, less what damping takes, with the rate of the energy, over the largest power.  The
-        power of the drive comes from virtual work, the rate from the Fourier series of the energy.
-
-    Raises
-    ------
-    BadInput
-        If an argument is unusable.
-
-    Notes
-    -----
-    The energy holds the squares of the elastic motion; the moment that :func:`pin_reactions`
-    finds at the clamp is linear in it.  The two torques differ by these squares.
-
-    The instantaneous form has no energy that its equation keeps, and no check.
+    The energy holds the squares of the elastic motion; the moment that :func:`pin_reactions` finds
+    at the clamp is linear in it.  The two torques differ by these squares.
     """
     moving = beam_motion(system, motion)
     structure = required_structure(system)

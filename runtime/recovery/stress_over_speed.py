@@ -15,6 +15,7 @@ from ..beams.recovery_forms import RIGID, LinearForm
 from ..core.errors import LINEAR_RANGE, bad
 from ..core.families import DAMPING, LinearPeriodic
 from ..core.inputs import numbers
+from ..core.plotting import axes_or_new
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import differentiated, even_angles, resampled
 from ..periodic.equation import equation_of
@@ -87,12 +88,8 @@ class StressCurve(Result):
 
     exported: ClassVar[tuple[str, ...]] = ("stable",)
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "speed": ("speed",),
-        "modes": ("speed",),
-        "deflection": ("speed",),
-        "stable": ("speed",),
-        "multiplier": ("speed",),
-        "multiplier_error": ("speed",),
+        **dict.fromkeys(("speed", "modes", "deflection", "stable"), ("speed",)),
+        **dict.fromkeys(("multiplier", "multiplier_error"), ("speed",)),
         **dict.fromkeys(("maximum", "theta", "place", "fibre", "error"), ("speed", "link")),
     }
 
@@ -150,15 +147,12 @@ class StressCurve(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the largest stress of each link over the speed, unstable ranges shaded."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         order = np.argsort(self.speed)
         for link, values in zip(self.links, self.maximum.T, strict=True):
             ax.semilogy(self.speed[order], values[order] / 1e6, label=link, linewidth=0.9)
         shade_unstable(ax, self.unstable_ranges)
-        ax.set_xlabel("crank speed [rad/s]")
-        ax.set_ylabel("largest stress [MPa]")
+        ax.set(xlabel="crank speed [rad/s]", ylabel="largest stress [MPa]")
         ax.legend()
         return ax
 

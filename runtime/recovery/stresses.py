@@ -17,6 +17,7 @@ from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite, numbers_in_a_row
+from ..core.plotting import axes_or_new
 from ..core.trigonometric import even_angles, resampled
 from .beam_forces import (
     METHODS,
@@ -141,28 +142,13 @@ _LATER = {
 
 @dataclass(frozen=True)
 class StressPeak:
-    """The largest size of a stress.
+    """The largest size of a stress."""
 
-    Attributes
-    ----------
-    value : float
-        Stress [Pa], tension positive.
-    theta : float
-        Crank angle [rad].
-    link : str
-        The beam.
-    place : float
-        x over its length.
-    fibre : str
-        ``positive``: the outer fibre on the beam's positive side, to the left of its direction;
-        or ``negative``.
-    """
-
-    value: float
-    theta: float
+    value: float  # stress [Pa], tension positive
+    theta: float  # crank angle [rad]
     link: str
-    place: float
-    fibre: str
+    place: float  # x over the beam's length
+    fibre: str  # ``positive``, the outer fibre to the left of the beam's direction, or ``negative``
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -315,15 +301,12 @@ class StressResult(StationResult):
 
         Of a structure that stands still, the stress along the beams.
         """
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         if len(self.theta) == 1:
             for link in self.maxima:
                 own = stations_on(self.links, link)
                 ax.plot(self.places[own], 1e-6 * self.stress[0, own], label=link, linewidth=0.9)
-            ax.set_xlabel("place x/length")
-            ax.set_ylabel("largest stress [MPa]")
+            ax.set(xlabel="place x/length", ylabel="largest stress [MPa]")
             ax.legend()
             return ax
         period, closed = self.period, self.period is not None
@@ -335,8 +318,7 @@ class StressResult(StationResult):
             line = ax.plot(angles, whole, label=label, linewidth=0.9)[0]
             ax.plot(angles, still, "--", color=line.get_color(), linewidth=0.7)
             ax.plot(np.degrees(peak.theta), 1e-6 * peak.value, "o", color=line.get_color(), ms=3)
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel("stress at the worst fibre [MPa]")
+        ax.set(xlabel="crank angle [deg]", ylabel="stress at the worst fibre [MPa]")
         ax.set_title(f"{self.speed:.4g} rad/s; dashed: quasi-static", fontsize="medium")
         ax.legend()
         return ax

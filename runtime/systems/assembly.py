@@ -15,10 +15,12 @@ from ..core.errors import bad
 from ..core.families import LinearPeriodic, Term
 from ..core.families.emitted import check_module, dropped_names
 from ..core.inputs import require_kind
+from ..core.sampling import Remembered
 
 Array = NDArray[np.float64]
 
 _Row: TypeAlias = tuple[str, int, str | None, str | None, str]
+_Kernel: TypeAlias = Remembered[dict[str, Array]]  # all terms share one evaluation
 
 
 class BasisArrays(Protocol):
@@ -170,20 +172,6 @@ def _arguments(function: Callable[..., Any], given: Collection[str]) -> list[str
     return wanted
 
 
-class _Remembered:
-    """A function of angle that keeps its last values: all terms share one evaluation."""
-
-    def __init__(self, function: Callable[[Array], dict[str, Array]]) -> None:
-        self._function = function
-        self._last: tuple[Array, dict[str, Array]] | None = None
-
-    def __call__(self, theta: Array) -> dict[str, Array]:
-        last = self._last
-        if last is None or not np.array_equal(last[0], theta):
-            last = self._last = (theta.copy(), self._function(theta))
-        return last[1]
-
-
 class _Integrals:
     """Integrals over shapes that follow a support, each computed once for all terms."""
 
@@ -195,7 +183,7 @@ class _Integrals:
         names: Collection[str],
     ) -> None:
         self.names = names
-        self._arrays = _Remembered(partial(_at_place, module.place, geometry))
+        self._arrays = Remembered(partial(_at_place, module.place, geometry))
         self._basis = basis
         self._products: tuple[str, ...] = module.RETURNS.get("basis_products", ())
         self._multiply: Callable[..., Any] = getattr(module, "basis_products", tuple)
@@ -250,9 +238,9 @@ def _angle_kernels(
     module: ModuleType,
     geometry: Mapping[str, float],
     external: Mapping[str, Callable[[Array], Array]],
-) -> dict[str, _Remembered]:
+) -> dict[str, _Kernel]:
     """Return, for each function of angle, the emitted kernel that gives it."""
-    kernels: dict[str, _Remembered] = {}
+    kernels: dict[str, _Kernel] = {}
     for kernel, names in module.RETURNS.items():
         if not kernel.endswith("_functions"):
             continue
@@ -260,7 +248,7 @@ def _angle_kernels(
         wanted = _arguments(function, {*geometry, *external})
         fixed = {name: geometry[name] for name in wanted if name in geometry}
         passed = {name: external[name] for name in wanted if name in external}
-        shared = _Remembered(partial(_kernel_values, function, names, fixed, passed))
+        shared = Remembered(partial(_kernel_values, function, names, fixed, passed))
         kernels |= dict.fromkeys(names, shared)
     return kernels
 
@@ -268,7 +256,7 @@ def _angle_kernels(
 def _function(
     angle: str | None,
     modal: Array | Callable[[Array], Array],
-    shared: Mapping[str, _Remembered],
+    shared: Mapping[str, _Kernel],
     external: Mapping[str, Callable[[Array], Array]],
 ) -> Array | Callable[[Array], Array]:
     """Return the modal array, or the function of angle that multiplies it."""
@@ -279,7 +267,7 @@ def _function(
     return partial(_multiplied, factor, modal)
 
 
-def _of_kernel(kernel: _Remembered, name: str, theta: Array) -> Array:
+def _of_kernel(kernel: _Kernel, name: str, theta: Array) -> Array:
     return kernel(theta)[name]
 
 

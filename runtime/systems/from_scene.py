@@ -58,15 +58,9 @@ def coupler_system(scene: Scene) -> LinearPeriodic:
 
 @dataclass(frozen=True)
 class PinnedModes:
-    """Mode shapes ``sin(m pi x / l)`` of a pinned beam, as a function of x over length.
+    """Mode shapes ``sin(m pi x / l)`` of a pinned beam, as a function of x over length."""
 
-    Attributes
-    ----------
-    modes : int
-        How many.
-    """
-
-    modes: int
+    modes: int  # how many
 
     def __call__(self, x: Array) -> Array:
         """Return the shapes at ``x`` of shape ``(nx,)`` as an array ``(nx, modes)``."""

@@ -23,19 +23,10 @@ Margin = Callable[[float, Array, Array], float]
 
 
 class Guard(NamedTuple):
-    """A condition under which a motion stops.
+    """A condition under which a motion stops."""
 
-    Attributes
-    ----------
-    margin : callable
-        ``margin(t, q, qd)``, positive while the motion may go on; ``q`` and ``qd`` of shape
-        ``(n,)``.
-    reason : str
-        Why it stops, for the message: ``the slider left the rod's end``.
-    """
-
-    margin: Margin
-    reason: str
+    margin: Margin  # ``margin(t, q, qd)``, positive while the motion may go on; q, qd (n,)
+    reason: str  # why it stops, for the message: ``the slider left the rod's end``
 
 
 @dataclass(frozen=True)

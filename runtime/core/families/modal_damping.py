@@ -10,6 +10,7 @@ from numbers import Real
 import numpy as np
 
 from ..errors import bad
+from ..sampling import Remembered
 from .linear_periodic import Array, LinearPeriodic, Term, require_system
 
 
@@ -55,7 +56,7 @@ def with_modal_damping(system: LinearPeriodic, ratio: float) -> LinearPeriodic:
         raise bad("ratio", repr(ratio), "a finite number, 0 or more", "correct it")
     if "damping_ratio" in system.parameters:
         raise bad("system", "modal damping already", "none", "set its damping_ratio instead")
-    matrices = _DampedModes(system)
+    matrices = Remembered(partial(_matrices, system))
     fixed = all(system.is_constant(name) for name in ("M", "K"))
     function = matrices(np.zeros(1))[0] if fixed else matrices
     terms = [Term("C", "damping_ratio", function)]
@@ -73,31 +74,21 @@ def _damped_again(
     return with_modal_damping(replace(made, parameters=dict(parameters)), ratio)
 
 
-def _carried(system: LinearPeriodic, matrices: _DampedModes, theta: Array) -> Array:
+def _carried(system: LinearPeriodic, matrices: Remembered[Array], theta: Array) -> Array:
     """Return ``C M^-1 A`` at crank angles, ``(nt, n, n)``."""
     drift = np.linalg.solve(system.array("M", theta), system.array("A", theta))
     return np.asarray(matrices(theta) @ drift)
 
 
-class _DampedModes:
-    """``sum_k 2 omega_k (M phi_k)(M phi_k)^T`` at angles, once for all terms that ask at them."""
-
-    def __init__(self, system: LinearPeriodic) -> None:
-        self._system = system
-        self._last: tuple[Array, Array] | None = None
-
-    def __call__(self, theta: Array) -> Array:
-        last = self._last
-        if last is None or not np.array_equal(last[0], theta):
-            last = self._last = (np.array(theta), self._matrices(theta))
-        return last[1].copy()
-
-    def _matrices(self, theta: Array) -> Array:
-        mass, stiffness = self._system.array("M", theta), self._system.array("K", theta)
-        factor = np.linalg.cholesky(mass)
-        inverse = np.linalg.inv(factor)
-        plain = inverse @ stiffness @ np.swapaxes(inverse, -1, -2)
-        squares, modes = np.linalg.eigh(0.5 * (plain + np.swapaxes(plain, -1, -2)))
-        carried = factor @ modes
-        weights = 2.0 * np.sqrt(np.maximum(squares, 0.0))[:, None, :]
-        return np.asarray((carried * weights) @ np.swapaxes(carried, -1, -2))
+def _matrices(system: LinearPeriodic, theta: Array) -> Array:
+    """Return ``sum_k 2 omega_k (M phi_k)(M phi_k)^T`` at crank angles, ``(nt, n, n)``."""
+    mass, stiffness = system.array("M", theta), system.array("K", theta)
+    factor = np.linalg.cholesky(mass)
+    inverse = np.linalg.inv(factor)
+    plain = inverse @ stiffness @ np.swapaxes(inverse, -1, -2)
+    squares, modes = np.linalg.eigh(0.5 * (plain + np.swapaxes(plain, -1, -2)))
+    carried = factor @ modes
+    weights = 2.0 * np.sqrt(np.maximum(squares, 0.0))[:, None, :]
+    found = np.asarray((carried * weights) @ np.swapaxes(carried, -1, -2))
+    found.flags.writeable = False  # it is shared
+    return found

@@ -41,14 +41,10 @@ def term_spectrum(term: Term, expected: tuple[int, ...], period: float) -> Array
         theta = np.linspace(0.0, period, count, endpoint=False, dtype=np.float64)
         table = np.fft.rfft(_checked(term, expected, theta), axis=0) / count
         amplitude: Array = np.max(np.abs(table), axis=1)
-        if count == _MOST or (_faded(amplitude) and _meets(term, expected, period, table)):
+        faded = np.max(amplitude[len(amplitude) // 2 :]) <= _NOISE * np.max(amplitude)
+        if count == _MOST or (faded and _meets(term, expected, period, table)):
             return amplitude
         count *= 2
-
-
-def _faded(amplitude: Array) -> bool:
-    upper = amplitude[len(amplitude) // 2 :]
-    return bool(np.max(upper) <= _NOISE * np.max(amplitude))
 
 
 def _meets(

@@ -17,23 +17,11 @@ from .linear_periodic import Array
 
 @dataclass(frozen=True)
 class Transcendental:
-    """``D(Omega) u = 0`` with the number of poles of D below each frequency.
+    """``D(Omega) u = 0`` with the number of poles of D below each frequency."""
 
-    Attributes
-    ----------
-    size : int
-        Order n of D.
-    stiffness : callable
-        Omega ``(...)`` [rad/s] to D ``(..., n, n)``, symmetric.
-    poles : callable
-        Omega ``(...)`` to the number of poles below it.
-    provenance : mapping
-        Module and options that the problem was made from.
-    """
-
-    size: int
-    stiffness: Callable[[ArrayLike], Array]
-    poles: Callable[[ArrayLike], Array]
+    size: int  # order n of D
+    stiffness: Callable[[ArrayLike], Array]  # Omega (...) [rad/s] to D (..., n, n), symmetric
+    poles: Callable[[ArrayLike], Array]  # Omega (...) to the number of poles below it
     provenance: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
@@ -45,23 +33,11 @@ class Transcendental:
         geometry: Values | None = None,
         provenance: Mapping[str, str] | None = None,
     ) -> Transcendental:
-        """Return the problem of an emitted module at given parameter values.
+        """Return the problem of an emitted module with ``FAMILY = "transcendental"``.
 
-        Parameters
-        ----------
-        module : module
-            Emitted, with ``FAMILY = "transcendental"``.
-        parameters : mapping
-            Its parameters, in SI units; arrays broadcast with the frequency.
-        geometry : mapping, optional
-            Its further arguments beside the frequency, for example a crank angle [rad].
-        provenance : mapping, optional
-            Where the module comes from.
-
-        Raises
-        ------
-        BadInput
-            If the module is of another family, or a parameter or argument is missing.
+        Its parameters are in SI units, arrays broadcast with the frequency; ``geometry`` are its
+        further arguments beside the frequency, for example a crank angle [rad].  A module of
+        another family is refused, and a parameter or argument that is missing.
         """
         values = parameter_values(module, "transcendental", parameters)
         wanted = list(inspect.signature(module.dynamic_stiffness).parameters)[1:]

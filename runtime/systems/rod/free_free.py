@@ -57,21 +57,11 @@ def _solved(count: int) -> tuple[Array, Array]:
 
 @dataclass(frozen=True)
 class FreeFreeModes:
-    """Elastic modes 1, 2, ..., ``size`` of a free-free beam of unit length.
+    """Elastic modes 1, 2, ..., ``size`` of a free-free beam of unit length, 1000 at most.
 
     ``psi_i`` solves ``psi'''' = b_i^4 psi`` with ``psi'' = psi''' = 0`` at both ends and has unit
     square, no mean and no moment about the middle (Beale & Scott (34)-(36)); it is 2 at the right
     end, eta = 1, and 2 or -2 at the left end, eta = 0.
-
-    Attributes
-    ----------
-    size : int
-        Number of modes.
-
-    Raises
-    ------
-    BadInput
-        If the size is not a whole number from 1 to 1000.
     """
 
     size: int

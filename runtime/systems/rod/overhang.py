@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ....generated import quick_return_overhang_modes as emitted
 from ...core.errors import bad
+from ...core.plotting import axes_or_new
 from ...core.results import Check, DeferredChecks, Result, provenance
 from .basis import (
     Array,
@@ -149,32 +150,19 @@ class OverhangFrequencies(Result):
     """Natural frequencies of the rod with the block held still, over the block's place.
 
     ``error`` has the shape of ``frequencies``: the absolute error [rad/s] from round-off.
-
-    Attributes
-    ----------
-    place : ndarray, shape (nt,)
-        Places xi = x1/L of the block.
-    roots : ndarray, shape (nt, modes)
-        beta of each mode.
-    frequencies : ndarray, shape (nt, modes)
-        Natural frequencies [rad/s].
     """
 
-    place: Array
-    roots: Array
-    frequencies: Array
+    place: Array  # places xi = x1/L of the block, (nt,)
+    roots: Array  # beta of each mode, (nt, modes)
+    frequencies: Array  # [rad/s], (nt, modes)
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
         "place": ("place",),
-        "roots": ("place", "mode"),
-        "frequencies": ("place", "mode"),
-        "error": ("place", "mode"),
+        **dict.fromkeys(("roots", "frequencies", "error"), ("place", "mode")),
     }
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies against the block's place."""
-        from ...core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         order = np.argsort(self.place)
         for mode in range(self.frequencies.shape[1]):
@@ -246,24 +234,11 @@ def _diagonal(values: Array) -> Array:
 
 @dataclass(frozen=True)
 class OverhangBasis:
-    """Modes of the beam pinned at the pin, held at the block and free at the tip.
+    """1 to 1000 modes of the beam pinned at the pin, held at the block and free at the tip.
 
     Mode n has unit square and is positive at the tip; this sign is continuous as the block moves,
-    for the tip of no mode is ever at rest.  The slope at the pin has the sign of ``(-1)^n``.
-
-    Attributes
-    ----------
-    size : int
-        Number n of modes, from 1 to 1000.
-
-    Raises
-    ------
-    BadInput
-        If the number is not a whole one from 1 to 1000.
-
-    Notes
-    -----
-    The arrays are read-only: they are remembered for the last few arrays of places.
+    for the tip of no mode is ever at rest.  The slope at the pin has the sign of ``(-1)^n``.  The
+    arrays are read-only: they are remembered for the last few arrays of places.
     """
 
     size: int

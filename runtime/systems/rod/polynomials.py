@@ -234,25 +234,15 @@ _POWER_OF_PLACE = {
 class PolynomialBasis(_TwoSided):
     """Beale & Scott's polynomial modes, as printed or on an orthogonal basis of their span.
 
-    The shapes are ``e = eta P(eta) (eta - xi)`` between pin and block and ``e = xi P(eta)
-    (eta - xi)`` beyond, with P of a degree below n.  Both sides share P: the bending moment cannot
-    jump in slope freely at the block, and the error falls only like 1/n.  The arrays are Beale &
-    Scott (19)-(27), corrected, and what else the canonical form needs.
+    The shapes, 1 to 400, are ``e = eta P(eta) (eta - xi)`` between pin and block and ``e = xi
+    P(eta) (eta - xi)`` beyond, with P of a degree below n.  Both sides share P: the bending moment
+    cannot jump in slope freely at the block, and the error falls only like 1/n.  The arrays are
+    Beale & Scott (19)-(27), corrected, and what else the canonical form needs.
 
-    Attributes
-    ----------
-    size : int
-        Number n of modes, from 1 to 400.
-    orthogonal : bool
-        True for Jacobi polynomials P of weight eta on [0, 1]: a constant change of coordinates
-        that keeps the mass matrix well conditioned.  False for the powers of eta, the modes
-        (12)-(14) themselves over ``L^(i+1)``; past about ten of them the mass matrix is singular to
-        double precision.
-
-    Raises
-    ------
-    BadInput
-        If the number is not a whole one from 1 to 400.
+    With ``orthogonal`` the P are Jacobi polynomials of weight eta on [0, 1]: a constant change of
+    coordinates that keeps the mass matrix well conditioned.  Else they are powers of eta, the modes
+    (12)-(14) themselves over ``L^(i+1)``; past about ten of them the mass matrix is singular to
+    double precision.
     """
 
     size: int
@@ -319,27 +309,15 @@ _POWERS_OF_SIDES = {
 
 @dataclass(frozen=True)
 class TwoSegmentBasis(_TwoSided):
-    """Polynomials on both sides of the block, with one slope through it.
+    """Polynomials on both sides of the block, with one slope through it, 1 to 40 of them.
 
-    The first shape turns about the block: ``xi s (s - 1) J`` between pin and block,
-    ``(1 - xi) s J`` beyond, with s from 0 to 1 on either side and J = 1 at the block.  The others
-    live on one side, alternately between pin and block and beyond, and have neither value nor slope
-    at the block: ``xi s (1 - s)^2 J`` and ``(1 - xi) s^2 J``.  The J are Jacobi polynomials of the
-    weights that make all shapes orthogonal, wherever the block is: ``overlap`` is diagonal.  So the
-    first shape changes with the number of shapes; the span grows with it all the same.
+    The first shape turns about the block: ``xi s (s - 1) J`` between pin and block, ``(1 - xi) s
+    J`` beyond, with s from 0 to 1 on either side and J = 1 at the block.  The others live on one
+    side, alternately between pin and block and beyond, and have neither value nor slope at the
+    block: ``xi s (1 - s)^2 J`` and ``(1 - xi) s^2 J``.  The J are Jacobi polynomials of the weights
+    that make all shapes orthogonal, wherever the block is: ``overlap`` is diagonal.  So the first
+    shape changes with the number of shapes; the span grows with it all the same.
 
-    Attributes
-    ----------
-    size : int
-        Number n of shapes, from 1 to 40.
-
-    Raises
-    ------
-    BadInput
-        If the number is not a whole one from 1 to 40, or the block is not between pin and tip.
-
-    Notes
-    -----
     The stiffness grows fast with the number of shapes beside the mass, and round-off takes digits
     of the lowest frequency: it is right to 1e-8 with 16 shapes and to 3e-6 with 40 where the block
     is at 0.9 of the rod, the worst of the places tried.

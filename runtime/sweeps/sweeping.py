@@ -260,8 +260,8 @@ class Summary:
 def _no_answer(failures: Mapping[int, str], points: int) -> BadInput:
     """Return the complaint about a sweep, or a piece of it, all of whose points failed."""
     first = failures[min(failures)]
-    fix = f"correct what the first one is told: {first}"
-    return bad("sweep", f"errors at all of {points} points", "an answer at one of them", fix)
+    found = f"errors at all of {points} points"
+    return bad("sweep", found, "an answer at one of them", f"the first error: {first}")
 
 
 def _in_memory(plan: Plan, executor: Executor | None, progress: bool) -> Sweep:

@@ -183,11 +183,13 @@ def _by_geometry(
         """Solve at points of one geometry; where they are refused, at each half of them."""
         geometry = dict(zip(shapes, table[own[0]].tolist(), strict=True))
         rest = {name: value[own] for name, value in values.items() if name not in shapes}
+        # Answers have an axis of points also where nothing but the geometry varies.
+        told = dict(options) if rest else {**options, "speed": np.full(len(own), options["speed"])}
         try:
             made = system.with_geometry(**geometry) if shapes else system
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", LinearRangeWarning)
-                result = getattr(periodic, solver)(made, **rest, **options)
+                result = getattr(periodic, solver)(made, **rest, **told)
         except _FAILURES as error:
             if len(own) == 1:
                 failures[int(own[0])] = _told(error)
@@ -195,7 +197,6 @@ def _by_geometry(
             for half in np.array_split(own, 2):
                 solve(half)
             return
-        # Without values that vary, an answer holds for each of the points.
         found.append((own, _wanted(arrays_of(result), outputs), result))
 
     for shape in np.unique(table, axis=0):

@@ -476,6 +476,9 @@ def test_geometry_is_made_anew_within_a_piece():
             direct = el.floquet_multipliers(rod.with_geometry(crank_ratio=ratio), speed)
             gap = np.abs(found["multipliers"][i, j] - direct.multipliers)
             assert np.all(gap <= 2 * direct.error + 1e-15)
+    alone = {"crank_ratio": values["crank_ratio"]}
+    alone = el.sweep("floquet_multipliers", rod, alone, options={"speed": 900.0}, chunk=2)
+    assert np.allclose(alone["multipliers"], found["multipliers"][0], rtol=0.0, atol=1e-9)
 
 
 def test_digests_tell_content_and_nothing_else(mathieu):

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import BadInput, bad
 from ..core.families import LinearPeriodic, require_system
 from ..core.inputs import numbers_in_a_row
-from ..core.maxima import narrowed
+from ..core.maxima import narrowed, summits
 from ..core.trigonometric import even_angles
 from ..periodic.moving_basis import flexible_modes
 
@@ -246,16 +246,17 @@ def buckling_speed(system: LinearPeriodic, **parameters: float) -> Buckling:
     if not system.has("Kg"):
         return Buckling(np.inf, 0.0)
     theta = even_angles(system.period, 256)
-    best = theta[[int(np.argmax(_softening(system, theta, parameters)))]]
+    near = theta[summits(_softening(system, theta, parameters))]
 
     def softening(places: Array) -> Array:
-        return _softening(system, places[0], parameters)[None]
+        return _softening(system, places.ravel(), parameters).reshape(places.shape)
 
-    low, high = narrowed(softening, best - theta[1], best + theta[1], 15)
-    angle = 0.5 * (low + high)
-    worst = float(_softening(system, angle, parameters)[0])
-    speed = 1.0 / np.sqrt(worst) if worst > 0.0 else np.inf
-    return Buckling(speed, float(angle[0]) % system.period)
+    low, high = narrowed(softening, near - theta[1], near + theta[1], 15)
+    angles = 0.5 * (low + high)
+    reached = _softening(system, angles, parameters)
+    best = int(np.argmax(reached))
+    speed = 1.0 / np.sqrt(reached[best]) if reached[best] > 0.0 else np.inf
+    return Buckling(speed, float(angles[best]) % system.period)
 
 
 def _softening(system: LinearPeriodic, theta: Array, parameters: dict[str, float]) -> Array:

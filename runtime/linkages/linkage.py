@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
+from copy import copy
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from inspect import signature
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -246,6 +247,40 @@ class Motion(Result, ABC):
             if unit == "rad":
                 errors[name] = errors[name] + 0.5 * EPS * np.abs(own)
         return errors
+
+    def point_errors(self, link: str, along: ArrayLike, across: ArrayLike = 0.0) -> PointMotion:
+        """Return the errors of place, velocity and acceleration that :meth:`point` returns.
+
+        Those of the link's motion, as :attr:`errors` has them, to first order, with the round-off
+        of the point's own sums; arguments, shapes and units are those of :meth:`point`.
+        """
+        own = self.link(link)
+        self.point(link, along, across)  # refuses what is no place
+        still = dict.fromkeys((*self.errors, "theta2", "omega2", "alpha2"), np.zeros(()))
+        still = {name: np.broadcast_to(zero, np.shape(self.theta2)) for name, zero in still.items()}
+        rest, off = (self._with(values).link(link) for values in (still, {**still, **self.errors}))
+        reach = np.hypot(along, across)[..., np.newaxis]
+        # Sines, products and sums: five halves of a unit in the last place of the largest.
+        tilt, slip = off.angle + 3.0 * EPS, 3.0 * EPS
+        speed, change = np.abs(own.speed), np.abs(own.angular_acceleration)
+        turned = tilt, off.speed + speed * tilt
+        bent = off.angular_acceleration + 2.0 * speed * off.speed + (change + speed**2) * tilt
+
+        def error(moved: Array, of_origin: Array, of_angle: Array) -> Array:
+            size = np.linalg.norm(of_origin, axis=-1, keepdims=True)
+            return np.asarray(moved + slip * size + reach * of_angle[..., np.newaxis])
+
+        return PointMotion(
+            error(off.origin - rest.origin, own.origin, turned[0]),
+            error(off.velocity, own.velocity, turned[1]),
+            error(off.acceleration, own.acceleration, bent),
+        )
+
+    def _with(self, values: Mapping[str, Array]) -> Self:
+        """Return the motion with other numbers; what is deferred in it is not computed for that."""
+        other = copy(self)
+        vars(other).update(values)
+        return other
 
     @property
     def joints(self) -> Mapping[str, Array]:

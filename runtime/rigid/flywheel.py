@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ..core.errors import bad
+from ..core.maxima import summits
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ..core.trigonometric import interpolated
 from ..linkages.linkage import EPS, TURN, Array
@@ -314,14 +315,9 @@ def _integral(values: Array) -> Array:
 def _extreme(values: Array) -> tuple[float, float]:
     """Return the greatest value of a periodic function between its samples, and its angle.
 
-    By Newton's method on the trigonometric interpolant, from every local maximum that may be the
-    greatest: a sample is lower than the summit beside it by an eighth of the second differences.
+    By Newton's method on the trigonometric interpolant, from every sample that may be beside it.
     """
-    before, after = np.roll(values, 1), np.roll(values, -1)
-    lower = float(np.max(values) - np.max(np.abs(before - 2.0 * values + after)))
-    tops = np.flatnonzero((values >= before) & (values >= after) & (values >= lower))
-    # Of a function that all but stays the same, the highest samples are enough.
-    tops = tops[np.argsort(-values[tops], kind="stable")[:16]]
+    tops = summits(values)
     series = interpolated(values, TURN).coefficients
     waves, step = 1j * np.arange(series.size), TURN / values.size
     at = start = tops * step
@@ -330,9 +326,9 @@ def _extreme(values: Array) -> tuple[float, float]:
         slope, bend = (terms @ waves).real, (terms @ waves**2).real
         moved = at - slope / np.where(bend < 0.0, bend, -np.inf)
         at = np.clip(moved, start - step, start + step)
-    summits = np.maximum((np.exp(np.multiply.outer(at, waves)) @ series).real, values[tops])
-    best = int(np.argmax(summits))
-    return float(summits[best]), float(at[best] % TURN)
+    reached = np.maximum((np.exp(np.multiply.outer(at, waves)) @ series).real, values[tops])
+    best = int(np.argmax(reached))
+    return float(reached[best]), float(at[best] % TURN)
 
 
 def _mean_check(machine: Machine, speed: float, mean: float, size: float) -> dict[str, Check]:

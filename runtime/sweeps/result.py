@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -41,6 +41,8 @@ class Sweep(Result):
         Where it is kept.
     damaged : tuple of str
         What of the store was not as it had been written, and was done anew.
+    failures : mapping of int to str
+        Errors of the points that could not be worked out, by their place in the flattened grid.
     error : float
         Largest error estimate of the pieces, in the norm of what was worked out; NaN where that has
         none.
@@ -53,6 +55,7 @@ class Sweep(Result):
     resumed: int = 0
     store: Path | None = None
     damaged: tuple[str, ...] = ()
+    failures: Mapping[int, str] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> AnyArray:
         """Return one array by name.

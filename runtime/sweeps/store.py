@@ -20,7 +20,7 @@ from ..core.errors import BadInput, bad
 from ..core.results import write_whole
 from .pieces import Grid
 from .requests import digest
-from .tasks import AnyArray, Piece
+from .tasks import AnyArray, Piece, blank
 
 _MANIFEST = "manifest.json"
 _ABOUT = "about"
@@ -184,7 +184,10 @@ class Store:
         lost = {number for numbers in damage.values() for number in numbers}
         for number in sorted(set(range(self.grid.pieces)) - lost):
             arrays = {name: np.asarray(self._run(array, number)) for name, array in whole.items()}
-            self.write(number, Piece.from_about(arrays, about))
+            piece, run = Piece.from_about(arrays, about), self.grid.run(number)
+            within = range(run.start, run.stop)
+            own = {k - run.start: told for k, told in piece.failures.items() if k in within}
+            self.write(number, replace(piece, failures=own))
         self._write_manifest({"request": self.request, "complete": False})
 
     def _write_manifest(self, about: Mapping[str, Any]) -> None:
@@ -211,7 +214,7 @@ class Store:
             # A stream of our own: one that cannot be read is closed all the same.
             with path.open("rb") as stream, np.load(stream) as held:
                 about = _unsealed(bytes(held[_ABOUT]))
-                names = sorted(about["arrays"]) if only is None else [only]
+                names = [name for name in sorted(about["arrays"]) if only in (None, name)]
                 arrays = {name: held[name] for name in names}
             if (about["piece"], about["request"]) != (number, self.request):
                 raise ValueError("another piece")
@@ -262,8 +265,10 @@ class Store:
             if piece is None:
                 fix = "start the sweep again"
                 raise bad(str(self._piece(number)), "no piece", "the one that was written", fix)
-            array = piece.arrays[name]
-            stream.write(np.ascontiguousarray(array).tobytes())
+            run = self.grid.run(number)
+            whole = blank((run.stop - run.start, *rest), np.dtype(kind))
+            array = np.asarray(piece.arrays.get(name, whole), dtype=kind, order="C")
+            stream.write(array.tobytes())
             sums.append(_checksum(array))
         return {"shape": list(shape), "type": kind, "pieces": sums}
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import time
 import tracemalloc
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
@@ -14,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.errors import bad, warn_of_large_deflection
+from ..core.errors import BadInput, ElastolinkWarning, bad, warn_of_large_deflection
 from ..core.families import LinearPeriodic
 from ..core.progress import bar
 from ..core.results import provenance
@@ -24,7 +25,10 @@ from .pieces import Grid, grid_of
 from .requests import request_of
 from .result import Sweep
 from .store import Store
-from .tasks import NAMED, AnyArray, Outputs, Piece, Task, task_of
+from .tasks import NAMED, AnyArray, Outputs, Piece, Task, blank, holding, task_of
+
+# Kinds of types that the arrays of pieces may have beside each other.
+_REAL = set("biuf")
 
 
 def sweep(
@@ -79,18 +83,21 @@ def sweep(
     -------
     Sweep
         ``outputs`` by name, shape ``(*grid, ...)``; of a folder they are maps of its files.  Its
-        error is the largest of the pieces, its checks are the worst of each.
+        error is the largest of the pieces, its checks are the worst of each.  A point that cannot
+        be worked out, of a chart excepted, is NaN (or an empty text), its error among the
+        ``failures``; whole numbers and truths become floats then.
 
     Warns
     -----
+    ElastolinkWarning
+        If points have failed: how many.
     LinearRangeWarning
         If a deflection of ``"steady_state"`` passes 5 % of the reference length.
 
     Raises
     ------
     BadInput
-        If an argument is unusable, the store holds another request, or the solver refuses a
-        point.
+        If an argument is unusable, the store holds another request, or no point can be worked out.
     WorkersLost
         If the executor's workers end; with a store the finished pieces are kept.
     """
@@ -201,44 +208,84 @@ def _pieces(
 class Summary:
     """What is told of all pieces, whatever order they come in."""
 
-    def __init__(self) -> None:
+    def __init__(self, grid: Grid) -> None:
+        self._grid = grid
         self._parts: dict[int, Piece] = {}
-        self.shapes: dict[str, tuple[tuple[int, ...], str]] = {}
+        self._kinds: dict[str, tuple[tuple[int, ...], np.dtype[Any]]] = {}
+        self.failures: dict[int, str] = {}
+
+    @property
+    def shapes(self) -> dict[str, tuple[tuple[int, ...], str]]:
+        """Shape at a point and type of every array; refused where no point has an answer."""
+        if not self._kinds:
+            raise _no_answer(self.failures, self._grid.points)
+        return {
+            name: (rest, holding(kind, self.failures).str)
+            for name, (rest, kind) in self._kinds.items()
+        }
 
     def add(self, number: int, piece: Piece) -> None:
         """Take in a piece; refuse one whose arrays are not like those of the others."""
-        found = {name: (array.shape[1:], array.dtype.str) for name, array in piece.arrays.items()}
-        self.shapes = self.shapes or found
-        if found != self.shapes:
+        start = self._grid.run(number).start
+        self.failures |= {start + place: told for place, told in piece.failures.items()}
+        self._parts[number] = replace(piece, arrays={}, failures={})
+        if not piece.arrays:
+            return
+        found = {name: (array.shape[1:], array.dtype) for name, array in piece.arrays.items()}
+        held = self._kinds or found
+        # A piece with failures holds as floats, for NaN, what others hold as whole numbers.
+        alike = found.keys() == held.keys() and all(
+            rest == held[name][0]
+            and (kind == held[name][1] or {kind.kind, held[name][1].kind} <= _REAL)
+            for name, (rest, kind) in found.items()
+        )
+        if not alike:
             raise bad(
                 "outputs",
-                f"{sorted(found.items())} in one piece, {sorted(self.shapes.items())} in another",
+                f"{sorted(found.items())} in one piece, {sorted(held.items())} in another",
                 "arrays of the same names, shapes and types",
                 "name the outputs that have them, as outputs=(...)",
             )
-        self._parts[number] = replace(piece, arrays={})
+        self._kinds = {
+            name: (rest, np.result_type(kind, held[name][1]))
+            for name, (rest, kind) in found.items()
+        }
 
     def whole(self, arrays: Mapping[str, AnyArray]) -> Piece:
         """Return the arrays of all pieces with what holds for all of them."""
-        return Piece.joined(arrays, [self._parts[number] for number in sorted(self._parts)])
+        parts = [self._parts[number] for number in sorted(self._parts)]
+        return replace(Piece.joined(arrays, parts), failures=dict(sorted(self.failures.items())))
+
+
+def _no_answer(failures: Mapping[int, str], points: int) -> BadInput:
+    """Return the complaint about a sweep, or a piece of it, all of whose points failed."""
+    first = failures[min(failures)]
+    found = f"errors at all of {points} points"
+    return bad("sweep", found, "an answer at one of them", f"the first error: {first}")
 
 
 def _in_memory(plan: Plan, executor: Executor | None, progress: bool) -> Sweep:
     grid = plan.grid
-    summary = Summary()
+    summary = Summary(grid)
     arrays: dict[str, AnyArray] = {}
     for number, piece in _pieces(plan, executor, list(range(grid.pieces)), progress):
         summary.add(number, piece)
         for name, array in piece.arrays.items():
+            kind = np.dtype(summary.shapes[name][1])
             if name not in arrays:
-                arrays[name] = np.empty((grid.points, *array.shape[1:]), dtype=array.dtype)
+                arrays[name] = np.empty((grid.points, *array.shape[1:]), dtype=kind)
+            arrays[name] = arrays[name].astype(kind, copy=False)
             arrays[name][grid.run(number)] = array
-    whole = {name: array.reshape(*grid.shape, *array.shape[1:]) for name, array in arrays.items()}
-    return _assembled(plan, summary.whole(dict(sorted(whole.items()))), None, 0)
+    whole, failed = {}, list(summary.failures)
+    for name, (rest, final) in sorted(summary.shapes.items()):
+        array = arrays[name].astype(final, copy=False)
+        array[failed] = blank(rest, array.dtype)
+        whole[name] = array.reshape(*grid.shape, *rest)
+    return _assembled(plan, summary.whole(whole), None, 0)
 
 
 def _through_store(plan: Plan, kept: Store, executor: Executor | None, progress: bool) -> Sweep:
-    summary = Summary()
+    summary = Summary(plan.grid)
     wanted = []
     for number in range(plan.grid.pieces):
         piece = kept.read(number)
@@ -256,8 +303,14 @@ def _through_store(plan: Plan, kept: Store, executor: Executor | None, progress:
 
 def _assembled(plan: Plan, whole: Piece, place: Path | None, resumed: int) -> Sweep:
     known = plan.subject.provenance if isinstance(plan.subject, LinearPeriodic) else {}
+    method = whole.method
+    if whole.failures:
+        failed = f"{len(whole.failures)} of {plan.grid.points} points failed"
+        method = f"{method}; {failed}"
+        told = f"{failed}, see its failures; the first: {whole.failures[min(whole.failures)]}"
+        warnings.warn(f"sweep: {told}", ElastolinkWarning, stacklevel=4)
     return Sweep(
-        method=whole.method,
+        method=method,
         error=whole.error,
         error_norm=whole.error_norm,
         checks=whole.checks,
@@ -268,6 +321,7 @@ def _assembled(plan: Plan, whole: Piece, place: Path | None, resumed: int) -> Sw
         pieces=plan.grid.pieces,
         resumed=resumed,
         store=place,
+        failures=dict(whole.failures),
     )
 
 
@@ -321,10 +375,12 @@ def estimate_sweep(
     finally:
         if not already:
             tracemalloc.stop()
+    run = plan.grid.run(middle)
+    if not piece.arrays:
+        raise _no_answer(piece.failures, run.stop - run.start)
     begin = time.perf_counter()
     plan.piece(middle)
     seconds = time.perf_counter() - begin
-    run = plan.grid.run(middle)
     share = plan.grid.points / (run.stop - run.start)
     held = sum(int(np.asarray(array).nbytes) for array in piece.arrays.values())
     at_once = min(workers, plan.grid.pieces)

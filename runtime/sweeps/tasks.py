@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import inspect
 import warnings
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields, is_dataclass, replace
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import partial
 from importlib import import_module
+from math import prod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import LinearRangeWarning, bad
+from ..core.errors import ElastolinkError, LinearRangeWarning, bad
 from ..core.families import Array, LinearPeriodic
 from ..core.results import Check, Result
 
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
     from ..periodic import FloquetMultipliers, SteadyState
 
 AnyArray = NDArray[Any]
+
+# What the numbers of a point can bring about; other errors, of a disk or a program, end the sweep.
+_FAILURES = (ElastolinkError, ArithmeticError, LookupError, RuntimeError, ValueError)
 
 
 @dataclass(frozen=True)
@@ -32,6 +36,8 @@ class Piece:
     error: float  # the largest of the points; NaN where there is none
     error_norm: str
     checks: Mapping[str, Check]  # the worst of each
+    # Errors of the points that have no answer, by their place in the run; no arrays where all fail.
+    failures: Mapping[int, str] = field(default_factory=dict)
 
     def about(self) -> dict[str, Any]:
         """Return all but the arrays, ready for JSON, which has no word for infinity."""
@@ -41,22 +47,25 @@ class Piece:
             "error": _json(self.error),
             "error_norm": self.error_norm,
             "checks": pairs,
+            "failures": sorted(self.failures.items()),
         }
 
     @classmethod
     def from_about(cls, arrays: Mapping[str, AnyArray], about: Mapping[str, Any]) -> Piece:
         """Undo :meth:`about`."""
         checks = {name: Check(*map(float, pair)) for name, pair in about["checks"].items()}
-        return cls(arrays, about["method"], float(about["error"]), about["error_norm"], checks)
+        told = about["method"], float(about["error"]), about["error_norm"], checks
+        return cls(arrays, *told, dict(about.get("failures", ())))
 
     @classmethod
     def joined(cls, arrays: Mapping[str, AnyArray], parts: Sequence[Piece]) -> Piece:
-        """Return what holds for all parts, with the arrays of all."""
+        """Return what holds for all parts, failures excepted, with the arrays of all."""
+        methods = dict.fromkeys(m for part in parts for m in part.method.split("; ") if m)
         return cls(
             arrays,
-            "; ".join(dict.fromkeys(m for part in parts for m in part.method.split("; "))),
+            "; ".join(methods),
             _largest([part.error for part in parts]),
-            parts[0].error_norm,
+            next((part.error_norm for part in parts if part.error_norm), ""),
             _worst(part.checks for part in parts),
         )
 
@@ -107,7 +116,25 @@ def _largest(error: object) -> float:
     return float(np.max(values)) if values.size else float("nan")
 
 
+def blank(shape: tuple[int, ...], kind: np.dtype[Any]) -> AnyArray:
+    """Return an array of what stands where there is no answer: NaN, or an empty text."""
+    return np.full(shape, np.nan, kind) if kind.kind in "fc" else np.zeros(shape, kind)
+
+
+def holding(kind: np.dtype[Any], failures: Collection[object]) -> np.dtype[Any]:
+    """Return the type of an output, which must hold NaN where points have failed."""
+    return np.dtype(float) if failures and kind.kind in "biu" else kind
+
+
+def _told(error: Exception) -> str:
+    """Return the line of a point's error."""
+    kind = "" if isinstance(error, ElastolinkError) else f"{type(error).__name__}: "
+    return kind + "; ".join(str(error).splitlines())
+
+
 def _of_result(arrays: Mapping[str, AnyArray], *results: Result) -> Piece:
+    if not results:
+        return Piece(arrays, "", float("nan"), "", {})
     return Piece(
         arrays,
         results[0].method,
@@ -145,30 +172,42 @@ def _by_geometry(
     """Call a solver of :mod:`..periodic` with all points of a piece, or once for each geometry."""
     from .. import periodic
 
-    def solve(made: LinearPeriodic, **values: Any) -> tuple[dict[str, AnyArray], Result]:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", LinearRangeWarning)
-            result = getattr(periodic, solver)(made, **values, **options)
-        return _wanted(arrays_of(result), outputs), result
-
     values = _points(axes)
     shapes = [name for name in values if name in system.geometry]
-    rest = {name: value for name, value in values.items() if name not in shapes}
-    if not shapes:
-        arrays, result = solve(system, **rest)
-        return _of_result(arrays, result)
-    table = np.stack([values[name] for name in shapes], axis=-1)
+    count = prod(len(axis) for axis in axes.values())
+    table = np.stack([values[name] for name in shapes], axis=-1) if shapes else np.zeros((count, 0))
+    failures: dict[int, str] = {}
     found: list[tuple[NDArray[np.intp], dict[str, AnyArray], Result]] = []
+
+    def solve(own: NDArray[np.intp]) -> None:
+        """Solve at points of one geometry; where they are refused, at each half of them."""
+        geometry = dict(zip(shapes, table[own[0]].tolist(), strict=True))
+        rest = {name: value[own] for name, value in values.items() if name not in shapes}
+        # Answers have an axis of points also where nothing but the geometry varies.
+        told = dict(options) if rest else {**options, "speed": np.full(len(own), options["speed"])}
+        try:
+            made = system.with_geometry(**geometry) if shapes else system
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", LinearRangeWarning)
+                result = getattr(periodic, solver)(made, **rest, **told)
+        except _FAILURES as error:
+            if len(own) == 1:
+                failures[int(own[0])] = _told(error)
+                return
+            for half in np.array_split(own, 2):
+                solve(half)
+            return
+        found.append((own, _wanted(arrays_of(result), outputs), result))
+
     for shape in np.unique(table, axis=0):
-        own = np.flatnonzero(np.all(table == shape, axis=1))
-        made = system.with_geometry(**dict(zip(shapes, shape.tolist(), strict=True)))
-        found.append((own, *solve(made, **{k: v[own] for k, v in rest.items()})))
-    joined = {}
-    for name, first in found[0][1].items():
-        joined[name] = np.empty((len(table), *first.shape[1:]), dtype=first.dtype)
-        for own, arrays, _ in found:
-            joined[name][own] = arrays[name]
-    return _of_result(joined, *(result for _, _, result in found))
+        solve(np.flatnonzero(np.all(table == shape, axis=1)))
+    arrays = {}
+    for name, first in (found[0][1] if found else {}).items():
+        kind = np.result_type(*(each[name] for _, each, _ in found))
+        arrays[name] = blank((count, *first.shape[1:]), holding(kind, failures))
+        for own, each, _ in found:
+            arrays[name][own] = each[name]
+    return replace(_of_result(arrays, *(each for _, _, each in found)), failures=failures)
 
 
 def _points(axes: Mapping[str, Array]) -> dict[str, Array]:
@@ -205,18 +244,30 @@ def _each(
     own = _own_values(function, subject, tuple(axes))
     arrays: list[dict[str, AnyArray]] = []
     results: list[Result] = []
-    for row in zip(*(values.tolist() for values in _points(axes).values()), strict=True):
+    failures: dict[int, str] = {}
+    rows = zip(*(values.tolist() for values in _points(axes).values()), strict=True)
+    for place, row in enumerate(rows):
         point = dict(zip(axes, row, strict=True))
-        made = _moved(subject, {name: point.pop(name) for name in own})
-        answer = function(made, **point, **options)
+        try:
+            made = _moved(subject, {name: point.pop(name) for name in own})
+            answer = function(made, **point, **options)
+        except _FAILURES as error:
+            failures[place] = _told(error)
+            continue
         arrays.append(_wanted(_arrays_of(answer), outputs))
         if isinstance(answer, Result):
             results.append(answer)
-    joined = {name: _stacked(name, [found.get(name) for found in arrays]) for name in arrays[0]}
-    if results:
-        return _of_result(joined, *results)
+    good = [each for each in range(len(arrays) + len(failures)) if each not in failures]
+    joined = {}
+    for name in arrays[0] if arrays else ():
+        values = _stacked(name, [found.get(name) for found in arrays])
+        kind = holding(values.dtype, failures)
+        joined[name] = blank((len(good) + len(failures), *values.shape[1:]), kind)
+        joined[name][good] = values
+    if results or not arrays:
+        return replace(_of_result(joined, *results), failures=failures)
     name = getattr(function, "__name__", "function")
-    return Piece(joined, name, float("nan"), "none: the function gives none", {})
+    return Piece(joined, name, float("nan"), "none: the function gives none", {}, failures)
 
 
 def _own_values(

@@ -127,6 +127,55 @@ def test_estimates_cover_the_errors_and_are_not_idle(kind, count):
     covers(*every_error_is_known(linkage, points(count, seed)), count)
 
 
+def points_of_links(kind, point, along, across):
+    """Return told and actual errors of a point of each link whose turning the truth knows."""
+    motion, _ = compared(kind, point)
+    told, actual = [], []
+    with mpmath.workdps(80):
+        truth = TRUTHS[kind]({name: mpmath.mpf(v) for name, v in point.arguments.items()})
+        turn = {"crank": (mpmath.mpf(point.inputs["theta2"]), mpmath.mpf(1), mpmath.mpf(0))}
+        for name, number in (("coupler", "3"), ("follower", "4"), ("rod", "4"), ("block", "4")):
+            if name in motion.linkage.links and f"theta{number}" in truth:
+                turn[name] = tuple(truth[rate + number] for rate in ("theta", "omega", "alpha"))
+        pin = _turning(*turn["crank"], mpmath.mpf(motion.linkage.lengths["crank"]))
+        far = {"follower": "frame", "rod": "frame"}
+        for name, rates in turn.items():
+            exact = _turning(*rates, mpmath.mpc(along, across))
+            if name in ("coupler", "block"):
+                exact = [one + other for one, other in zip(pin, exact, strict=True)]
+            elif name in far:
+                exact[0] += (1 if name == "follower" else -1) * mpmath.mpf(
+                    motion.linkage.lengths["frame"]
+                )
+            found = vars(motion.point(name, along, across))
+            errors = vars(motion.point_errors(name, along, across))
+            for (field, value), true in zip(found.items(), exact, strict=True):
+                for k, part in enumerate((true.real, true.imag)):
+                    actual.append(float(abs(mpmath.mpf(float(value[k])) - part)))
+                    told.append(float(errors[field][k]))
+    return told, actual
+
+
+def _turning(angle, speed, change, vector):
+    """Return place, velocity and acceleration of a complex vector that turns."""
+    vector = mpmath.mpc(vector) * mpmath.expj(angle)
+    return [vector, 1j * speed * vector, (1j * change - speed**2) * vector]
+
+
+@pytest.mark.parametrize("count", [20, pytest.param(300, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("kind", RANDOM)
+def test_points_of_links_tell_their_errors(kind, count):
+    linkage, points, seed = RANDOM[kind]
+    random = np.random.default_rng(seed)
+    told, actual = [], []
+    for point in points(count, seed):
+        size = max(abs(v) for name, v in point.inputs.items() if name != "theta2")
+        more = points_of_links(linkage, point, *map(float, size * random.uniform(-2.0, 2.0, 2)))
+        told += more[0]
+        actual += more[1]
+    covers(told, actual, median=100.0)
+
+
 @pytest.mark.parametrize("kind", NASTY)
 def test_estimates_cover_the_errors_at_every_nasty_point(kind):
     linkage, points = NASTY[kind]

@@ -119,6 +119,20 @@ def test_buckling_by_hand():
     assert buckling_speed(still).speed == np.inf
 
 
+def test_buckling_at_the_worse_of_summits_that_samples_take_for_the_lower():
+    """1.5 + 2e-5 midway between 256 angles, beside 1.5 - 1e-5 at one of them."""
+    place = 2.0 * np.pi / 3.0
+
+    def softening(theta):
+        size = 1.0 + 0.5 * np.cos(3.0 * theta) + 2e-5 * np.cos(theta - place)
+        return -size[:, None, None] * np.eye(1)
+
+    still = system_of(M=np.eye(1), K=600.0 * np.eye(1))
+    found = buckling_speed(still.with_terms(Term("Kg", None, softening, power=2)))
+    assert found.speed == pytest.approx(np.sqrt(600.0 / 1.50002), rel=1e-12)
+    assert found.angle == pytest.approx(place, abs=6e-6)
+
+
 def test_the_first_mean_follows_the_softer_of_two_links():
     system = _linkage(2)
     found = link_frequencies(system, "coupler", "length", [0.328, 0.636])

@@ -17,7 +17,7 @@ from pathlib import Path
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.errors import BadInput, ElastolinkWarning
 from elastolink.runtime.sweeps import Sweep, WorkersLost, estimate_sweep, sweeping
 from elastolink.runtime.sweeps.pieces import grid_of
 from elastolink.runtime.sweeps.requests import digest
@@ -36,6 +36,15 @@ def fails_at_two(subject, a):
     if a == 2.0:
         raise BadInput("a is two")
     return a
+
+
+def now_and_then(subject, a, b):
+    """A whole number, a truth, a pair and a text; errors of several kinds at known points."""
+    if a == 1.0:
+        raise BadInput("a is one")
+    if b == 2.0:
+        return {"n": 1 // int(b - 2.0)}
+    return {"n": int(a), "right": a > b, "pair": [a + 1j * b, b], "text": f"{a:g}"}
 
 
 def ends_the_process(subject, a):
@@ -381,6 +390,58 @@ def test_a_function_of_ones_own_and_results_of_public_ones(tmp_path, pool):
     assert same_bytes(many, angles)
 
 
+@pytest.mark.parametrize("chunk", [1, 3, 100])
+@pytest.mark.parametrize("name", ["whole", "whole.npz", None])
+def test_points_that_fail_keep_their_errors_and_the_others_their_values(tmp_path, name, chunk):
+    values = {"a": [0.0, 1.0, 2.0, 3.0], "b": [1.0, 2.0, 4.0]}
+    told = {"chunk": chunk} | ({} if name is None else {"store": tmp_path / name})
+    with pytest.warns(ElastolinkWarning, match="6 of 12 points failed.*ZeroDivisionError"):
+        found = el.sweep(now_and_then, None, values, **told)
+    assert sorted(found.failures) == [1, 3, 4, 5, 7, 10]
+    assert {found.failures[k] for k in (3, 4, 5)} == {"a is one"}
+    assert "6 of 12 points failed" in found.method
+    failed = np.isin(np.arange(12), list(found.failures)).reshape(4, 3)
+    for k, array in ((1, found["n"]), (2, found["pair"]), (1, found["right"])):
+        assert np.array_equal(np.isnan(array), failed if k == 1 else np.stack([failed] * 2, -1))
+    assert np.array_equal(found["n"][~failed], [0, 0, 2, 2, 3, 3])
+    assert np.array_equal(found["right"][~failed], [0, 0, 1, 0, 1, 0])
+    assert np.array_equal(found["text"] == "", failed)
+    if name is None:
+        return
+    with pytest.warns(ElastolinkWarning, match="6 of 12"):
+        again = el.sweep(now_and_then, None, values, **told)
+    assert again.failures == found.failures and again.resumed == again.pieces
+    assert "a is one" in json.dumps(again.to_dict())
+
+
+def test_damage_beside_failed_points_is_done_anew(tmp_path):
+    values = {"a": [0.0, 1.0, 2.0, 3.0], "b": [1.0, 2.0, 4.0]}
+    told = {"chunk": 3, "store": tmp_path / "whole"}
+    with pytest.warns(ElastolinkWarning):
+        el.sweep(now_and_then, None, values, **told)
+    files = {path: path.read_bytes() for path in sorted(told["store"].iterdir())}
+    for path in told["store"].glob("*.npy"):
+        path.write_bytes(path.read_bytes()[:-1] + b"?")
+        with pytest.warns(ElastolinkWarning, match="6 of 12"):
+            assert el.sweep(now_and_then, None, values, **told).damaged
+        assert {path: path.read_bytes() for path in sorted(told["store"].iterdir())} == files
+
+
+def test_solvers_of_many_points_go_on_beside_those_they_refuse():
+    system = el.load_scene("smith_1972_5152_sixteenth_inch").system()
+    values = {"bending_stiffness": [50.0, -50.0, 60.0], "speed": [50.0, 60.0, 70.0, -np.pi]}
+    with pytest.warns(ElastolinkWarning, match="6 of 12 points failed"):
+        found = el.sweep("floquet_multipliers", system, values)
+    assert sorted(found.failures) == [3, 4, 5, 6, 7, 11]
+    assert all("bending_stiffness" in found.failures[k] for k in (4, 5, 6))
+    assert all("positive finite speeds" in found.failures[k] for k in (3, 11))
+    for row, column in product((0, 2), range(3)):
+        stiffness, speed = values["bending_stiffness"][row], values["speed"][column]
+        alone = el.floquet_multipliers(system, speed, bending_stiffness=stiffness)
+        gap = np.abs(found["multipliers"][row, column] - alone.multipliers)
+        assert np.all(gap <= alone.error + found["error"][row, column])
+
+
 def test_a_store_of_a_function_without_error_figures(tmp_path):
     values = {"a": [1.0, 2.0, 3.0]}
     first = el.sweep(square_sum, 2.0, values, chunk=2, store=tmp_path / "store")
@@ -415,6 +476,9 @@ def test_geometry_is_made_anew_within_a_piece():
             direct = el.floquet_multipliers(rod.with_geometry(crank_ratio=ratio), speed)
             gap = np.abs(found["multipliers"][i, j] - direct.multipliers)
             assert np.all(gap <= 2 * direct.error + 1e-15)
+    alone = {"crank_ratio": values["crank_ratio"]}
+    alone = el.sweep("floquet_multipliers", rod, alone, options={"speed": 900.0}, chunk=2)
+    assert np.allclose(alone["multipliers"], found["multipliers"][0], rtol=0.0, atol=1e-9)
 
 
 def test_digests_tell_content_and_nothing_else(mathieu):
@@ -443,7 +507,7 @@ CHART = "stability_chart"
         (square_sum, {"a": "x"}, {}, "numbers"),
         (square_sum, {"a": [1.0], "c": [1.0]}, {}, "axes"),
         (square_sum, {"a": [1.0]}, {"store": "/proc/none/such"}, "writable"),
-        (fails_at_two, {"a": [1.0, 2.0]}, {}, "a is two"),
+        (fails_at_two, {"a": [2.0, 2.0]}, {"chunk": 1}, "all of 2 points.*a is two"),
         (CHART, {"mu": MU}, {}, "two axes"),
         (CHART, {"mu": MU, "lam": LAM2}, {}, "correct the names"),
         ("floquet_multipliers", {"mu": MU}, {}, "a crank speed"),

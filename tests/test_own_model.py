@@ -19,9 +19,9 @@ from numpy.polynomial.legendre import leggauss
 
 DOCS = Path(__file__).parents[1] / "docs"
 EXAMPLE = DOCS / "examples"
-FILES = ("slider_crank_rod.py", "slider_crank_example.toml")
+FILES = ("slider_crank_rod.py", "slider_crank_rod.toml")
 SPEED = 900.0 * 2.0 * np.pi / 60.0
-# As in slider_crank_example.toml, in SI units.
+# As in slider_crank_rod.toml, in SI units.
 CRANK, ROD, OFFSET, EI, MU, DAMPING = 0.06, 0.3, 0.01, 4.2, 0.471, 0.6
 
 

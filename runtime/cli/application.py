@@ -42,7 +42,7 @@ class _Parser(argparse.ArgumentParser):
         told = one_line(message, _LONGEST)
         self.exit(_BAD_INPUT, f"{self.prog}: {told}; `{self.prog} --help` explains\n")
 
-    def parse_known_args(  # type: ignore[no-untyped-def,override]
+    def parse_known_args(  # type: ignore[no-untyped-def]
         self, args=None, namespace=None
     ):
         """Refuse ``--option=--``, of which argparse makes an empty list instead of a text."""

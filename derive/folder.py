@@ -43,10 +43,13 @@ def update(
     if not stale and not left_over:
         print(f"nothing to do: all is current in {folder} ({len(jobs)} modules)")
         return
-    for job in stale:
-        path = folder / f"{job.name}.py"
-        if path.is_file() and path.stat().st_size and _MARK not in path.read_bytes():
-            raise UsageError(f"{path}: found a file that was not emitted; choose another --out")
+    foreign = [path for job in stale if _is_foreign(path := folder / f"{job.name}.py")]
+    # A manifest may be damaged or in conflict: beside emitted modules it is theirs all the same.
+    manifest = folder / MANIFEST
+    if manifest.exists() and not entries and not any(map(_is_emitted, folder.glob("*.py"))):
+        foreign.append(manifest)
+    for path in foreign:
+        raise UsageError(f"{path}: found a file that was not emitted; choose another --out")
     _make(folder)
     with _derived(stale, processes) as texts:
         for count, (job, text) in enumerate(zip(stale, texts, strict=True), start=1):
@@ -95,9 +98,21 @@ def _diff(name: str, found: bytes, text: str) -> Iterator[str]:
 
 
 def _left_over(folder: Path, jobs: Sequence[Job]) -> list[str]:
-    """Return the modules in a folder that none of the jobs makes."""
+    """Return the emitted modules in a folder that none of the jobs makes; others are let be."""
     wanted = {f"{job.name}.py" for job in jobs} | {"__init__.py"}
-    return sorted(path.name for path in folder.glob("*.py") if path.name not in wanted)
+    rest = (path for path in folder.glob("*.py") if path.name not in wanted)
+    return sorted(path.name for path in rest if _is_emitted(path))
+
+
+def _is_emitted(path: Path) -> bool:
+    return path.is_file() and _MARK in path.read_bytes()
+
+
+def _is_foreign(path: Path) -> bool:
+    """Return whether something lies there that no run of this command wrote."""
+    return (
+        path.exists() and not _is_emitted(path) and not (path.is_file() and not path.read_bytes())
+    )
 
 
 def _make(folder: Path) -> None:

@@ -160,7 +160,7 @@ def _spec_of_scene(file: Path) -> ModelSpec:
         table = tomllib.loads(file.read_bytes().decode())
     except OSError as problem:
         raise UsageError(f"scene file {file}: {problem.strerror}") from None
-    except ValueError as problem:  # broken TOML, or no text in UTF-8
+    except (ValueError, RecursionError) as problem:  # broken TOML, or no text in UTF-8
         raise UsageError(f"scene file {file}: {_one_line(problem)}") from None
     if "model" not in table:
         raise UsageError(f"scene file {file}: has no [model] table")
@@ -173,8 +173,8 @@ def _spec_of_scene(file: Path) -> ModelSpec:
 def _spec_of_text(text: str) -> ModelSpec:
     try:
         return ModelSpec.from_mapping(json.loads(text))
-    except ValueError as problem:
-        raise UsageError(f"--spec {text}: {_one_line(problem)}") from None
+    except (ValueError, RecursionError) as problem:
+        raise UsageError(f"--spec {text[:200]}: {_one_line(problem)}") from None
 
 
 def _load_file(file: Path) -> ModuleType:

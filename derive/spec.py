@@ -226,7 +226,7 @@ def read_manifest(folder: Path) -> dict[str, Entry]:
     """
     try:
         rows = json.loads((folder / MANIFEST).read_bytes())["modules"].items()
-    except (OSError, ValueError, LookupError, TypeError, AttributeError):
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
         return {}
     found: dict[str, Entry] = {}
     for key, row in rows:

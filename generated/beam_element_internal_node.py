@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 202 operations
-Content hash be591ad04c295c4dff8a6f1a8af4629a; derived with SymPy 1.14.0.
+Content hash 42db8d773f448dede03c3b6b54382d1b; derived with SymPy 1.14.0.
 """
 
 __all__ = ["element"]
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"internal_node","mechanism":"beam_elemen'
     't","modes":null,"outputs":[]}'
 )
-CONTENT = "be591ad04c295c4dff8a6f1a8af4629a"
+CONTENT = "42db8d773f448dede03c3b6b54382d1b"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

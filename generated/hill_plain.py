@@ -9,7 +9,7 @@ The caller supplies f as a function of the angle, by the name 'f'.
 
 Cost per evaluation:
     scales: 0 operations
-Content hash c266d728332e61bee6d6a2e054f483ea; derived with SymPy 1.14.0.
+Content hash e0765487a2446920c7ab7219eaeb81c7; derived with SymPy 1.14.0.
 """
 
 __all__ = ["scales"]
@@ -18,7 +18,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"plain","mechanism":"hill","modes":null,'
     '"outputs":[]}'
 )
-CONTENT = "c266d728332e61bee6d6a2e054f483ea"
+CONTENT = "e0765487a2446920c7ab7219eaeb81c7"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

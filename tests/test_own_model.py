@@ -19,8 +19,8 @@ from numpy.polynomial.legendre import leggauss
 
 DOCS = Path(__file__).parents[1] / "docs"
 EXAMPLE = DOCS / "examples"
-FILES = ("slider_crank_rod.py", "slider_crank_example.toml")
-# As in slider_crank_example.toml, in SI units.
+FILES = ("slider_crank_rod.py", "slider_crank_rod.toml")
+# As in slider_crank_rod.toml, in SI units.
 CRANK, ROD, OFFSET, EI, MU, DAMPING = 0.06, 0.3, 0.01, 4.2, 0.471, 0.6
 
 

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from ... import __version__
-from ..core.errors import BadInput, ElastolinkError, ElastolinkWarning, bad
+from ..core.errors import BadInput, ElastolinkError, ElastolinkWarning, bad, one_line
 from ..core.progress import time_taken
 from ..core.threads import environment, use_one_thread
 from .options import HelpFormatter, add, picture
@@ -29,6 +29,8 @@ _GROUPS = (
     *("response", "beams", "stability", "boundaries", "proofs"),
 )
 _BAD_INPUT = 2
+# Characters of a complaint; the longest list of choices has half as many.
+_LONGEST = 1200
 _INTERRUPTED = 130
 
 
@@ -37,7 +39,17 @@ class _Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Write the complaint and leave with status 2."""
-        self.exit(_BAD_INPUT, f"{self.prog}: {message}; `{self.prog} --help` explains\n")
+        told = one_line(message, _LONGEST)
+        self.exit(_BAD_INPUT, f"{self.prog}: {told}; `{self.prog} --help` explains\n")
+
+    def parse_known_args(  # type: ignore[no-untyped-def]
+        self, args=None, namespace=None
+    ):
+        """Refuse ``--option=--``, of which argparse makes an empty list instead of a text."""
+        for text in sys.argv[1:] if args is None else args:
+            if text.startswith("--") and text.endswith("=--"):
+                self.error(f"argument {text[:-3]}: expected one argument")
+        return super().parse_known_args(args, namespace)
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -74,8 +86,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             sys.stdout.flush()
             return status
     except BadInput as error:
-        for problem in error.problems:
-            _complain(prefix, str(problem))
+        for line in error.lines():
+            _complain(prefix, line)
     except BrokenPipeError:
         # The reader of our output has left; a second attempt at exit would complain again.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -91,7 +103,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _complain(prefix: str, message: str) -> None:
-    print(f"{prefix}: {' '.join(message.split())}", file=sys.stderr)
+    print(f"{prefix}: {one_line(message, _LONGEST)}", file=sys.stderr)
 
 
 def _module_folder(folder: str | None) -> AbstractContextManager[None]:

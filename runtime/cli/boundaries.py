@@ -68,7 +68,8 @@ def _regions(given: str | None) -> tuple[int, ...]:
         numbers = tuple(range(first, last + 1))
     else:
         parts = [part.strip() for part in text.split(",")]
-        known = all(map(str.isdecimal, parts))
+        # More digits than that are no region, and Python may refuse to read them.
+        known = all(part.isdecimal() and len(part) < 10 for part in parts)
         numbers = tuple(dict.fromkeys(int(part) for part in parts)) if known else ()
     if not numbers:
         raise bad("--regions", repr(text), "whole numbers such as 1,3,5 or 1:6", "correct it")
@@ -223,7 +224,8 @@ def _perturb(options: argparse.Namespace) -> int:
             one = hill.boundary_series(f, n, options.order, ratio)
         except BadInput as error:
             # Damping closes this region, and perhaps no other.
-            remarks.append(str(error))
+            closed = all(problem.where == "damping_ratio" for problem in error.problems)
+            remarks.append(f"region {n}: closed by the scene's damping" if closed else str(error))
             continue
         found.append(one)
         rows += _series_rows(one)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from inspect import cleandoc
 from typing import TYPE_CHECKING, Any
 
-from ..core.errors import bad
+from ..core.errors import bad, printable
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 # Rows of a table of maxima at the most.
 MOST_ROWS = 25
-_COUNT = re.compile(r"\s*(\d{1,7})\s*(.*)")
+_COUNT = re.compile(r"\s*(\d+)\s*(.*)")
 
 
 class HelpFormatter(argparse.RawDescriptionHelpFormatter):
@@ -117,6 +117,17 @@ def quantity(text: str, dimension: str, where: str) -> float:
     return to_si(text, dimension, where)
 
 
+def size(text: str, dimension: str, where: str) -> float:
+    """Return a quantity that has to name its unit: a clearance of 0.1 would be of metres."""
+    value = quantity(text, dimension, where)
+    if value and re.fullmatch(r"[-+.eE\d\s]+", text):
+        from ..core.units import DIMENSIONS
+
+        fix = f"write it like '{DIMENSIONS[dimension].example}'"
+        raise bad(where, repr(text), "a number with its unit", fix)
+    return value
+
+
 def given(options: argparse.Namespace, name: str, dimension: str) -> float | None:
     """Return the quantity of an option in SI units; None where it was not given."""
     text = getattr(options, name.replace("-", "_"))
@@ -141,7 +152,9 @@ def values(text: str, dimension: str, where: str) -> Array:
     match = _COUNT.fullmatch(parts[-1]) if len(parts) == 3 else None
     if match is None:
         raise bad(where, repr(text), "START:STOP:COUNT[UNIT]", "write it like 100:900:201rpm")
-    count, unit = int(match.group(1)), match.group(2)
+    digits, unit = match.group(1).lstrip("0") or "0", match.group(2)
+    # Python reads no numbers of thousands of digits.
+    count = int(digits[:7])
     ends = [part if not unit else f"{part} {unit}" for part in parts[:2]]
     start, stop = (quantity(end, dimension, where) for end in ends)
     if not (stop > start and 2 <= count <= 100_000):
@@ -229,7 +242,8 @@ def say(options: argparse.Namespace, content: Any, text: str) -> int:
     """
     if options.json:
         text = json.dumps(_finite(content), sort_keys=True, indent=1, allow_nan=False)
-    print(text)
+    # Titles and names are the scene's: what they hold must not steer the terminal.
+    print("\n".join(map(printable, text.split("\n"))))
     return 0
 
 
@@ -315,7 +329,7 @@ def _value(text: str) -> Any:
 
     try:
         parsed = tomllib.loads(f"value = {text}")
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):
         return text
     # A text with line breaks could smuggle in more keys than one.
     return parsed["value"] if set(parsed) == {"value"} else text

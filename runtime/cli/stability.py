@@ -279,7 +279,9 @@ def _check_scale(options: argparse.Namespace) -> int:
         from ..core.workers import check_workers
 
         text = options.workers.strip()
-        count = check_workers(int(text) if text.isdecimal() else text, "--workers")
+        count = check_workers(
+            int(text) if text.isdecimal() and len(text) < 10 else text, "--workers"
+        )
     if options.store is None:
         opt.refuse_unused(options, ("estimate",), "--store PATH")
         return count

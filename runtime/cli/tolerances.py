@@ -93,7 +93,7 @@ def _cases(options: argparse.Namespace) -> list[tuple[str, Any, str | None]]:
     if not options.clearance:
         raise bad("--clearance", "nothing", "a clearance", "give --clearance '0.1 mm'")
     return [
-        (f"clearance {text}", opt.quantity(text, "length", "--clearance"), options.joint)
+        (f"clearance {text}", opt.size(text, "length", "--clearance"), options.joint)
         for text in options.clearance
     ]
 
@@ -105,7 +105,7 @@ def _by_joint(texts: Sequence[str]) -> dict[str, float]:
         joint, size = opt.pair(text, "--at", expected, "23='0.1 mm'")
         if joint not in _JOINTS:
             raise bad("--at", repr(text), expected, "write --at 23='0.1 mm'")
-        found[joint] = opt.quantity(size, "length", "--at")
+        found[joint] = opt.size(size, "length", "--at")
     return found
 
 
@@ -187,7 +187,7 @@ def _width(pair: str) -> tuple[str, float]:
     """Return name and width of a tolerance in SI units."""
     name, width = opt.pair(pair, "--tolerance", "NAME=WIDTH", "crank='0.05 mm'")
     dimension = _DIMENSIONS.get(name.rpartition(".")[2], "length")
-    return name, opt.quantity(width, dimension, f"--tolerance {name}")
+    return name, opt.size(width, dimension, f"--tolerance {name}")
 
 
 def _table(found: Tolerances) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import unicodedata
 import warnings
 from dataclasses import dataclass
 
@@ -9,6 +10,30 @@ from dataclasses import dataclass
 LINEAR_RANGE = 0.05
 # Characters of what was given that a message shows.
 _LONGEST = 200
+# Problems of one input that are listed; a file of another kind may have a hundred thousand.
+_MOST_TOLD = 20
+
+
+def printable(text: str) -> str:
+    """Return text without control characters, which could steer a terminal: they come escaped."""
+    if text.isprintable():
+        return text
+    return "".join(c if unicodedata.category(c)[0] != "C" else repr(c)[1:-1] for c in text)
+
+
+def one_line(text: str, longest: int = _LONGEST) -> str:
+    """Return text as one printable line, cut where it is too long."""
+    line = printable(" ".join(text.split()))
+    return line if len(line) <= longest else f"{line[:longest]} ..."
+
+
+def shown(value: object, longest: int = 60) -> str:
+    """Return how a value is written, short enough for a message."""
+    try:
+        text = repr(value)
+    except ValueError:  # Python writes no whole number of more than 4300 digits
+        return "a number of thousands of digits"
+    return text if len(text) <= longest else f"{text[: longest - 3]}..."
 
 
 class ElastolinkError(Exception):
@@ -26,15 +51,13 @@ class Problem:
 
     def __str__(self) -> str:
         """Return the one-line form shown to the user."""
-        # Arrays and records print on many lines.
-        found = " ".join(self.found.split())
-        if len(found) > _LONGEST:
-            found = f"{found[:_LONGEST]} ..."
-        return f"{self.where}: found {found}; expected {self.expected}; {self.fix}"
+        # Arrays and records print on many lines, and names are the user's.
+        where, found = one_line(self.where), one_line(self.found)
+        return f"{where}: found {found}; expected {self.expected}; {self.fix}"
 
 
 class BadInput(ElastolinkError, ValueError):  # noqa: N818 - reads as what it is
-    """An input is unusable; every problem with it is listed.
+    """An input is unusable; ``problems`` holds all that is wrong, the message twenty of them.
 
     Parameters
     ----------
@@ -44,7 +67,13 @@ class BadInput(ElastolinkError, ValueError):  # noqa: N818 - reads as what it is
 
     def __init__(self, *problems: Problem) -> None:
         self.problems = problems
-        super().__init__("\n".join(str(problem) for problem in problems))
+        super().__init__("\n".join(self.lines()))
+
+    def lines(self) -> list[str]:
+        """Return a line for each problem, and how many more there are beyond twenty."""
+        told = [str(problem) for problem in self.problems[:_MOST_TOLD]]
+        left = len(self.problems) - len(told)
+        return [*told, f"and {left} more problems of this kind"] if left else told
 
 
 class RedundantConstraints(BadInput):

@@ -22,7 +22,7 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
-from .errors import BadInput, Problem, bad
+from .errors import BadInput, Problem, bad, printable, shown
 
 
 @dataclass(frozen=True)
@@ -99,6 +99,7 @@ _USUAL = {
 }
 _OPEN = frozenset("*/·(")
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?)")
+_COMMA = re.compile(r"\s*[+-]?\d+,\d+(?!\d*[,.])")
 _TOKEN = re.compile(r"\s*(?:(\*\*|\^)\s*([+-]?\d{1,2})(?!\d)|([*/()·])|([^\W\d_]\w*|1(?!\d)))")
 
 
@@ -128,7 +129,7 @@ def to_si(value: object, dimension: str = "dimensionless", where: str = "quantit
     else:
         result = _float(value)
     if not math.isfinite(result):
-        raise bad(where, _show(value), "a finite quantity", _write_like(dimension))
+        raise bad(where, shown(value), "a finite quantity", _write_like(dimension))
     return result
 
 
@@ -275,21 +276,24 @@ def _write_like(dimension: str) -> str:
     return f"write it like '{DIMENSIONS[dimension].example}'"
 
 
-def _show(value: object) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."
-
-
 def _not_a_quantity(value: object, dimension: str, where: str) -> BadInput:
-    return bad(where, _show(value), expected(dimension), _write_like(dimension))
+    comma = isinstance(value, str) and _COMMA.match(value)
+    fix = f"write a point for the comma: '{_point(value)}'" if comma else _write_like(dimension)
+    return bad(where, shown(value), expected(dimension), fix)
+
+
+def _point(text: object) -> str:
+    return printable(str(text)).replace(",", ".", 1)[:60]
 
 
 def _unreadable(unit: str, where: str, text: str) -> BadInput:
     return bad(
         where,
-        _show(text),
+        shown(text),
         "one number and one unit",
-        f"spell the unit {_show(unit)} with names, *, / and ** alone",
+        "give one value, no range"
+        if unit.startswith(":")
+        else f"spell the unit {shown(unit)} with names, *, / and ** alone",
     )
 
 
@@ -301,7 +305,7 @@ def _unknown_unit(name: str, where: str, text: str) -> Problem:
     fix = "check the spelling and the capitals"
     if close:
         fix = "did you mean " + " or ".join(lowered[match] for match in close) + "?"
-    return Problem(where, f"unknown unit '{name}' in {_show(text)}", "a unit that pint knows", fix)
+    return Problem(where, f"unknown unit '{name}' in {shown(text)}", "a unit that pint knows", fix)
 
 
 def _wrong_dimension(found: _Unit, dimension: str, where: str, text: str) -> BadInput:
@@ -310,11 +314,11 @@ def _wrong_dimension(found: _Unit, dimension: str, where: str, text: str) -> Bad
     if {base: power for base, power in per_gravity.items() if power} == _powers(dimension):
         return bad(
             where,
-            f"{_show(text)}, which is a weight",
+            f"{shown(text)}, which is a weight",
             expected(dimension),
             "a weight divided by gravity is a mass: write lb instead of lbf, or divide by g",
         )
-    told = f"{_show(text)}, of dimension {_in_words(found.powers)}"
+    told = f"{shown(text)}, of dimension {_in_words(found.powers)}"
     return bad(where, told, expected(dimension), _write_like(dimension))
 
 

@@ -159,5 +159,8 @@ def _parse(content: bytes, name: str) -> dict[str, Any]:
         raise bad(where, found, "a TOML file in UTF-8", "save it as UTF-8") from error
     except tomllib.TOMLDecodeError as error:
         raise bad(where, f"broken TOML: {error}", "a TOML file", "mend that line") from error
+    except ValueError as error:
+        fix = "write it with an exponent: 1e300"
+        raise bad(where, "a whole number of thousands of digits", "a TOML file", fix) from error
     except RecursionError as error:
         raise bad(where, "brackets too deeply nested", "a TOML file", "flatten it") from error

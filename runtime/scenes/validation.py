@@ -9,7 +9,8 @@ from functools import partial
 from itertools import chain, pairwise
 from typing import Any
 
-from ..core.errors import BadInput, Problem, bad
+from ...derive.spec import ModelSpec
+from ..core.errors import BadInput, Problem, bad, shown
 from ..core.units import DIMENSIONS, expected, to_si
 from .checks import check_chart, check_geometry, check_measured, check_series, collecting
 from .declared import declared_layout
@@ -42,6 +43,8 @@ def validate(document: Mapping[str, Any]) -> tuple[Layout, Values]:
     for check in (check_geometry, check_chart, check_measured, check_series):
         with collecting(problems):
             check(values, layout)
+    if not problems:
+        problems += _unusable_names(values.get("model", {}))
     if problems:
         raise BadInput(*dict.fromkeys(problems))
     return layout, values
@@ -55,7 +58,9 @@ def find_layout(document: Mapping[str, Any]) -> Layout | None:
 
 def nearest(word: str, known: Iterable[str], otherwise: str) -> str:
     """Return ``did you mean ...?`` with the nearest known words, or another remedy."""
-    close = difflib.get_close_matches(word, list(known), n=3, cutoff=0.6)
+    words = list(known)
+    close = [one for one in words if word and one.startswith(word)][:3]
+    close = close or difflib.get_close_matches(word, words, n=3, cutoff=0.6)
     return f"did you mean {' or '.join(close)}?" if close else otherwise
 
 
@@ -63,8 +68,7 @@ def show(value: object) -> str:
     """Return a value as text that is short enough for one line."""
     if isinstance(value, Mapping):
         return "a table"
-    text = repr(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."
+    return shown(value)
 
 
 def _choose(
@@ -276,6 +280,17 @@ _READERS: dict[str, _Reader] = {
     "text": _text,
     "texts": partial(_each, _text),
 }
+
+
+def _unusable_names(model: Mapping[str, Any]) -> list[Problem]:
+    """Return the names in [model] that cannot be part of a module's name."""
+    try:
+        ModelSpec.from_mapping(model)
+    except ValueError as refusal:
+        key, _, told = str(refusal).partition(": found ")
+        found, _, expected = told.partition("; expected ")
+        return [Problem(f"model.{key}", found, expected, "correct it")]
+    return []
 
 
 def _complete_model(model: dict[str, Any], layout: Layout) -> list[Problem]:

@@ -161,9 +161,9 @@ class Store:
         if self._begun() is None:
             try:
                 self._parts.mkdir(parents=True, exist_ok=True)
-            except OSError as refusal:
+            except (OSError, ValueError) as refusal:
                 fix = "choose another path"
-                found = str(refusal.strerror)
+                found = str(getattr(refusal, "strerror", refusal))
                 raise bad(str(self.path), found, "a writable place", fix) from refusal
             self._write_manifest({"request": self.request, "complete": False})
         with manifest.open("rb") as stream:

@@ -173,9 +173,11 @@ def test_stale_modules_of_a_checkout_are_shown_and_removed(checkout, monkeypatch
     monkeypatch.setattr(jobs, "CATALOGUE", [e for e in CATALOGUE if e.specs[0].name() == QUICK])
     assert main([]) == 0
     assert [path.stem for path in checkout.glob("*.py")] == [QUICK]
+    own = checkout / "written_by_hand.py"
+    own.write_text("import math\n")
     before = texts(checkout)
     dropped = checkout / "five_bar_dream.py"
-    dropped.write_text("x = 1\n")
+    dropped.write_text('"""Emitted by regenerate-equations."""\nx = 1\n')
     capsys.readouterr()
     assert main(["--check", "--jobs", "1"]) == 1
     shown = capsys.readouterr().out
@@ -206,6 +208,16 @@ def test_a_manifest_that_cannot_be_read_is_written_anew(copy, emitted, capsys):
         assert main(["--out", str(copy), QUICK]) == 0
         assert capsys.readouterr().out == f"[1/1] {QUICK}\n"
         assert [entry.module for entry in read_manifest(copy).values()] == [QUICK]
+
+
+@pytest.mark.parametrize("content", ['{"name": "a web page"}', "", "[" * 100_000])
+def test_a_foreign_manifest_is_not_replaced(tmp_path, content, capsys):
+    manifest = tmp_path / MANIFEST
+    manifest.write_text(content)
+    assert main(["--out", str(tmp_path), QUICK]) == 2
+    assert "not emitted" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == [MANIFEST]
+    assert manifest.read_text() == content
 
 
 def test_a_spec_as_json_and_a_scene_ask_for_the_same(tmp_path, capsys):

@@ -109,7 +109,7 @@ def test_a_model_that_nothing_can_derive_is_refused_at_once():
 
 def test_a_users_own_model_is_asked_for_by_its_file():
     with pytest.raises(el.BadInput) as caught:
-        el.load_scene(EXAMPLES / "slider_crank_example.toml").system()
+        el.load_scene(EXAMPLES / "slider_crank_rod.toml").system()
     fix = caught.value.problems[0].fix
     assert fix == "run: regenerate-equations --model FILE.py, with the file of slider_crank"
 

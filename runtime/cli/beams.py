@@ -95,6 +95,10 @@ def _critical(options: argparse.Namespace) -> int:
         ("n", "", [n for _, n in found.labels]),
         ("error", ".2g", found.error),
     )
+    if not len(found.speed):
+        lines = [
+            "none of this kind in the range; of stresses: elastolink stress --speed LOW:HIGH:N"
+        ]
     return opt.finish(options, found, lines)
 
 
@@ -170,15 +174,22 @@ def _peaks(found: StressResult, limit: float | None) -> list[str]:
 
 
 def _curve_lines(curve: StressCurve) -> list[str]:
-    """Return a row per local maximum of the largest stress, the highest ones."""
+    """Return a row per local maximum of a link's largest stress, the highest ones of each."""
+    peaks = [set(opt.highest(column).tolist()) for column in curve.maximum.T]
     rows = [
-        (f"{curve.speed[i]:.5g}", *(f"{value / 1e6:.5g}" for value in curve.maximum[i]))
-        for i in opt.highest(curve.maximum.max(axis=1))
+        (
+            f"{curve.speed[i]:.5g}",
+            *(
+                f"{value / 1e6:.5g}{'*' if i in own else ' '}"
+                for value, own in zip(curve.maximum[i], peaks, strict=True)
+            ),
+        )
+        for i in sorted(set().union(*peaks))
     ]
     count = len(curve.speed)
     if not rows:
-        return [f"{count} speeds; the largest stress is nowhere higher than beside"]
-    title = f"{count} speeds; largest stress [MPa] where it is higher than beside:"
+        return [f"{count} speeds; no link's largest stress is higher than beside"]
+    title = f"{count} speeds; largest stress [MPa], * where that of the link is higher than beside:"
     return [title, "", *opt.table(("speed [rad/s]", *curve.links), rows)]
 
 
@@ -191,11 +202,15 @@ def _running(options: argparse.Namespace) -> int:
     limit: Any = opt.positive(options, "limit", "stress")
     speeds = speed_range(options.range, scene, "--range")
     found = design.running_speed(system, speeds, limit, progress=opt.progress(options))
-    lines = [
-        f"running speed: {found.speed:.5g} rad/s, stress over limit {found.band.ratio:.3g}",
-        f"quiet from {found.band.low:.5g} to {found.band.high:.5g} rad/s",
-    ]
-    if found.band.above is not None:
+    least, band = f"{found.speed:.5g} rad/s, stress over limit {found.band.ratio:.3g}", found.band
+    span = f"from {band.low:.5g} to {band.high:.5g} rad/s"
+    if band.above is None:
+        lines = [
+            "no quiet speed beyond a limiting critical speed in this range",
+            f"below, within the limit {span}; least stress at {least}",
+        ]
+    else:
+        lines = [f"running speed: {least}", f"quiet {span}"]
         lines.append(f"beyond the limiting critical speed {found.band.above:.5g} rad/s")
         length = found.run_up_length
         lines.append(

@@ -36,9 +36,10 @@ class RunningSpeed(Result):
     quiet : QuietSpeeds
         Critical, limiting and quiet speeds at the design's own damping and length.
     band : Band
-        The band that was chosen.
+        The band that was chosen; where no band lies beyond a limiting critical speed, one below
+        (``band.above`` is None).
     speed : float
-        The running speed [rad/s].
+        The running speed [rad/s], that of the least stress in the band.
     damping : StressEffect or None
         Stresses at the running speed for several damping ratios; None without modal damping.
     best_damping : float or None
@@ -82,7 +83,7 @@ def running_speed(
     rtol: float = 1e-3,
     progress: bool = False,
 ) -> RunningSpeed:
-    """Return a running speed above a limiting critical speed, and how to get there.
+    """Return a running speed above a limiting critical speed, if there is one, and the way there.
 
     The steps of section 7.5: the stresses over the range (1), the first limiting critical speed
     and the quiet bands above it (2), damping at the chosen speed (3, 4), and the change of a length

@@ -104,6 +104,14 @@ class Result:
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {}
     exported: ClassVar[tuple[str, ...]] = ()
 
+    def __post_init__(self) -> None:
+        """Make the arrays the result's own, and read-only: what comes after changes no answer."""
+        for name, value in vars(self).items():
+            if type(value) is np.ndarray and (value.flags.writeable or value.base is not None):
+                own = value.copy()
+                own.flags.writeable = False
+                object.__setattr__(self, name, own)
+
     @property
     def passed(self) -> bool:
         """True where no self-check failed; a result without any (``checks`` is empty) passes.

@@ -11,6 +11,9 @@ import pytest
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.core.results import Check, DeferredChecks, Result, provenance
 from elastolink.runtime.hill import discriminant
+from elastolink.runtime.linkages import FourBar
+from elastolink.runtime.periodic import simulate
+from elastolink.runtime.scenes import load_scene
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -125,3 +128,18 @@ def test_deferred_checks_are_made_once():
 def test_provenance_names_versions():
     assert provenance()["numpy"] == np.__version__
     assert provenance({"scene": "x"})["scene"] == "x"
+
+
+def test_what_comes_after_changes_no_answer():
+    """Arrays of a result are its own: not those that were given, and read-only."""
+    theta = np.linspace(0.0, 6.0, 7)
+    linkage = FourBar(0.3, 0.1, 0.28, 0.25)
+    motion = linkage.motion(theta)
+    theta[0] = 9.0
+    assert motion.theta2[0] == 0.0
+    run = simulate(load_scene("mathieu").system(), 1.0, 1.0, initial=(np.array([1.0]), 0.0))
+    for result in (motion, run):
+        held = [value for value in vars(result).values() if isinstance(value, np.ndarray)]
+        assert len(held) > 3 and not any(value.flags.writeable for value in held)
+    with pytest.raises(ValueError, match="read-only"):
+        motion.theta3[0] = 0.0

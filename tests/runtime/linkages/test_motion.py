@@ -89,19 +89,6 @@ def test_angles_are_continuous_and_periodic_over_many_turns(linkage):
 
 
 @EVERY
-def test_joints_are_points_of_both_links_that_they_join(linkage):
-    motion = linkage.motion(np.linspace(0.0, 6.0, 12).reshape(3, 4), 4.6, 4.0)
-    joints = motion.joints
-    for link, letters in linkage.bars.items():
-        np.testing.assert_array_equal(motion.link(link).origin, joints[letters[0]])
-        if len(letters) == 2:
-            end = motion.point(link, linkage.lengths[link]).position
-            np.testing.assert_allclose(end, joints[letters[1]], rtol=0, atol=1e-14)
-    assert all(value.shape == (3, 4, 2) for value in joints.values())
-    np.testing.assert_array_equal(joints["A"], 0.0)
-
-
-@EVERY
 def test_shapes_and_scales_do_not_matter(linkage):
     angle = np.linspace(0.0, 6.0, 12)
     base = linkage.motion(angle)

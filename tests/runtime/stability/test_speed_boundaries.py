@@ -61,13 +61,6 @@ def test_damped_boundaries_are_those_of_hills_equation():
     np.testing.assert_allclose(found.speed, expected, rtol=1e-11)
 
 
-def test_constant_coefficients_have_closed_regions():
-    found = speed_boundaries(_beam(k=4.0), speed_range=(0.45, 5.0))
-    expected = np.repeat(4.0 / np.arange(8, 0, -1), 2)
-    np.testing.assert_allclose(found.speed, expected, rtol=1e-13)
-    np.testing.assert_array_equal(found.multiplier, np.tile([1, 1, -1, -1], 4))
-
-
 def test_divergence_of_a_whirling_shaft():
     # qdd + (k - w^2) q: multiplier +1 at w = sqrt k by a constant motion, as B = 1.
     system = system_of(M=np.eye(1), B=np.eye(1), K=9.0 * np.eye(1))

@@ -1,4 +1,4 @@
-"""Natural frequencies over the crank angle: modes, veerings, buckling, means, pictures, bad input."""
+"""Natural frequencies over the crank angle: modes, veerings, buckling, pictures, bad input."""
 
 from __future__ import annotations
 

@@ -142,6 +142,7 @@ def test_modes_are_drawn(linkage):
     ("call", "given", "message"),
     [
         (natural_frequencies, {"count": 0}, "from 1 to 9"),
+        (natural_frequencies, {"theta": []}, "theta"),
         (natural_frequencies, {"count": 10}, "from 1 to 9"),
         (natural_frequencies, {"speed": -1.0}, "0 or more"),
         (natural_frequencies, {"mass": 2.0}, "mass"),
@@ -156,3 +157,5 @@ def test_bad_input_is_refused(linkage, call, given, message):
         call(linkage, **given)
     with pytest.raises(BadInput, match="beams"):
         draw_modes(system_of(M=np.eye(1), K=np.eye(1)))
+    with pytest.raises(BadInput, match="no natural frequency"):
+        natural_frequencies(system_of(M=np.eye(1), K=-np.eye(1)))

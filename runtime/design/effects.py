@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,13 +13,11 @@ from ..beams.element_forms import required_structure
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result
 from ..linkages import FourBar, transmission_angle
 from ..recovery.stress_over_speed import ELSEWHERE, StressCurve, stress_curve
 from .speed_profile import Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _LENGTHS = ("frame", "crank", "coupler", "follower")
 
@@ -68,8 +66,6 @@ class StressEffect(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the largest stress of all links over the speed, a line for each value."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         for value, rows in zip(self.values, self.maximum, strict=True):
             ax.semilogy(self.speed, np.max(rows, axis=1) / 1e6, label=f"{value:g}", linewidth=0.9)

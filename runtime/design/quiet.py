@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 from numbers import Real
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -15,12 +15,10 @@ from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.maxima import local_maxima
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result
 from ..recovery.stress_over_speed import StressCurve, shade_unstable, stress_curve
 from .speed_profile import Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True)
@@ -105,8 +103,6 @@ class QuietSpeeds(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the ratios over the speed, the limit, the bands, and what is unstable."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         for link, values in zip(self.links, self.ratio.T, strict=True):
             ax.semilogy(self.speed, values, label=link, linewidth=0.9)

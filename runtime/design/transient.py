@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from numbers import Real
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from ..beams.elements import placed_rotation, placed_shapes
 from ..core.errors import LINEAR_RANGE, BadInput, Problem, bad, warn_of_large_deflection
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_whole, require_whole
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..frequencies.held import held_frequencies
 from ..periodic import steady_state
@@ -24,9 +25,6 @@ from ..recovery.stress_over_speed import missed_by_parabolas
 from .changing_length import ChangingLength, deflection_rows
 from .speed_profile import Array, SpeedProfile
 from .unsteady import FORCES, Drive, arrays_of, generator_of, march
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _STAGES = 3
 # Steps whose motion and stresses are recovered together.
@@ -86,8 +84,6 @@ class Transient(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the largest stress of each link over the time, and the crank speed."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         for link, values in zip(self.links, self.stress.T, strict=True):
             ax.plot(self.time, values / 1e6, linewidth=0.7, label=link)

@@ -7,20 +7,18 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from numbers import Real
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import Any, Literal, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
+from ..core.plotting import Axes
 from ..core.results import Result, provenance
 from .four_bar import FourBar, LoopSums
 from .linkage import EPS, finite_array
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 # A four-bar linkage can lie flat, and so change its assembly, where one of three sums is zero:
 #

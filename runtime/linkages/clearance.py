@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,15 +14,13 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import BadInput, Problem, bad
 from ..core.inputs import is_finite
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .four_bar import FourBar
 from .joint_play import OUTPUTS, CrankPosition, Outputs, Play, Route
 from .linkage import EPS, Array, finite_array
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _JOINTS = ("12", "23", "34", "41")
 # Fields that are computed when they are first looked at.
@@ -129,8 +127,6 @@ class ClearanceRange(Result):
         label : str, optional
             By default the clearances.
         """
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         if label is None:
             label = ", ".join(f"c{joint} = {c:.4g}" for joint, c in self.clearances.items())

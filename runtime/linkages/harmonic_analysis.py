@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,12 +12,10 @@ from numpy.typing import ArrayLike
 from ..core.errors import bad
 from ..core.inputs import require_whole
 from ..core.periodic_function import PeriodicFunction
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..core.sampling import values_at
 from .linkage import EPS, TURN, Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 Function = Callable[[Array], ArrayLike]
 Source: TypeAlias = Function | tuple[Any, ...]
@@ -96,8 +94,6 @@ class Harmonics(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw cosine and sine coefficients as bars beside each other (Smith Fig. 7)."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         m = np.arange(1, self.order + 1)
         ax.bar(m - 0.2, self.a[1:], 0.38, color="tab:blue", label="cosine $a_m$")

@@ -7,20 +7,17 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, TypeAlias
+from typing import Any, ClassVar, Literal, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, Problem, bad
 from ..core.inputs import is_finite, is_whole
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .linkage import EPS, Array, Linkage, drive_of
 from .parametric import ANGLE, Parametric
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 Masses = Literal["fixed", "bars"]
 Distribution = Literal["normal", "uniform"]
@@ -262,8 +259,6 @@ class Tolerances(Result):
         BadInput
             If there is no such output, or the crank angles are not a one-dimensional array.
         """
-        from ..core.plotting import axes_or_new
-
         if self.theta2.ndim != 1:
             shape = f"crank angles of shape {self.theta2.shape}"
             raise bad("plot", shape, "a one-dimensional array", "choose one speed, a row of angles")

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from inspect import signature
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, TypeVar
+from typing import Any, ClassVar, Literal, Self, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,11 +17,9 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.deferred import Deferred, DeferredField
 from ..core.errors import Problem, bad
 from ..core.inputs import is_finite
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ..core.twofold import Twofold
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 Array: TypeAlias = NDArray[np.float64]
 Assembly: TypeAlias = Literal["open", "crossed"]
@@ -160,8 +158,6 @@ class Motion(Result, ABC):
         With a crank speed, each curve is scaled by a power of ten, named in the legend, so that all
         of them can be seen.
         """
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         degrees = np.degrees(self.theta2)
         units: dict[str, None] = {}

@@ -13,14 +13,12 @@ import numpy as np
 
 from ..core.errors import bad
 from ..core.inputs import require_kind, require_whole
-from ..core.plotting import new_figure, require_writable
+from ..core.plotting import Axes, new_figure, require_writable
 from ..core.results import write_whole
 from .circuits import Circuit, Complex
 from .linkage import Array, Linkage, require_linkage
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from .curves import CouplerCurve
 
 _COLOURS = {

@@ -10,21 +10,19 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import fsum, pi, tau
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import bad
 from ..core.inputs import are_finite
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from .four_bar import FourBar, LoopSums
 from .linkage import EPS, Array, require_linkage
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _RECOMMENDED = (math.radians(40.0), math.radians(140.0))
 # The half-angle formulas: every sum is rounded once, and so are two roots, their products, a
@@ -100,8 +98,6 @@ class TransmissionAngle(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the transmission angle against the crank angle, with its band and extremes."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         for first, last in self.crank_ranges:
             theta = np.linspace(first, last, 721)
@@ -185,8 +181,6 @@ class MechanicalAdvantage(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the mechanical advantage against the crank angle, its poles dotted."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         order = np.argsort(self.theta2, axis=None)
         shown = np.where(np.abs(self.advantage) < 50.0, self.advantage, np.nan)

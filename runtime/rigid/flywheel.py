@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from ..core.errors import bad
 from ..core.maxima import summits
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ..core.trigonometric import interpolated
 from ..linkages.linkage import EPS, TURN, Array
@@ -18,9 +19,6 @@ from .forces import driving_torque
 from .inputs import not_finite
 from .machine import Machine, require_machine
 from .one_freedom import OneFreedom
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _FEWEST, _MOST = 1024, 2**15
 # The speeds have settled where they move by no more, relative; the check allows for jitter.
@@ -67,8 +65,6 @@ class TorqueFluctuation(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the torque and its mean against the crank angle."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         degrees = np.degrees(np.append(self.theta, self.theta[0] + TURN))
         ax.plot(degrees, np.append(self.torque, self.torque[0]))
@@ -151,8 +147,6 @@ class Flywheel(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the crank speed with the flywheel against the crank angle."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         ax.plot(np.degrees(self.theta), self.speeds)
         ax.set_xlabel("crank angle [deg]")

@@ -5,21 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.deferred import Deferred, DeferredField
 from ..core.errors import bad
-from ..core.plotting import axes_or_new
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import BROADCAST, DeferredChecks, Result, provenance
 from ..linkages.linkage import TURN, Array, checked_drive
 from .evaluation import FRAME_FORCE, Evaluation, Output
 from .machine import Machine, require_machine
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _LATER = DeferredField()
 OUTPUTS: tuple[Output, ...] = ("pins", "torque", "shaking_force", "shaking_moment")

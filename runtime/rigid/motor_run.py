@@ -7,12 +7,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from numbers import Real
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from ..core.errors import BadInput, Problem, bad
 from ..core.inputs import is_finite, is_whole
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ..linkages.linkage import TURN, Array
 from .forces import RigidForces, rigid_forces
@@ -20,9 +21,6 @@ from .inputs import not_finite
 from .machine import Machine, require_machine
 from .one_freedom import OneFreedom
 from .stepping import Goals, Run, Status, TorqueLaw, integrate
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _LONGEST = TURN / 24.0
 
@@ -123,8 +121,6 @@ class RunUp(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the crank speed over time."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         ax.plot(self.time, self.speed)
         ax.set_xlabel("time [s]")

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...generated import beam_section_sandwich
 from ..core.errors import BadInput, Problem, bad
-from ..core.inputs import is_finite, require_kind, require_positive, sign_problems
+from ..core.inputs import is_finite, number_problems, require_kind, require_positive
 from .section import Section
 
 Array = NDArray[np.float64]
@@ -32,7 +32,7 @@ class ElasticLayer:
     density: float  # mass per volume [kg/m^3]
 
     def __post_init__(self) -> None:
-        _refuse(sign_problems("ElasticLayer", self, vars(self), positive=True, fix=_SI))
+        _refuse(number_problems("ElasticLayer", vars(self), "positive", _SI))
 
 
 @dataclass(frozen=True)
@@ -48,12 +48,10 @@ class ViscoelasticLayer:
     density: float  # mass per volume [kg/m^3]
 
     def __post_init__(self) -> None:
-        names = [name for name in vars(self) if name != "loss_factor"]
-        problems = sign_problems("ViscoelasticLayer", self, names, positive=True, fix=_SI)
-        problems += sign_problems(
-            "ViscoelasticLayer", self, ["loss_factor"], positive=False, fix="correct it"
-        )
-        _refuse(problems)
+        positive = dict(vars(self))
+        free = {"loss_factor": positive.pop("loss_factor")}
+        problems = number_problems("ViscoelasticLayer", positive, "positive", _SI)
+        _refuse(problems + number_problems("ViscoelasticLayer", free, "not negative"))
 
 
 @dataclass(frozen=True)

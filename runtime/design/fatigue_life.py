@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import BadInput, ElastolinkError, Problem, bad
-from ..core.inputs import require_kind, sign_problems
+from ..core.inputs import number_problems, require_kind
 from ..core.results import Result
 from ..recovery.stress_over_speed import missed_by_parabolas
 from ..recovery.stresses import FIBRES, StressResult
@@ -45,8 +45,7 @@ class Material:
 
     def __post_init__(self) -> None:
         """Check the values."""
-        names = ("tensile_strength", "endurance_limit", "exponent", "knee")
-        problems = sign_problems("Material", self, names, positive=True, fix="correct it")
+        problems = number_problems("Material", vars(self), "positive")
         if not problems and self.endurance_limit >= self.tensile_strength:
             expected = f"less than tensile_strength, {self.tensile_strength:g}"
             found = f"{self.endurance_limit:g}"

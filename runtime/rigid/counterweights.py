@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
 from ..core.errors import BadInput, Problem, bad
-from .inputs import finite_number, not_finite, require_link
+from ..core.inputs import number_problems
+from .inputs import finite_number, require_link
 from .machine import Machine, require_machine
 from .masses import MassDistribution
 
@@ -52,9 +53,9 @@ class Counterweight:
     def __post_init__(self) -> None:
         """Check the numbers."""
         where = "Counterweight"
-        problems = not_finite(where, {"along": self.along, "across": self.across})
-        problems += not_finite(where, {"mass": self.mass}, least=0.0)
-        problems += not_finite(where, {"radius": self.radius}, least=0.0)
+        problems = number_problems(where, {"along": self.along, "across": self.across})
+        sizes = {"mass": self.mass, "radius": self.radius}
+        problems += number_problems(where, sizes, "not negative")
         problems += _cylinder_problems(where, self.density, self.thickness)
         if not problems and self.radius and self.density is not None:
             expected = "a radius, or density and thickness"
@@ -133,11 +134,7 @@ def with_counterweights(machine: Machine, counterweights: Iterable[Counterweight
 
 def _not_positive(where: str, values: Mapping[str, float | None]) -> list[Problem]:
     given = {name: value for name, value in values.items() if value is not None}
-    return not_finite(where, given) or [
-        Problem(f"{where}.{name}", f"{value:g}", "a number above zero", "correct it")
-        for name, value in given.items()
-        if value <= 0.0
-    ]
+    return number_problems(where, given, "positive")
 
 
 def _cylinder_problems(where: str, density: float | None, thickness: float | None) -> list[Problem]:

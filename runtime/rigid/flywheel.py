@@ -10,13 +10,13 @@ from typing import ClassVar
 import numpy as np
 
 from ..core.errors import bad
+from ..core.inputs import number_problems
 from ..core.maxima import summits
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ..core.trigonometric import interpolated
 from ..linkages.linkage import EPS, TURN, Array
 from .forces import driving_torque
-from .inputs import not_finite
 from .machine import Machine, require_machine
 from .one_freedom import OneFreedom
 
@@ -187,7 +187,7 @@ def flywheel_inertia(machine: Machine, speed: float, fluctuation: float = 0.02) 
     >>> wheel.inertia > 0 and abs(wheel.fluctuation - 0.02) < 1e-12
     True
     """
-    if not_finite("flywheel_inertia", {"fluctuation": fluctuation}) or not 0 < fluctuation < 1:
+    if number_problems("flywheel_inertia", {"fluctuation": fluctuation}) or not 0 < fluctuation < 1:
         given = repr(fluctuation)[:60]
         raise bad("fluctuation", given, "a number between 0 and 1", "0.02 is usual")
     steady = torque_fluctuation(machine, speed)
@@ -361,7 +361,7 @@ def _confirmed(
 def _require(machine: Machine, speed: float) -> None:
     require_machine(machine)
     machine.linkage.require_full_turn()
-    if not_finite("speed", {"speed": speed}) or speed == 0:
+    if number_problems("speed", {"speed": speed}) or speed == 0:
         given = repr(speed)[:60]
         raise bad("speed", given, "a finite crank speed, not zero", "give one in rad/s")
     turns = _SCATTERED + TURN * _TURNS[:, np.newaxis]

@@ -3,20 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
-from ..core.errors import Problem, bad
-from ..core.inputs import is_finite
-
-
-def not_finite(where: str, values: Mapping[str, object], least: float = -math.inf) -> list[Problem]:
-    """Return a problem for each value that is no finite number, or below the least."""
-    wanted = "a finite number" + ("" if least == -math.inf else f", at least {least:g}")
-    return [
-        Problem(f"{where}.{name}", repr(value)[:60], wanted, "correct it")
-        for name, value in values.items()
-        if not (is_finite(value) and value >= least)  # type: ignore[operator]
-    ]
+from ..core.errors import bad
 
 
 def finite_number(value: object, where: str) -> float:

@@ -12,12 +12,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..core.errors import BadInput, Problem, bad
-from ..core.inputs import is_finite, is_whole
+from ..core.inputs import is_finite, is_whole, number_problems
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ..linkages.linkage import TURN, Array
 from .forces import RigidForces, rigid_forces
-from .inputs import not_finite
 from .machine import Machine, require_machine
 from .one_freedom import OneFreedom
 from .stepping import Goals, Run, Status, TorqueLaw, integrate
@@ -308,7 +307,7 @@ class TorqueLine:
     def __post_init__(self) -> None:
         """Check the numbers."""
         given = {"stall": self.stall, "no_load_speed": self.no_load_speed}
-        problems = not_finite("TorqueLine", given)
+        problems = number_problems("TorqueLine", given)
         if not problems and not self.stall * self.no_load_speed > 0:
             pair = f"stall {self.stall:g} N m, no-load speed {self.no_load_speed:g} rad/s"
             fix = "correct a sign, or give a callable"

@@ -136,7 +136,8 @@ class TransmissionAngle(Result):
             If an angle is not a finite number, or the linkage cannot reach it or folds there.
         """
         motion = self.linkage.motion(theta)
-        ratio, error = _speed_ratio(self.linkage, motion)
+        rate = "slider_velocity" if isinstance(self.linkage, SliderCrank) else "omega4"
+        ratio = getattr(motion, rate)
         with np.errstate(divide="ignore"):
             advantage = 1.0 / ratio
         return MechanicalAdvantage(
@@ -145,7 +146,8 @@ class TransmissionAngle(Result):
             speed_ratio=ratio,
             poles=np.array([*self.dead_centres.values()]),
             method=motion.method,
-            error=error,
+            # With the round-off of the reciprocal.
+            error=motion.errors[rate] + EPS * np.abs(ratio),
             error_norm="speed ratio, absolute, entrywise",
             checks=motion.checks,
             provenance=motion.provenance,
@@ -435,22 +437,3 @@ def _cosine(linkage: FourBar | SliderCrank | QuickReturn, theta: Any) -> Any:
     diagonal = frame**2 + crank**2 - 2.0 * frame * crank * np.cos(theta)
     cosine = (coupler**2 + follower**2 - diagonal) / (2.0 * coupler * follower)
     return np.clip(cosine, -1.0, 1.0)
-
-
-def _speed_ratio(linkage: FourBar | SliderCrank | QuickReturn, motion: Any) -> tuple[Array, Array]:
-    """Return output speed over crank speed, and what the error of the angles does to it."""
-    if isinstance(linkage, FourBar):
-        ratio = motion.omega4
-        sine = np.abs(np.sin(motion.transmission_angle))
-        aligned = np.abs(np.cos(motion.theta4 - motion.theta3))
-        passed_on = linkage.crank / linkage.follower + np.abs(ratio) * aligned
-        return ratio, 2.0 * motion.error * passed_on / sine + 4.0 * EPS * np.abs(ratio)
-    if isinstance(linkage, SliderCrank):
-        ratio = motion.slider_velocity
-        cosine = np.abs(np.cos(motion.theta3))
-        turned = 2.0 * EPS * (np.abs(motion.theta2) + 8.0 / cosine) / cosine**2
-        return ratio, linkage.crank * turned + 4.0 * EPS * np.abs(ratio)
-    ratio = motion.omega4
-    turned = EPS * (np.abs(motion.theta2) + 4.0)
-    lever = (linkage.frame + linkage.crank) / motion.slide
-    return ratio, turned * lever**2 * (1.0 + np.abs(ratio))

@@ -92,7 +92,7 @@ def damping_effect(
     if "damping_ratio" not in system.parameters:
         fix = "add it with with_modal_damping"
         raise bad("damping_effect", "a system without modal damping", "damping_ratio", fix)
-    return effect_of(system, "damping_ratio", _values("ratios", ratios), speeds, rtol)
+    return effect_of(system, "damping_ratio", positive_row("ratios", ratios), speeds, rtol)
 
 
 def length_effect(
@@ -109,13 +109,14 @@ def length_effect(
     A length that the system has not, and a value with which the crank cannot turn, are refused.
     """
     required_structure(system)
-    return effect_of(system, name, _values("values", values), speeds, rtol)
+    return effect_of(system, name, positive_row("values", values), speeds, rtol)
 
 
-def _values(where: str, values: Sequence[float]) -> Array:
+def positive_row(where: str, values: ArrayLike, what: str = "numbers") -> Array:
+    """Return positive numbers in a row; refuse anything else."""
     array = np.atleast_1d(numbers(where, values))
     if array.ndim != 1 or not array.size or not np.all(np.isfinite(array) & (array > 0)):
-        raise bad(where, str(values), "positive numbers", "correct them")
+        raise bad(where, str(values), f"positive {what}", "correct them")
     return array
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from numbers import Real
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from ..frequencies.held import held_frequencies
 from ..periodic import steady_state
 from ..periodic.reduced import ReducedSystem, reduced_system
 from ..recovery.stress_over_speed import missed_by_parabolas
-from .changing_length import ChangingLength, deflection_rows
+from .changing_length import ChangingLength
 from .speed_profile import Array, SpeedProfile
 from .unsteady import FORCES, Drive, arrays_of, generator_of, march
 
@@ -329,10 +329,11 @@ class _Run:
             part = slice(begin, begin + _CHUNK)
             time = found.time[part]
             angle = self.profile.angle(time)
-            if self.changing is None:
-                rows = deflection_rows(self.full, angle)
-            else:
-                rows = self.changing.deflections(angle, time)
+            rows: Any = (
+                self.full.deflection_rows(angle)
+                if self.changing is None
+                else self.changing.deflections(angle, time)
+            )
             values = np.einsum("tkn,tn->tk", rows, found.q[part])
             largest = max(largest, float(np.max(np.abs(values))))
         return largest

@@ -18,7 +18,7 @@ from ..core.plotting import Axes, axes_or_new
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .four_bar import FourBar
 from .joint_play import OUTPUTS, CrankPosition, Outputs, Play, Route
-from .linkage import EPS, Array, finite_array
+from .linkage import EPS, Array, finite_array, require_linkage
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
 
@@ -218,10 +218,8 @@ def clearance_range(
     >>> round(float(play.width), 4), round(float(play.small), 4)
     (0.0503, 0.0503)
     """
-    outputs = next((of for kind, of in OUTPUTS.items() if isinstance(linkage, kind)), None)
-    if outputs is None:
-        expected = "FourBar, SliderCrank or QuickReturn"
-        raise bad("linkage", repr(linkage)[:60], expected, "give one of them")
+    require_linkage(linkage)
+    outputs = next(of for kind, of in OUTPUTS.items() if isinstance(linkage, kind))
     link = outputs.links[0] if link is None else link
     if link not in outputs.links:
         raise bad("link", repr(link)[:60], f"one of {', '.join(outputs.links)}", "choose one")

@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, ClassVar, Literal, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,6 +18,9 @@ from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .linkage import EPS, Array, Linkage, drive_of
 from .parametric import ANGLE, Parametric
+
+if TYPE_CHECKING:
+    from ..rigid.machine import Machine
 
 Masses = Literal["fixed", "bars"]
 Distribution = Literal["normal", "uniform"]
@@ -31,16 +34,6 @@ _SYMBOLS = {"theta3": r"$\theta_3$", "theta4": r"$\theta_4$"}
 
 # Standard deviations over the tolerance.
 _SPREADS = {"normal": 1.0 / 3.0, "uniform": 1.0 / math.sqrt(3.0)}
-
-
-class Varied(Protocol):
-    """What may have tolerances: a linkage, or a machine."""
-
-    def parametric(
-        self, theta: Array, speed: Array, acceleration: Array, masses: Masses = "fixed"
-    ) -> Parametric:
-        """Return its outputs as a function of its numbers."""
-        ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -292,7 +285,7 @@ class Tolerances(Result):
 
 
 def tolerances(
-    linkage_or_machine: Varied,
+    linkage_or_machine: Linkage | Machine,
     tolerance: Mapping[str, float],
     theta: ArrayLike | None = None,
     speed: ArrayLike = 1.0,

@@ -469,10 +469,8 @@ class Linkage(ABC):
         """Return the motion; its error and checks are computed when they are first read."""
         angles, drive = drive_of(theta, speed, acceleration)
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            m = {
-                "theta2": angles,
-                **emitted(self, self.kinematics, "motion", angles, self.unit_lengths),
-            }
+            moved = emitted(self, self.kinematics, "motion", angles, self.unit_lengths)
+        m = {"theta2": angles, **{name: np.asarray(value) for name, value in moved.items()}}
         reached = np.logical_and.reduce([np.isfinite(value) for value in m.values()])
         self.require(reached & self._decided(m), angles, self._expected)
         shape = drive[0].shape
@@ -595,25 +593,22 @@ def emitted(
     Assembly and winding are the linkage's.
     """
     call: Callable[..., Any] = getattr(module, function)
-    given = {**values, "assembly": linkage.branch}
+    given = {"assembly": linkage.branch, **values}
     names = arguments(call)[1:]
-    if "winding" in names:
+    if "winding" in names and "winding" not in values:
         crank, frame = (np.real(values[name]) for name in ("crank", "frame"))
         given["winding"] = np.greater(crank, frame).astype(float)
     returned = call(theta, **{name: given[name] for name in names})
-    return dict(zip(module.RETURNS[function], map(np.asarray, returned), strict=True))
+    return dict(zip(module.RETURNS[function], returned, strict=True))
 
 
 def _without_rounding(linkage: Linkage, theta: Array) -> dict[str, Any]:
     """Return places and rates by the crank angle to twice the digits, of the unit lengths."""
     lengths = linkage.unit_lengths
-    known = {name: Twofold(value) for name, value in lengths.items()}
-    known["assembly"] = Twofold(linkage.branch)
-    known["winding"] = Twofold(float(lengths["crank"] > lengths.get("frame", np.inf)))
-    call = linkage.kinematics.motion
+    known: dict[str, Any] = {name: Twofold(value) for name, value in lengths.items()}
+    known["winding"] = float(lengths["crank"] > lengths.get("frame", np.inf))
     with np.errstate(all="ignore"):
-        returned = call(Twofold(theta), **{name: known[name] for name in arguments(call)[1:]})
-    return dict(zip(linkage.kinematics.RETURNS["motion"], returned, strict=True))
+        return emitted(linkage, linkage.kinematics, "motion", Twofold(theta), known)
 
 
 @cache

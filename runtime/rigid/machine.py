@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from functools import reduce
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
@@ -266,9 +265,7 @@ def require_machine(machine: object) -> None:
 
 
 def _sum(parts: Iterable[Array], motion: Any) -> Array:
-    none: Array = np.zeros(np.shape(motion.theta2))
-    add: Callable[[Array, Array], Array] = np.add
-    return np.asarray(reduce(add, parts, none))
+    return np.asarray(sum(parts, np.zeros(np.shape(motion.theta2))))
 
 
 def _mass_problems(masses: object, links: tuple[str, ...]) -> list[Problem]:

@@ -168,8 +168,7 @@ def _series(function: Callable[[Array], Array]) -> Callable[[float], float] | No
     def series(theta: float) -> float:
         return float((terms @ np.exp(orders * theta)).real)
 
-    count = 64
-    while count <= 1024:
+    for count in (64, 128, 256, 512, 1024):
         values = np.asarray(function(even_angles(TURN, count)))
         # A series ends in round-off, and meets its function off the samples, or is not used.
         if tail(values) <= 1e-14:
@@ -177,5 +176,4 @@ def _series(function: Callable[[Array], Array]) -> Callable[[float], float] | No
             orders = 1j * np.arange(len(terms))
             gap = max(abs(series(at) - float(function(np.array(at)))) for at in _PROBES)
             return series if gap <= 1e-12 * float(np.max(np.abs(values))) else None
-        count *= 2
     return None

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated import beam_section_sandwich
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import BadInput, bad, refuse
 from ..core.inputs import is_finite, number_problems, require_kind, require_positive
 from .section import Section
 
@@ -32,7 +32,7 @@ class ElasticLayer:
     density: float  # mass per volume [kg/m^3]
 
     def __post_init__(self) -> None:
-        _refuse(number_problems("ElasticLayer", vars(self), "positive", _SI))
+        refuse(number_problems("ElasticLayer", vars(self), "positive", _SI))
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class ViscoelasticLayer:
         positive = dict(vars(self))
         free = {"loss_factor": positive.pop("loss_factor")}
         problems = number_problems("ViscoelasticLayer", positive, "positive", _SI)
-        _refuse(problems + number_problems("ViscoelasticLayer", free, "not negative"))
+        refuse(problems + number_problems("ViscoelasticLayer", free, "not negative"))
 
 
 @dataclass(frozen=True)
@@ -143,11 +143,6 @@ def sandwich_section(
 
 
 _SI = "give SI units"
-
-
-def _refuse(problems: list[Problem]) -> None:
-    if problems:
-        raise BadInput(*problems)
 
 
 def _stiffness(

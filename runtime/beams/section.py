@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..core.errors import BadInput, bad
+from ..core.errors import bad, refuse
 from ..core.inputs import is_finite, number_problems, require_positive
 
 
@@ -53,8 +53,7 @@ class Section:
         fix = "give SI units, lengths in metres"
         problems = number_problems("Section", positive, "positive", fix)
         problems += number_problems("Section", {"retardation": self.retardation}, "not negative")
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
     @classmethod
     def rectangle(

@@ -10,7 +10,7 @@ from typing import Any, TypeGuard
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import BadInput, Problem, bad, shown
+from .errors import Problem, bad, refuse, shown
 
 
 def is_whole(value: object, least: int, most: int | None = None) -> TypeGuard[int]:
@@ -105,8 +105,7 @@ def names_problems(where: str, value: object) -> list[Problem]:
 
 def require_positive(where: str, **values: Any) -> None:
     """Refuse values that are not positive numbers, all of them in one error."""
-    if problems := number_problems(where, values, "positive", "give it in SI units"):
-        raise BadInput(*problems)
+    refuse(number_problems(where, values, "positive", "give it in SI units"))
 
 
 def require_kind(where: str, value: object, kind: type | tuple[type, ...], fix: str) -> None:

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import BadInput, ElastolinkError, Problem, bad
+from ..core.errors import ElastolinkError, Problem, bad, refuse
 from ..core.inputs import number_problems, require_kind
 from ..core.results import Result
 from ..recovery.stress_over_speed import missed_by_parabolas
@@ -50,8 +50,7 @@ class Material:
             expected = f"less than tensile_strength, {self.tensile_strength:g}"
             found = f"{self.endurance_limit:g}"
             problems.append(Problem("Material.endurance_limit", found, expected, "swap them"))
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
 
 @dataclass(frozen=True, kw_only=True)

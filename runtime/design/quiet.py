@@ -11,7 +11,7 @@ from typing import ClassVar
 import numpy as np
 
 from ..beams.element_forms import required_structure
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.maxima import local_maxima
@@ -189,8 +189,7 @@ def _limits(limits: float | Mapping[str, float], links: list[str]) -> dict[str, 
         if not (isinstance(value, Real) and np.isfinite(value) and value > 0):
             fix = "give a stress in Pa"
             problems.append(Problem(f"limits of {link}", repr(value), "a positive stress", fix))
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)
     return {link: float(value) for link, value in named.items()}
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from ..beams.assembly import in_own_axes, products
 from ..beams.element_forms import required_structure
 from ..beams.elements import placed_rotation, placed_shapes
-from ..core.errors import LINEAR_RANGE, BadInput, Problem, bad, warn_of_large_deflection
+from ..core.errors import LINEAR_RANGE, Problem, bad, refuse, warn_of_large_deflection
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_whole, require_whole
 from ..core.plotting import Axes, axes_or_new
@@ -456,5 +456,4 @@ def _check(
     if profile.geometry and modes is not None:
         fix = "set modes=None: the modes of one length are not those of another"
         problems.append(Problem("modes", str(modes), "None where a length changes", fix))
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse
 from ..core.families import Transcendental
 from ..core.inputs import is_finite, is_whole, numbers_in_a_row, require_kind
 from ..core.plotting import axes_or_new
@@ -615,5 +615,4 @@ def _check(upto: float | None, count: int | None) -> None:
         problems.append(Problem("upto", repr(upto), "a positive frequency [rad/s]", "correct it"))
     if count is not None and not is_whole(count, 1):
         problems.append(Problem("count", repr(count), "a whole number from 1", "correct it"))
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.deferred import DeferredField, DeferredGroup
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse
 from ..core.inputs import is_finite
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
@@ -328,8 +328,7 @@ def _checked(
         if not (is_finite(value) and 0.0 <= value <= longest):
             expected = f"a clearance from 0 to the longest length, {longest:g}"
             problems.append(Problem(where, repr(value)[:60], expected, "correct it"))
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)
     return {name: float(given[name]) for name in _JOINTS if name in given}
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse
 from ..core.inputs import is_finite, is_whole
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
@@ -396,8 +396,7 @@ def _checked(model: Parametric, tolerance: object) -> dict[str, float]:
             what = "a quarter turn" if name == ANGLE else "the length"
             expected = f"less than {what}, {limits[name]:g}"
             problems.append(Problem(where, f"{width:g}", expected, "narrow it"))
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)
     return {str(name): float(width) for name, width in tolerance.items()}
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...generated import quick_return_kinematics
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse
 from .linkage import (
     EPS,
     ROUND_OFFS,
@@ -119,8 +119,7 @@ class QuickReturn(Linkage):
                     "the rod never reaches the block; lengthen it",
                 )
             )
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
     @property
     def geometry(self) -> Mapping[str, float]:

@@ -14,7 +14,7 @@ from ..beams.assembly import Array
 from ..beams.element_forms import ElementForms, required_structure
 from ..beams.recovery_forms import LinearForm, stacked
 from ..core.deferred import DeferredField, DeferredGroup
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite, numbers_in_a_row
 from ..core.plotting import axes_or_new
@@ -51,8 +51,7 @@ def fibre_factors(system: LinearPeriodic, stations: Sequence[Station]) -> tuple[
         for name in dict.fromkeys(station.beam for station in stations)
         if sections[name].thickness is None
     ]
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)
     own = [sections[station.beam] for station in stations]
     levers = [0.5 * (section.thickness or 0.0) / section.second_moment for section in own]
     return np.array([1.0 / section.area for section in own]), np.array(levers)
@@ -292,8 +291,7 @@ class StressResult(StationResult):
                 problems.append(Problem(f"limit of {link}", repr(own), "a stress [Pa]", fix))
             else:
                 found[link] = float(own) / abs(peak.value) if peak.value else np.inf
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
         return found
 
     def plot(self, ax: Axes | None = None) -> Axes:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse
 from ..core.inputs import number_problems
 from .inputs import finite_number, require_link
 from .machine import Machine, require_machine
@@ -60,8 +60,7 @@ class Counterweight:
         if not problems and self.radius and self.density is not None:
             expected = "a radius, or density and thickness"
             problems.append(Problem(f"{where}.radius", "all three", expected, "leave one out"))
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
     @property
     def own_inertia(self) -> float:
@@ -115,8 +114,7 @@ class Bounds:
         """Check the numbers."""
         problems = _not_positive("Bounds", {"mass": self.mass, "offset": self.offset})
         problems += _cylinder_problems("Bounds", self.density, self.thickness)
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
 
 def with_counterweights(machine: Machine, counterweights: Iterable[Counterweight]) -> Machine:

@@ -8,7 +8,7 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import BadInput, Problem, bad, refuse
 from ..core.inputs import are_finite, number_problems
 from ..linkages.linkage import Array, LinkMotion, PointMotion
 
@@ -103,8 +103,7 @@ class Load:
             if getattr(self, name) not in choices:
                 given = repr(getattr(self, name))[:60]
                 problems.append(Problem(f"Load.{name}", given, f"one of {choices}", "choose one"))
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
     @property
     def links(self) -> tuple[str, ...]:
@@ -186,8 +185,7 @@ class Spring:
         if not problems and self.first[0] == self.second[0]:
             given = f"both ends on {self.first[0]!r}"
             problems.append(Problem("Spring", given, "two different links", "move an end"))
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
     @property
     def links(self) -> tuple[str, ...]:
@@ -279,8 +277,7 @@ class TorsionSpring:
         if self.first == self.second:
             given = f"both ends on {self.first!r}"
             problems.append(Problem(where, given, "two different links", "name another link"))
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
     @property
     def links(self) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse
 from ..core.inputs import are_finite
 from ..linkages.linkage import Array, Linkage
 from .loads import FRAME, Load, Spring, TorsionSpring, Wrench
@@ -74,8 +74,7 @@ class Machine:
             problems.append(Problem("Machine.gravity", given, "two finite components", fix))
         for name, kinds in (("loads", (Load,)), ("springs", (Spring, TorsionSpring))):
             problems += _item_problems(name, getattr(self, name), kinds, self.linkage.links)
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
         object.__setattr__(self, "masses", dict(self.masses))
         object.__setattr__(self, "gravity", tuple(float(part) for part in self.gravity))
         object.__setattr__(self, "loads", tuple(self.loads))

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ..core.errors import BadInput, bad
+from ..core.errors import bad, refuse
 from ..core.inputs import number_problems
 
 
@@ -155,5 +155,4 @@ class MassDistribution:
 def _require(sizes: Mapping[str, object], **places: object) -> None:
     """Refuse sizes that are no finite numbers of zero or more, and places that are no numbers."""
     problems = number_problems("MassDistribution", sizes, "not negative")
-    if problems := problems + number_problems("MassDistribution", places):
-        raise BadInput(*problems)
+    refuse(problems + number_problems("MassDistribution", places))

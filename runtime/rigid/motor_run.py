@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse
 from ..core.inputs import is_finite, is_whole, number_problems
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
@@ -275,8 +275,7 @@ def _require(machine: object, ends: Mapping[str, object], numbers: Mapping[str, 
             fits, expected = is_whole(value, least), f"a whole number, {least} or more"
         if not fits:
             problems.append(Problem(name, repr(value)[:60], expected, "correct it"))
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)
 
 
 @dataclass(frozen=True)
@@ -312,8 +311,7 @@ class TorqueLine:
             pair = f"stall {self.stall:g} N m, no-load speed {self.no_load_speed:g} rad/s"
             fix = "correct a sign, or give a callable"
             problems.append(Problem("TorqueLine", pair, "two numbers of one sign, not zero", fix))
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
     def __call__(self, speed: Any, angle: Any = 0.0, time: Any = 0.0) -> Any:
         """Return the torque [N m] at a speed [rad/s]."""

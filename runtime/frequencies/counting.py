@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,13 +19,10 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import Problem, bad, refuse
 from ..core.families import Transcendental
 from ..core.inputs import is_finite, is_whole, numbers_in_a_row, require_kind
-from ..core.plotting import axes_or_new
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from .frames import Assembly, DynamicStiffness, divided_for, narrow_enough
 from .members import functions, phases
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
 

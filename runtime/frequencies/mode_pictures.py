@@ -15,12 +15,11 @@ from ..beams.structure import Structure
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite, require_whole
-from ..core.plotting import axes_or_new, new_figure
+from ..core.plotting import Axes, axes_or_new, new_figure
 from .held import crank_angles
 from .natural import NaturalFrequencies, natural_frequencies
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]

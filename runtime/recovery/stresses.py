@@ -17,7 +17,7 @@ from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import Problem, bad, refuse
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite, numbers_in_a_row
-from ..core.plotting import axes_or_new
+from ..core.plotting import Axes, axes_or_new
 from ..core.trigonometric import even_angles, resampled
 from .beam_forces import (
     METHODS,
@@ -33,8 +33,6 @@ from .beam_result import StationResult, checked_forms, in_motion, stations_on
 from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from .beam_motion import Motion
 
 Stations = int | Mapping[str, ArrayLike] | None

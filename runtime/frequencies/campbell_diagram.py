@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..core.families import LinearPeriodic, require_system
+from ..core.families import Array, LinearPeriodic, require_system
 from ..core.inputs import numbers, require_whole
 from ..core.plotting import Axes, axes_or_new
 from ..core.progress import bar
@@ -24,8 +24,6 @@ from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
 from ..periodic.decoupled.slow_modes import SlowModes, SlowMonodromy
 from .held import HeldModes, buckling_speed, held_modes, mean_frequencies
-
-Array = NDArray[np.float64]
 
 
 def running_frequencies(

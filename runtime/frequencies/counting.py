@@ -17,14 +17,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import Problem, bad, refuse
-from ..core.families import Transcendental
+from ..core.families import Array, Transcendental
 from ..core.inputs import is_finite, is_whole, numbers_in_a_row, require_kind
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from .frames import Assembly, DynamicStiffness, divided_for, narrow_enough
 from .members import functions, phases
-
-Array = NDArray[np.float64]
 
 UNIT = 2.0**-53
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import BadInput, bad
-from ..core.families import DAMPING, LinearPeriodic, require_system
+from ..core.families import DAMPING, Array, LinearPeriodic, require_system
 from ..core.inputs import require_whole, speed_span
 from ..core.maxima import local_maxima
 from ..core.plotting import Axes, axes_or_new
@@ -21,7 +21,6 @@ from ..core.trigonometric import even_angles
 from .held import buckling_speed, held_frequencies, mean_frequencies
 from .multiplier_maxima import Maxima, meissner_maxima, multiplier_maxima
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..core.families import LinearPeriodic, require_system
+from ..core.families import Array, LinearPeriodic, require_system
 from ..core.inputs import require_whole
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
@@ -24,8 +24,6 @@ from .held import (
     held_modes,
 )
 from .tracking import CLEAR, Arrays, Curves, Encounter, Modes, Walk, followed_shapes, walk
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..core.families import LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..core.inputs import numbers
 from ..core.maxima import local_maxima, narrowed
 from ..core.plotting import Axes, axes_or_new
@@ -19,8 +19,6 @@ from ..core.results import Result, provenance
 from ..periodic.periodic_motion import SteadyState, quiet_state
 from .critical import label_speeds
 from .held import mean_frequencies
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

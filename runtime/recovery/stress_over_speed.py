@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..beams.element_forms import required_structure
 from ..beams.recovery_forms import RIGID, LinearForm
 from ..core.errors import LINEAR_RANGE, bad
-from ..core.families import DAMPING, LinearPeriodic
+from ..core.families import DAMPING, Array, LinearPeriodic
 from ..core.inputs import numbers
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
@@ -25,8 +25,6 @@ from ..periodic.swept_motions import Growth, Trial, Truncations, speed_ranges
 from ..periodic.truncation import arrays_at
 from .beam_forces import require_method
 from .stresses import stress_operator
-
-Array = NDArray[np.float64]
 
 # Angles of a revolution at first and at the most, and the upper quarter of a motion's harmonics,
 # over the largest, times the wanted error, that asks for more of them.

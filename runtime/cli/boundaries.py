@@ -144,7 +144,6 @@ def _of_mode(options: argparse.Namespace, form: hill.HillForm, regions: tuple[in
 def _of_modes(
     options: argparse.Namespace, system: LinearPeriodic, speeds: tuple[float, float]
 ) -> int:
-    """Boundaries in crank speed of all modes in a range."""
     edges = stability.stability_edges(system, speeds)
     rows = [
         (f"{label} ?" if doubtful else label, _rpm(first), _rpm(last), _rpm(last - first, 3))
@@ -290,7 +289,6 @@ def _formulas(options: argparse.Namespace) -> int:
 
 
 def _values(text: str) -> Array | list[float]:
-    """Return one value or evenly spaced ones."""
     if ":" in text:
         return opt.values(text, "dimensionless", "--mu")
     return [opt.quantity(text, "dimensionless", "--mu")]

@@ -313,7 +313,6 @@ def _choices(spec: ModelSpec) -> tuple[str, ...]:
 
 
 def _terms(scene: Scene) -> dict[str, str]:
-    """Return the terms that a scene may leave out, and whether it does."""
     spec = scene.model_spec()
     offered, dropped = _choices(spec), set(spec.drop)
     if scene.model["formulation"] in BEAM_FORMULATIONS:
@@ -377,7 +376,6 @@ def _listed(names: Iterable[str]) -> str:
 
 
 def _by_kind(kinds: Mapping[str, str]) -> dict[str, list[str]]:
-    """Return the names of each kind."""
     found: dict[str, list[str]] = defaultdict(list)
     for name, kind in kinds.items():
         found[kind].append(name)

@@ -171,7 +171,6 @@ def effect_of(
 
 
 def _transmission(system: LinearPeriodic, name: str, values: Array) -> Array | None:
-    """Return the extreme transmission angles of a four-bar for values of a length."""
     if name not in system.geometry or not set(_LENGTHS) <= set(system.geometry):
         return None
     angles = []

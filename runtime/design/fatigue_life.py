@@ -6,15 +6,13 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.errors import ElastolinkError, Problem, bad, refuse
 from ..core.inputs import number_problems, require_kind
 from ..core.results import Result
 from ..recovery.stress_over_speed import missed_by_parabolas
 from ..recovery.stresses import FIBRES, StressResult
-
-Array = NDArray[np.float64]
+from .speed_profile import Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -188,7 +186,6 @@ def _between(fine: Array) -> tuple[Array, Array]:
 
 
 def _cycles(history: Array) -> tuple[Array, Array, Array]:
-    """Return ranges, means and counts of the cycles of a periodic history."""
     try:
         import rainflow
     except ImportError:

@@ -173,7 +173,6 @@ def running_speed(
 
 
 def _place(quiet: QuietSpeeds, band: Band) -> int:
-    """Return the place of the running speed among the speeds."""
     return int(np.argmin(np.abs(quiet.speed - band.best)))
 
 

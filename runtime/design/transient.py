@@ -286,7 +286,6 @@ class _Run:
 
     @cached_property
     def _first(self) -> Array:
-        """The state at the first time."""
         speed = float(self.profile.speeds[0])
         size = self.followed.size
         if self.start == "rest" or speed == 0.0:

@@ -50,7 +50,6 @@ class BarkerClass:
 
 
 def _table() -> tuple[BarkerClass, ...]:
-    """Return the fourteen rows."""
     shapes = (
         ("crank-crank-crank", "CCC", "double crank (drag link)"),
         ("crank-rocker-rocker", "CRR", "crank rocker"),
@@ -368,7 +367,6 @@ def _many(lengths: NDArray[Any]) -> NDArray[np.int64]:
 
 
 def _four_bar_of(lengths: Iterable[float]) -> FourBar:
-    """Return a linkage of four lengths, or raise BadInput."""
     wanted = "4 lengths: frame, crank, coupler, follower"
     try:
         four: list[Any] = [*lengths]

@@ -311,7 +311,6 @@ def _checked(
     clearances: float | Mapping[str, float],
     joint: str | None,
 ) -> dict[str, float]:
-    """Return the clearances by joint, or raise BadInput."""
     if isinstance(clearances, Mapping):
         if joint is not None:
             raise bad("joint", repr(joint)[:60], "none beside clearances by joint", "leave it out")
@@ -359,13 +358,11 @@ def _extremes(task: _Task) -> tuple[WidthExtreme, WidthExtreme]:
 
 
 def _errors(task: _Task) -> dict[str, Array]:
-    """Return the errors of the result in its units."""
     error, nominal_error = task.route.errors(task.position, *task.slack, task.play)
     return {"error": task.in_units(2.0 * error), "nominal_error": task.in_units(nominal_error)}
 
 
 def _checks(task: _Task) -> dict[str, Check]:
-    """Close the loop at both ends, and take a small part of the clearances."""
     return {
         "loop closure at both ends over its round-off": Check(_gap(task), 1.0),
         "small clearances against the first order": Check(_first_order(task), 1.0),

@@ -378,7 +378,6 @@ def tolerances(
 
 
 def _checked(model: Parametric, tolerance: object) -> dict[str, float]:
-    """Return the tolerances as floats."""
     if not isinstance(tolerance, Mapping):
         given = type(tolerance).__name__
         raise bad("tolerance", given, "a mapping from name to number", "write {'crank': 1e-4}")
@@ -401,7 +400,6 @@ def _checked(model: Parametric, tolerance: object) -> dict[str, float]:
 
 
 def _require_reach(linkage: Linkage, sizes: Mapping[str, float], theta: Array) -> None:
-    """Raise BadInput where a linkage within the tolerances cannot reach an angle."""
 
     def left(widths: Mapping[str, float], angles: Array) -> Array:
         return margin(box_of(linkage.lengths, widths), angles, widths.get(ANGLE, 0.0))

@@ -319,7 +319,6 @@ class Motion(Result, ABC):
         return LinkMotion(start, still, still, angle, speed, change)
 
     def _at_crank_pin(self, angle: Array, speed: Array, change: Array) -> LinkMotion:
-        """Return the motion of a link that begins at B."""
         pin = self.link("crank").point(self.linkage.lengths["crank"])
         return LinkMotion(pin.position, pin.velocity, pin.acceleration, angle, speed, change)
 

@@ -180,7 +180,6 @@ class _Film:
 
 
 def _trace(motion: Circuit, curve: CouplerCurve) -> Complex:
-    """Return the path of a curve's point."""
     s = np.linspace(0.0, 2.0 * pi, max(721, len(curve.parameter) + 1))
     place = complex(curve.along, curve.across) / motion.scale
     return np.asarray(motion.scale * motion.path(s, curve.link, place, 0).c[0])
@@ -199,7 +198,6 @@ def _bars(motion: Circuit, s: float) -> dict[str, Complex]:
 
 
 def _pins(motion: Circuit, s: float) -> Complex:
-    """Return the places of the moving pins."""
     at = motion.joints(np.array([s]))
     names = ("B",) if motion.linkage.mechanism == "quick_return" else ("B", "C")
     return np.array([complex(at[name][0]) for name in names])

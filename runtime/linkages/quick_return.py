@@ -198,7 +198,6 @@ class QuickReturn(Linkage):
         return np.asarray(ROUND_OFFS * moved / m["slide"])
 
     def _error(self, m: Mapping[str, Array]) -> Array:
-        """Return what a unit round-off of the angle and of each length does, three times."""
         frame, crank, _ = self.unit_lengths.values()
         theta2, theta4 = m["theta2"], m["theta4"]
         turned = ROUND_OFFS * (np.abs(theta2 * m["omega4"]) + np.abs(theta4)) + self._blur(m)

@@ -183,7 +183,6 @@ def _compared(
     acceleration: float,
     angles: ArrayLike | None,
 ) -> Balancing:
-    """Return what the counterweights of a case do to every peak."""
     balanced = with_counterweights(machine, added.values())
     unbalanced, _ = _turn_peaks(machine, speed, acceleration, angles)
     after, where = _turn_peaks(balanced, speed, acceleration, angles)
@@ -216,7 +215,6 @@ def _searched(
     angles: ArrayLike | None,
     measure: Measure = "peak",
 ) -> Search:
-    """Return the search that :func:`balance` makes."""
     require_machine(machine)
     speed, acceleration = finite_number(speed, "speed"), finite_number(acceleration, "acceleration")
     if measure not in ("peak", "rms"):
@@ -244,7 +242,6 @@ def _searched(
 
 
 def _described(search: Search, best: Candidate) -> Balancing:
-    """Return the result for the counterweights of a search."""
     added, p = _counterweights(search, best.x), search.design.parameters(best.x)
     balanced, where = _sizes(search.basis, search.theta, p, search.between, search.measure)
     relative = _relative(balanced, search.unbalanced)
@@ -534,7 +531,6 @@ def _cases(
     angles: ArrayLike | None,
     terms: tuple[str, str],
 ) -> dict[str, tuple[float, float]]:
-    """Return the relative peaks of the cases that the linkage has."""
     peaks: dict[str, tuple[float, float]] = {}
     for case in CASES:
         try:

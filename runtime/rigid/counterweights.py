@@ -136,7 +136,6 @@ def _not_positive(where: str, values: Mapping[str, float | None]) -> list[Proble
 
 
 def _cylinder_problems(where: str, density: float | None, thickness: float | None) -> list[Problem]:
-    """Return what is wrong with density and thickness of a cylinder."""
     problems = _not_positive(where, {"density": density, "thickness": thickness})
     if not problems and (density is None) != (thickness is None):
         expected = "both density and thickness, or none"

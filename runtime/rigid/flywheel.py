@@ -336,7 +336,6 @@ def _mean_check(machine: Machine, speed: float, mean: float, size: float) -> dic
 def _confirmed(
     machine: Machine, motion: _Motion, start: float, reached: float, share: float
 ) -> dict[str, Check]:
-    """Run a revolution under the motor's torque."""
     from .motor_run import run_up
 
     run = run_up(

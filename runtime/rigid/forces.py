@@ -20,12 +20,10 @@ from .machine import Machine, require_machine
 
 _LATER = DeferredField()
 OUTPUTS: tuple[Output, ...] = ("pins", "torque", "shaking_force", "shaking_moment")
+_JOINTS = ("12", "23", "34", "41")
 _POLAR = {
-    "12": ("x12", "y12", "pin force 12"),
-    "23": ("x23", "y23", "pin force 23"),
-    "34": ("x34", "y34", "pin force 34"),
-    "41": ("x41", "y41", "pin force 41"),
-    "frame": ("shaking_x", "shaking_y", "force on the frame"),
+    **{joint: (f"x{joint}", f"y{joint}", f"pin force {joint}") for joint in _JOINTS},
+    "frame": (*FRAME_FORCE, "force on the frame"),
 }
 _CURVES = {
     "torque": ("torque", "driving torque [N m]"),
@@ -62,7 +60,7 @@ class RigidForces(Result):
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
         (
             *("theta2", "speed", "acceleration", "torque", "error", "couple34", "couple41"),
-            *(axis + joint for axis in "xy" for joint in ("12", "23", "34", "41")),
+            *(axis + joint for axis in "xy" for joint in _JOINTS),
             *FRAME_FORCE,
             "shaking_moment",
         ),

@@ -153,6 +153,5 @@ class MassDistribution:
 
 
 def _require(sizes: Mapping[str, object], **places: object) -> None:
-    """Refuse sizes that are no finite numbers of zero or more, and places that are no numbers."""
     problems = number_problems("MassDistribution", sizes, "not negative")
     refuse(problems + number_problems("MassDistribution", places))

@@ -257,7 +257,6 @@ def _name(torque: object) -> str:
 
 
 def _require(machine: object, ends: Mapping[str, object], numbers: Mapping[str, object]) -> None:
-    """Raise BadInput with everything that makes a run impossible."""
     require_machine(machine)
     if all(value is None for value in ends.values()):
         raise bad("run_up", "no end", "revolutions or duration", "give revolutions=10, for example")

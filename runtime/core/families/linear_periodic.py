@@ -332,7 +332,6 @@ class LinearPeriodic:
         return self.scales({**self.parameters, **changes})
 
     def _within_limits(self, name: str, value: ArrayLike) -> None:
-        """Refuse values of a parameter that it cannot have."""
         limit = self.limits.get(name)
         expected = f"finite numbers, {limit}" if limit else "numbers"
         try:

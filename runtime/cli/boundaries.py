@@ -203,8 +203,7 @@ def _bars(ax: Any, exact: hill.Boundaries, frequency: float) -> None:
             right = frequency / sqrt(low) if low > 0.0 else 2.0 * frequency / sqrt(high)
             left = frequency / sqrt(high)
             ax.barh(str(n), (right - left) * rpm, left=left * rpm, height=0.6)
-    ax.set_xlabel("crank speed [rpm]")
-    ax.set_ylabel("region")
+    ax.set(xlabel="crank speed [rpm]", ylabel="region")
 
 
 def _perturb(options: argparse.Namespace) -> int:

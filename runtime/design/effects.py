@@ -69,8 +69,7 @@ class StressEffect(Result):
         ax = axes_or_new(ax)
         for value, rows in zip(self.values, self.maximum, strict=True):
             ax.semilogy(self.speed, np.max(rows, axis=1) / 1e6, label=f"{value:g}", linewidth=0.9)
-        ax.set_xlabel("crank speed [rad/s]")
-        ax.set_ylabel("largest stress [MPa]")
+        ax.set(xlabel="crank speed [rad/s]", ylabel="largest stress [MPa]")
         ax.legend(title=self.name)
         return ax
 

@@ -110,8 +110,7 @@ class QuietSpeeds(Result):
         for band in self.bands:
             ax.axvspan(band.low, band.high, color="tab:green", alpha=0.12, linewidth=0.0)
         shade_unstable(ax, self.unstable)
-        ax.set_xlabel("crank speed [rad/s]")
-        ax.set_ylabel("largest stress over its limit")
+        ax.set(xlabel="crank speed [rad/s]", ylabel="largest stress over its limit")
         ax.legend()
         return ax
 

@@ -90,8 +90,7 @@ class Transient(Result):
         beside = ax.twinx()
         beside.plot(self.time, self.speed, color="0.4", linestyle="--", linewidth=0.9)
         beside.set_ylabel("crank speed [rad/s]")
-        ax.set_xlabel("time [s]")
-        ax.set_ylabel("largest stress [MPa]")
+        ax.set(xlabel="time [s]", ylabel="largest stress [MPa]")
         ax.legend(loc="upper left")
         return ax
 

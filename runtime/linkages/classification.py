@@ -12,7 +12,7 @@ from typing import Any, Literal, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import bad
+from ..core.errors import bad, shown
 from ..core.plotting import Axes
 from ..core.results import Result, provenance
 from .four_bar import FourBar, LoopSums
@@ -371,7 +371,7 @@ def _four_bar_of(lengths: Iterable[float]) -> FourBar:
     try:
         four: list[Any] = [*lengths]
     except (TypeError, KeyError) as refusal:
-        found = repr(lengths)[:60]
+        found = shown(lengths)
         raise bad("lengths", found, f"a linkage, or {wanted}", "give four lengths") from refusal
     if len(four) != 4:
         raise bad("lengths", f"{len(four)} of them", wanted, "give four lengths")

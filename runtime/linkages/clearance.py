@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.deferred import DeferredField, DeferredGroup
-from ..core.errors import Problem, bad, refuse
+from ..core.errors import Problem, bad, refuse, shown
 from ..core.inputs import is_finite
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
@@ -222,7 +222,7 @@ def clearance_range(
     outputs = next(of for kind, of in OUTPUTS.items() if isinstance(linkage, kind))
     link = outputs.links[0] if link is None else link
     if link not in outputs.links:
-        raise bad("link", repr(link)[:60], f"one of {', '.join(outputs.links)}", "choose one")
+        raise bad("link", shown(link), f"one of {', '.join(outputs.links)}", "choose one")
     plays = _checked(linkage, clearances, joint)
     if theta is None and linkage.crank_turns:
         theta = np.linspace(0.0, math.tau, 361)
@@ -313,7 +313,7 @@ def _checked(
 ) -> dict[str, float]:
     if isinstance(clearances, Mapping):
         if joint is not None:
-            raise bad("joint", repr(joint)[:60], "none beside clearances by joint", "leave it out")
+            raise bad("joint", shown(joint), "none beside clearances by joint", "leave it out")
         given = dict(clearances)
     else:
         given = {"34" if joint is None else joint: clearances}
@@ -323,10 +323,10 @@ def _checked(
         where = f"clearances[{name!r}]"
         if name not in _JOINTS:
             fix = "name the joint by its two links"
-            problems.append(Problem(where, repr(name)[:60], f"one of {', '.join(_JOINTS)}", fix))
+            problems.append(Problem(where, shown(name), f"one of {', '.join(_JOINTS)}", fix))
         if not (is_finite(value) and 0.0 <= value <= longest):
             expected = f"a clearance from 0 to the longest length, {longest:g}"
-            problems.append(Problem(where, repr(value)[:60], expected, "correct it"))
+            problems.append(Problem(where, shown(value), expected, "correct it"))
     refuse(problems)
     return {name: float(given[name]) for name in _JOINTS if name in given}
 

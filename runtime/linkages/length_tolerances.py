@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.errors import Problem, bad, refuse
+from ..core.errors import Problem, bad, refuse, shown
 from ..core.inputs import is_finite, is_whole
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
@@ -337,10 +337,10 @@ def tolerances(
     (7, 2)
     """
     if not hasattr(linkage_or_machine, "parametric"):
-        given = repr(linkage_or_machine)[:60]
+        given = shown(linkage_or_machine)
         raise bad("tolerances", given, "a linkage or a Machine", "give a FourBar, say")
     if masses not in ("fixed", "bars"):
-        raise bad("masses", repr(masses)[:60], "'fixed' or 'bars'", "choose one")
+        raise bad("masses", shown(masses), "'fixed' or 'bars'", "choose one")
     if theta is None:
         theta = np.linspace(0.0, 2.0 * np.pi, 361)
     angles, drive = drive_of(theta, speed, acceleration)
@@ -390,7 +390,7 @@ def _checked(model: Parametric, tolerance: object) -> dict[str, float]:
             fix = "correct the name; masses need a Machine"
             problems.append(Problem(where, repr(name), f"one of {', '.join(known)}", fix))
         elif not (is_finite(width) and width >= 0.0):
-            problems.append(Problem(where, repr(width)[:60], "zero or more", "correct it"))
+            problems.append(Problem(where, shown(width), "zero or more", "correct it"))
         elif width >= limits.get(name, math.inf):
             what = "a quarter turn" if name == ANGLE else "the length"
             expected = f"less than {what}, {limits[name]:g}"

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.deferred import Deferred, DeferredField
-from ..core.errors import Problem, bad
+from ..core.errors import Problem, bad, shown
 from ..core.inputs import is_finite
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
@@ -174,8 +174,7 @@ class Motion(Result, ABC):
             units[size + unit] = None
             label = words if unit == "1" else f"{words} [{size}{unit}]"
             ax.plot(degrees, values / 10.0**power, label=label)
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel(", ".join(units))
+        ax.set(xlabel="crank angle [deg]", ylabel=", ".join(units))
         ax.legend()
         return ax
 
@@ -700,7 +699,7 @@ def finite_array(name: str, value: ArrayLike, meaning: str) -> Array:
     try:
         array = np.array(value, dtype=float)
     except (TypeError, ValueError) as refusal:
-        raise bad(name, repr(value)[:60], f"an array of {meaning}", "correct it") from refusal
+        raise bad(name, shown(value), f"an array of {meaning}", "correct it") from refusal
     if not np.all(np.isfinite(array)):
         raise bad(name, "a value that is not finite", f"finite {meaning}", "remove it")
     return array

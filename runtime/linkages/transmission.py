@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.errors import bad
+from ..core.errors import bad, shown
 from ..core.inputs import are_finite
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
@@ -110,8 +110,7 @@ class TransmissionAngle(Result):
         for name, angle in self.dead_centres.items():
             at = math.degrees(angle)
             ax.axvline(at, color="0.5", ls=":", label=f"dead centre, {name}: {at:.4g} deg")
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel("transmission angle [deg]")
+        ax.set(xlabel="crank angle [deg]", ylabel="transmission angle [deg]")
         ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=3, fontsize=8)
         return ax
 
@@ -190,8 +189,7 @@ class MechanicalAdvantage(Result):
         for pole in self.poles:
             ax.axvline(math.degrees(pole % math.tau), color="0.5", ls=":", lw=1.0)
         ax.axhline(0.0, color="0.8", lw=0.8)
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel("mechanical advantage")
+        ax.set(xlabel="crank angle [deg]", ylabel="mechanical advantage")
         return ax
 
 
@@ -218,8 +216,7 @@ def transmission_angle(
         If the band is not two rising angles between 0 and pi, or this is no linkage.
     """
     if not (are_finite(band, 2) and 0.0 <= band[0] < band[1] <= pi):
-        given = repr(band)[:60]
-        raise bad("band", given, "two angles, 0 <= low < high <= pi", "give radians, rising")
+        raise bad("band", shown(band), "two angles, 0 <= low < high <= pi", "give radians, rising")
     band = float(band[0]), float(band[1])
     require_linkage(linkage)
     if isinstance(linkage, SliderCrank):

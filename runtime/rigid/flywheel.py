@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..core.errors import bad
+from ..core.errors import bad, shown
 from ..core.inputs import number_problems
 from ..core.maxima import summits
 from ..core.plotting import Axes, axes_or_new
@@ -69,8 +69,7 @@ class TorqueFluctuation(Result):
         degrees = np.degrees(np.append(self.theta, self.theta[0] + TURN))
         ax.plot(degrees, np.append(self.torque, self.torque[0]))
         ax.axhline(self.mean_torque, color="0.5", linestyle="--", label="mean")
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel("driving torque [N m]")
+        ax.set(xlabel="crank angle [deg]", ylabel="driving torque [N m]")
         ax.legend()
         return ax
 
@@ -149,8 +148,7 @@ class Flywheel(Result):
         """Draw the crank speed with the flywheel against the crank angle."""
         ax = axes_or_new(ax)
         ax.plot(np.degrees(self.theta), self.speeds)
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel("crank speed [rad/s]")
+        ax.set(xlabel="crank angle [deg]", ylabel="crank speed [rad/s]")
         return ax
 
 
@@ -188,8 +186,7 @@ def flywheel_inertia(machine: Machine, speed: float, fluctuation: float = 0.02) 
     True
     """
     if number_problems("flywheel_inertia", {"fluctuation": fluctuation}) or not 0 < fluctuation < 1:
-        given = repr(fluctuation)[:60]
-        raise bad("fluctuation", given, "a number between 0 and 1", "0.02 is usual")
+        raise bad("fluctuation", shown(fluctuation), "a number between 0 and 1", "0.02 is usual")
     steady = torque_fluctuation(machine, speed)
     first_order = steady.energy_fluctuation / (fluctuation * speed**2)
     motion = _motion(machine, steady, fluctuation)
@@ -361,8 +358,7 @@ def _require(machine: Machine, speed: float) -> None:
     require_machine(machine)
     machine.linkage.require_full_turn()
     if number_problems("speed", {"speed": speed}) or speed == 0:
-        given = repr(speed)[:60]
-        raise bad("speed", given, "a finite crank speed, not zero", "give one in rad/s")
+        raise bad("speed", shown(speed), "a finite crank speed, not zero", "give one in rad/s")
     turns = _SCATTERED + TURN * _TURNS[:, np.newaxis]
     torque = driving_torque(machine, turns, speed).torque
     size = float(np.max(np.abs(torque)))

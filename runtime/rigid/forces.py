@@ -261,8 +261,7 @@ def _over_the_turn(ax: Axes, theta: Array, values: Array, label: str) -> Axes:
     for row, value in _curves(degrees, values):
         ax.plot(row, value)
     ax.axhline(0.0, color="0.7", linewidth=0.8)
-    ax.set_xlabel("crank angle [deg]")
-    ax.set_ylabel(label)
+    ax.set(xlabel="crank angle [deg]", ylabel=label)
     return ax
 
 
@@ -273,8 +272,7 @@ def _hodograph(ax: Axes, theta: Array, x: Array, y: Array, label: str) -> Axes:
     _mark(ax, *_curves(angles, x, y)[0])
     ax.plot(0.0, 0.0, "+", color="k")
     ax.set_aspect("equal", adjustable="datalim")
-    ax.set_xlabel("X [N]")
-    ax.set_ylabel("Y [N]")
+    ax.set(xlabel="X [N]", ylabel="Y [N]")
     ax.set_title(label)
     return ax
 

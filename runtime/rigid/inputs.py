@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ..core.errors import bad
+from ..core.errors import bad, shown
 
 
 def finite_number(value: object, where: str) -> float:
@@ -12,9 +12,9 @@ def finite_number(value: object, where: str) -> float:
     try:
         number = float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError) as refusal:
-        raise bad(where, repr(value)[:60], "a number", "correct it") from refusal
+        raise bad(where, shown(value), "a number", "correct it") from refusal
     if not math.isfinite(number):
-        raise bad(where, repr(value)[:60], "a finite number", "correct it")
+        raise bad(where, shown(value), "a finite number", "correct it")
     return number
 
 

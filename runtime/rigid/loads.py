@@ -8,7 +8,7 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
-from ..core.errors import BadInput, Problem, bad, refuse
+from ..core.errors import BadInput, Problem, bad, refuse, shown
 from ..core.inputs import are_finite, number_problems
 from ..linkages.linkage import Array, LinkMotion, PointMotion
 
@@ -98,10 +98,10 @@ class Load:
         problems = number_problems("Load", numbers)
         if not (callable(self.force) or are_finite(self.force, 2)):
             expected = "a pair of finite numbers"
-            problems.append(Problem("Load.force", repr(self.force)[:60], expected, "give (fx, fy)"))
+            problems.append(Problem("Load.force", shown(self.force), expected, "give (fx, fy)"))
         for name, choices in (("axes", ("fixed", "link")), ("given", ("angle", "motion"))):
             if getattr(self, name) not in choices:
-                given = repr(getattr(self, name))[:60]
+                given = shown(getattr(self, name))
                 problems.append(Problem(f"Load.{name}", given, f"one of {choices}", "choose one"))
         refuse(problems)
 
@@ -341,7 +341,7 @@ def evaluated(law: Any, given: Any, size: int, where: str, shape: tuple[int, ...
     except (TypeError, ValueError):
         fits = False
     if not fits:
-        raise bad(where, f"{value!r}"[:60], expected, "correct what the callable returns")
+        raise bad(where, shown(value), expected, "correct what the callable returns")
     if not np.all(np.isfinite(values)):
         raise bad(where, "a value that is not finite", expected, "correct the callable")
     return values
@@ -359,5 +359,5 @@ def _one_more(given: Any, shape: tuple[int, ...]) -> Any:
 def _end_problems(where: str, end: object) -> list[Problem]:
     if not (isinstance(end, tuple) and len(end) == 3 and isinstance(end[0], str)):
         fix = "write it like ('crank', 0.1, 0.0)"
-        return [Problem(where, repr(end)[:60], "a link and two coordinates", fix)]
+        return [Problem(where, shown(end), "a link and two coordinates", fix)]
     return number_problems(where, {"along": end[1], "across": end[2]})

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.errors import Problem, bad, refuse
+from ..core.errors import Problem, bad, refuse, shown
 from ..core.inputs import are_finite
 from ..linkages.linkage import Array, Linkage
 from .loads import FRAME, Load, Spring, TorsionSpring, Wrench
@@ -70,7 +70,7 @@ class Machine:
         problems = _mass_problems(self.masses, self.linkage.links)
         if not are_finite(self.gravity, 2):
             fix = "write it like (0.0, -9.81)"
-            given = repr(self.gravity)[:60]
+            given = shown(self.gravity)
             problems.append(Problem("Machine.gravity", given, "two finite components", fix))
         for name, kinds in (("loads", (Load,)), ("springs", (Spring, TorsionSpring))):
             problems += _item_problems(name, getattr(self, name), kinds, self.linkage.links)

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ..core.errors import Problem, bad, refuse
+from ..core.errors import Problem, bad, refuse, shown
 from ..core.inputs import is_finite, is_whole, number_problems
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
@@ -122,8 +122,7 @@ class RunUp(Result):
         """Draw the crank speed over time."""
         ax = axes_or_new(ax)
         ax.plot(self.time, self.speed)
-        ax.set_xlabel("time [s]")
-        ax.set_ylabel("crank speed [rad/s]")
+        ax.set(xlabel="time [s]", ylabel="crank speed [rad/s]")
         return ax
 
 
@@ -273,7 +272,7 @@ def _require(machine: object, ends: Mapping[str, object], numbers: Mapping[str, 
             least = 2 if name == "samples" else 1
             fits, expected = is_whole(value, least), f"a whole number, {least} or more"
         if not fits:
-            problems.append(Problem(name, repr(value)[:60], expected, "correct it"))
+            problems.append(Problem(name, shown(value), expected, "correct it"))
     refuse(problems)
 
 
@@ -325,7 +324,7 @@ def torque_law(torque: object) -> TorqueLaw:
             raise bad("torque", f"{value}", "a finite number", "correct it")
         return lambda speed, angle, time: value
     if not callable(torque):
-        raise bad("torque", repr(torque)[:60], "a number or a callable", "give a TorqueLine")
+        raise bad("torque", shown(torque), "a number or a callable", "give a TorqueLine")
     law: Any = torque
     try:
         parameters = inspect.signature(law).parameters.values()
@@ -352,7 +351,7 @@ def _checked(law: TorqueLaw) -> TorqueLaw:
             place = f"speed {speed:.6g} rad/s, angle {angle:.6g} rad, time {time:.6g} s"
             raise bad(
                 "torque",
-                f"{value!r}"[:60] + f" from the torque law at {place}",
+                shown(value) + f" from the torque law at {place}",
                 "a finite number [N m]",
                 "correct the torque law",
             )

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.errors import bad
+from ..core.errors import bad, shown
 from ..core.inputs import is_finite
 from ..core.maxima import narrowed
 from ..core.trigonometric import even_angles, interpolated, tail
@@ -31,8 +31,7 @@ class OneFreedom:
 
     def __init__(self, machine: Machine, flywheel: float = 0.0) -> None:
         if not (is_finite(flywheel) and flywheel >= 0):
-            given = repr(flywheel)[:60]
-            raise bad("flywheel", given, "a finite inertia, zero or more", "correct it")
+            raise bad("flywheel", shown(flywheel), "a finite inertia, zero or more", "correct it")
         self.machine, self.flywheel = machine, float(flywheel)
         self.hasty = any(load.given == "motion" for load in machine.loads) or any(
             spring.dampers is not None for spring in machine.springs

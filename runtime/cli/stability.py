@@ -43,12 +43,11 @@ def add(commands: Any) -> None:
         {
             "--speed SPEED": "crank speed where that is no axis, e.g. '500 rpm', rad/s without a"
             " unit; default operation.speed, 1 without crank",
+            "--workers N": "work in N processes; the answer does not depend on it",
             "--store PATH": "keep the chart, without boundaries, in this folder or .npz file, piece"
             " by piece; the same command goes on from there after it was stopped",
         },
     )
-    processes = "work in N processes; the answer does not depend on it"
-    opt.add(chart, {"--workers N": processes}, type=int)
     estimate = "with --store: tell time and memory, and work nothing out"
     opt.switches(chart, {"--estimate": estimate})
     for axis in ("x", "y"):
@@ -279,7 +278,10 @@ def _check_scale(options: argparse.Namespace) -> int:
     if options.workers is not None:
         from ..core.workers import check_workers
 
-        count = check_workers(options.workers, "--workers")
+        text = options.workers.strip()
+        count = check_workers(
+            int(text) if text.isdecimal() and len(text) < 10 else text, "--workers"
+        )
     if options.store is None:
         opt.refuse_unused(options, ("estimate",), "--store PATH")
         return count
@@ -291,6 +293,7 @@ def _check_scale(options: argparse.Namespace) -> int:
 
 
 def _workers(count: int) -> AbstractContextManager[Executor | None]:
+    """Open as many processes; none for one."""
     return nullcontext() if count == 1 else sweeps.process_pool(count)
 
 

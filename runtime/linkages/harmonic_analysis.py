@@ -14,7 +14,7 @@ from ..core.inputs import require_whole
 from ..core.periodic_function import PeriodicFunction
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
-from ..core.sampling import values_at
+from ..core.sampling import irregular_angles, values_at
 from .linkage import EPS, TURN, Array
 
 Function = Callable[[Array], ArrayLike]
@@ -158,7 +158,7 @@ def harmonics(source: Source, *, order: int = 8, accuracy: float = 1e-12) -> Har
 def _doubled(f: Callable[[Array], Array], name: str, order: int, accuracy: float) -> Harmonics:
     """Return the harmonics of a periodic function, its angles doubled until they stay."""
     count = max(64, 4 * 2 ** int(np.ceil(np.log2(order + 1))))
-    probes = np.asarray(TURN * ((_GOLDEN * np.arange(1, _PROBES + 1)) % 1.0), dtype=np.float64)
+    probes = irregular_angles(_PROBES)
     at_probes = values_at(f, probes, name)
     largest, evaluations = float(np.max(np.abs(at_probes))), _PROBES
     before: np.ndarray[Any, Any] | None = None
@@ -188,13 +188,13 @@ def _doubled(f: Callable[[Array], Array], name: str, order: int, accuracy: float
         if 2 * count > 2**17:
             break
         count *= 2
-    rest = float(np.max(np.abs(at_probes - _series(low)(probes))))
+    series = _series(low)
+    rest = float(np.max(np.abs(at_probes - series(probes))))
     dropped = float(np.sum(np.abs(full[order + 1 :])))
     error = 2.0 * _last_change(changes, settled) + 2.0 * EPS * largest
     if constant:
         # A pulse between two samples, of this height or of 1: 2/turn times its area.
         error += 2.0 * max(largest, 1.0) / count
-    series = _series(low)
     change = max(changes[-2:]) / max(largest, 5e-324)
     return Harmonics(
         name=name,

@@ -103,22 +103,14 @@ class Tolerances(Result):
         With tolerances that are standard deviations of independent parameters, or a fixed multiple
         of them, the standard deviation of the output, or the same multiple of it.
         """
-        shares, largest = self._relative
-        return np.asarray(largest[:, 0] * np.sqrt(np.sum(np.square(shares), axis=1)))
+        # The root of a sum of squares of any size.
+        return np.asarray(np.hypot.reduce(self.deviations, axis=1))
 
     @property
     def contribution(self) -> Array:
         """Share of each parameter in the squared root-sum-square, (outputs, parameters, ...)."""
-        squares = np.square(self._relative[0])
-        total = np.sum(squares, axis=1, keepdims=True)
-        return np.asarray(squares / np.where(total > 0.0, total, 1.0))
-
-    @property
-    def _relative(self) -> tuple[Array, Array]:
-        """Deviations over the largest of each output, and that: squares of any size are safe."""
-        size = np.abs(self.deviations)
-        largest = np.max(size, axis=1, keepdims=True)
-        return size / np.where(largest > 0.0, largest, 1.0), largest
+        total = self.root_sum_square[:, np.newaxis]
+        return np.square(self.deviations / np.where(total > 0.0, total, 1.0))
 
     def place(self, output: str) -> int:
         """Return the place of an output on the first axis.

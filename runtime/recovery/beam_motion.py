@@ -10,7 +10,7 @@ import numpy as np
 
 from ..beams.assembly import Array
 from ..beams.element_forms import required_structure
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse
 from ..core.families import LinearPeriodic
 from ..core.results import Check
 
@@ -56,8 +56,7 @@ class BeamMotion:
                 found = "a value that is not finite"
                 fix = "look at the motion's own checks: there may be no single periodic one"
                 problems.append(Problem(name, found, "finite numbers", fix))
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
     @property
     def slope(self) -> Array:

@@ -13,7 +13,7 @@ from ..beams.assembly import Array
 from ..beams.element_forms import ElementForms, required_structure
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
-from ..core.plotting import axes_or_new
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check
 from .beam_forces import propagated
 from .beam_motion import BeamMotion, beam_motion
@@ -21,8 +21,6 @@ from .beam_result import BeamResult, MotionValues, in_motion, over_motion
 from .finer_mesh import ROUNDING, with_mesh
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from .beam_motion import Motion
 
 _PARTS = ("x", "y", "moment")

@@ -14,7 +14,7 @@ from ..beams.element_forms import ElementForms, required_structure
 from ..beams.recovery_forms import LinearForm
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
-from ..core.plotting import axes_or_new
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check
 from ..core.trigonometric import differentiated, even_angles, interpolated
 from .beam_motion import BeamMotion, beam_motion, chunks
@@ -22,8 +22,6 @@ from .beam_result import BeamResult, MotionValues, in_motion, over_motion
 from .finer_mesh import with_mesh
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from .beam_motion import Motion
 
 

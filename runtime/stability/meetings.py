@@ -12,10 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad
 from ..core.families import DAMPING, LinearPeriodic
 from ..core.inputs import is_whole, speed_span
+from ..core.roots import bracketed_roots
 from ..core.trigonometric import even_angles
 from ..periodic.equation import SPEED_POWER, at_geometry, equation_of
 from ..periodic.signatures import form_matrix
-from .pairs import bracketed_roots
 
 Array = NDArray[np.float64]
 Kind = Literal["principal", "sum", "difference"]
@@ -141,14 +141,14 @@ class MeanSystem:
             passing = (value[:-1] * value[1:] <= 0) & (value[1:] != 0)
         which, change = np.nonzero(passing.T)
 
-        def distance(index: NDArray[np.intp], at: Array) -> tuple[Array, Array]:
+        def distance(index: NDArray[np.intp], at: Array) -> tuple[Array, float]:
             nu, rows, condition = self.frequencies(at), np.arange(len(at)), which[index]
             other = nu[rows, second[condition]]
             both = nu[rows, first[condition]] + np.where(minus[condition], -other, other)
-            return np.asarray(both - turns[condition]), np.zeros(len(at))
+            return np.asarray(both - turns[condition]), 0.0
 
-        brackets = grid[change], grid[change + 1], value[change, which], value[change + 1, which]
-        places = bracketed_roots(distance, *brackets)[0]
+        values = value[change, which], value[change + 1, which]
+        places = bracketed_roots(distance, grid[change], grid[change + 1], values)[0]
         # Where a mode ends, at a divergence, the numbers of the others jump.
         met = np.abs(distance(np.arange(len(places)), places)[0]) < 1e-7
         return [places[met & (which == k)] for k in range(len(conditions))]

@@ -314,7 +314,6 @@ def _opening(closing: Solver, n: int, damping: Array, top: float) -> tuple[Array
 
 
 def _sure(closing: Solver, mu: Array) -> Array:
-    """Return the critical damping less its error."""
     known = closing(mu)
     return known.damping - known.error
 

@@ -474,7 +474,6 @@ def _check_arguments(chosen: str, rtol: float, samples: int) -> None:
 
 
 def _check_forcing(equation: Equation) -> None:
-    """Refuse a system on which nothing acts."""
     if not equation.forced or not np.any(equation.largest_force()):
         there = any(term.array in "fhp" for term in equation.system.terms)
         found = "forcing that is zero" if there else "a system without forcing f, h, p"
@@ -482,7 +481,6 @@ def _check_forcing(equation: Equation) -> None:
 
 
 def _check_memory(equation: Equation, angles: int) -> None:
-    """Refuse motions that would fill the memory."""
     each = angles * 2 * equation.size
     if len(equation.speed) * each > _MOST_FLOATS:
         raise bad(

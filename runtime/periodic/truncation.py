@@ -191,7 +191,6 @@ class _Coupling:
 def _couplings(
     arrays: Mapping[tuple[str, int], Array], phi: Array, slope: Array, period: float
 ) -> dict[int, _Coupling]:
-    """Return the couplings by power of the speed."""
     nt, n, m = phi.shape
     found: dict[int, _Coupling] = {}
     for (array, power), values in arrays.items():

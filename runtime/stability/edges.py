@@ -309,7 +309,6 @@ def _contradicted(checks: Mapping[str, Check]) -> float:
 def _check_within(
     slow: SlowSystem, wanted: tuple[float, float], parameters: Mapping[str, float]
 ) -> None:
-    """Refuse a range that slow modes do not hold for."""
     if parameters:
         fix = "give them to slow_system"
         raise bad("parameters", sorted(parameters), "none beside a SlowSystem", fix)

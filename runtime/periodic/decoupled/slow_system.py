@@ -137,7 +137,6 @@ class _Choice:
 
 
 def _chosen(top: Equation, modes: int | None) -> _Choice:
-    """Return the basis for the highest speed."""
     frequency = frozen_frequencies(top)
     if modes is not None:
         return _tried(top, require_whole("modes", modes, 1, top.size - 1), frequency)
@@ -181,7 +180,6 @@ def _searched(top: Equation, frequency: Array) -> _Choice | None:
 
 
 def _tried(top: Equation, modes: int, frequency: Array) -> _Choice:
-    """Return the basis for a number of modes and what it costs."""
     frames = moving_frames(top, modes)
     slow = slow_part(top, frames)
     rate = float(np.max(frequency[:, modes - 1]) / top.speed[0])

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ..core.errors import bad
 from ..core.roots import bracketed_roots
 from ..periodic.equation import equation_of
-from ..periodic.multipliers import conditions
+from ..periodic.multipliers import conditions, eigenvalues
 from ..periodic.signatures import form_matrix, signatures_of
 from .over_speed import MatricesOverSpeed
 
@@ -114,12 +114,9 @@ def sampled_phases(matrices: MatricesOverSpeed, span: tuple[float, float], more:
 
 def _signed(scaled: Array, error: Array) -> tuple[NDArray[np.complex128], NDArray[np.int8]]:
     """Return the multipliers of symplectic matrices and their Krein signatures, ``(nb, 2n)``."""
-    values, vectors = (part.astype(complex) for part in np.linalg.eig(scaled))
-    shift = perturbation_size(scaled, error)[:, None]
-    # Near a double multiplier the condition number explodes and the square root holds.
-    root = 2 * np.sqrt(np.linalg.norm(scaled, axis=(-2, -1))[:, None] * shift)
+    values, own, vectors = eigenvalues(scaled, perturbation_size(scaled, error))
     # signatures_of takes for one what lies within ten errors.
-    return values, signatures_of(vectors, values, 0.1 * np.fmin(conditions(vectors) * shift, root))
+    return values, signatures_of(vectors, values, 0.1 * own)
 
 
 def _positive(angle: Array, signs: NDArray[np.int8]) -> tuple[Array, Flags]:

@@ -101,7 +101,7 @@ def reduced(
     Over the largest size of the motion: that of its start times the reach of the ring.
     """
     m = truncated.size
-    states, _, reach = closed(*flows, 1.0 / scale[-1])
+    states, reach = closed(*flows, 1.0 / scale[-1])
     size = np.max(np.abs(states[:, :, :m]), axis=(1, 2))
     start = np.max(np.abs(states[:, 0]), axis=1)
     return states[:, :, :m] * scale[:m], (reach + 1.0) * start / size

@@ -21,10 +21,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import BadInput, bad
-from ..core.families import LinearPeriodic, Term, require_system
+from ..core.families import Array, LinearPeriodic, Term, require_system
 from ..core.inputs import numbers
-
-Array = NDArray[np.float64]
 
 # Power of the speed that an array carries once d/dt = speed * d/dtheta and the equation has been
 # divided by speed^2; S and g act only when the crank accelerates.

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import LINEAR_RANGE, bad, warn_of_large_deflection
-from ..core.families import LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..core.inputs import numbers
 from ..core.progress import bar
 from ..core.results import Check, DeferredChecks, Result, provenance
@@ -25,7 +25,6 @@ from .transition import Method, method, predicted_error, product, segments_from
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 
 SCIPY_METHODS = ("RK45", "DOP853", "Radau", "BDF", "LSODA")
 _EPS = float(np.finfo(float).eps)

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.collocation import legendre_integrals
 from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import LINEAR_RANGE, LinearRangeWarning, bad, warn_of_large_deflection
-from ..core.families import LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..core.inputs import numbers
 from ..core.progress import bar
 from ..core.results import Check, DeferredChecks, Result, provenance
@@ -28,7 +28,6 @@ from .transition import Method, method, refined, segments_of
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 METHODS = ("auto", "harmonic_balance")

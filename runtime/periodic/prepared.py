@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.deferred import DeferredGroup
 from ..core.errors import LINEAR_RANGE, bad
-from ..core.families import LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..core.inputs import numbers
 from ..core.results import Check, DeferredChecks, provenance
 from .compiled import CompiledTable, require_numba
@@ -24,8 +24,6 @@ from .multipliers import Monodromy, conditions, rounding_error
 from .periodic_motion import SteadyState, peaks
 from .tables import Table, flows_at, next_rung, table_of
 from .transition import cheapest
-
-Array = NDArray[np.float64]
 
 # Ratio of the speeds of one table.
 _RATIO = 1.5

@@ -13,10 +13,9 @@ from itertools import pairwise
 from math import ceil, log
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.errors import BadInput, bad
-from ..core.families import LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..core.trigonometric import even_angles
 from .equation import SampledSystem, sampled
 from .moving_basis import smooth_basis, still_modes
@@ -25,8 +24,6 @@ from .prepared import TableMaker, closed
 from .tables import Table, flows_at
 from .transition import cheapest
 from .truncation import TruncatedSystem, arrays_at, modes_offered, truncated_on
-
-Array = NDArray[np.float64]
 
 # Ratio of the ends of a range of speeds: tables of 16 nodes follow it to 1e-8.
 _RATIO = 2.0

@@ -17,15 +17,12 @@ from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..core.families import LinearPeriodic, Term
+from ..core.families import Array, LinearPeriodic, Term
 from ..core.trigonometric import differentiated, interpolated, resampled
 from .equation import SPEED_POWER
 from .moving_basis import MovingBasis, still_modes
 from .reduced import projections
-
-Array = NDArray[np.float64]
 
 # Even angles at which the gaps between frequencies are looked at.
 _LOOKED_AT = 64

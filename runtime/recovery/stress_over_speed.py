@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..beams.element_forms import required_structure
 from ..beams.recovery_forms import RIGID, LinearForm
 from ..core.errors import LINEAR_RANGE, bad
-from ..core.families import DAMPING, LinearPeriodic
+from ..core.families import DAMPING, Array, LinearPeriodic
 from ..core.inputs import numbers
 from ..core.plotting import axes_or_new
 from ..core.results import Check, Result, provenance
@@ -29,7 +29,6 @@ from .stresses import stress_operator
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 
 # Angles of a revolution at first and at the most, and the upper quarter of a motion's harmonics,
 # over the largest, times the wanted error, that asks for more of them.

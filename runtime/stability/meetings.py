@@ -10,13 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..core.families import DAMPING, LinearPeriodic
+from ..core.families import DAMPING, Array, LinearPeriodic
 from ..core.inputs import is_whole, speed_span
 from ..core.roots import bracketed_roots
 from ..periodic.equation import at_geometry, equation_of, sampled
 from ..periodic.signatures import form_matrix
 
-Array = NDArray[np.float64]
 Kind = Literal["principal", "sum", "difference"]
 # Kind, modes from 1, and harmonic.
 Condition = tuple[Kind, tuple[int, int], int]

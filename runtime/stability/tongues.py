@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..core.families import LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..core.inputs import numbers, require_whole
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ..hill.bloch import BEYOND, HIGHEST
@@ -23,7 +23,6 @@ from .operators import ResonantOperator, resonant_operator
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 _EPS = float(np.finfo(float).eps)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...core.collocation import gauss_maps
 from ...core.errors import BadInput, bad
-from ...core.families import LinearPeriodic
+from ...core.families import Array, LinearPeriodic
 from ...core.inputs import require_whole
 from ...core.trigonometric import even_angles, interpolated
 from ..equation import Equation, sampled
@@ -17,7 +17,6 @@ from ..multipliers import conditions, eigenvalues
 from ..transition import product
 from .riccati import Frames, SlowPart, moving_frames, plain_equation, slow_part
 
-Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 _EPS = float(np.finfo(float).eps)

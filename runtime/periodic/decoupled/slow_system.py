@@ -6,18 +6,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.errors import BadInput, bad
-from ...core.families import DAMPING, LinearPeriodic, Term
+from ...core.families import DAMPING, Array, LinearPeriodic, Term
 from ...core.inputs import numbers, require_whole, speed_span
 from ...core.trigonometric import interpolated
 from ..equation import Equation, SampledSystem, at_geometry, sampled
 from ..reduced import projections
 from .riccati import Frames, moving_frames, plain_equation, slow_part
 from .slow_modes import decoupling_error, frozen_frequencies, gap_choices, integrated
-
-Array = NDArray[np.float64]
 
 # Degrees in the speed squared that are tried, the part of an array left out that is enough, and
 # that from which more degrees show round-off alone.

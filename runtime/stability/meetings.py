@@ -86,6 +86,8 @@ class MeanSystem:
 
         Not a number for modes that do not oscillate, the first ones.
         """
+        if not len(speed):
+            return np.zeros((0, self.system.size))
         values = np.linalg.eigvals(self._generator(speed)).astype(complex)
         upper = np.where(_turning(values), values.imag, np.nan)
         # Modes that do not oscillate are the lowest: the others keep their numbers.

@@ -322,7 +322,6 @@ def _doubt(
     method: str,
     own: Mapping[str, Array],
 ) -> dict[str, Any]:
-    """Return the error estimate and its norm."""
     norm = "largest error of axial force [N], shear force [N], moment [N m]"
     finer = on_finer_mesh(system, moving)
     if finer is None:

@@ -115,7 +115,6 @@ def _doubt(
     place: tuple[float, float],
     own: tuple[Array, float],
 ) -> dict[str, float | str]:
-    """Return the error estimate and its norm."""
     shift, doubt = own
 
     def change(finer: LinearPeriodic, motion: BeamMotion) -> float:

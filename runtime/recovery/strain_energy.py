@@ -289,8 +289,6 @@ def beam_energies(system: LinearPeriodic, motion: Motion | float | None = None) 
 
 
 def _doubt(system: LinearPeriodic, moving: BeamMotion, strain: Array) -> dict[str, float | str]:
-    """Return the error estimate and its norm."""
-
     def change(finer: LinearPeriodic, motion: BeamMotion) -> float:
         better = np.sum(_energies(finer, motion)["strain"], axis=1)
         return float(np.max(np.abs(better - np.sum(strain, axis=1))))
@@ -300,7 +298,6 @@ def _doubt(system: LinearPeriodic, moving: BeamMotion, strain: Array) -> dict[st
 
 
 def _energies(system: LinearPeriodic, motion: BeamMotion) -> dict[str, Any]:
-    """Return the energies and powers of a motion by name."""
     slopes = force_slopes(system)
     return over_motion(
         system, motion, lambda forms, values: Energies(forms, values, slopes).by_name()

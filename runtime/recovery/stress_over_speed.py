@@ -311,8 +311,6 @@ class Peaks:
 
 @dataclass(frozen=True)
 class _Range:
-    """What one range of speeds gives."""
-
     peaks: Peaks  # their errors with those of the motion and of the truncation
     modes: int
     growth: Growth  # the largest multipliers
@@ -473,7 +471,6 @@ def _require_damped(system: LinearPeriodic) -> None:
 
 
 def _checked(system: LinearPeriodic, speeds: ArrayLike, rtol: float) -> Array:
-    """Return the speeds; refuse arguments that are unusable."""
     required_structure(system)
     given = np.atleast_1d(numbers("speeds", speeds))
     if given.ndim != 1 or not given.size or not np.all(np.isfinite(given) & (given > 0)):

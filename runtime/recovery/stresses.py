@@ -399,7 +399,6 @@ def _still(
     method: str,
     levers: tuple[Array, Array],
 ) -> dict[str, Array]:
-    """Return the stresses of the quasi-static motion."""
     still = frozen(system, moving)
     axial, bending = stresses(system, still, stations, method, levers, frozen=True)
     return {"axial": axial, "bending": bending}
@@ -413,7 +412,6 @@ def _doubt(
     levers: tuple[Array, Array],
     own: tuple[Array, Array],
 ) -> dict[str, float | str]:
-    """Return the error estimate with its parts and its norm."""
     by_motion = motion_error(system, moving, stations, levers)
     norm = "largest error of a stress over angles and stations [Pa]"
     finer = on_finer_mesh(system, moving)

@@ -150,6 +150,8 @@ def lower_constrained(
             "gamma": e.gamma,
         },
     }
+    if stations is not None:  # what closes a loop at two levels, before the velocities are known
+        arrays["constraints"]["velocity_rhs"] = e.velocity_rhs
     states = {"constraints": positions, "dynamics": [*positions, *velocities]}
     if v is not None:
         arrays["variations"] = {

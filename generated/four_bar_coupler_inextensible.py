@@ -11,10 +11,10 @@ of the Q stations have them on their last axis, all others one value there.
 Multipliers: force on C along x and y, up to its sign.
 
 Cost per evaluation:
-    constraints: 22 operations
-    dynamics: 76 operations
-    variations: 92 operations
-Content hash d61542e8c5931149cccbde21cfc5ccb5; derived with SymPy 1.14.0.
+    constraints: 25 operations
+    dynamics: 81 operations
+    variations: 96 operations
+Content hash ecceb6c8d6c7d402043071747b07d6ea; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"inextensible","mechanism":"fou'
     'r_bar","modes":null,"outputs":[]}'
 )
-CONTENT = "d61542e8c5931149cccbde21cfc5ccb5"
+CONTENT = "ecceb6c8d6c7d402043071747b07d6ea"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {
@@ -36,7 +36,8 @@ QUANTITIES = {
     "bending_stiffness": ("N m^2", "EI of the coupler"),
     "mass_per_length": ("kg/m", "mu of the coupler"),
     "damping": ("N s/m^2", "Viscous damping of the coupler per length"),
-    "gravity": ("m/s^2", "Acceleration of gravity, against y"),
+    "gravity_x": ("m/s^2", "Acceleration of gravity along x"),
+    "gravity_y": ("m/s^2", "Acceleration of gravity along y"),
     "follower_inertia": ("kg m^2", "I4 of the follower about D"),
     "follower_first_moment": ("kg m", "m4 r4 of the follower about D"),
     "psi": ("rad", "Follower angle"),
@@ -56,14 +57,14 @@ QUANTITIES = {
 }
 PARAMETERS = (
     "frame", "crank", "coupler", "follower", "bending_stiffness", "mass_per_length", "damping",
-    "gravity", "follower_inertia", "follower_first_moment",
+    "gravity_x", "gravity_y", "follower_inertia", "follower_first_moment",
 )
 
 # Names of what each function returns, in order.
 RETURNS = {
     "constraints": (
         "constraints_1_1", "constraints_2_1", "jacobian_1_1", "jacobian_1_2", "jacobian_2_1",
-        "jacobian_2_2",
+        "jacobian_2_2", "velocity_rhs_1_1", "velocity_rhs_2_1",
     ),
     "dynamics": (
         "mass_1_1", "mass_2_2_inertia_left1", "mass_2_2_inertia_right1", "mass_2_2_inertia_left2",
@@ -94,6 +95,7 @@ ARRAYS = {
     "constraints": {
         "constraints": ((2, 1), ((0, 0, 0), (1, 0, 1))),
         "jacobian": ((2, 2), ((0, 0, 2), (0, 1, 3), (1, 0, 4), (1, 1, 5))),
+        "velocity_rhs": ((2, 1), ((0, 0, 6), (1, 0, 7))),
     },
     "dynamics": {
         "mass": ((2, 2), ((0, 0, 0), (1, 1, 1, "inertia", 2), (1, 1, 3, "inertia", 4))),
@@ -132,8 +134,8 @@ def _namespace(array):
 
 def constraints(
     psi, phi, t, theta, theta_d1, theta_d2, frame, crank, coupler, follower, bending_stiffness,
-    mass_per_length, damping, gravity, follower_inertia, follower_first_moment, end, moment, bow,
-    inertia, bending, drag,
+    mass_per_length, damping, gravity_x, gravity_y, follower_inertia, follower_first_moment, end,
+    moment, bow, inertia, bending, drag,
 ):
     """Return the constraints and their Jacobian.
 
@@ -146,21 +148,24 @@ def constraints(
     Returns float or ndarray each.
     """
     xp = _namespace(psi)
-    x0 = -follower * xp.cos(psi)
-    x1 = coupler * end
-    x2 = x1 * xp.cos(phi)
-    x3 = follower * xp.sin(psi)
-    x4 = x1 * xp.sin(phi)
+    x0 = crank * xp.cos(theta)
+    x1 = -follower * xp.cos(psi)
+    x2 = coupler * end
+    x3 = x2 * xp.cos(phi)
+    x4 = crank * xp.sin(theta)
+    x5 = follower * xp.sin(psi)
+    x6 = x2 * xp.sin(phi)
     return (
-        crank * xp.cos(theta) - frame + x0 + xp.sum(x2, axis=-1, keepdims=True),
-        crank * xp.sin(theta) - x3 + xp.sum(x4, axis=-1, keepdims=True), x3, -x4, x0, x2,
+        x0 - frame + x1 + xp.sum(x3, axis=-1, keepdims=True),
+        x4 - x5 + xp.sum(x6, axis=-1, keepdims=True), x5, -x6, x1, x3, x4 * theta_d1,
+        -x0 * theta_d1,
     )
 
 
 def dynamics(
     psi, phi, psi_dot, phi_dot, t, theta, theta_d1, theta_d2, frame, crank, coupler, follower,
-    bending_stiffness, mass_per_length, damping, gravity, follower_inertia, follower_first_moment,
-    end, moment, bow, inertia, bending, drag,
+    bending_stiffness, mass_per_length, damping, gravity_x, gravity_y, follower_inertia,
+    follower_first_moment, end, moment, bow, inertia, bending, drag,
 ):
     """Return everything in the equations of motion at acceleration level.
 
@@ -181,44 +186,46 @@ def dynamics(
     x3 = x2 * x0
     x4 = xp.sin(phi)
     x5 = x2 * x4
-    x6 = xp.cos(psi)
-    x7 = mass_per_length * coupler**2 * moment
-    x8 = x0 * x7
-    x9 = xp.sin(theta)
-    x10 = x9 * crank
-    x11 = theta_d2 * x10
-    x12 = x4 * x7
-    x13 = xp.cos(theta)
-    x14 = x13 * crank
-    x15 = theta_d2 * x14
-    x16 = theta_d1**2
-    x17 = x14 * x16
-    x18 = phi_dot**2
-    x19 = x10 * x16
-    x20 = follower * xp.sin(psi)
-    x21 = coupler * end
-    x22 = x21 * x4
-    x23 = x6 * follower
-    x24 = x0 * x21
-    x25 = theta_d1 * crank
-    x26 = psi_dot**2
+    x6 = xp.sin(psi)
+    x7 = xp.cos(psi)
+    x8 = mass_per_length * coupler**2 * moment
+    x9 = x4 * x8
+    x10 = x0 * x8
+    x11 = xp.sin(theta)
+    x12 = x11 * crank
+    x13 = theta_d2 * x12
+    x14 = xp.cos(theta)
+    x15 = x14 * crank
+    x16 = theta_d2 * x15
+    x17 = theta_d1**2
+    x18 = x15 * x17
+    x19 = phi_dot**2
+    x20 = x12 * x17
+    x21 = x6 * follower
+    x22 = coupler * end
+    x23 = x22 * x4
+    x24 = x7 * follower
+    x25 = x0 * x22
+    x26 = theta_d1 * crank
+    x27 = psi_dot**2
     return (
-        follower_inertia, x0, x3, x4, x5, x6 * follower_first_moment * gravity,
+        follower_inertia, x0, x3, x4, x5,
+        x6 * follower_first_moment * gravity_x - x7 * follower_first_moment * gravity_y,
         (
-            x8 * gravity + x0 * ((-x18 * x5) @ inertia) + x11 * x12 + x17 * x12 + x15 * x8 - x19 *
-            x8 + x4 * ((x18 * x3) @ inertia) + (bending_stiffness * (phi - bow) / coupler) @
-            bending
+            x9 * gravity_x - x10 * gravity_y + x0 * ((-x19 * x5) @ inertia) + x16 * x10 - x20 * x10
+            + x13 * x9 + x18 * x9 + x4 * ((x19 * x3) @ inertia) + (bending_stiffness * (phi - bow)
+            / coupler) @ bending
         ),
-        (-x1 * phi_dot * damping) @ drag, x20, -x22, -x23, x24, x25 * x9, -x13 * x25,
-        x11 + x17 - x23 * x26 + xp.sum(x18 * x24, axis=-1, keepdims=True),
-        x19 - x15 - x20 * x26 + xp.sum(x18 * x22, axis=-1, keepdims=True),
+        (-x1 * phi_dot * damping) @ drag, x21, -x23, -x24, x25, x11 * x26, -x14 * x26,
+        x13 + x18 - x24 * x27 + xp.sum(x19 * x25, axis=-1, keepdims=True),
+        x20 - x16 - x21 * x27 + xp.sum(x19 * x23, axis=-1, keepdims=True),
     )
 
 
 def variations(
     psi, phi, psi_dot, phi_dot, psi_ddot, phi_ddot, lam_1, lam_2, t, theta, theta_d1, theta_d2,
-    frame, crank, coupler, follower, bending_stiffness, mass_per_length, damping, gravity,
-    follower_inertia, follower_first_moment, end, moment, bow, inertia, bending, drag,
+    frame, crank, coupler, follower, bending_stiffness, mass_per_length, damping, gravity_x,
+    gravity_y, follower_inertia, follower_first_moment, end, moment, bow, inertia, bending, drag,
 ):
     """Return the arrays of the motion linearised about a given one.
 
@@ -241,34 +248,40 @@ def variations(
     x2 = xp.sin(phi)
     x3 = x0 * mass_per_length
     x4 = 2 * x3 * phi_dot
-    x5 = follower * xp.cos(psi)
-    x6 = xp.sin(psi)
-    x7 = x6 * follower
-    x8 = coupler * end
-    x9 = x1 * x8
-    x10 = x2 * x8
-    x11 = mass_per_length * coupler**2 * moment
-    x12 = x11 * x2
-    x13 = crank * xp.sin(theta)
-    x14 = x1 * x11
-    x15 = crank * xp.cos(theta)
-    x16 = theta_d1**2
-    x17 = phi_ddot * x2
-    x18 = phi_dot**2
-    x19 = x1 * x18
-    x20 = x3 * (x17 + x19)
-    x21 = phi_ddot * x1
-    x22 = x21 - x18 * x2
-    x23 = psi_dot**2
+    x5 = xp.cos(psi)
+    x6 = x5 * follower
+    x7 = xp.sin(psi)
+    x8 = x7 * follower
+    x9 = coupler * end
+    x10 = x1 * x9
+    x11 = x2 * x9
+    x12 = mass_per_length * coupler**2 * moment
+    x13 = x1 * x12
+    x14 = x12 * x2
+    x15 = xp.sin(theta)
+    x16 = crank * x13
+    x17 = xp.cos(theta)
+    x18 = crank * x14
+    x19 = theta_d1**2
+    x20 = phi_ddot * x2
+    x21 = phi_dot**2
+    x22 = x1 * x21
+    x23 = x3 * (x20 + x22)
+    x24 = phi_ddot * x1
+    x25 = x24 - x2 * x21
+    x26 = psi_dot**2
     return (
         1, x0 * damping, x1, -x2 * x4, x2, x1 * x4,
-        -x6 * follower_first_moment * gravity - x5 * lam_1 - x7 * lam_2,
         (
-            lam_1 * x9 - x12 * gravity + lam_2 * x10 - x15 * theta_d2 * x12 + x13 * theta_d2 * x14
-            + x1 * (x20 @ inertia) + x13 * x16 * x12 + x15 * x16 * x14 + x2 * ((-x3 * x22) @
-            inertia)
+            x5 * follower_first_moment * gravity_x + x7 * follower_first_moment * gravity_y - x6 *
+            lam_1 - x8 * lam_2
         ),
-        bending_stiffness / coupler, x3 * x22, -x20, psi_dot * x5, -phi_dot * x9, psi_dot * x7,
-        -phi_dot * x10, x5 * psi_ddot - x23 * x7, coupler * end * x18 * x2 - x21 * x8,
-        x7 * psi_ddot + x23 * x5, -x17 * x8 - x19 * x8,
+        (
+            x13 * gravity_x + x14 * gravity_y + lam_1 * x10 + lam_2 * x11 + x15 * theta_d2 * x16 -
+            x17 * theta_d2 * x18 + x1 * (x23 @ inertia) + x15 * x19 * x18 + x17 * x19 * x16 + x2 *
+            ((-x3 * x25) @ inertia)
+        ),
+        bending_stiffness / coupler, x3 * x25, -x23, psi_dot * x6, -phi_dot * x10, psi_dot * x8,
+        -phi_dot * x11, x6 * psi_ddot - x26 * x8, coupler * end * x2 * x21 - x24 * x9,
+        x8 * psi_ddot + x26 * x6, -x20 * x9 - x22 * x9,
     )

@@ -31,7 +31,7 @@ _CRANK, _COUPLER, _DENSITY, _STIFFNESS, _DAMPING = sp.symbols(
     "crank coupler mass_per_length bending_stiffness damping", positive=True
 )
 _FRAME, _FOLLOWER, _INERTIA = sp.symbols("frame follower follower_inertia", positive=True)
-_OFFSET, _GRAVITY, _MOMENT = sp.symbols("offset gravity follower_first_moment", real=True)
+_OFFSET, _MOMENT, *_PULL = sp.symbols("offset follower_first_moment gravity_x gravity_y", real=True)
 _SLIDER = sp.Symbol("slider_mass", positive=True)
 
 
@@ -47,9 +47,11 @@ class _Driven:
 def _driven(mechanism: str) -> _Driven:
     if mechanism == "slider_crank":
         position = sp.Function("x4")(_T)
-        return _Driven(position, _SLIDER / 2 * position.diff(_T) ** 2, (position, _OFFSET))
+        energy = _SLIDER * (position.diff(_T) ** 2 / 2 + _PULL[0] * position)
+        return _Driven(position, energy, (position, _OFFSET))
     psi = sp.Function("psi")(_T)
-    energy = _INERTIA / 2 * psi.diff(_T) ** 2 - _GRAVITY * _MOMENT * sp.sin(psi)
+    pull = _PULL[0] * sp.cos(psi) + _PULL[1] * sp.sin(psi)
+    energy = _INERTIA / 2 * psi.diff(_T) ** 2 + _MOMENT * pull
     return _Driven(psi, energy, (_FRAME + _FOLLOWER * sp.cos(psi), _FOLLOWER * sp.sin(psi)))
 
 
@@ -73,12 +75,13 @@ def lagrangian(mechanism: str, stations: int = 2) -> Lagrangian:
         )
 
     # (B' + l3 int t' ds)^2 / 2 in both directions; the pin alone moves as it is prescribed.
-    kinetic = sp.S.Zero
+    energy = sp.S.Zero
     for axis in (0, 1):
-        rates = [tangent[axis].diff(_T) for tangent in tangents]
-        kinetic += twice("inertia", rates) / 2 * _COUPLER**2
-        kinetic += _COUPLER * pin[axis].diff(_T) * along("moment", rates)
-    weight = _GRAVITY * _COUPLER * along("moment", [tangent[1] for tangent in tangents])
+        directions = [tangent[axis] for tangent in tangents]
+        rates = [direction.diff(_T) for direction in directions]
+        energy += twice("inertia", rates) / 2 * _COUPLER**2
+        energy += _COUPLER * pin[axis].diff(_T) * along("moment", rates)
+        energy += _PULL[axis] * _COUPLER * along("moment", directions)
     bent = [phi - sp.Symbol(f"bow_{i}") for i, phi in zip(each, angles, strict=True)]
     strain = _STIFFNESS / _COUPLER * twice("bending", bent) / 2
     dissipation = _DAMPING * _COUPLER**3 * twice("drag", [phi.diff(_T) for phi in angles]) / 2
@@ -86,7 +89,7 @@ def lagrangian(mechanism: str, stations: int = 2) -> Lagrangian:
     return Lagrangian(
         coordinates=(driven.coordinate, *angles),
         t=_T,
-        expression=driven.energy + _DENSITY * _COUPLER * (kinetic - weight) - strain,
+        expression=driven.energy + _DENSITY * _COUPLER * energy - strain,
         constraints=tuple(
             pin[axis] + _COUPLER * ends[axis] - driven.place[axis] for axis in (0, 1)
         ),
@@ -143,7 +146,8 @@ def _describe(spec: ModelSpec) -> Description:
         Argument("bending_stiffness", "float", "N m^2", "EI of the coupler"),
         Argument("mass_per_length", "float", "kg/m", "mu of the coupler"),
         Argument("damping", "float", "N s/m^2", "Viscous damping of the coupler per length"),
-        Argument("gravity", "float", "m/s^2", "Acceleration of gravity, against y"),
+        Argument("gravity_x", "float", "m/s^2", "Acceleration of gravity along x"),
+        Argument("gravity_y", "float", "m/s^2", "Acceleration of gravity along y"),
     ]
     parameters += (
         [Argument("slider_mass", "float", "kg", "Mass of the slider")]

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..core.families import Array
-from .orbit import Lost, Measure, Orbit, Solver, changed
+from .orbit import SHARE, Lost, Measure, Orbit, Solver, changed
 from .segments import Motion, NotFinite
 
 # First correction that a step aims at, relative; factors by which a step changes at once; its
@@ -28,6 +28,7 @@ class Special:
 
     kind: str  # "fold", "doubling", "branch point" or "torus"
     orbit: Orbit
+    measure: Measure
     value_error: float
 
 
@@ -60,21 +61,55 @@ TESTS: dict[str, Callable[[Orbit], float]] = {
 }
 
 
-def following(
-    solver: Solver, orbit: Orbit, measure: Measure, bounds: tuple[float, float], most: int
-) -> Iterator[tuple[Orbit, Measure]]:
-    """Yield the motions along a branch, until it leaves the range or cannot be followed.
+@dataclass(frozen=True)
+class Branch:
+    """One branch, point by point, special points among them."""
 
-    It ends, too, where it comes back to its beginning, and where a motion of several turns becomes
-    one of fewer.
+    points: tuple[tuple[Orbit, Measure], ...]
+    special: tuple[Special, ...]
+    ended: str  # why
+
+    @property
+    def turns(self) -> int:
+        """Revolutions of the drive after which the motions repeat."""
+        return self.points[0][0].motion.turns
+
+
+LEFT, CLOSED, JOINED = "it leaves the range", "it closes", "it joins a motion of fewer turns"
+
+
+def followed(
+    solver: Solver, begun: tuple[Orbit, Measure], bounds: tuple[float, float], most: int
+) -> Branch:
+    """Follow a branch from a motion along its tangent, locating special points on the way.
+
+    It ends where it leaves the range or cannot be followed, where it comes back to its beginning,
+    and where a motion of several turns becomes one of fewer.
     """
-    step, first = _FIRST, orbit
-    yield orbit, measure
-    away = False
+    points, special = [begun], []
+    ended = f"{most} points"
+    for orbit, measure, reason in _steps(solver, *begun, bounds, most):
+        if orbit is None or measure is None:
+            ended = reason
+            break
+        for found in special_points(solver, points[-1][0], orbit):
+            if bounds[0] <= found.orbit.value <= bounds[1]:
+                special.append(found)
+                points.append((found.orbit, found.measure))
+        points.append((orbit, measure))
+    return Branch(tuple(points), tuple(special), ended)
+
+
+def _steps(
+    solver: Solver, orbit: Orbit, measure: Measure, bounds: tuple[float, float], most: int
+) -> Iterator[tuple[Orbit | None, Measure | None, str]]:
+    """Yield the motions along a branch, and at last why it ends."""
+    step, first, away = _FIRST, orbit, False
     for _ in range(most):
         ahead = None
         while ahead is None:
             if step < _LEAST:
+                yield None, None, "it cannot be followed"
                 return
             try:
                 value, guess = changed(orbit, orbit.tangent, step)
@@ -87,25 +122,31 @@ def following(
         if ahead.tangent.dot(orbit.tangent) < 0:
             ahead = ahead.turned()
         if _fewer_turns(orbit.motion, ahead.motion):
+            yield None, None, JOINED
             return
-        yield ahead, measure
-        gap = _gap(solver, ahead, first)
-        away = away or gap > 4.0 * step
-        if not bounds[0] <= ahead.value <= bounds[1] or (away and gap < step):
+        yield ahead, measure, ""
+        if not bounds[0] <= ahead.value <= bounds[1]:
+            yield None, None, LEFT
             return
+        passed = _passed(ahead, first, step)
+        if away and passed:
+            yield None, None, CLOSED
+            return
+        away = away or not passed
         grown = float(np.clip(np.sqrt(_AIM / max(size, 1e-12)), _SHORTER, _LONGER))
         step, orbit = min(step * grown, _LARGEST), ahead
 
 
-def _gap(solver: Solver, one: Orbit, other: Orbit) -> float:
-    """Return the distance of two motions in the sizes of the first."""
-    states = (np.concatenate([o.motion.x, o.motion.v], axis=1) for o in (one, other))
-    here, there = states
-    if len(here) != len(there):
-        x, v, _ = other.motion.at(one.motion.step * np.arange(len(here)))
-        there = np.concatenate([x, v], axis=1)
-    change = replace(one.tangent, states=here - there, value=one.value - other.value)
-    return float(np.sqrt(max(change.dot(change), 0.0)))
+def _passed(orbit: Orbit, first: Orbit, step: float) -> bool:
+    """Return True where the first motion of a branch lies on the step that led to a motion."""
+    states = np.concatenate([orbit.motion.x, orbit.motion.v], axis=1)
+    x, v, _ = first.motion.at(orbit.motion.step * np.arange(len(states)))
+    back = np.concatenate([x, v], axis=1) - states
+    change = replace(orbit.tangent, states=back, value=first.value - orbit.value)
+    along, square = orbit.tangent.dot(change), change.dot(change)
+    beside = square - along * along
+    same_way = orbit.tangent.dot(first.tangent) > 0.0
+    return -1.5 * step <= along <= 0.0 and beside <= (0.1 * step) ** 2 and same_way
 
 
 def halves(motion: Motion) -> Array:
@@ -136,7 +177,8 @@ def special_points(solver: Solver, before: Orbit, after: Orbit) -> Iterator[Spec
             found = _located(solver, before, after, test)
         except _FAILURES:
             continue
-        yield Special(kind, found, _value_error(solver, found, test, kind))
+        measure = solver.measure(found)
+        yield Special(kind, found, measure, _value_error(solver, found, measure, kind))
 
 
 def _located(solver: Solver, before: Orbit, after: Orbit, test: Callable[[Orbit], float]) -> Orbit:
@@ -169,17 +211,16 @@ def _located(solver: Solver, before: Orbit, after: Orbit, test: Callable[[Orbit]
     return last[0]
 
 
-def _value_error(solver: Solver, orbit: Orbit, test: Callable[[Orbit], float], kind: str) -> float:
+def _value_error(solver: Solver, orbit: Orbit, measure: Measure, kind: str) -> float:
     """Return the error estimate of the parameter at a special point."""
-    measure = solver.measure(orbit)
     if kind == "fold":
         return measure.value_error
-    step = 1e-4
+    test, step = TESTS[kind], 1e-4
     value, guess = changed(orbit, orbit.tangent, step)
     beside, _ = solver.corrected(value, guess, orbit.tangent)
     slope = (test(beside) - test(orbit)) / step
-    off = test(replace(orbit, whole=np.concatenate([orbit.whole[:-1], measure.rough[None]])))
-    along = 0.1 * abs(off - test(orbit)) / abs(slope) if slope else np.inf
+    rough = replace(orbit, whole=np.concatenate([orbit.whole[:-1], measure.rough[None]]))
+    along = SHARE * abs(test(rough) - test(orbit)) / abs(slope) if slope else np.inf
     return measure.value_error + along * abs(orbit.tangent.value)
 
 

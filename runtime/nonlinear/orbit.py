@@ -15,11 +15,12 @@ EPS = float(np.finfo(float).eps)
 # is round-off; or where it no longer falls below the second.
 _LAST, _SMALL = 3e-10, 1e-8
 _ITERATIONS, _MOST_ITERATIONS = 10, 40
+_NEAR = 1e-3
 # First correction beyond which a guess is refused, relative.
 _FAR = 0.3
 # Stages of the motion beside which errors are measured, less than those of the motion, and the
 # share of the difference that is taken for the error.
-_FEWER, _SHARE = 2, 0.1
+_FEWER, SHARE = 2, 0.1
 STAGES, FIRST_STEPS, MOST_STEPS = 8, 12, 512
 
 
@@ -142,18 +143,13 @@ class Solver:
         before = np.inf
         for _ in range(_MOST_ITERATIONS):
             swept = sweep(self.problem, value, motion)
-            whole, added = chained(swept.maps, swept.loads)
-            try:
-                first = np.linalg.solve(np.eye(whole.shape[-1]) - whole[-1], added[-1, :, 0])
-            except np.linalg.LinAlgError as singular:
-                raise Lost("a multiplier is 1") from singular
-            change = whole[:-1] @ first + added[:-1, :, 0]
+            change = closed(swept)
             scale = self.scale(motion)
             size = float(np.max(np.abs(change) / scale))
             if not np.isfinite(size):
                 break
             part = 1.0 if size <= 1.0 or np.all(scale == self.floor) else 1.0 / size
-            motion = _taken(motion, swept, change, 0.0, part)
+            motion = taken(motion, swept, change, 0.0, part)
             if size <= _LAST or (size <= _SMALL and size >= 0.5 * before):
                 return motion
             before = size
@@ -165,15 +161,18 @@ class Solver:
         Raises `Lost` where there is none near.
         """
         before, first = np.inf, 0.0
+        by_parameter: bool | Array = True
         for _ in range(_ITERATIONS):
-            swept = sweep(self.problem, value, motion, by_parameter=True)
+            swept = sweep(self.problem, value, motion, by_parameter=by_parameter)
             whole, added = chained(swept.maps, swept.loads)
             change, moved = _bordered(whole, added, direction)
             size = self._size(change, moved, motion)
             first = first or size
             if not size < _FAR:
                 raise Lost("a correction is too large")
-            motion, value = _taken(motion, swept, change, moved), value + moved
+            motion, value = taken(motion, swept, change, moved), value + moved
+            # The derivative by the parameter is renewed where the motion has all but settled.
+            by_parameter = swept.by_parameter if size > _NEAR else True
             if size <= _LAST or (size <= _SMALL and size >= 0.5 * before):
                 return self._orbit(value, motion, swept, whole, added, direction), first
             before = size
@@ -203,8 +202,10 @@ class Solver:
         """Return how far a motion is from the true one."""
         motion = orbit.motion
         fewer = motion.resampled(len(motion.x), motion.a.shape[1] - _FEWER)
-        swept = sweep(self.problem, orbit.value, fewer, by_parameter=True)
+        swept = sweep(self.problem, orbit.value, fewer)
         whole, added = chained(swept.maps, swept.loads)
+        # What the parameter does differs but little by fewer stages.
+        added = np.concatenate([added, orbit.added[..., 1:]], axis=-1)
         change, moved = _bordered(whole, added, orbit.tangent)
         rounding = 16 * EPS * len(motion.x)
         rough, errors = np.linalg.eigvals(whole[-1]).astype(complex), []
@@ -214,9 +215,9 @@ class Solver:
             rough = np.delete(rough, nearest)
         size = float(np.linalg.norm(orbit.matrix))
         return Measure(
-            _SHARE * self._size(change, moved, motion) + rounding,
-            _SHARE * abs(moved) + rounding * abs(orbit.value),
-            _SHARE * np.asarray(errors) + rounding * size,
+            SHARE * self._size(change, moved, motion) + rounding,
+            SHARE * abs(moved) + rounding * abs(orbit.value),
+            SHARE * np.asarray(errors) + rounding * size,
             np.asarray(whole[-1]),
         )
 
@@ -250,7 +251,20 @@ def changed(orbit: Orbit, direction: Direction, length: float) -> tuple[float, M
     return orbit.value + moved, orbit.motion.moved(states[:, :n], states[:, n:], a)
 
 
-def _taken(motion: Motion, swept: Sweep, change: Array, moved: float, part: float = 1.0) -> Motion:
+def closed(swept: Sweep) -> Array:
+    """Return the changes of the states ``(m, 2n)`` that close the period at one parameter.
+
+    Raises `Lost` where there are none.
+    """
+    whole, added = chained(swept.maps, swept.loads)
+    try:
+        first = np.linalg.solve(np.eye(whole.shape[-1]) - whole[-1], added[-1, :, 0])
+    except np.linalg.LinAlgError as singular:
+        raise Lost("a multiplier is 1") from singular
+    return np.asarray(whole[:-1] @ first + added[:-1, :, 0])
+
+
+def taken(motion: Motion, swept: Sweep, change: Array, moved: float, part: float = 1.0) -> Motion:
     """Return a motion after a correction of its states."""
     n = motion.x.shape[1]
     a = swept.stage_loads[..., 0] + (swept.response @ change[:, None, :, None])[..., 0]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -33,7 +33,7 @@ class Problem:
     name: str
     speed: float  # [rad/s], where it is not what is varied
 
-    def at(self, value: float) -> tuple[float, Mapping[str, float]]:
+    def at(self, value: Any) -> tuple[Any, Mapping[str, float]]:
         """Return speed and parameters at a value of what is varied."""
         if self.name == "speed":
             return value, self.system.parameters
@@ -121,6 +121,7 @@ class Sweep(NamedTuple):
     loads: Array  # (m, 2n, k)
     stage_loads: Array  # (m, s, n, k): the same for the accelerations at the points
     response: Array  # (m, s, n, 2n): derivative of these accelerations by the beginning
+    by_parameter: Array  # (m, s, n, 1 or 0): derivative of the residual by the parameter
 
 
 class NotFinite(ArithmeticError):  # noqa: N818 - reads as what it is
@@ -136,7 +137,7 @@ class Ramp(NamedTuple):
 
 def evaluated(
     problem: Problem,
-    value: float,
+    value: float | Array,
     angles: Array,
     states: tuple[Array, Array, Array],
     *,
@@ -145,7 +146,8 @@ def evaluated(
 ) -> Varied:
     """Return residual and derivatives at drive angles, over the speed squared, by the angle.
 
-    ``states``: x, v and a at the angles, ``(*batch, n)`` each.
+    ``states``: x, v and a at the angles, ``(*batch, n)`` each.  Where the speed is varied there may
+    be several values, which broadcast with the angles.
     """
     x, v, a = states
     speed, parameters = problem.at(value)
@@ -154,6 +156,8 @@ def evaluated(
     square = np.maximum(speed**2 + 2.0 * rise * since, 0.0)[..., None]
     w: Array = np.sqrt(square)
     drive = Drive(angles, w[..., 0], np.full_like(angles, rise))
+    # Several speeds: the states are those of each.
+    x, v, a = (np.broadcast_to(part, (*w.shape[:-1], part.shape[-1])) for part in (x, v, a))
     try:
         with np.errstate(all="ignore"):
             found = problem.system.equations(
@@ -176,20 +180,23 @@ def sweep(
     value: float,
     motion: Motion,
     *,
-    by_parameter: bool = False,
+    by_parameter: bool | Array = False,
     ramp: Ramp | None = None,
     following: Callable[[Motion], tuple[Array, Array]] | None = None,
 ) -> Sweep:
     """Linearise all steps of a motion at once.
 
-    ``following`` gives the states that the ends are to meet, by default the beginnings of the
-    next steps, round the period.
+    ``by_parameter``: whether the derivative by the parameter is wanted, or what it was at a motion
+    nearby, as it is returned.  ``following`` gives the states that the ends are to meet, by default
+    the beginnings of the next steps, round the period.
     """
     angles, states = motion.angles, (*motion.stages(), motion.a)
     found = evaluated(problem, value, angles, states, ramp=ramp)
     columns = [found.residual[..., None]]
-    if by_parameter:
+    if by_parameter is True:
         columns.append(_by_parameter(problem, value, angles, states)[..., None])
+    elif by_parameter is not False:
+        columns.append(by_parameter)
     m, s, n = motion.a.shape
     h, points = motion.step, motion.points
     try:
@@ -222,7 +229,8 @@ def sweep(
     loads[..., 0] += np.concatenate(
         [end - next_ for end, next_ in zip(ends, ahead, strict=True)], 1
     )
-    return Sweep(maps, loads, stages[..., :k], stages[..., k:])
+    by_value = columns[1] if k > 1 else np.empty((m, s, n, 0))
+    return Sweep(maps, loads, stages[..., :k], stages[..., k:], by_value)
 
 
 def _by_parameter(
@@ -230,11 +238,14 @@ def _by_parameter(
 ) -> Array:
     """Return the derivative of what :func:`evaluated` calls residual by the parameter."""
     step = _DIFFERENCE * (abs(value) or 1.0)
-    sides = (
-        evaluated(problem, value + sign * step, angles, states, derivatives=False).residual
-        for sign in (1.0, -1.0)
-    )
-    above, below = sides
+    if problem.name == "speed":
+        both = np.array([value + step, value - step]).reshape(2, *(1,) * angles.ndim)
+        above, below = evaluated(problem, both, angles, states, derivatives=False).residual
+    else:
+        above, below = (
+            evaluated(problem, at, angles, states, derivatives=False).residual
+            for at in (value + step, value - step)
+        )
     return np.asarray((above - below) / (2.0 * step))
 
 

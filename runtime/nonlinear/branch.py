@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..core.families import Array
-from .orbit import SHARE, Lost, Measure, Orbit, Solver, changed
+from .orbit import SHARE, Direction, Lost, Measure, Orbit, Solver, changed
 from .segments import Motion, NotFinite
 
 # First correction that a step aims at, relative; factors by which a step changes at once; its
@@ -16,6 +16,7 @@ from .segments import Motion, NotFinite
 _AIM = 0.02
 _LONGER, _SHORTER = 2.0, 0.3
 _FIRST, _LEAST, _LARGEST = 0.02, 1e-7, 1.0
+_WIDEST = 1.0 / 60.0  # part of the range that a step may change the parameter by
 # Relative amplitude at which a crossing branch is entered.
 _ENTERED = 0.02
 _LOCATED = 1e-12  # part of a step to which a special point is located
@@ -128,25 +129,30 @@ def _steps(
         if not bounds[0] <= ahead.value <= bounds[1]:
             yield None, None, LEFT
             return
-        passed = _passed(ahead, first, step)
+        passed = _passed(ahead, orbit, first)
         if away and passed:
             yield None, None, CLOSED
             return
         away = away or not passed
         grown = float(np.clip(np.sqrt(_AIM / max(size, 1e-12)), _SHORTER, _LONGER))
-        step, orbit = min(step * grown, _LARGEST), ahead
+        reach = _WIDEST * solver.span / max(abs(ahead.tangent.value), 1e-12)
+        step, orbit = min(step * grown, _LARGEST, reach), ahead
 
 
-def _passed(orbit: Orbit, first: Orbit, step: float) -> bool:
-    """Return True where the first motion of a branch lies on the step that led to a motion."""
-    states = np.concatenate([orbit.motion.x, orbit.motion.v], axis=1)
-    x, v, _ = first.motion.at(orbit.motion.step * np.arange(len(states)))
-    back = np.concatenate([x, v], axis=1) - states
-    change = replace(orbit.tangent, states=back, value=first.value - orbit.value)
-    along, square = orbit.tangent.dot(change), change.dot(change)
-    beside = square - along * along
-    same_way = orbit.tangent.dot(first.tangent) > 0.0
-    return -1.5 * step <= along <= 0.0 and beside <= (0.1 * step) ** 2 and same_way
+def _passed(ahead: Orbit, orbit: Orbit, first: Orbit) -> bool:
+    """Return True where the first motion of a branch lies on the step between two motions."""
+    angles = ahead.motion.step * np.arange(len(ahead.motion.x))
+    states = np.concatenate([ahead.motion.x, ahead.motion.v], axis=1)
+
+    def back(motion: Orbit) -> Direction:
+        x, v, _ = motion.motion.at(angles)
+        change = np.concatenate([x, v], axis=1) - states
+        return replace(ahead.tangent, states=change, value=motion.value - ahead.value)
+
+    change, step = back(first), ahead.tangent.dot(back(orbit))
+    along, square = ahead.tangent.dot(change), change.dot(change)
+    same_way = ahead.tangent.dot(first.tangent) > 0.0
+    return step <= along <= 0.0 and square - along * along <= (0.1 * step) ** 2 and same_way
 
 
 def halves(motion: Motion) -> Array:

@@ -120,20 +120,17 @@ class Solver:
         Range of the parameter, by which its changes are measured.
     rtol : float
         Wanted error of the motions, relative.
-    floor : float
-        Size below which changes of the coordinates are absolute.
     """
 
     problem: Problem
     span: float
     rtol: float = 1e-8
-    floor: float = 1e-6
 
     def scale(self, motion: Motion) -> Array:
         """Return the sizes of coordinates and rates, ``(2n,)``: the largest of each kind."""
         n = motion.x.shape[1]
         largest = (float(np.max(np.abs(values))) for values in (motion.x, motion.v))
-        return np.repeat([max(size, self.floor) for size in largest], n)
+        return np.repeat([max(size, self.problem.system.small) for size in largest], n)
 
     def settled(self, value: float, motion: Motion) -> Motion:
         """Return the periodic motion near a guess at a value, by damped steps of Newton.
@@ -148,7 +145,7 @@ class Solver:
             size = float(np.max(np.abs(change) / scale))
             if not np.isfinite(size):
                 break
-            part = 1.0 if size <= 1.0 or np.all(scale == self.floor) else 1.0 / size
+            part = 1.0 if size <= 1.0 or np.all(scale == self.problem.system.small) else 1.0 / size
             motion = taken(motion, swept, change, 0.0, part)
             if size <= _LAST or (size <= _SMALL and size >= 0.5 * before):
                 return motion

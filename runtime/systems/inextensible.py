@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from ..core.families import Array, Constrained
 from ..core.families.nonlinear import Drive, Nonlinear, Reduced
 from ..core.families.stations import Stations
 from ..core.modules import EmittedModule, find_module
+from .driven import Given
 
 if TYPE_CHECKING:
     from ..scenes import Scene
@@ -105,7 +106,7 @@ class InextensibleCoupler:
             # A bow b sin(pi s) has the slope (pi b / l3) cos(pi s) at its pins.
             angle = np.pi * bow / parameters["coupler"] * stations.shapes[:, 1]
             stations = Stations(stations.shapes, {**stations.numbers, "bow": angle})
-        given = dict(zip(self._module.EXTERNAL, map(_Given, drive), strict=True))
+        given = dict(zip(self._module.EXTERNAL, map(Given, drive), strict=True))
         values = {name: parameters[name] for name in self._module.PARAMETERS}
         return Constrained.at_stations(self._module, values, stations, given)
 
@@ -150,16 +151,6 @@ class InextensibleCoupler:
 
 
 _PLACES = np.linspace(0.0, 1.0, 41)
-
-
-@dataclass(frozen=True)
-class _Given:
-    """An argument of the emitted functions that is given as it is, whatever the state."""
-
-    value: Any
-
-    def __call__(self, q: Array, time: Array) -> Any:
-        return self.value
 
 
 def inextensible_system(scene: Scene) -> Nonlinear:

@@ -78,6 +78,9 @@ class Nonlinear:
         ``q`` to the largest deflection over the length of the link, shape batch.
     unit : str
         Unit of the deflection.
+    small : float
+        Size of the coordinates, and of their rates by the drive's angle, below which their errors
+        are absolute.
     limits : mapping of str to str
         Parameters that have to be ``positive`` or ``non-negative``.
     provenance : mapping
@@ -91,6 +94,7 @@ class Nonlinear:
     deflection: Callable[[Array, Mapping[str, float]], Array] | None = None
     watch: Callable[[Array], Array] | None = None
     unit: str = ""
+    small: float = 1e-3
     limits: Mapping[str, str] = field(default_factory=dict)
     provenance: Mapping[str, str] = field(default_factory=dict)
 
@@ -135,7 +139,8 @@ class Reduced:
     Attributes
     ----------
     make : callable
-        ``(parameters, drive)`` to the constrained system, its drive given by arrays.
+        ``(parameters, drive)`` to the constrained system, with variations, at these; its time is
+        the drive's angle over the speed.
     free : tuple of int
         Places of the n free coordinates.
     held : tuple of int
@@ -159,8 +164,7 @@ class Reduced:
         derivatives: bool = True,
     ) -> Varied:
         """Return the residual at states ``(*batch, n)``, with its derivatives where wanted."""
-        system = self.make(parameters, drive)
-        time = np.zeros(q.shape[:-1])
+        system, time = self.make(parameters, drive), _time(q, drive)
         x, at = self._closed(system, q, drive, parameters, time)
         basis, inverse = self._basis(at["jacobian"])
         xd = (basis @ qd[..., None])[..., 0]
@@ -191,7 +195,7 @@ class Reduced:
     def whole(self, q: Array, drive: Drive, parameters: Mapping[str, float]) -> Array:
         """Return all coordinates of the constrained system, ``(*batch, n + k)``."""
         system = self.make(parameters, drive)
-        return self._closed(system, q, drive, parameters, np.zeros(q.shape[:-1]))[0]
+        return self._closed(system, q, drive, parameters, _time(q, drive))[0]
 
     def _basis(self, jacobian: Array) -> tuple[Array, Array]:
         """Return G ``(*batch, n + k, n)``, and the inverse of the Jacobian by those held."""
@@ -226,6 +230,13 @@ class Reduced:
                 return x, at
             last = size
         raise SelfCheckFailed("the loop of the linkage cannot be closed at a state")
+
+
+def _time(q: Array, drive: Drive) -> Array:
+    """Return the time since the drive's angle was 0, at its present speed; shape batch."""
+    speed = np.asarray(drive.speed, dtype=float)
+    angle = np.broadcast_to(np.asarray(drive.angle, dtype=float), q.shape[:-1])
+    return np.asarray(np.divide(angle, speed, out=np.zeros(q.shape[:-1]), where=speed != 0.0))
 
 
 # Corrections of the coordinates that close a loop, and the change (rad, m) that is the last.

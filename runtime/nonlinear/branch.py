@@ -142,7 +142,7 @@ def _steps(
 def _passed(ahead: Orbit, orbit: Orbit, first: Orbit) -> bool:
     """Return True where the first motion of a branch lies on the step between two motions."""
     angles = ahead.motion.step * np.arange(len(ahead.motion.x))
-    states = np.concatenate([ahead.motion.x, ahead.motion.v], axis=1)
+    states = ahead.motion.states
 
     def back(motion: Orbit) -> Direction:
         x, v, _ = motion.motion.at(angles)
@@ -195,7 +195,7 @@ def _located(solver: Solver, before: Orbit, after: Orbit, test: Callable[[Orbit]
     start = (
         before.motion.resampled(steps, stages) if len(before.motion.x) != steps else before.motion
     )
-    states = [np.concatenate([m.x, m.v], axis=1) for m in (start, after.motion)]
+    states = [start.states, after.motion.states]
     chord = replace(
         after.tangent, states=states[1] - states[0], value=after.value - before.value
     ).unit()
@@ -235,16 +235,15 @@ def doubled(solver: Solver, orbit: Orbit) -> tuple[Orbit, Measure]:
     values, vectors = np.linalg.eig(orbit.matrix)
     vector = np.real(vectors[:, np.argmin(np.abs(values + 1.0))])
     change = orbit.whole[:-1] @ vector
-    motion, n = orbit.motion, orbit.motion.x.shape[1]
+    motion = orbit.motion
     a = (orbit.swept.response @ change[:, None, :, None])[..., 0]
-    twice = Motion(
-        2 * motion.turns, *(np.concatenate([part] * 2) for part in (motion.x, motion.v, motion.a))
-    )
+    x, v, every = (np.concatenate([part] * 2) for part in (motion.x, motion.v, motion.a))
+    twice = Motion(2 * motion.turns, x, v, every)
     states, a = np.concatenate([change, -change]), np.concatenate([a, -a])
     long = replace(orbit.tangent, states=states, value=0.0)
     length = _ENTERED / float(np.sqrt(long.dot(long)))
     for _ in range(6):
-        guess = twice.moved(length * states[:, :n], length * states[:, n:], length * a)
+        guess = twice.moved(length * states, length * a)
         try:
             return solver.fine(orbit.value, guess, long.unit())
         except _FAILURES:

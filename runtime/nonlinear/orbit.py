@@ -243,9 +243,9 @@ class Solver:
 def changed(orbit: Orbit, direction: Direction, length: float) -> tuple[float, Motion]:
     """Return value and motion beside an orbit, its accelerations as linearised."""
     states, moved = length * direction.states, length * direction.value
-    swept, n = orbit.swept, orbit.motion.x.shape[1]
+    swept = orbit.swept
     a = (swept.response @ states[:, None, :, None])[..., 0] + moved * swept.stage_loads[..., 1]
-    return orbit.value + moved, orbit.motion.moved(states[:, :n], states[:, n:], a)
+    return orbit.value + moved, orbit.motion.moved(states, a)
 
 
 def closed(swept: Sweep) -> Array:
@@ -263,11 +263,10 @@ def closed(swept: Sweep) -> Array:
 
 def taken(motion: Motion, swept: Sweep, change: Array, moved: float, part: float = 1.0) -> Motion:
     """Return a motion after a correction of its states."""
-    n = motion.x.shape[1]
     a = swept.stage_loads[..., 0] + (swept.response @ change[:, None, :, None])[..., 0]
     if moved:
         a = a + moved * swept.stage_loads[..., 1]
-    return motion.moved(part * change[:, :n], part * change[:, n:], part * a)
+    return motion.moved(part * change, part * a)
 
 
 def _bordered_matrix(whole: Array, added: Array, direction: Direction) -> Array:

@@ -69,7 +69,7 @@ class ResponseCurve(Result):
     Notes
     -----
     Branches that do not hang together with the one that begins at an end of the range are found
-    by :func:`search_branches` only, and never are all branches known.
+    by :func:`coexisting_motions` only, and never are all branches known.
     """
 
     parameter: str
@@ -205,7 +205,7 @@ def response_curve(
         Wanted error of the motions, relative.
     starts : iterable of (float, Motion), optional
         More motions from which branches are followed both ways, as they come from
-        :func:`search_branches`.
+        :func:`coexisting_motions`.
     progress : bool
         Whether to show a bar.
 
@@ -218,7 +218,7 @@ def response_curve(
     BadInput
         If an argument is unusable, or no periodic motion is found at either end of the range.
     """
-    problem, low, high = _checked(system, parameter, bounds, speed)
+    problem, low, high = checked_problem(system, parameter, bounds, speed)
     require_whole("turns", turns, 1, 64)
     if not (is_finite(rtol) and 1e-13 <= rtol <= 1e-3):
         raise bad("rtol", repr(rtol), "a number from 1e-13 to 1e-3", "try 1e-8")
@@ -228,7 +228,7 @@ def response_curve(
     return _result(solver, branches, (low, high))
 
 
-def _checked(
+def checked_problem(
     system: Nonlinear, parameter: str, bounds: tuple[float, float], speed: float | None
 ) -> tuple[Problem, float, float]:
     """Return the problem and the range, having checked the arguments."""
@@ -334,12 +334,12 @@ def _on(solver: Solver, orbit: Orbit, branch: Branch) -> bool:
             settled = solver.settled(orbit.value, near.motion)
         except _FAILURES:
             continue
-        if _same(solver, settled, orbit.motion):
+        if same_motion(solver, settled, orbit.motion):
             return True
     return False
 
 
-def _same(solver: Solver, one: Motion, other: Motion) -> bool:
+def same_motion(solver: Solver, one: Motion, other: Motion) -> bool:
     """Return True for one motion, from whatever turn it is counted."""
     angles = 2.0 * np.pi * one.turns * np.arange(64) / 64
     place = float(solver.scale(one)[0])
@@ -351,7 +351,7 @@ def _same(solver: Solver, one: Motion, other: Motion) -> bool:
     return False
 
 
-def _extremes(problem: Problem, orbit: Orbit) -> tuple[float, float]:
+def extremes(problem: Problem, orbit: Orbit) -> tuple[float, float]:
     """Return the extremes of the deflection over the period."""
     count = _SAMPLES * orbit.motion.turns
     step = 2.0 * np.pi * orbit.motion.turns / count
@@ -384,10 +384,10 @@ def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float])
     points = [point for branch in branches for point in branch.points]
     counts = [len(branch.points) for branch in branches]
     special = [point for branch in branches for point in branch.special]
-    extremes = np.array([_extremes(problem, orbit) for orbit, _ in points])
-    at_special = np.array([_extremes(problem, p.orbit) for p in special]).reshape(-1, 2)
+    shown = np.array([extremes(problem, orbit) for orbit, _ in points])
+    at_special = np.array([extremes(problem, p.orbit) for p in special]).reshape(-1, 2)
     error = np.array([measure.error for _, measure in points])
-    sizes = np.max(np.abs(extremes), axis=1)
+    sizes = np.max(np.abs(shown), axis=1)
     linear = _linear(problem, bounds)
     return ResponseCurve(
         method="Gauss collocation with 8 stages, pseudo-arclength continuation",
@@ -399,8 +399,8 @@ def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float])
         value=np.array([orbit.value for orbit, _ in points]),
         branch=np.repeat(np.arange(len(branches)), counts),
         turns=np.array([orbit.motion.turns for orbit, _ in points]),
-        lowest=extremes[:, 0],
-        highest=extremes[:, 1],
+        lowest=shown[:, 0],
+        highest=shown[:, 1],
         multipliers=np.array([orbit.multipliers for orbit, _ in points]),
         multiplier_error=np.array([measure.multiplier_errors for _, measure in points]),
         peak_error=2.0 * error * sizes,

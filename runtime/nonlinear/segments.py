@@ -7,7 +7,7 @@ at the points and the gaps between the steps are to vanish.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -42,18 +42,28 @@ class Problem:
 
 @dataclass(frozen=True)
 class Motion:
-    """A motion over whole revolutions as even collocation steps, each from a state of its own."""
+    """A motion as collocation steps of one length, each from a state of its own.
 
-    turns: int
+    Several runs over the same angles stand one behind the other.
+    """
+
+    turns: int  # revolutions over which the steps go
     # x, v: (m, n): states at the beginnings of the steps
     x: Array
     v: Array
     a: Array  # (m, s, n): accelerations at the Gauss points of each step
+    begin: float = 0.0  # angle of the drive at the beginning [rad]
+    runs: int = 1
+
+    @property
+    def span(self) -> float:
+        """Angle over which the motion goes [rad]."""
+        return 2.0 * np.pi * self.turns
 
     @property
     def step(self) -> float:
         """Length of a step [rad]."""
-        return 2.0 * np.pi * self.turns / len(self.x)
+        return self.span * self.runs / len(self.x)
 
     @property
     def points(self) -> Nodes:
@@ -63,8 +73,13 @@ class Motion:
     @property
     def angles(self) -> Array:
         """Drive angles of the Gauss points [rad], shape ``(m, s)``."""
-        start = np.arange(len(self.x))[:, None] + self.points.c
-        return np.asarray(self.step * start)
+        start = np.arange(len(self.x) // self.runs)[:, None] + self.points.c
+        return np.tile(self.begin + self.step * start, (self.runs, 1))
+
+    @property
+    def states(self) -> Array:
+        """States at the beginnings of the steps, ``(m, 2n)``."""
+        return np.concatenate([self.x, self.v], axis=1)
 
     def stages(self) -> tuple[Array, Array]:
         """Return coordinates and rates at the Gauss points, shape ``(m, s, n)``."""
@@ -72,14 +87,14 @@ class Motion:
         x = self.x[:, None] + h * points.c[:, None] * self.v[:, None]
         return x + h * h * (points.twice @ self.a), self.v[:, None] + h * (points.once @ self.a)
 
-    def ends(self) -> tuple[Array, Array]:
-        """Return the states at the ends of the steps, shape ``(m, n)`` each."""
+    def ends(self) -> Array:
+        """Return the states at the ends of the steps, shape ``(m, 2n)``."""
         h, b, c = self.step, self.points.b, self.points.c
         x = self.x + h * (self.v + h * ((b * (1.0 - c)) @ self.a))
-        return x, self.v + h * (b @ self.a)
+        return np.concatenate([x, self.v + h * (b @ self.a)], axis=1)
 
     def at(self, angle: ArrayLike) -> tuple[Array, Array, Array]:
-        """Return coordinates, rates and accelerations at angles ``(k,)`` within the motion."""
+        """Return coordinates, rates and accelerations at angles ``(k,)`` from the beginning."""
         within = np.atleast_1d(np.asarray(angle, dtype=float)) / self.step
         j = np.clip(within.astype(int), 0, len(self.x) - 1)
         part, h = within - j, self.step
@@ -92,16 +107,18 @@ class Motion:
     def resampled(self, steps: int, stages: int, turns: int | None = None) -> Motion:
         """Return the motion on other steps; on more turns it is repeated."""
         turns = self.turns if turns is None else turns
-        h, span = 2.0 * np.pi * turns / steps, 2.0 * np.pi * self.turns
+        h = 2.0 * np.pi * turns / steps
         begin = h * np.arange(steps)
         inner = begin[:, None] + h * nodes(stages).c
-        x, v, _ = self.at(begin % span)
-        a = self.at(inner.ravel() % span)[2].reshape(steps, stages, -1)
-        return Motion(turns, x, v, a)
+        x, v, _ = self.at(begin % self.span)
+        a = self.at(inner.ravel() % self.span)[2].reshape(steps, stages, -1)
+        return Motion(turns, x, v, a, self.begin)
 
-    def moved(self, x: Array, v: Array, a: Array) -> Motion:
+    def moved(self, states: Array, a: Array) -> Motion:
         """Return the motion with changes of its states and accelerations."""
-        return replace(self, x=self.x + x, v=self.v + v, a=self.a + a)
+        n = self.x.shape[1]
+        x, v = self.x + states[:, :n], self.v + states[:, n:]
+        return replace(self, x=x, v=v, a=self.a + a)
 
     @classmethod
     def rest(cls, system: Nonlinear, turns: int, steps: int, stages: int) -> Motion:
@@ -182,13 +199,13 @@ def sweep(
     *,
     by_parameter: bool | Array = False,
     ramp: Ramp | None = None,
-    following: Callable[[Motion], tuple[Array, Array]] | None = None,
+    periodic: bool = True,
 ) -> Sweep:
     """Linearise all steps of a motion at once.
 
     ``by_parameter``: whether the derivative by the parameter is wanted, or what it was at a motion
-    nearby, as it is returned.  ``following`` gives the states that the ends are to meet, by default
-    the beginnings of the next steps, round the period.
+    nearby, as it is returned.  The ends are to meet the beginnings of the next steps, round the
+    period unless the motion is not ``periodic``.
     """
     angles, states = motion.angles, (*motion.stages(), motion.a)
     found = evaluated(problem, value, angles, states, ramp=ramp)
@@ -221,14 +238,10 @@ def sweep(
     effect = np.concatenate([move.reshape(m, n, -1), rise.reshape(m, n, -1)], axis=1)
     maps = effect[..., k:] + np.eye(2 * n) + h * np.eye(2 * n, k=n)
     loads = effect[..., :k]
-    if following is None:
-        ahead = np.roll(motion.x, -1, axis=0), np.roll(motion.v, -1, axis=0)
-    else:
-        ahead = following(motion)
-    ends = motion.ends()
-    loads[..., 0] += np.concatenate(
-        [end - next_ for end, next_ in zip(ends, ahead, strict=True)], 1
-    )
+    gaps = motion.ends() - np.roll(motion.states, -1, axis=0)
+    if not periodic:
+        gaps.reshape(motion.runs, -1, 2 * n)[:, -1] = 0.0
+    loads[..., 0] += gaps
     by_value = columns[1] if k > 1 else np.empty((m, s, n, 0))
     return Sweep(maps, loads, stages[..., :k], stages[..., k:], by_value)
 
@@ -252,13 +265,13 @@ def _by_parameter(
 def chained(maps: Array, loads: Array) -> tuple[Array, Array]:
     """Return the states at all ends by the first one: ``y[j] = whole[j] y[0] + added[j]``.
 
-    Of maps ``(m, 2n, 2n)`` and loads ``(m, 2n, k)``; ``whole[0]`` is the identity, and the last
-    of the m + 1 belongs to the end of the motion.
+    Of maps ``(m, *batch, 2n, 2n)`` and loads ``(m, *batch, 2n, k)``; ``whole[0]`` is the identity,
+    and the last of the m + 1 belongs to the end of the motion.
     """
-    m, size, k = loads.shape
-    both = np.empty((m + 1, size, size + k))
+    m, *batch, size, k = loads.shape
+    both = np.empty((m + 1, *batch, size, size + k))
     both[0] = np.eye(size, size + k)
     for j in range(m):
         np.matmul(maps[j], both[j], out=both[j + 1])
-        both[j + 1, :, size:] += loads[j]
+        both[j + 1, ..., size:] += loads[j]
     return both[..., :size], both[..., size:]

@@ -1,0 +1,133 @@
+"""Marching in time, a revolution at once: motions from given states, several runs side by side."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..core.families import Array
+from .orbit import STAGES, Lost
+from .segments import Motion, NotFinite, Problem, Ramp, chained, sweep
+
+# Newton's iteration of a revolution: the last correction, and how many.
+_LAST, _ITERATIONS = 1e-9, 12
+# Steps of a revolution at first and at the most.
+_FIRST, _MOST = 12, 768
+
+
+@dataclass(frozen=True)
+class Marcher:
+    """What marches a system revolution by revolution.
+
+    Attributes
+    ----------
+    problem : Problem
+    rtol : float
+        Wanted error of a revolution, relative to its size.
+    """
+
+    problem: Problem
+    rtol: float = 1e-8
+
+    def revolution(
+        self, value: float, states: Array, guess: Motion | None = None, ramp: Ramp | None = None
+    ) -> Motion:
+        """Return the motion over a revolution from states ``(runs, 2n)`` at its beginning.
+
+        ``guess``: the revolution before.  On as many steps as its error wants.  Raises `Lost`
+        where it cannot be found.
+        """
+        runs = len(states)
+        motion = self._guess(states, guess)
+        while True:
+            found = self._solved(value, states, motion, ramp)
+            steps = len(motion.x) // runs
+            if found is not None and _tail(found) <= self.rtol:
+                return found
+            if 2 * steps > _MOST:
+                raise Lost("a revolution cannot be computed from its beginning")
+            if found is not None:
+                motion = _finer(found, int(np.ceil(1.4 * steps)))
+            else:
+                motion = self._guess(states, None, 2 * steps)
+
+    def _guess(self, states: Array, before: Motion | None, steps: int = 0) -> Motion:
+        """Return a first motion: that of the revolution before, or one that goes straight on."""
+        runs, n = len(states), states.shape[1] // 2
+        if before is not None and before.runs == runs:
+            return replace(before, begin=0.0)
+        steps = steps or _FIRST * max(n, 1)
+        x, v = (np.repeat(part, steps, axis=0) for part in (states[:, :n], states[:, n:]))
+        return Motion(1, x, 0.0 * v, np.zeros((runs * steps, STAGES, n)), runs=runs)
+
+    def _solved(
+        self, value: float, states: Array, motion: Motion, ramp: Ramp | None
+    ) -> Motion | None:
+        """Return the motion from the states, by Newton's iteration; None where it fails."""
+        runs, size = states.shape
+        m = len(motion.x) // runs
+        before = np.inf
+        for _ in range(_ITERATIONS):
+            try:
+                swept = sweep(self.problem, value, motion, periodic=False, ramp=ramp)
+            except (NotFinite, np.linalg.LinAlgError):
+                return None
+            maps = swept.maps.reshape(runs, m, size, size).swapaxes(0, 1)
+            loads = swept.loads.reshape(runs, m, size, 1).swapaxes(0, 1)
+            whole, added = chained(maps, loads)
+            first = (states - motion.states.reshape(runs, m, size)[:, 0])[..., None]
+            change = (whole[:-1] @ first + added[:-1])[..., 0].swapaxes(0, 1).reshape(-1, size)
+            scale = np.maximum(_sizes(motion, self.problem.system.small), _sizes_of(states))
+            large = float(np.max(np.abs(change) / scale))
+            if not np.isfinite(large):
+                return None
+            part = 1.0 if large <= 1.0 else max(1.0 / large, 0.1)
+            a = swept.stage_loads[..., 0] + (swept.response @ change[:, None, :, None])[..., 0]
+            motion = motion.moved(part * change, part * a)
+            if large <= _LAST or (large <= 1e-7 and large >= 0.5 * before):
+                return motion
+            before = large
+        return None
+
+
+def end(motion: Motion) -> Array:
+    """Return the states at the end of a motion, ``(runs, 2n)``."""
+    n = motion.x.shape[1]
+    return motion.ends().reshape(motion.runs, -1, 2 * n)[:, -1]
+
+
+def _sizes(motion: Motion, small: float) -> Array:
+    """Return the sizes of coordinates and rates, ``(2n,)``."""
+    n = motion.x.shape[1]
+    largest = (float(np.max(np.abs(part))) for part in (motion.x, motion.v))
+    return np.repeat([max(part, small) for part in largest], n)
+
+
+def _sizes_of(states: Array) -> Array:
+    n = states.shape[1] // 2
+    largest = (float(np.max(np.abs(part))) for part in (states[:, :n], states[:, n:]))
+    return np.repeat(list(largest), n)
+
+
+def _tail(motion: Motion) -> float:
+    """Return what the series of the accelerations lack, as a share of the motion."""
+    h, s = motion.step, motion.a.shape[1]
+    terms = np.abs(motion.points.series @ motion.a)
+    left = float(np.max(terms[:, -2:]))
+    # Integrated twice over a step, and the square of what falls: Gauss points integrate it away.
+    rate = max(float(np.max(np.abs(motion.v))), 1e-300)
+    largest = max(float(np.max(terms[:, 0])), 1e-300)
+    return float((h * left / s / rate) * min(left / largest, 1.0))
+
+
+def _finer(motion: Motion, steps: int) -> Motion:
+    """Return the motion on more steps."""
+    m, n, runs = len(motion.x) // motion.runs, motion.x.shape[1], motion.runs
+    parts = []
+    for run in range(runs):
+        at = slice(run * m, (run + 1) * m)
+        one = replace(motion, x=motion.x[at], v=motion.v[at], a=motion.a[at], runs=1)
+        parts.append(one.resampled(steps, STAGES))
+    x, v, a = (np.concatenate([getattr(p, name) for p in parts]) for name in ("x", "v", "a"))
+    return Motion(motion.turns, x, v, a.reshape(-1, STAGES, n), motion.begin, runs)

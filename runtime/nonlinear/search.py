@@ -1,0 +1,300 @@
+"""Periodic motions beside the known ones: starts of many kinds, known motions deflated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import bad
+from ..core.families import Array, Nonlinear
+from ..core.inputs import is_finite, require_whole
+from ..core.progress import bar
+from ..core.results import Result, provenance
+from .march import Marcher, end
+from .orbit import FIRST_STEPS, STAGES, Lost, Solver, closed, taken
+from .response import checked_problem, extremes, first_motion, same_motion
+from .segments import Motion, NotFinite, Problem, sweep
+
+_FAILURES = (Lost, NotFinite, np.linalg.LinAlgError)
+# Amplitudes of the starts in the first coordinate that suits, over its largest trial; phases.
+_AMPLITUDES, _PHASES = (0.1, 0.2, 0.35, 0.5), 6
+_MARCHED, _SETTLING = 12, 120  # marched starts, and revolutions of each at the most
+_ITERATIONS = 40
+_LARGEST = 50.0  # size of a motion over that of the largest start beyond which a search is given up
+
+
+@dataclass(frozen=True, kw_only=True)
+class CoexistingMotions(Result):
+    """Periodic motions of a system at one value of a parameter, and what was searched for them.
+
+    Attributes
+    ----------
+    motions : tuple of Motion
+        The motions; to :func:`response_curve` they go as ``starts``.
+    turns : ndarray of int, shape (m,)
+    lowest, highest : ndarray, shape (m,)
+        Extremes of the deflection.
+    multiplier : ndarray, shape (m,)
+        Modulus of the largest Floquet multiplier, over the period.
+    value : float
+        The parameter.
+    searched : mapping of str to int
+        Starts of each kind that were tried.  There may be other motions.
+    """
+
+    motions: tuple[Motion, ...]
+    turns: NDArray[np.int64]
+    lowest: Array
+    highest: Array
+    multiplier: Array
+    value: float
+    searched: Mapping[str, int]
+    unit: str = ""
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
+        ("turns", "lowest", "highest", "multiplier", "error"), ("motion",)
+    )
+    exported: ClassVar[tuple[str, ...]] = ("stable",)
+
+    @property
+    def stable(self) -> NDArray[np.bool_]:
+        """True where no multiplier lies outside the unit circle."""
+        return np.asarray(self.multiplier <= 1.0 + 1e-8)
+
+
+def coexisting_motions(
+    system: Nonlinear,
+    parameter: str,
+    value: float,
+    *,
+    speed: float | None = None,
+    turns: int = 1,
+    largest: float = 0.5,
+    seed: int = 0,
+    rtol: float = 1e-8,
+    progress: bool = False,
+) -> CoexistingMotions:
+    """Search for periodic motions at one value of a parameter.
+
+    Newton's iteration from many starts, motions that are known deflated (a step towards one of
+    them is turned away): from rest; from harmonics of each mode at frozen frequencies, as large as
+    a softened resonance would have them; and from motions that were marched from random states.
+
+    Parameters
+    ----------
+    system : Nonlinear
+    parameter : str
+        ``"speed"``, or a name of ``system.parameters``.
+    value : float
+        Its value [SI].
+    speed : float, optional
+        Speed of the drive [rad/s] where something else is given.
+    turns : int
+        Largest number of revolutions after which the motions repeat.
+    largest : float
+        Largest amplitude of a start, in the unit of the coordinates.
+    seed : int
+        Of the random starts.
+    rtol : float
+        Wanted error of the motions, relative.
+    progress : bool
+        Whether to show a bar.
+
+    Returns
+    -------
+    CoexistingMotions
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable.
+    """
+    if not is_finite(value):
+        raise bad("value", repr(value), "a finite number", "correct it")
+    around = (value - 0.01 * abs(value) - 1e-300, value)
+    problem, _, _ = checked_problem(system, parameter, around, speed)
+    require_whole("turns", turns, 1, 64)
+    if not (is_finite(largest) and largest > 0):
+        raise bad("largest", repr(largest), "a positive amplitude", "try 0.5")
+    solver = Solver(problem, max(abs(value), 1e-6), rtol)
+    found: list[Motion] = []
+    starts = _starts(solver, value, turns, largest, np.random.default_rng(seed))
+    counts: dict[str, int] = {}
+    with bar(progress, len(starts), unit="start") as tick:
+        for number, (kind, start) in enumerate(starts):
+            counts[kind] = counts.get(kind, 0) + 1
+            if tick is not None:
+                tick(number + 1)
+            try:
+                motion = _deflated(solver, value, start, found, _LARGEST * largest)
+                motion = solver.settled(value, motion)
+            except _FAILURES:
+                continue
+            motion = _shortest(motion)
+            if not any(same_motion(solver, known, motion) for known in found):
+                found.append(motion)
+    return _result(solver, value, found, counts)
+
+
+def _starts(
+    solver: Solver, value: float, turns: int, largest: float, random: np.random.Generator
+) -> list[tuple[str, Motion]]:
+    """Return kind and motion of each start."""
+    problem = solver.problem
+    starts = [("rest", first_motion(problem))]
+    for mode, frequency in enumerate(_frequencies(problem, value)):
+        for k in range(1, turns + 1):
+            # A softened mode answers below its frequency, a hardened one above.
+            near = round(float(frequency) * k)
+            for order in sorted({max(near - 1, 1), max(near, 1), near + 1}):
+                if k > 1 and np.gcd(order, k) > 1:
+                    continue
+                for amplitude in _AMPLITUDES:
+                    for phase in 2.0 * np.pi * np.arange(_PHASES) / _PHASES:
+                        wave = _wave(problem, mode, order, k, amplitude * largest, phase)
+                        starts.append((f"mode {mode + 1}", wave))
+    marcher = Marcher(problem, 1e-6)
+    speed, _ = problem.at(value)
+    if problem.name == "speed":
+        for _ in range(_MARCHED):
+            state = largest * random.normal(size=(1, 2 * problem.system.size))
+            marched = _marched(marcher, speed, state, turns)
+            if marched is not None:
+                starts.append(("marched", marched))
+    return starts
+
+
+def _frequencies(problem: Problem, value: float) -> Array:
+    """Return natural frequencies about rest over the drive's speed, coefficients averaged."""
+    from .segments import evaluated
+
+    rest = first_motion(problem)
+    found = evaluated(problem, value, rest.angles, (*rest.stages(), rest.a))
+    mass, stiffness = (np.mean(part, axis=(0, 1)) for part in (found.mass, found.stiffness))
+    squares = np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real
+    return np.sort(np.sqrt(np.maximum(squares, 0.0)))
+
+
+def _wave(
+    problem: Problem, mode: int, order: int, turns: int, amplitude: float, phase: float
+) -> Motion:
+    """Return the motion ``amplitude cos(order theta / turns + phase)`` of one coordinate."""
+    rest = first_motion(problem, turns)
+    rate = order / turns
+    begins = rest.step * np.arange(len(rest.x))
+    x, v, a = rest.x.copy(), rest.v.copy(), rest.a.copy()
+    x[:, mode] = amplitude * np.cos(rate * begins + phase)
+    v[:, mode] = -amplitude * rate * np.sin(rate * begins + phase)
+    a[..., mode] = -amplitude * rate**2 * np.cos(rate * rest.angles + phase)
+    return Motion(turns, x, v, a)
+
+
+def _marched(marcher: Marcher, speed: float, state: Array, turns: int) -> Motion | None:
+    """Return some last revolutions of a motion from a state, or None where it is lost."""
+    before: Motion | None = None
+    last: list[Motion] = []
+    try:
+        for _ in range(_SETTLING):
+            before = marcher.revolution(speed, state, before)
+            last = [*last[1 - turns :], before] if turns > 1 else [before]
+            state = end(before)
+    except _FAILURES:
+        return None
+    steps = max(len(motion.x) for motion in last)
+    parts = [motion.resampled(steps, STAGES) for motion in last]
+    x, v, a = (np.concatenate([getattr(p, name) for p in parts]) for name in ("x", "v", "a"))
+    return Motion(len(parts), x, v, a)
+
+
+def _deflated(
+    solver: Solver, value: float, start: Motion, known: Sequence[Motion], bound: float
+) -> Motion:
+    """Return a periodic motion near a start and away from the known ones.
+
+    Newton's step of the deflated equations is that of the equations, times a number: with m the
+    product of ``1 + 1 / |y - y_i|^2`` over the known motions it is ``1 / (1 - m' . step / m)``.
+    """
+    motion, before = start, np.inf
+    for _ in range(_ITERATIONS):
+        swept = sweep(solver.problem, value, motion)
+        change = closed(swept)
+        scale = solver.scale(motion)
+        slope = 0.0
+        for other in known:
+            for shift in range(other.turns):
+                apart = motion.states - _at_beginnings(other, motion, shift)
+                square = float(np.mean(np.sum((apart / scale) ** 2, axis=1))) + 1e-300
+                along = float(np.mean(np.sum(apart * change / scale**2, axis=1)))
+                slope -= 2.0 * along / (square * (1.0 + square))
+        factor = 1.0 / (1.0 - slope) if slope != 1.0 else 1.0
+        size = abs(factor) * float(np.max(np.abs(change) / scale))
+        if not np.isfinite(size) or float(np.max(np.abs(motion.x))) > bound:
+            break
+        if size <= 1e-6:
+            return motion
+        part = factor * min(1.0, 0.5 / size)
+        motion = taken(motion, swept, change, 0.0, part)
+        before = min(before, size)
+    raise Lost("no periodic motion was found from the start")
+
+
+def _at_beginnings(other: Motion, motion: Motion, shift: int) -> Array:
+    """Return the states of one motion where the steps of another begin, some turns later."""
+    angles = motion.step * np.arange(len(motion.x)) + 2.0 * np.pi * shift
+    x, v, _ = other.at(np.mod(angles, other.span))
+    return np.concatenate([x, v], axis=1)
+
+
+def _shortest(motion: Motion) -> Motion:
+    """Return a motion over as few turns as it repeats after."""
+    for turns in range(1, motion.turns):
+        if motion.turns % turns:
+            continue
+        angles = motion.span * np.arange(64) / 64
+        later = motion.at(np.mod(angles + 2.0 * np.pi * turns, motion.span))[0]
+        here = motion.at(angles)[0]
+        if float(np.max(np.abs(later - here))) <= 1e-6 * float(np.max(np.abs(here)) + 1e-300):
+            steps = max(len(motion.x) * turns // motion.turns, FIRST_STEPS)
+            return motion.resampled(steps, STAGES, turns)
+    return motion
+
+
+def _result(
+    solver: Solver, value: float, found: list[Motion], counts: dict[str, int]
+) -> CoexistingMotions:
+    rows, kept = [], []
+    for motion in found:
+        try:
+            orbit, measure = solver.fine(value, motion, solver.along_parameter(motion))
+        except _FAILURES:
+            continue
+        rows.append(
+            (
+                orbit.motion.turns,
+                *extremes(solver.problem, orbit),
+                abs(orbit.multipliers[0]),
+                measure.error,
+            )
+        )
+        kept.append(orbit.motion)
+    table = np.array(rows, dtype=float).reshape(-1, 5)
+    order = np.argsort(table[:, 2] - table[:, 1], kind="stable")
+    table = table[order]
+    return CoexistingMotions(
+        method="Newton from many starts, known motions deflated",
+        error=table[:, 4],
+        error_norm="of each motion, relative to its largest coordinate and rate",
+        provenance=provenance(solver.problem.system.provenance),
+        motions=tuple(kept[i] for i in order),
+        turns=table[:, 0].astype(int),
+        lowest=table[:, 1],
+        highest=table[:, 2],
+        multiplier=table[:, 3],
+        value=float(value),
+        searched=counts,
+        unit=solver.problem.system.unit,
+    )

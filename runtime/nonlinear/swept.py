@@ -1,0 +1,419 @@
+"""Slow run-ups and coast-downs as a test bench has them: jumps, hysteresis, basins of motions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import bad
+from ..core.families import Array, Nonlinear
+from ..core.inputs import is_finite, numbers_in_a_row, require_whole
+from ..core.plotting import Axes, axes_or_new
+from ..core.progress import bar
+from ..core.results import Check, Result, provenance
+from .march import Marcher, end
+from .orbit import Lost, Solver
+from .response import checked_problem, first_motion
+from .segments import Motion, NotFinite, Problem, Ramp
+
+_RPM = 30.0 / np.pi
+_SAMPLES = 128  # of a revolution, for its extremes
+_MOST_TURNS = 200_000
+_SETTLING = 30  # revolutions at the first speed where no periodic motion is found by itself
+# A jump: the peak-to-peak value changes by this factor, in logarithms, and in a revolution by so
+# many times what it does in the middle; revolutions between two parts of one jump.
+_JUMP, _SUDDEN, _PAUSE = 0.15, 6.0, 6
+# Basins: revolutions at the most, runs that are marched together, and how near to a motion a state
+# has come to it, in its sizes.
+_REVOLUTIONS, _TOGETHER, _REACHED = 400, 8, 0.02
+
+
+@dataclass(frozen=True, kw_only=True)
+class SweepResponse(Result):
+    """A motion while the speed of the drive changes slowly, revolution by revolution.
+
+    Attributes
+    ----------
+    speed : ndarray, shape (k,)
+        Speed in the middle of each revolution [rad/s].
+    rising : ndarray of bool, shape (k,)
+        Whether it rises.
+    lowest, highest : ndarray, shape (k,)
+        Extremes of the deflection in the revolution.
+    jump_speed : ndarray, shape (j,)
+        Speeds [rad/s] at which the deflection jumps.
+    jump_rising : ndarray of bool, shape (j,)
+    jump_ratio : ndarray, shape (j,)
+        Peak-to-peak deflection after the jump over that before.
+    rate : float
+        Acceleration of the drive [rad/s^2].
+    kicks : float
+        Standard deviation of what disturbs coordinates and rates in each revolution.
+    stopped : str
+        Why it ends early; empty where it does not.
+    """
+
+    speed: Array
+    rising: NDArray[np.bool_]
+    lowest: Array
+    highest: Array
+    jump_speed: Array
+    jump_rising: NDArray[np.bool_]
+    jump_ratio: Array
+    rate: float
+    kicks: float
+    stopped: str = ""
+    unit: str = ""
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **dict.fromkeys(("speed", "rising", "lowest", "highest", "peak_to_peak"), ("revolution",)),
+        **dict.fromkeys(("jump_speed", "jump_rising", "jump_ratio"), ("jump",)),
+    }
+    exported: ClassVar[tuple[str, ...]] = ("peak_to_peak",)
+
+    @property
+    def peak_to_peak(self) -> Array:
+        """Highest less lowest deflection in each revolution, shape ``(k,)``."""
+        return self.highest - self.lowest
+
+    @property
+    def hysteresis(self) -> float:
+        """Distance of the first jump, run up, from the last below it, run down [rad/s]; or NaN."""
+        up = self.jump_speed[self.jump_rising & (self.jump_ratio > 1.0)]
+        down = self.jump_speed[~self.jump_rising]
+        if not up.size or not down.size:
+            return float("nan")
+        below = down[down <= up[0]]
+        return float(up[0] - np.max(below)) if below.size else float("nan")
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the peak-to-peak deflection over the speed, up and down."""
+        ax = axes_or_new(ax)
+        size, unit = (1e3, "mm") if self.unit == "m" else (1.0, self.unit)
+        for rising, colour, label in ((True, "C0", "run up"), (False, "C3", "run down")):
+            at = self.rising == rising
+            if np.any(at):
+                values = size * self.peak_to_peak[at]
+                ax.plot(self.speed[at] * _RPM, values, color=colour, linewidth=1.0, label=label)
+        ax.set(xlabel="crank speed [rpm]", ylabel=f"peak-to-peak deflection [{unit}]")
+        ax.legend(frameon=False, fontsize="small")
+        return ax
+
+
+def sweep_response(
+    system: Nonlinear,
+    bounds: tuple[float, float],
+    rate: float,
+    direction: Literal["up", "down", "both"] = "both",
+    *,
+    kicks: float = 1e-6,
+    seed: int = 0,
+    rtol: float = 1e-8,
+    progress: bool = False,
+) -> SweepResponse:
+    """March a nonlinear system while the speed of its drive rises or falls slowly.
+
+    Parameters
+    ----------
+    system : Nonlinear
+    bounds : tuple of float
+        Lowest and highest speed [rad/s].
+    rate : float
+        Acceleration of the drive [rad/s^2], positive.
+    direction : {"up", "down", "both"}
+        ``both``: up, and down again from where that ends.
+    kicks : float
+        Standard deviation of the normal disturbance of coordinates and rates at the beginning of
+        each revolution; without one a motion of two turns is never entered.
+    seed : int
+        Of the disturbances.
+    rtol : float
+        Wanted error of a revolution, relative.
+    progress : bool
+        Whether to show a bar.
+
+    Returns
+    -------
+    SweepResponse
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, or no motion can be begun with.
+    """
+    problem, low, high = checked_problem(system, "speed", bounds, None)
+    if not (is_finite(rate) and rate > 0):
+        raise bad("rate", repr(rate), "a positive acceleration [rad/s^2]", "give its size")
+    if direction not in ("up", "down", "both"):
+        raise bad("direction", repr(direction), "'up', 'down' or 'both'", "correct it")
+    if not (is_finite(kicks) and kicks >= 0):
+        raise bad("kicks", repr(kicks), "a number, 0 or more", "try 1e-6")
+    require_whole("seed", seed, 0, 2**32 - 1)
+    ways = {"up": (1,), "down": (-1,), "both": (1, -1)}[direction]
+    turns = (high**2 - low**2) / (4.0 * np.pi * rate)
+    if not turns * len(ways) <= _MOST_TURNS:
+        fix = "sweep faster, or over less"
+        raise bad("rate", f"{turns:.3g} revolutions", f"at most {_MOST_TURNS}", fix)
+    marcher = Marcher(problem, rtol)
+    rows: list[tuple[float, bool, float, float]] = []
+    stopped = ""
+    random = np.random.default_rng(seed)
+    with bar(progress, int(turns * len(ways)) + 1, unit="turn") as tick:
+        state = _begun(marcher, low if ways[0] > 0 else high)
+        for way in ways:
+            try:
+                steps = _swept(marcher, (low, high), way * rate, state, kicks, random)
+                for speed, lowest, highest, reached in steps:
+                    rows.append((speed, way > 0, lowest, highest))
+                    state = reached
+                    if tick is not None:
+                        tick(len(rows))
+            except (Lost, NotFinite) as failure:
+                stopped = f"at {rows[-1][0] if rows else low:.6g} rad/s: {failure}"
+                break
+    speeds, rising, lowest_, highest_ = (np.array(column) for column in zip(*rows, strict=True))
+    jumps = [
+        (speed, bool(way), ratio)
+        for way in (True, False)
+        for speed, ratio in _jumps(speeds[rising == way], (highest_ - lowest_)[rising == way])
+    ]
+    return SweepResponse(
+        method=f"marching by revolutions, Gauss collocation, seed {seed}",
+        error=rtol,
+        error_norm="of a revolution, relative to its largest coordinate and rate",
+        checks={"whole": Check(0.0 if not stopped else 1.0, 0.0)},
+        provenance=provenance(system.provenance),
+        speed=speeds,
+        rising=rising.astype(bool),
+        lowest=lowest_,
+        highest=highest_,
+        jump_speed=np.array([jump[0] for jump in jumps]),
+        jump_rising=np.array([jump[1] for jump in jumps], dtype=bool),
+        jump_ratio=np.array([jump[2] for jump in jumps]),
+        rate=float(rate),
+        kicks=float(kicks),
+        stopped=stopped,
+        unit=system.unit,
+    )
+
+
+def _begun(marcher: Marcher, speed: float) -> Array:
+    """Return a state to begin with: of the periodic motion near rest, or after a while from it."""
+    problem = marcher.problem
+    try:
+        motion = Solver(problem, speed).settled(speed, first_motion(problem))
+        return motion.states[:1]
+    except (Lost, NotFinite):
+        pass
+    state, before = np.zeros((1, 2 * problem.system.size)), None
+    try:
+        for _ in range(_SETTLING):
+            before = marcher.revolution(speed, state, before)
+            state = end(before)
+    except (Lost, NotFinite) as failure:
+        fix = "begin at a speed where the motion stays small"
+        raise bad("bounds", f"no motion at {speed:.6g} rad/s: {failure}", "one", fix) from failure
+    return state
+
+
+def _swept(
+    marcher: Marcher,
+    bounds: tuple[float, float],
+    rise: float,
+    state: Array,
+    kicks: float,
+    random: np.random.Generator,
+) -> Iterator[tuple[float, float, float, Array]]:
+    """Yield speed, extremes and the state at the end of each revolution."""
+    low, high = bounds
+    speed = low if rise > 0 else high
+    system, before = marcher.problem.system, None
+    angles = 2.0 * np.pi * np.arange(_SAMPLES) / _SAMPLES
+    while True:
+        after = speed**2 + 4.0 * np.pi * rise
+        if not low**2 <= after <= high**2:
+            return
+        state = state + kicks * random.normal(size=state.shape)
+        before = marcher.revolution(speed, state, before, Ramp(rise))
+        shown = system.shown(before.at(angles)[0])
+        # Rates by the angle stay what they are when the speed changes.
+        yield speed + np.pi * rise / speed, float(np.min(shown)), float(np.max(shown)), end(before)
+        state, speed = end(before), float(np.sqrt(after))
+
+
+def _jumps(speed: Array, size: Array) -> list[tuple[float, float]]:
+    """Return speed and ratio of each jump of a deflection, revolution by revolution."""
+    if len(size) < 8:
+        return []
+    change = np.diff(np.log(np.maximum(size, 1e-300)))
+    sudden = np.abs(change) > max(_SUDDEN * float(np.median(np.abs(change))), 1e-6)
+    found: list[tuple[float, float]] = []
+    for part in np.split(*_clusters(np.flatnonzero(sudden))):
+        if not part.size:
+            continue
+        steps = change[part[0] : part[-1] + 1]
+        total = float(np.sum(steps))
+        if abs(total) < _JUMP:
+            continue
+        half = int(np.searchsorted(np.cumsum(np.abs(steps)), 0.5 * np.sum(np.abs(steps))))
+        found.append((float(speed[part[0] + half]), float(np.exp(total))))
+    return found
+
+
+def _clusters(places: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return places and where to split them: between those that lie apart."""
+    return places, np.flatnonzero(np.diff(places) > _PAUSE) + 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class Basins(Result):
+    """Which periodic motion a system comes to from initial states at one speed.
+
+    Attributes
+    ----------
+    q, rate : ndarray, shape (kx,) and (ky,)
+        Initial first coordinate, and its rate by the angle of the drive.
+    motion : ndarray of int, shape (ky, kx)
+        Number of the motion, from 0; -1 where none was reached.
+    peak_to_peak : ndarray, shape (m,)
+        Deflection of each motion.
+    turns : ndarray of int, shape (m,)
+    speed : float
+        [rad/s].
+    """
+
+    q: Array
+    rate: Array
+    motion: NDArray[np.int64]
+    peak_to_peak: Array
+    turns: NDArray[np.int64]
+    speed: float
+    unit: str = ""
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "q": ("q",),
+        "rate": ("rate",),
+        "motion": ("rate", "q"),
+        **dict.fromkeys(("peak_to_peak", "turns"), ("attractor",)),
+    }
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the basins in colours."""
+        ax = axes_or_new(ax)
+        size, unit = (1e3, "mm") if self.unit == "m" else (1.0, self.unit)
+        for number in range(-1, len(self.turns)):
+            at = self.motion == number
+            if not np.any(at):
+                continue
+            y, x = np.nonzero(at)
+            words = (
+                "none reached"
+                if number < 0
+                else f"{self.turns[number]} turn{'s' * int(self.turns[number] > 1)}, "
+                f"{size * self.peak_to_peak[number]:.3g} {unit} peak to peak"
+            )
+            colour = "0.8" if number < 0 else f"C{number}"
+            ax.plot(self.q[x], self.rate[y], "s", color=colour, markersize=3, label=words)
+        ax.set(xlabel="initial q1 [rad]", ylabel="initial dq1/dtheta [rad]")
+        ax.legend(fontsize="small", loc="upper right")
+        return ax
+
+
+def basins(
+    system: Nonlinear,
+    speed: float,
+    motions: Sequence[Motion],
+    q: Array,
+    rate: Array,
+    *,
+    progress: bool = False,
+) -> Basins:
+    """Return which of several periodic motions is reached from initial states at one speed.
+
+    Parameters
+    ----------
+    system : Nonlinear
+    speed : float
+        [rad/s].
+    motions : sequence of Motion
+        Stable ones, as :func:`coexisting_motions` returns them.
+    q, rate : array_like, shape (kx,) and (ky,)
+        Initial first coordinates, and rates of it by the drive's angle; the others are 0.
+    progress : bool
+        Whether to show a bar.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable.
+    """
+    problem, _, _ = checked_problem(system, "speed", (0.5 * speed, speed), None)
+    columns, rows = numbers_in_a_row("q", q), numbers_in_a_row("rate", rate)
+    n, marcher = system.size, Marcher(problem, 1e-6)
+    grid = np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 2)
+    states = np.zeros((len(grid), 2 * n))
+    states[:, 0], states[:, n] = grid[:, 0], grid[:, 1]
+    found = np.full(len(grid), -1)
+    ends = [motion.states[:: len(motion.x) // motion.turns] for motion in motions]
+    sizes = np.max([np.max(np.abs(part), axis=0) for part in ends], axis=0) + system.small
+    with bar(progress, len(grid), unit="state") as tick:
+        for first in range(0, len(grid), _TOGETHER):
+            part = slice(first, first + _TOGETHER)
+            found[part] = _reached(marcher, speed, states[part], ends, sizes)
+            if tick is not None:
+                tick(min(first + _TOGETHER, len(grid)))
+    extremes = [_peak_to_peak(problem, speed, motion) for motion in motions]
+    return Basins(
+        method="marching by revolutions",
+        error=0.0,
+        error_norm="counted states",
+        provenance=provenance(system.provenance),
+        q=columns,
+        rate=rows,
+        motion=found.reshape(len(rows), len(columns)),
+        peak_to_peak=np.array(extremes),
+        turns=np.array([motion.turns for motion in motions]),
+        speed=float(speed),
+        unit=system.unit,
+    )
+
+
+def _peak_to_peak(problem: Problem, speed: float, motion: Motion) -> float:
+    angles = np.linspace(0.0, motion.span, _SAMPLES * motion.turns, endpoint=False)
+    return float(np.ptp(problem.system.shown(motion.at(angles)[0])))
+
+
+def _reached(
+    marcher: Marcher, speed: float, states: Array, ends: Sequence[Array], sizes: Array
+) -> NDArray[np.int64]:
+    """Return the number of the motion that each state comes to, -1 where it comes to none."""
+    found = np.full(len(states), -1)
+    alive, before = np.arange(len(states)), None
+    for _ in range(_REVOLUTIONS):
+        try:
+            before = marcher.revolution(speed, states, before)
+        except (Lost, NotFinite):
+            if len(states) == 1:
+                break
+            # One run that cannot go on must not hold the others.
+            for run in range(len(states)):
+                found[alive[run]] = _reached(marcher, speed, states[run : run + 1], ends, sizes)[0]
+            break
+        states = end(before)
+        near = np.array(
+            [
+                np.min(np.max(np.abs(states[:, None] - part) / sizes, axis=2), axis=1)
+                for part in ends
+            ]
+        )
+        arrived = np.min(near, axis=0) < _REACHED
+        found[alive[arrived]] = np.argmin(near, axis=0)[arrived]
+        if np.all(arrived):
+            break
+        if np.any(arrived):
+            alive, states, before = alive[~arrived], states[~arrived], None
+    return found

@@ -16,11 +16,11 @@ from ..beams.elements import placed_rotation, placed_shapes
 from ..core.errors import LINEAR_RANGE, BadInput, Problem, bad, warn_of_large_deflection
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_whole, require_whole
+from ..core.maxima import missed_by_parabolas
 from ..core.results import Check, Result, provenance
 from ..frequencies.held import held_frequencies
 from ..periodic import steady_state
 from ..periodic.reduced import ReducedSystem, reduced_system
-from ..recovery.stress_over_speed import missed_by_parabolas
 from .changing_length import ChangingLength, deflection_rows
 from .speed_profile import Array, SpeedProfile
 from .unsteady import FORCES, Drive, arrays_of, generator_of, march

@@ -72,17 +72,18 @@ class SweptMotions:
     matrix_error: float
     motion_error: float
 
-    def blocks(self, speeds: Array) -> Iterator[tuple[slice, Array, Array]]:
-        """Yield parts of the speeds, motions ``(ns, nt, n)`` of all coordinates, their errors.
+    def blocks(self, speeds: Array) -> Iterator[tuple[slice, Array, Array, Array]]:
+        """Yield parts of the speeds, motions ``(ns, nt, n)`` of all coordinates, and their errors.
 
-        The errors ``(ns,)`` are those of the truncated system's motion over its largest size.
+        First those ``(ns,)`` of the truncated system's motion over its largest size, then the
+        static answer to what the motions leave of the whole equation, ``(ns, nt, n)``.
         """
         for begin in range(0, len(speeds), _TOGETHER):
             part = slice(begin, begin + _TOGETHER)
             flows = self.table.flows(1.0 / speeds[part])
             z, reach = reduced(self.truncated, flows, self.scale)
-            q, _ = self.truncated.lift(z, speeds[part])
-            yield part, q, reach * self.motion_error
+            q, rest = self.truncated.lift(z, speeds[part])
+            yield part, q, reach * self.motion_error, rest
 
     def growth(self, speeds: Array) -> Growth:
         """Return the largest multiplier of the truncated system at speeds."""

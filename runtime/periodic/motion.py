@@ -207,7 +207,7 @@ def simulate(
         else:
             run = _by_scipy(equation, grid, state, method, rtol, bound, tick)
             other, remaining, _ = _converged(equation, grid, state, 1e-10, bound, None)
-            error, allowed = _gap(equation, other, run, 1.0) + remaining, _FAIR
+            error, allowed = _gap(equation, other, run) + remaining, _FAIR
     theta = grid.theta[: len(run.states)]
     q, slope = _unscaled(equation, theta, run.states)
     largest = _largest(equation.system, grid, q)
@@ -298,11 +298,15 @@ def _converged(
     rounding = _EPS * (64.0 + 2.0 * turned)
     kind, levels = _ladder(equation, grid, rtol)
     coarse = _march(equation, grid, state, kind, levels[0], bound, None)
-    before = np.inf
+    before, last = np.inf, np.zeros(equation.size)
     for below, level in pairwise(levels):
         fine = _march(equation, grid, state, kind, level, bound, tick)
         _, likely, share = _likely(equation, grid, kind, (below, level))
-        error = _gap(equation, coarse, fine, share) + rounding
+        gap = _gap(equation, coarse, fine)
+        if below[1] < 1.0:
+            # Not resolved, but falling: the next gap falls at least as much again.
+            share = np.minimum(share, _MARGIN * gap / np.maximum(last, 1e-300))
+        error, last = share * gap + rounding, gap
         worst = float(np.max(error))
         stuck = worst > 0.5 * before and worst < 1e-3 and likely < worst
         if worst <= rtol or stuck:
@@ -320,7 +324,9 @@ def _likely(
     unresolved = kind == "radau" and turned > _PHASE * levels[1][1]
     least = _UNRESOLVED if unresolved else _LEAST
     missed = [_missed(equation, grid, level) for level in levels]
-    part = max(_MARGIN * fine / max(coarse, 1e-300), missed[1] / max(missed[0], 1e-300))
+    # Waves that are missed by less than round-off do not count.
+    waves = missed[1] / max(missed[0], 1e-300) if missed[1] > _EPS else 0.0
+    part = max(_MARGIN * fine / max(coarse, 1e-300), waves)
     return coarse, fine, float(np.clip(part, least, 1.0))
 
 
@@ -458,12 +464,12 @@ def _flows(
     return single
 
 
-def _gap(equation: Equation, coarse: _Run, fine: _Run, share: float) -> Array:
-    """Return the error of each coordinate over its peak, ``(n,)``."""
+def _gap(equation: Equation, coarse: _Run, fine: _Run) -> Array:
+    """Return the largest difference of each coordinate over its peak, ``(n,)``."""
     n, number = equation.size, min(len(coarse.states), len(fine.states))
     first, second = coarse.states[:number, :n], fine.states[:number, :n]
     with np.errstate(over="ignore", invalid="ignore"):
-        gap = share * np.max(np.abs(first - second), axis=0) / peaks(second[None])[0]
+        gap = np.max(np.abs(first - second), axis=0) / peaks(second[None])[0]
     return np.where(np.isfinite(gap), gap, 1.0)
 
 

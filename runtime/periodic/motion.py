@@ -303,10 +303,9 @@ def _converged(
         fine = _march(equation, grid, state, kind, level, bound, tick)
         _, likely, share = _likely(equation, grid, kind, (below, level))
         gap = _gap(equation, coarse, fine)
-        if below[1] < 1.0:
-            # Not resolved, but falling: the next gap falls at least as much again.
-            share = np.minimum(share, _MARGIN * gap / np.maximum(last, 1e-300))
-        error, last = share * gap + rounding, gap
+        # What is not resolved, but falls, falls at least as much again.
+        falling = _MARGIN * gap / np.maximum(last, 1e-300) if below[1] < 1.0 else 1.0
+        error, last = np.minimum(share, falling) * gap + rounding, gap
         worst = float(np.max(error))
         stuck = worst > 0.5 * before and worst < 1e-3 and likely < worst
         if worst <= rtol or stuck:

@@ -305,15 +305,15 @@ class StressResult(StationResult):
     def _peak(self, link: str) -> StressPeak:
         own = stations_on(self.links, link)
         values = np.concatenate([self.fibre(fibre)[:, own] for fibre in FIBRES], axis=1)
-        row, column = np.unravel_index(int(np.argmax(np.abs(values))), values.shape)
+        row, column = divmod(int(np.argmax(np.abs(values))), values.shape[1])
         theta, size = float(self.theta[row]), abs(float(values[row, column]))
         if self.period is not None and len(self.theta) >= 3:
             rows = np.zeros(values.shape[1], dtype=np.int64)
             top = largest_of(values[..., None], rows, 1, self.period)
-            column, theta, size = (float(v[0, 0]) for v in (top.row, top.theta, top.size))
+            column, theta, size = int(top.row[0, 0]), float(top.theta[0, 0]), float(top.size[0, 0])
             row = round(theta / self.period * len(self.theta)) % len(self.theta)
-        fibre, place = divmod(int(column), len(own))
-        value = float(np.copysign(size, values[row, int(column)]))
+        fibre, place = divmod(column, len(own))
+        value = float(np.copysign(size, values[row, column]))
         return StressPeak(value, theta, link, float(self.places[own[place]]), FIBRES[fibre])
 
     def safety(self, limit: float | Mapping[str, float]) -> dict[str, float]:

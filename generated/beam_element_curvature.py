@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 168 operations
-Content hash 80f10cdda6a9b33c56e7ad6188806b28; derived with SymPy 1.14.0.
+Content hash ca4e360550ea950ad0a5fdc5af880f22; derived with SymPy 1.14.0.
 """
 
 __all__ = ["element"]
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"curvature","mechanism":"beam_element","'
     'modes":null,"outputs":[]}'
 )
-CONTENT = "80f10cdda6a9b33c56e7ad6188806b28"
+CONTENT = "ca4e360550ea950ad0a5fdc5af880f22"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from numbers import Integral, Real
 from typing import Any, TypeGuard
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import BadInput, Problem, bad
+from .errors import Problem, bad, refuse, shown
 
 
 def is_whole(value: object, least: int, most: int | None = None) -> TypeGuard[int]:
@@ -28,6 +28,12 @@ def require_whole(where: str, value: object, least: int, most: int, fix: str = "
     return int(value)
 
 
+# What a number of a sign is called, and the least one.
+_SIGNS = {
+    "any": ("a finite number", -math.inf),
+    "not negative": ("a finite number, 0 or more", 0.0),
+    "positive": ("a positive number", math.ulp(0.0)),
+}
 # The kind of device, in DLPack's numbering, whose memory NumPy sees.
 _HOST = 1
 
@@ -78,17 +84,16 @@ def are_finite(value: object, count: int) -> bool:
     return len(value) == count and all(is_finite(part) for part in value)
 
 
-def sign_problems(
-    where: str, record: object, names: Iterable[str], *, positive: bool, fix: str
+def number_problems(
+    where: str, given: Mapping[str, Any], sign: str = "any", fix: str = "correct it"
 ) -> list[Problem]:
-    """Return what is wrong with attributes that are to be positive, or not negative."""
-    expected = "a positive number" if positive else "a number, 0 or more"
-    found = []
-    for name in names:
-        value = getattr(record, name)
-        if not (is_finite(value) and (value > 0 or (not positive and value == 0))):
-            found.append(Problem(f"{where}.{name}", repr(value), expected, fix))
-    return found
+    """Return what is wrong with numbers of a sign: ``any``, ``not negative`` or ``positive``."""
+    expected, least = _SIGNS[sign]
+    return [
+        Problem(f"{where}.{name}", shown(value), expected, fix)
+        for name, value in given.items()
+        if not (is_finite(value) and value >= least)
+    ]
 
 
 def names_problems(where: str, value: object) -> list[Problem]:
@@ -100,13 +105,7 @@ def names_problems(where: str, value: object) -> list[Problem]:
 
 def require_positive(where: str, **values: Any) -> None:
     """Refuse values that are not positive numbers, all of them in one error."""
-    problems = [
-        Problem(f"{where}: {name}", repr(value), "a positive number", "give it in SI units")
-        for name, value in values.items()
-        if not (is_finite(value) and value > 0)
-    ]
-    if problems:
-        raise BadInput(*problems)
+    refuse(number_problems(where, values, "positive", "give it in SI units"))
 
 
 def require_kind(where: str, value: object, kind: type | tuple[type, ...], fix: str) -> None:

@@ -3,20 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
-from ..core.errors import Problem, bad
-from ..core.inputs import is_finite
-
-
-def not_finite(where: str, values: Mapping[str, object], least: float = -math.inf) -> list[Problem]:
-    """Return a problem for each value that is no finite number, or below the least."""
-    wanted = "a finite number" + ("" if least == -math.inf else f", at least {least:g}")
-    return [
-        Problem(f"{where}.{name}", repr(value)[:60], wanted, "correct it")
-        for name, value in values.items()
-        if not (is_finite(value) and value >= least)  # type: ignore[operator]
-    ]
+from ..core.errors import bad, shown
 
 
 def finite_number(value: object, where: str) -> float:
@@ -24,9 +12,9 @@ def finite_number(value: object, where: str) -> float:
     try:
         number = float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError) as refusal:
-        raise bad(where, repr(value)[:60], "a number", "correct it") from refusal
+        raise bad(where, shown(value), "a number", "correct it") from refusal
     if not math.isfinite(number):
-        raise bad(where, repr(value)[:60], "a finite number", "correct it")
+        raise bad(where, shown(value), "a finite number", "correct it")
     return number
 
 

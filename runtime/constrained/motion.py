@@ -34,6 +34,8 @@ from .equations import (
 )
 
 _MOST_SAMPLES = 2_000_000
+# Error, over the largest size of a coordinate, with which a motion is still told.
+_FAIR = 0.01
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -147,7 +149,8 @@ def constrained_motion(
     -------
     ConstrainedMotion
         Its ``error`` is the motion's linearised response to the terms that the series of the
-        accelerations lack, enlarged by 5, with an allowance for round-off.
+        accelerations lack, enlarged by 5, with an allowance for round-off.  Its check ``accuracy``
+        compares it with a hundredth of the coordinates' sizes.
 
     Warns
     -----
@@ -235,10 +238,6 @@ def march(
         except (StoppedEarly, NoConvergence) as reason:
             status, message = 2, f"{reason}, after t = {parts[-1][0][-1]:.6g}"
         t, x, v, a, multipliers = _on_constraints(equations, parts)
-    # Rounding changes the speeds too, which acts over the rest of the motion.
-    way = np.max(np.abs(x), axis=0) + np.max(np.abs(v), axis=0) * (t[-1] - t[0])
-    # Roundings of a long window, which may all lie on one side.
-    rounding = EPS * (8.0 + 20.0 * steps) * way
     states = x * columns, v * columns, a * columns
     norms = constraint_norms(system, t, *states)
     # Constraints count as kept where their scaled defect is below this.
@@ -246,10 +245,10 @@ def march(
         f"{level} constraints": Check(float(np.max(norms[f"{level}_norm"])), 1e-12)
         for level in LEVELS
     }
-    # Estimates are enlarged: from 5 on they cover 99 of 100 pendulums, rods and forces that jump.
+    error, checks["accuracy"] = _accuracy(t[-1] - t[0], x, v, steps, error)
     return ConstrainedMotion(
         method="collocation",
-        error=columns * (5.0 * error + rounding),
+        error=columns * error,
         error_norm="largest error of a coordinate over the given times, in its own unit",
         checks=checks | {"end reached": Check(float(status), 0.0)},
         provenance=provenance(system.provenance),
@@ -265,6 +264,18 @@ def march(
         status=status,
         message=message,
     )
+
+
+def _accuracy(span: float, x: Array, v: Array, steps: int, error: Array) -> tuple[Array, Check]:
+    """Return error estimates of scaled coordinates, and the largest over their sizes as a check."""
+    reach = np.max(np.abs(x), axis=0)
+    # Rounding changes the speeds too, which acts over the rest of the motion: roundings of a long
+    # window may all lie on one side.
+    rounding = EPS * (8.0 + 20.0 * steps) * (reach + np.max(np.abs(v), axis=0) * span)
+    # Estimates are enlarged: from 5 on they cover 99 of 100 pendulums, rods and forces that jump.
+    error = 5.0 * error + rounding
+    size = np.maximum(reach, max(SMALL * float(np.max(reach)), 1e-300))
+    return error, Check(float(np.max(error / size)), _FAIR)
 
 
 def _on_constraints(

@@ -33,6 +33,44 @@ def summits(values: Array, most: int = 32) -> NDArray[np.intp]:
     return chosen
 
 
+def polished(samples: Array) -> tuple[Array, Array, Array]:
+    """Return place, height and error of the summits beside the middle one of five even samples.
+
+    Of samples ``(5, ...)``, by the quartic through them; places are in steps from the middle.  The
+    error is a tenth of what the parabola through the inner three has otherwise: at eight samples to
+    a half wave the quartic misses a thirtieth of that.
+    """
+    first, low, middle, high, last = samples
+    bend = np.minimum(low - 2.0 * middle + high, -np.finfo(float).tiny)
+    start = np.clip(0.5 * (low - high) / bend, -0.5, 0.5)
+    rough = middle - 0.25 * (low - high) * start
+    slope = (first - 8.0 * low + 8.0 * high - last) / 12.0
+    second = (-first + 16.0 * low - 30.0 * middle + 16.0 * high - last) / 12.0
+    third = (last - 2.0 * high + 2.0 * low - first) / 2.0
+    fourth = first - 4.0 * low + 6.0 * middle - 4.0 * high + last
+    place = start
+    for _ in range(3):
+        rise = slope + place * (second + place * (third / 2.0 + place * fourth / 6.0))
+        curve = second + place * (third + place * fourth / 2.0)
+        place = np.clip(place - rise / np.where(curve < 0.0, curve, bend), -0.6, 0.6)
+    height = middle + place * (
+        slope + place * (second / 2.0 + place * (third / 6.0 + place * fourth / 24.0))
+    )
+    height = np.maximum(height, middle)
+    return place, height, 0.1 * np.abs(height - rough)
+
+
+def missed_by_parabolas(first: Array, low: Array, middle: Array, high: Array, last: Array) -> Array:
+    """Return the most by which parabolas through three even samples miss extremes near the middle.
+
+    With s steps from the middle to the extreme, at most a half, the third difference counts
+    ``s (1 - s^2)/6`` and the fourth ``s^2 (1 - s^2)/8``.
+    """
+    third = np.abs(last - 2.0 * high + 2.0 * low - first) / 32.0
+    fourth = np.abs(first - 4.0 * low + 6.0 * middle - 4.0 * high + last) * (3.0 / 128.0)
+    return np.asarray(third + fourth)
+
+
 def narrowed(
     values: Callable[[Array], Array], low: Array, high: Array, passes: int, flat: float = 0.0
 ) -> tuple[Array, Array]:

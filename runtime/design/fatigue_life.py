@@ -9,9 +9,10 @@ import numpy as np
 
 from ..core.errors import ElastolinkError, Problem, bad, refuse
 from ..core.inputs import number_problems, require_kind
+from ..core.maxima import missed_by_parabolas
 from ..core.results import Result
-from ..recovery.stress_over_speed import missed_by_parabolas
-from ..recovery.stresses import FIBRES, StressResult
+from ..core.trigonometric import resampled
+from ..recovery.stresses import FIBRES, FINER, StressResult
 from .speed_profile import Array
 
 
@@ -141,14 +142,15 @@ def fatigue(stress: StressResult, material: Material) -> Fatigue:
     amplitude = np.zeros((2, len(stress.places)))
     worse, damage = np.zeros_like(amplitude), np.zeros_like(amplitude)
     for row, fibre in enumerate(FIBRES):
-        _, fine = stress._finer(stress.fibre(fibre))
+        history = stress.fibre(fibre)
+        fine = resampled(history, FINER * len(history))
         if not np.all(np.isfinite(fine)):
             fix = "choose a speed with a single periodic motion"
             raise bad("fatigue", "stresses that are not finite", "finite ones", fix)
         topped, missed = _between(fine)
         off = doubt + missed
-        for column, history in enumerate(topped.T):
-            size, mean, counts = _cycles(history)
+        for column, own in enumerate(topped.T):
+            size, mean, counts = _cycles(own)
             equivalent = _equivalent(size, mean, material)
             # Both the amplitude and the mean may be larger by the stresses' error.
             beyond = _equivalent(size + 2.0 * off[column], mean + off[column], material)

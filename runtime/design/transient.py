@@ -16,12 +16,12 @@ from ..beams.elements import placed_rotation, placed_shapes
 from ..core.errors import LINEAR_RANGE, Problem, bad, refuse, warn_of_large_deflection
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_whole, require_whole
+from ..core.maxima import missed_by_parabolas
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..frequencies.held import held_frequencies
 from ..periodic import steady_state
 from ..periodic.reduced import ReducedSystem, reduced_system
-from ..recovery.stress_over_speed import missed_by_parabolas
 from .changing_length import ChangingLength
 from .speed_profile import Array, SpeedProfile
 from .unsteady import FORCES, Drive, arrays_of, generator_of, march

@@ -348,7 +348,7 @@ def _scanned(system: LinearPeriodic, speeds: Array) -> Array | None:
         span = float(speeds[piece][0]), float(speeds[piece][-1])
         moving = truncations.motions(modes, _ANGLES, span, _RTOL)
         rows = system.relative_deflection(moving.truncated.theta)
-        for part, q, _ in moving.blocks(speeds[piece]):
+        for part, q, *_ in moving.blocks(speeds[piece]):
             bent = rows @ np.moveaxis(q, 0, -1)
             out[piece][part] = np.sqrt(np.max(np.mean(bent**2, axis=0), axis=0))
     return out

@@ -14,9 +14,7 @@ from ..constrained import constrained_motion
 from ..core.families import LinearPeriodic
 from ..frequencies import ResonanceCurve, natural_frequencies, resonance_curve
 from ..linkages import QuickReturn
-from ..periodic import FloquetMultipliers, floquet_multipliers, steady_state
-from ..periodic.equation import equation_of
-from ..periodic.transition import method, segments_of
+from ..periodic import FloquetMultipliers, floquet_multipliers, simulate, steady_state
 from ..scenes import load_scene
 from ..stability import StabilityChart, stability_chart
 from ..systems.rod import FreeFreeRod
@@ -37,11 +35,8 @@ SPEED = 90.0
 # The converged curve lies under the others as a pale band.
 BAND: dict[str, Any] = {"color": "0.25", "lw": 3.0, "alpha": 0.35}
 CONVERGED = f"{ENOUGH} overhang modes (converged)"
-# Steps a turn of a method that is stable at any step: what they do not resolve are vibrations of
-# the highest polynomial modes, of which the deflection holds next to nothing.
-_STEPS = 1440
-# Crank angles of a turn at which deflections are given.
-_GIVEN = 720
+# Crank angles of a turn at which deflections are given, and their error over the peak of each mode.
+_GIVEN, _FINE = 720, 1e-5
 # Places along the rod.
 _STATIONS = 201
 # Readings of "0.2 percent proportional damping", the caption's "0.002 damping".
@@ -78,33 +73,18 @@ def tip_from_rest(
     system: LinearPeriodic,
     speed: float,
     turns: int = 1,
-    steps: int = _STEPS,
+    samples: int = _GIVEN,
     places: ArrayLike = 1.0,
 ) -> tuple[Array, Array]:
     """Return crank angles and the deflection [m] of a rod that starts undeflected, at rest.
 
-    At the tip, or at places x/length, shape ``(nt, nx)``.  Gauss-Legendre collocation of order 12
-    with fixed steps in a period of one turn.
+    At the tip, or at places x/length, shape ``(nt, nx)``.
     """
-    equation = equation_of(system, speed, {}, forcing=True)
-    maps = segments_of(equation, steps, method("gauss", 6)).maps[0]
-    every = max(1, steps // _GIVEN)
-    flows, flow = [], np.eye(maps.shape[-1])
-    for k, one in enumerate(maps, start=1):
-        flow = one @ flow
-        if k % every == 0:
-            flows.append(flow)
-    ahead, state = np.array(flows), np.append(np.zeros(2 * system.size), 1.0)
-    states = [state[None]]
-    for _ in range(turns):
-        states.append(ahead @ state)
-        state = states[-1][-1]
-    q = np.concatenate(states)[:, : system.size] * equation.scale[0]
-    theta: Array = 2.0 * np.pi / len(flows) * np.arange(float(len(q)))
-    shapes = system.shapes(np.atleast_1d(places), theta)
+    motion = simulate(system, speed, turns, rtol=_FINE, samples=samples)
+    shapes = system.shapes(np.atleast_1d(places), motion.theta)
     assert shapes is not None, "a rod has mode shapes"
-    bent = system.reference_length * np.einsum("txn,tn->tx", shapes, q)
-    return theta, bent if np.ndim(places) else bent[:, 0]
+    bent = system.reference_length * np.einsum("txn,tn->tx", shapes, motion.q)
+    return motion.theta, bent if np.ndim(places) else bent[:, 0]
 
 
 @lru_cache(maxsize=64)
@@ -235,7 +215,7 @@ def figure_5(axes: Panels) -> Drawn:
         mass = "read as lbm/in" if scene == STIFF else "read as lbf s^2/in^2"
         for name, changes in _DAMPINGS.items():
             system = rod(scene, "polynomial", 10, **changes)
-            theta, tip = tip_from_rest(system, SPEED, steps=_GIVEN)
+            theta, tip = tip_from_rest(system, SPEED)
             around = steady_state(system, SPEED, rtol=1e-8, samples=_GIVEN).deflection()
             settled = np.append(around, around[0])
             if name in drawn:
@@ -344,7 +324,7 @@ def figure_12(axes: Panels) -> Drawn:
     )
     for k, (formulation, modes, drop, speed) in enumerate(runs):
         system = _rod(formulation, modes, drop)
-        theta, tip = tip_from_rest(system, speed, turns=turns, steps=192)
+        theta, tip = tip_from_rest(system, speed, turns=turns, samples=192)
         physics = "as printed" if drop else "with tension"
         label = f"{modes} {formulation} modes, {physics}, {speed:.4g} rad/s"
         axes[k // 2].plot(theta / (2 * np.pi), tip, color=COLOURS[k], lw=0.7, label=label)

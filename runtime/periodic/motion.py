@@ -32,16 +32,22 @@ _EPS = float(np.finfo(float).eps)
 _MOST_INTERVALS, _MOST_SAMPLES = 2**22, 2**20
 # Nodes of collocation between given angles, and the fineness of what an interval is divided into
 # for fast modes: each level is compared with the one before.
-_LEVELS = (
+_Level = tuple[int, float]
+_LEVELS: tuple[_Level, ...] = (
     *((stages, 1.0) for stages in (2, 3, 4, 5, 6, 8)),
     # Whole numbers: two levels that round up to the same steps would agree however wrong they are.
     *((10, fineness) for fineness in (1.0, 2.0, 3.0, 4.0, 6.0, 8.0)),
 )
+# Coarser ones, where fast modes live to the end: Gauss's methods leave them their size, so that two
+# levels that do not resolve them differ by it: at 1/64 a step of 1024 rad turns a mode by 0.2.
+_COARSE: tuple[_Level, ...] = ((10, 1 / 64), (10, 1 / 16), (10, 1 / 4))
 # Phase of the fastest living mode in a step of fineness 1 [rad].
 _PHASE = 16.0
 _STIFF = 7
 # Decay from which a mode is dead, and the most steps between two given angles.
 _DEAD, _MOST_DIVISIONS = 20.0, 4096
+# Decay between two given angles that Gauss's methods follow without effort.
+_LIVELY = 0.5
 # Error, over the peak, that a motion may have and still be told.
 _FAIR = 0.01
 # The finer of two levels is taken to be in error by this times the predicted share of their
@@ -200,7 +206,7 @@ def simulate(
         else:
             run = _by_scipy(equation, grid, state, method, rtol, bound, tick)
             other, remaining, _ = _converged(equation, grid, state, 1e-10, bound, None)
-            error, allowed = _gap(equation, other, run, 1.0) + remaining, _FAIR
+            error, allowed = _gap(equation, other, run) + remaining, _FAIR
     theta = grid.theta[: len(run.states)]
     q, slope = _unscaled(equation, theta, run.states)
     largest = _largest(equation.system, grid, q)
@@ -285,48 +291,55 @@ def _converged(
     tick: Callable[[int], None] | None,
 ) -> tuple[_Run, Array, float]:
     """Return a motion, its error and what it may be: levels are compared until they agree."""
-    kind = "radau" if equation.damped else "gauss"
     turned = float(np.max(equation.frequency)) * (grid.theta[-1] - grid.start)
     rounding = _EPS * (64.0 + 2.0 * turned)
-    level = _first_level(equation, grid, kind, rtol)
-    coarse = _march(equation, grid, state, kind, level - 1, bound, None)
-    before = np.inf
-    while True:
+    kind, levels = _ladder(equation, grid, rtol)
+    coarse = _march(equation, grid, state, kind, levels[0], bound, None)
+    before, last = np.inf, np.zeros(equation.size)
+    for below, level in pairwise(levels):
         fine = _march(equation, grid, state, kind, level, bound, tick)
-        _, likely, share = _likely(equation, grid, kind, level)
-        error = _gap(equation, coarse, fine, share) + rounding
+        _, likely, share = _likely(equation, grid, kind, (below, level))
+        gap = _gap(equation, coarse, fine)
+        # What is not resolved, but falls, falls at least as much again.
+        falling = _MARGIN * gap / np.maximum(last, 1e-300) if below[1] < 1.0 else 1.0
+        error, last = np.minimum(share, falling) * gap + rounding, gap
         worst = float(np.max(error))
         stuck = worst > 0.5 * before and worst < 1e-3 and likely < worst
-        if worst <= rtol or stuck or level + 1 >= len(_LEVELS):
-            return fine, error, max(rtol, 100.0 * rounding)
-        coarse, before, level = fine, worst, level + 1
+        if worst <= rtol or stuck:
+            break
+        coarse, before = fine, worst
+    return fine, error, max(rtol, 100.0 * rounding)
 
 
-def _likely(equation: Equation, grid: _Grid, kind: str, level: int) -> tuple[float, float, float]:
-    """Return the likely errors of the level below and of a level, and the share of their gap."""
-    coarse, fine = (_predicted(equation, grid, kind, at) for at in (level - 1, level))
+def _likely(
+    equation: Equation, grid: _Grid, kind: str, levels: tuple[_Level, _Level]
+) -> tuple[float, float, float]:
+    """Return the likely errors of two levels, and the share of their gap."""
+    coarse, fine = (_predicted(equation, grid, kind, level) for level in levels)
     turned = float(np.max(equation.frequency, initial=0.0)) * grid.step
-    unresolved = kind == "radau" and turned > _PHASE * _LEVELS[level][1]
+    unresolved = kind == "radau" and turned > _PHASE * levels[1][1]
     least = _UNRESOLVED if unresolved else _LEAST
-    missed = [_missed(equation, grid, at) for at in (level - 1, level)]
-    part = max(_MARGIN * fine / max(coarse, 1e-300), missed[1] / max(missed[0], 1e-300))
+    missed = [_missed(equation, grid, level) for level in levels]
+    # Waves that are missed by less than round-off do not count.
+    waves = missed[1] / max(missed[0], 1e-300) if missed[1] > _EPS else 0.0
+    part = max(_MARGIN * fine / max(coarse, 1e-300), waves)
     return coarse, fine, float(np.clip(part, least, 1.0))
 
 
-def _missed(equation: Equation, grid: _Grid, level: int) -> float:
+def _missed(equation: Equation, grid: _Grid, level: _Level) -> float:
     """Return what the nodes of a step miss of the coefficients' waves, at most 1.
 
     The polynomial through s nodes misses ``2 (R h/4)^s / s!`` of a wave R; of amplitudes that fall
     to a millionth at the reach the worst is that of about s/14 of it.
     """
-    stages, fineness = _LEVELS[level]
+    stages, fineness = level
     wave = equation.reach * min(1.0, stages / 14.0) * grid.step / ceil(fineness)
     return min(1.0, 2.0 * (0.25 * wave) ** stages / factorial(stages))
 
 
-def _predicted(equation: Equation, grid: _Grid, kind: str, level: int) -> float:
+def _predicted(equation: Equation, grid: _Grid, kind: str, level: _Level) -> float:
     """Return the likely error of a motion on a level, over its first period."""
-    stages, fineness = _LEVELS[level]
+    stages, fineness = level
     way, h = method(kind, stages), grid.step
     parts = np.maximum(1.0, fineness * equation.frequency[0] * h / _PHASE)
     error = [
@@ -336,20 +349,26 @@ def _predicted(equation: Equation, grid: _Grid, kind: str, level: int) -> float:
     return float(np.max(error, initial=0.0))
 
 
-def _first_level(equation: Equation, grid: _Grid, kind: str, rtol: float) -> int:
-    """Return the level on which the error is likely small enough, and known to be."""
+def _ladder(equation: Equation, grid: _Grid, rtol: float) -> tuple[str, tuple[_Level, ...]]:
+    """Return the kind of collocation, and levels whose second one is likely accurate enough."""
+    kind = "radau" if equation.damped else "gauss"
+    periods = (grid.theta[-1] - grid.start) / equation.period
+    turned = float(np.max(equation.frequency, initial=0.0)) * grid.step
+    if turned > 2.0:
+        # How far fast modes are excited is not known beforehand: seldom much.
+        most = float(np.max(equation.decay, initial=0.0))
+        if most * periods > _DEAD or most * grid.step > _LIVELY * equation.period:
+            return kind, _LEVELS[_STIFF - 1 :]
+        parts = np.max(_divisions(equation, grid, 1, 1.0))
+        return "gauss", (*(at for at in _COARSE if at[1] * parts >= 1.0), *_LEVELS[_STIFF - 1 :])
     # Errors of an undamped mode add up from one period to the next.
     decay = float(np.min(equation.decay, initial=np.inf))
-    periods = (grid.theta[-1] - grid.start) / equation.period
     adding = min(max(periods, 1.0), 1.0 + 1.0 / max(decay, 1e-9))
-    if float(np.max(equation.frequency, initial=0.0)) * grid.step > 2.0:
-        # How far fast modes are excited is not known beforehand: seldom much.
-        return _STIFF
-    for level in range(1, len(_LEVELS) - 1):
-        coarse, fine, share = _likely(equation, grid, kind, level)
+    for place in range(1, len(_LEVELS) - 1):
+        coarse, fine, share = _likely(equation, grid, kind, (_LEVELS[place - 1], _LEVELS[place]))
         if max(_MARGIN * fine, share * coarse) * adding <= rtol:
-            return level
-    return len(_LEVELS) - 2
+            break
+    return kind, _LEVELS[place - 1 :]
 
 
 def _divisions(equation: Equation, grid: _Grid, count: int, fineness: float) -> NDArray[np.intp]:
@@ -376,12 +395,12 @@ def _march(
     grid: _Grid,
     state: Array,
     kind: str,
-    level: int,
+    level: _Level,
     bound: float,
     tick: Callable[[int], None] | None,
 ) -> _Run:
     """Return the motion by transition matrices between the given angles."""
-    stages, fineness = _LEVELS[level]
+    stages, fineness = level
     way = method(kind, stages)
     divisions = _divisions(equation, grid, grid.intervals, fineness)
     steps = int(round(2.0 * np.pi / grid.step) * divisions[-1])
@@ -441,12 +460,12 @@ def _flows(
     return single
 
 
-def _gap(equation: Equation, coarse: _Run, fine: _Run, share: float) -> Array:
-    """Return the error of each coordinate over its peak, ``(n,)``."""
+def _gap(equation: Equation, coarse: _Run, fine: _Run) -> Array:
+    """Return the largest difference of each coordinate over its peak, ``(n,)``."""
     n, number = equation.size, min(len(coarse.states), len(fine.states))
     first, second = coarse.states[:number, :n], fine.states[:number, :n]
     with np.errstate(over="ignore", invalid="ignore"):
-        gap = share * np.max(np.abs(first - second), axis=0) / peaks(second[None])[0]
+        gap = np.max(np.abs(first - second), axis=0) / peaks(second[None])[0]
     return np.where(np.isfinite(gap), gap, 1.0)
 
 
@@ -498,7 +517,7 @@ def _by_scipy(
     quarter = _Grid(
         equation.period, grid.start, 0.25 / max(1.0, float(np.max(equation.frequency))), 16
     )
-    beginning = _march(equation, quarter, state, "radau", 5, np.inf, None).states
+    beginning = _march(equation, quarter, state, "radau", _LEVELS[5], np.inf, None).states
     peak = float(np.max(np.abs(beginning[:, : 2 * equation.size])))
     atol = np.full(len(state), rtol * (peak if 0 < peak < np.inf else 1.0) * 1e-2)
     with np.errstate(over="ignore", invalid="ignore"):

@@ -494,7 +494,12 @@ def closed(flows: Array, whole: Array, unit: float) -> tuple[Array, Array]:
     The reach is the largest sum of a row of ``(I - X)^-1``.
     """
     m = whole.shape[-1] - 1
-    inverse = np.linalg.inv(np.eye(m) - whole[:, :m, :m])
+    try:
+        inverse = np.linalg.inv(np.eye(m) - whole[:, :m, :m])
+    except np.linalg.LinAlgError as singular:
+        found = f"motions that grow by up to {np.max(np.abs(whole)):.3g} in a period"
+        fix = "keep away from speeds so unstable, or take steady_state() there"
+        raise bad("speeds", found, "a periodic motion that is known", fix) from singular
     first = np.full((len(whole), m + 1), unit)
     first[:, :m] = (inverse @ whole[:, :m, m:])[..., 0] * unit
     states = (flows @ first[:, None, :, None])[..., 0]

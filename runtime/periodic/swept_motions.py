@@ -70,17 +70,18 @@ class SweptMotions:
     matrix_error: float
     motion_error: float
 
-    def blocks(self, speeds: Array) -> Iterator[tuple[slice, Array, Array]]:
-        """Yield parts of the speeds, motions ``(ns, nt, n)`` of all coordinates, their errors.
+    def blocks(self, speeds: Array) -> Iterator[tuple[slice, Array, Array, Array]]:
+        """Yield parts of the speeds, motions ``(ns, nt, n)`` of all coordinates, and their errors.
 
-        The errors ``(ns,)`` are those of the truncated system's motion over its largest size.
+        First those ``(ns,)`` of the truncated system's motion over its largest size, then the
+        static answer to what the motions leave of the whole equation, ``(ns, nt, n)``.
         """
         for begin in range(0, len(speeds), _TOGETHER):
             part = slice(begin, begin + _TOGETHER)
             flows = self.table.flows(1.0 / speeds[part])
             z, reach = reduced(self.truncated, flows, self.scale)
-            q = self.truncated.lift(z, speeds[part])
-            yield part, q, reach * self.motion_error
+            q, rest = self.truncated.lift(z, speeds[part])
+            yield part, q, reach * self.motion_error, rest
 
     def growth(self, speeds: Array) -> Growth:
         """Return the largest multiplier of the truncated system at speeds."""
@@ -194,7 +195,7 @@ class Truncations:
         waves = np.max(np.abs(np.fft.rfft(z, axis=1)), axis=2)
         upper = np.max(waves[:, 3 * waves.shape[1] // 4 :], axis=1)
         tail = float(np.max(upper / np.max(waves, axis=1)))
-        q = truncated.lift(z, speeds)
+        q, _ = truncated.lift(z, speeds)
         return Trial(truncated, q, growth_of(flows[1][:, :-1, :-1], rtol), tail)
 
     def _required(self, modes: int, angles: int) -> tuple[TruncatedSystem, SampledSystem]:

@@ -46,6 +46,8 @@ class TruncatedSystem(LinearPeriodic):
         The modes Phi there, shape ``(nt, n, m)``.
     flexibility : ndarray
         F there, shape ``(nt, n, n)``.
+    compliance : ndarray
+        K^-1 there, shape ``(nt, n, n)``.
     arrays : mapping of (str, int) to ndarray
         The arrays of the full system there, by name and power of the speed in its force.
     """
@@ -54,21 +56,23 @@ class TruncatedSystem(LinearPeriodic):
     theta: Array = field(default_factory=partial(np.zeros, 0))
     modes: Array = field(default_factory=partial(np.zeros, 0))
     flexibility: Array = field(default_factory=partial(np.zeros, 0))
+    compliance: Array = field(default_factory=partial(np.zeros, 0))
     arrays: Mapping[tuple[str, int], Array] = field(default_factory=dict)
 
-    def lift(self, z: Array, speeds: Array) -> Array:
-        """Return periodic motions of the whole system, ``(ns, nt, n)``.
+    def lift(self, z: Array, speeds: Array) -> tuple[Array, Array]:
+        """Return periodic motions of the whole system, and the static answer to what they leave.
 
-        What the modes leave of the whole equation is answered statically by the others, twice.  The
-        motions ``z`` of the truncated system are at even angles, ``(ns, any, m)``, at crank speeds
-        [rad/s], ``(ns,)``.
+        What the modes leave of the whole equation is answered statically by the others, twice; by
+        all modes, what is left then: both ``(ns, nt, n)``.  The motions ``z`` of the truncated
+        system are at even angles, ``(ns, any, m)``, at crank speeds [rad/s], ``(ns,)``.
         """
         # Arrays are applied to all motions at once: the motions are the last axis.
         reduced = np.moveaxis(resampled(np.moveaxis(z, 1, 0), len(self.theta)), 1, -1)
         q = self.modes @ reduced
         for _ in range(_CORRECTIONS):
             q = q + self.flexibility @ unmet_forces(self.arrays, self.period, q, speeds)
-        return np.moveaxis(q, -1, 0)
+        rest = self.compliance @ unmet_forces(self.arrays, self.period, q, speeds)
+        return np.moveaxis(q, -1, 0), np.moveaxis(rest, -1, 0)
 
 
 def modes_offered(system: LinearPeriodic, least: int = 4) -> list[int]:
@@ -90,8 +94,8 @@ def truncated_on(
     )
     across = np.swapaxes(phi, -1, -2)
     held = across @ stiffness @ phi
-    rest = np.linalg.inv(stiffness) - phi @ np.linalg.solve(held, across)
-    flexibility = _symmetric(np.asarray(rest, dtype=np.float64))
+    compliance = np.asarray(np.linalg.inv(stiffness), dtype=np.float64)
+    flexibility = _symmetric(compliance - phi @ np.linalg.solve(held, across))
     sums: dict[tuple[str, int], Array] = {}
     for (array, power), values in arrays.items():
         for name, part in projections(array, values, phi, slope):
@@ -116,6 +120,7 @@ def truncated_on(
         theta=basis.theta,
         modes=phi,
         flexibility=flexibility,
+        compliance=compliance,
         arrays=arrays,
     )
 

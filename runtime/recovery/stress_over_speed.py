@@ -17,14 +17,14 @@ from ..core.families import DAMPING, Array, LinearPeriodic
 from ..core.inputs import numbers
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
-from ..core.trigonometric import differentiated, even_angles, resampled
+from ..core.trigonometric import differentiated, even_angles
 from ..periodic.equation import equation_of
 from ..periodic.multipliers import floquet_multipliers
 from ..periodic.periodic_motion import by_segments
 from ..periodic.swept_motions import Growth, Trial, Truncations, speed_ranges
 from ..periodic.truncation import arrays_at
 from .beam_forces import require_method
-from .stresses import stress_operator
+from .stresses import Peaks, largest_of, stress_operator
 
 # Angles of a revolution at first and at the most, and the upper quarter of a motion's harmonics,
 # over the largest, times the wanted error, that asks for more of them.
@@ -32,9 +32,8 @@ _ANGLES, _MOST_ANGLES, _TAIL = 64, 1024, 0.01
 # At a few speeds a motion on the next larger number of modes tells what truncation changes; how
 # much larger it may be at other speeds (up to 1.5 times the fourfold in 216 random ones).
 ELSEWHERE = 8.0
-# How much finer the angles are at which the largest stress is sought, and how near to the largest
-# at the coarse angles a row has to come to be looked at.
-_FINER, _NEAR = 8, 0.6
+# The same of what the whole equation changes at some speeds.
+_WHOLE = 4.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -192,14 +191,14 @@ def stress_curve(
     stability : bool
         Whether the largest multiplier is computed at each speed too.
     whole : bool
-        Whether the whole equation is solved too, at two speeds; twice what this changes is part of
-        the error.
+        Whether the whole equation is solved too, at up to three speeds of each range; a multiple of
+        what this changes is part of the error.
 
     Returns
     -------
     StressCurve
         Its checks: ``converged``, the largest error over ``rtol``; ``equation``, if ``whole``, the
-        largest relative change of a maximum by solving the whole equation, at two speeds;
+        largest relative change of a maximum by solving the whole equation, at some speeds;
         ``linear range``, the largest deflection over the length of its link.
 
     Raises
@@ -214,18 +213,13 @@ def stress_curve(
     rising, back = np.unique(given, return_inverse=True)
     # Stations per link by default: with three elements their ends and middles.
     places = 7 if stations is None else stations
-    work = _Work(system, Fibres(system, places, method), rtol)
+    work = _Work(system, Fibres(system, places, method), rtol, whole)
     parts = [work.range_of(rising[part]) for part in speed_ranges(rising)]
     peaks = Peaks.joined(part.peaks for part in parts)
     size, error = peaks.size, peaks.error
     checks, deflection = {}, None
     if whole:
-        # At the highest speed, and where the modes answer most.
-        most = int(np.argmax(np.max(size, axis=0) / rising**2))
-        tried = {len(rising) - 1, most}
-        change = np.max([work.changed(rising[k], size[:, k]) for k in tried], axis=0)
-        error = error + 2.0 * change[:, None]
-        checks["equation"] = Check(float(np.max(change)), rtol)
+        checks["equation"] = Check(max(part.changed for part in parts), rtol)
     checks["converged"] = Check(float(np.max(error)), rtol)
     if system.relative_deflection is not None:
         deflection = np.concatenate([part.deflection for part in parts])[back]
@@ -279,34 +273,25 @@ class Fibres:
 
     def peaks(self, theta: Array, q: Array, speeds: Array) -> Peaks:
         """Return the largest stresses of motions ``(ns, nt, n)`` at even angles."""
-        period = self._system.period
+        values = self._values(theta, q, speeds)
+        return largest_of(values, self.link, len(self.links), self._system.period)
+
+    def of_errors(self, theta: Array, q: Array, speeds: Array) -> Array:
+        """Return how much errors of motions ``(ns, nt, n)`` stress links, ``(links, ns)``."""
+        size = np.max(np.abs(self._values(theta, q, speeds, rigid=False)), axis=0)
+        return np.array([np.max(size[self.link == k], axis=0) for k in range(len(self.links))])
+
+    def _values(self, theta: Array, q: Array, speeds: Array, *, rigid: bool = True) -> Array:
         motion = {"q": np.moveaxis(q, 0, -1)}
-        motion["dq"] = differentiated(motion["q"], period)
-        motion["ddq"] = differentiated(motion["dq"], period)
+        motion["dq"] = differentiated(motion["q"], self._system.period)
+        motion["ddq"] = differentiated(motion["dq"], self._system.period)
         total = np.zeros((len(theta), len(self.link), len(speeds)))
         for (name, power), rows in self.form(theta).parts.items():
-            values = rows[..., None] if name == RIGID else rows @ motion[name]
-            total += values * speeds**power
-        return _peaks(total, self.link, len(self.links), period)
-
-
-@dataclass(frozen=True)
-class Peaks:
-    """Largest stresses, each ``(links, ns)``: size [Pa], angle [rad], row, and error of the size.
-
-    The error is what the parabola through three angles may miss, over the size.
-    """
-
-    size: Array
-    theta: Array
-    row: NDArray[np.int64]
-    error: Array
-
-    @classmethod
-    def joined(cls, parts: Iterable[Peaks]) -> Peaks:
-        """Return those of several parts of the speeds."""
-        columns = zip(*(vars(part).values() for part in parts), strict=True)
-        return cls(*(np.concatenate(column, axis=1) for column in columns))
+            if name != RIGID:
+                total += (rows @ motion[name]) * speeds**power
+            elif rigid:
+                total += rows[..., None] * speeds**power
+        return total
 
 
 @dataclass(frozen=True)
@@ -315,6 +300,7 @@ class _Range:
     modes: int
     growth: Growth  # the largest multipliers
     defect: float  # what the modes left out change of one, over its condition
+    changed: float  # largest relative change of a maximum by solving the whole equation
     deflection: Array  # largest at each speed, (ns,)
 
 
@@ -325,8 +311,8 @@ class _Work:
     modes that the next range begins with.
     """
 
-    def __init__(self, system: LinearPeriodic, fibres: Fibres, rtol: float) -> None:
-        self.system, self.fibres, self.rtol = system, fibres, rtol
+    def __init__(self, system: LinearPeriodic, fibres: Fibres, rtol: float, whole: bool) -> None:
+        self.system, self.fibres, self.rtol, self.whole = system, fibres, rtol, whole
         self.truncations = Truncations(system)
         # Error of the transition matrices over the wanted error of the stress.
         self.flow = max(1e-11, 1e-4 * rtol)
@@ -340,9 +326,10 @@ class _Work:
         defect = float(np.max(shift / many.growth.condition))
         moving = self.truncations.motions(many.truncated.size, self.angles, span, self.flow)
         theta = moving.truncated.theta
-        peaks, errors, norms, deflection = [], [], [], []
-        for part, q, error in moving.blocks(speeds):
+        peaks, errors, norms, left, deflection = [], [], [], [], []
+        for part, q, error, rest in moving.blocks(speeds):
             peaks.append(self.fibres.peaks(theta, q, speeds[part]))
+            left.append(self.fibres.of_errors(theta, rest, speeds[part]))
             errors.append(error)
             norms.append(np.max(np.abs(q), axis=(1, 2)))
             deflection.append(self._deflection(theta, q))
@@ -351,22 +338,35 @@ class _Work:
         share = found.size / np.concatenate(norms)
         weight = np.max(share, axis=1, keepdims=True) / share
         # An error of the motion stresses a link as the motion does, times this at the most.
-        error = 3.0 * weight * np.concatenate(errors) + found.error + ELSEWHERE * change[:, None]
+        changed = self._changed(speeds, found.size) if self.whole else np.zeros(1)
+        truncation = _WHOLE * changed if self.whole else ELSEWHERE * change
+        # Stiff directions count by the forces: of the motion's size they are next to nothing.
+        resting = np.concatenate(left, axis=1) / found.size
+        error = 3.0 * weight * np.concatenate(errors) + resting + found.error
+        error += truncation[:, None]
         return _Range(
             peaks=replace(found, error=error),
             modes=many.truncated.size,
             growth=moving.growth(speeds),
             defect=defect,
+            changed=float(np.max(changed)),
             deflection=np.concatenate(deflection),
         )
 
-    def changed(self, speed: float, size: Array) -> Array:
-        """Return the relative change of largest stresses by solving the whole equation."""
-        equation = equation_of(self.system, speed, {}, forcing=True)
-        q, *_ = by_segments(equation, max(1e-9, 0.01 * self.rtol), 4 * _ANGLES)
-        theta = even_angles(self.system.period, 4 * _ANGLES)
-        exact = self.fibres.peaks(theta, q, np.array([speed])).size[:, 0]
-        return np.asarray(np.abs(size / exact - 1.0))
+    def _changed(self, speeds: Array, size: Array) -> Array:
+        """Return the largest relative change of stresses by solving the whole equation, by link.
+
+        At the highest speed, in the middle, and where the modes answer most.
+        """
+        most = int(np.argmax(np.max(size, axis=0) / speeds**2))
+        theta = even_angles(self.system.period, max(self.angles, 4 * _ANGLES))
+        changes = []
+        for k in {len(speeds) - 1, (len(speeds) - 1) // 2, most}:
+            equation = equation_of(self.system, float(speeds[k]), {}, forcing=True)
+            q, *_ = by_segments(equation, max(1e-9, 0.01 * self.rtol), len(theta))
+            exact = self.fibres.peaks(theta, q, speeds[k : k + 1]).size[:, 0]
+            changes.append(np.abs(size[:, k] / exact - 1.0))
+        return np.asarray(np.max(changes, axis=0))
 
     def _trials(self, speeds: Array) -> tuple[Trial, Trial, Array]:
         """Return two numbers of modes that agree at some speeds, and what stresses change by.
@@ -391,6 +391,8 @@ class _Work:
                 for tried in (few, many)
             )
             change = np.max(np.abs(first / last - 1.0), axis=1)
+            if many.truncated.size == self.system.size:
+                change = np.zeros_like(change)  # nothing is left out
             most = many.truncated.size == self.truncations.numbers[-1]
             if most or ELSEWHERE * np.max(change) <= 0.5 * self.rtol:
                 return few, many, change
@@ -413,53 +415,6 @@ def _growth(system: LinearPeriodic, parts: list[_Range], speeds: Array) -> tuple
     gap = abs(float(np.max(np.abs(whole.multipliers))) - modulus[-1]) / condition[-1]
     defect = max(ELSEWHERE * max(part.defect for part in parts), 2.0 * gap)
     return modulus, error + defect * condition
-
-
-def _peaks(values: Array, link: NDArray[np.int64], links: int, period: float) -> Peaks:
-    """Return the largest size of stresses ``(nt, rows, ns)`` of each link at each speed.
-
-    Between the angles the Fourier series is taken at eight times as many, and a parabola between
-    these.
-    """
-    count, _, speeds = values.shape
-    coarse = np.max(np.abs(values), axis=0)
-    size, theta, error = (np.zeros((links, speeds)) for _ in range(3))
-    row = np.zeros((links, speeds), dtype=np.int64)
-    for k in range(links):
-        rows_of = np.flatnonzero(link == k)
-        rows, columns = np.nonzero(coarse[rows_of] >= _NEAR * np.max(coarse[rows_of], axis=0))
-        fine = np.abs(resampled(values[:, rows_of[rows], columns], _FINER * count)).T
-        # Of several tops almost equal at the angles another may be the largest between them: half a
-        # fine step beside its top the highest harmonic has cos(pi/16) of it.
-        which, place = np.nonzero(fine >= 0.98 * np.max(fine, axis=1, keepdims=True))
-        before, after = fine[which, place - 1], fine[which, (place + 1) % fine.shape[1]]
-        at = fine[which, place]
-        top = (at >= before) & (at >= after)
-        which, place, before, at, after = (v[top] for v in (which, place, before, at, after))
-        bend = np.minimum(before - 2.0 * at + after, -np.finfo(float).tiny)
-        shift = np.clip(0.5 * (before - after) / bend, -0.5, 0.5)
-        height = at - 0.25 * (before - after) * shift
-        # Of each speed the highest, the first row of equal ones.
-        speed = columns[which]
-        order = np.lexsort((rows[which], -height, speed))
-        first = order[np.unique(speed[order], return_index=True)[1]]
-        size[k] = height[first]
-        theta[k] = (place[first] + shift[first]) % fine.shape[1] * (period / fine.shape[1])
-        row[k] = rows_of[rows[which[first]]]
-        around = (place[first] + np.arange(-2, 3)[:, None]) % fine.shape[1]
-        error[k] = missed_by_parabolas(*fine[which[first], around]) / size[k]
-    return Peaks(size, theta, row, error)
-
-
-def missed_by_parabolas(first: Array, low: Array, middle: Array, high: Array, last: Array) -> Array:
-    """Return the most by which parabolas through three even samples miss extremes near the middle.
-
-    With s steps from the middle to the extreme, at most a half, the third difference counts
-    ``s (1 - s^2)/6`` and the fourth ``s^2 (1 - s^2)/8``.
-    """
-    third = np.abs(last - 2.0 * high + 2.0 * low - first) / 32.0
-    fourth = np.abs(first - 4.0 * low + 6.0 * middle - 4.0 * high + last) * (3.0 / 128.0)
-    return np.asarray(third + fourth)
 
 
 def _require_damped(system: LinearPeriodic) -> None:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..beams.assembly import Array
 from ..beams.element_forms import ElementForms, required_structure
@@ -17,8 +17,9 @@ from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import Problem, bad, refuse
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite, numbers_in_a_row
+from ..core.maxima import polished
 from ..core.plotting import Axes, axes_or_new
-from ..core.trigonometric import even_angles, resampled
+from ..core.trigonometric import resampled
 from .beam_forces import (
     METHODS,
     Station,
@@ -36,6 +37,9 @@ if TYPE_CHECKING:
     from .beam_motion import Motion
 
 Stations = int | Mapping[str, ArrayLike] | None
+# How much finer the angles are at which the largest stress is sought, and how near to the largest
+# at the coarse angles a row has to come to be looked at.
+FINER, _NEAR = 8, 0.6
 # Places over each element for its energy: exact for the recovered polynomials' squares.
 _PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 
@@ -126,6 +130,59 @@ def energy_gap(system: LinearPeriodic, motion: BeamMotion) -> float:
         wrong += float(np.sum((first[name] - second[name]) ** 2 @ np.array(flat)))
         total += float(np.sum(first[name] ** 2 @ np.array(flat)))
     return min(wrong / total, 0.5) if total else 0.0
+
+
+@dataclass(frozen=True)
+class Peaks:
+    """Largest stresses, each ``(links, ns)``: size [Pa], angle [rad], row, and error of the size.
+
+    The error is what the quartic through five angles may miss, over the size.
+    """
+
+    size: Array
+    theta: Array
+    row: NDArray[np.int64]
+    error: Array
+
+    @classmethod
+    def joined(cls, parts: Iterable[Peaks]) -> Peaks:
+        """Return those of several parts of the speeds."""
+        columns = zip(*(vars(part).values() for part in parts), strict=True)
+        return cls(*(np.concatenate(column, axis=1) for column in columns))
+
+
+def largest_of(values: Array, link: NDArray[np.int64], links: int, period: float) -> Peaks:
+    """Return the largest size of stresses ``(nt, rows, ns)`` of each link at each speed.
+
+    Between the angles the Fourier series is taken at eight times as many, and a quartic between
+    these.
+    """
+    count, _, speeds = values.shape
+    coarse = np.max(np.abs(values), axis=0)
+    size, theta, error = (np.zeros((links, speeds)) for _ in range(3))
+    row = np.zeros((links, speeds), dtype=np.int64)
+    for k in range(links):
+        rows_of = np.flatnonzero(link == k)
+        rows, columns = np.nonzero(coarse[rows_of] >= _NEAR * np.max(coarse[rows_of], axis=0))
+        fine = np.abs(resampled(values[:, rows_of[rows], columns], FINER * count)).T
+        # Of several tops almost equal at the angles another may be the largest between them: half a
+        # fine step beside its top the highest harmonic has cos(pi/16) of it.
+        which, place = np.nonzero(fine >= 0.98 * np.max(fine, axis=1, keepdims=True))
+        before, after = fine[which, place - 1], fine[which, (place + 1) % fine.shape[1]]
+        at = fine[which, place]
+        top = (at >= before) & (at >= after)
+        which, place = which[top], place[top]
+        around = (place + np.arange(-2, 3)[:, None]) % fine.shape[1]
+        shift, height, missed = polished(fine[which, around])
+        # Of each speed the highest, the first row of equal ones.
+        speed = columns[which]
+        order = np.lexsort((rows[which], -height, speed))
+        first = order[np.unique(speed[order], return_index=True)[1]]
+        size[k] = height[first]
+        theta[k] = (place[first] + shift[first]) % fine.shape[1] * (period / fine.shape[1])
+        row[k] = rows_of[rows[which[first]]]
+        error[k] = missed[first] / np.maximum(size[k], np.finfo(float).tiny)
+    return Peaks(size, theta, row, error)
 
 
 FIBRES = ("positive", "negative")
@@ -244,24 +301,17 @@ class StressResult(StationResult):
 
     def _peak(self, link: str) -> StressPeak:
         own = stations_on(self.links, link)
-        best: StressPeak | None = None
-        for fibre in FIBRES:
-            theta, values = self._finer(self.fibre(fibre)[:, own])
-            row, column = np.unravel_index(int(np.argmax(np.abs(values))), values.shape)
-            value = float(values[row, column])
-            if best is None or abs(value) > abs(best.value):
-                place = float(self.places[own[column]])
-                best = StressPeak(value, float(theta[row]), link, place, fibre)
-        if best is None:
-            raise bad("maximum", "no station", "at least one", "give stations")
-        return best
-
-    def _finer(self, values: Array) -> tuple[Array, Array]:
-        """Return values of a periodic stress at eight times the angles, by its Fourier series."""
-        if self.period is None or len(self.theta) < 3:
-            return self.theta, values
-        count = 8 * len(self.theta)
-        return even_angles(self.period, count), resampled(values, count)
+        values = np.concatenate([self.fibre(fibre)[:, own] for fibre in FIBRES], axis=1)
+        row, column = divmod(int(np.argmax(np.abs(values))), values.shape[1])
+        theta, size = float(self.theta[row]), abs(float(values[row, column]))
+        if self.period is not None and len(self.theta) >= 3:
+            rows = np.zeros(values.shape[1], dtype=np.int64)
+            top = largest_of(values[..., None], rows, 1, self.period)
+            column, theta, size = int(top.row[0, 0]), float(top.theta[0, 0]), float(top.size[0, 0])
+            row = round(theta / self.period * len(self.theta)) % len(self.theta)
+        fibre, place = divmod(column, len(own))
+        value = float(np.copysign(size, values[row, column]))
+        return StressPeak(value, theta, link, float(self.places[own[place]]), FIBRES[fibre])
 
     def safety(self, limit: float | Mapping[str, float]) -> dict[str, float]:
         """Return the factor of safety of each beam: allowed over largest stress.

@@ -12,7 +12,8 @@ from elastolink.runtime.beams import (
     linear_system,
     linkage_system,
 )
-from elastolink.runtime.linkages import FourBar
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.linkages import FourBar, SliderCrank
 from elastolink.runtime.linkages.linkage import LinkMotion
 from elastolink.runtime.recovery import BeamMotion
 from elastolink.runtime.recovery.stresses import StressResult
@@ -175,3 +176,39 @@ def of_history(history, error=0.0):
         mesh_error=0.0,
         period=2 * np.pi,
     )
+
+
+def random_linkage(rng, kind):
+    """Return a random linkage whose crank turns fully, of a usable transmission angle."""
+    while True:
+        crank = rng.uniform(0.03, 0.3)
+        lengths = {name: rng.uniform(0.2, 0.8) for name in ("coupler", "follower", "frame")}
+        try:
+            if kind is SliderCrank:
+                offset = crank * rng.uniform(-0.3, 0.3)
+                return SliderCrank(crank=crank, coupler=crank * rng.uniform(2, 5), offset=offset)
+            found = FourBar(crank=crank, **lengths)
+            found.require_full_turn()
+        except BadInput:
+            continue
+        b, f = lengths["coupler"], lengths["follower"]
+        sides = lengths["frame"] + crank * np.array([-1.0, 1.0])
+        if np.all(np.abs((b**2 + f**2 - sides**2) / (2 * b * f)) < np.cos(np.radians(25.0))):
+            return found
+
+
+def elastic_linkage(rng, kind, elements):
+    """Return a random elastic linkage and its speed, over its least frequency at any angle."""
+    made = random_linkage(rng, kind)
+    names = ("crank", "coupler", "follower") if kind is FourBar else ("crank", "coupler")
+    sections = {
+        name: Section.rectangle(rng.uniform(0.01, 0.03), 10 ** rng.uniform(-2.6, -1.9), **STEEL)
+        for name in names
+    }
+    masses = {"B": rng.uniform(0.0, 0.3), "C": rng.uniform(0.0, 0.3)}
+    bare = linkage_system(made, sections, joint_masses=masses, elements=elements)
+    system = with_modal_damping(bare, 10 ** rng.uniform(-2.3, -1.3))
+    theta = np.linspace(0.0, 2 * np.pi, 16, endpoint=False)
+    flexible = np.linalg.solve(system.array("K", theta), system.array("M", theta))
+    least = np.min(np.max(np.linalg.eigvals(flexible).real, axis=1) ** -0.5)
+    return system, rng.uniform(0.03, 0.45) * least

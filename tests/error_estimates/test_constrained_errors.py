@@ -77,6 +77,18 @@ def test_forces_that_jump(rng):
     return motion.error[0], np.max(np.abs(motion.q[:, 0] - exact))
 
 
+@pytest.mark.parametrize("span", [0.3, 2.0])
+def test_a_motion_that_is_lost_does_not_pass(span):
+    """exp(-20 t), beside which exp(20 t) grows from what the steps miss."""
+    motion = constrained_motion(
+        unconstrained(lambda q, qd: 400.0 * q), [1.0], [-20.0], span, samples=20, rtol=1e-4
+    )
+    away = np.max(np.abs(motion.q[:, 0] - np.exp(-20.0 * motion.time)))
+    assert away <= motion.error[0] <= 1e3 * away
+    assert motion.checks["accuracy"].passed == (span < 1.0)
+    assert (away < 0.01) == (span < 1.0)
+
+
 @pytest.mark.parametrize("scenes", [10, pytest.param(100, marks=pytest.mark.slow)])
 def test_consistent_states(scenes):
     """The defect that is left is an estimate of the scaled distance from the constraints."""

@@ -20,6 +20,7 @@ from elastolink.runtime.periodic import (
 from elastolink.runtime.stability.boundary_speeds import speed_boundaries
 from honesty import over_scenes
 from manufactured import manufactured
+from periodic_systems import system_of, wave
 from wavy_springs import Wavy, tame
 
 pytestmark = pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning")
@@ -94,6 +95,31 @@ def test_the_estimates_cover_the_errors_and_are_not_idle(scenes):
         assert np.sum(actual > estimate) <= max(1, 0.01 * len(actual)), name
         # Below a few units in the last place the reference's own rounding shows.
         assert np.median(estimate / np.maximum(actual, 4 * EPS)) <= 1e3, name
+
+
+@over_scenes(4, few=15, many=150, median=100.0)
+def test_motions_of_fast_modes_that_live(rng):
+    """From a state in which all of them ring, up to a thousand radians between given angles."""
+    n, samples, turns = int(rng.integers(2, 5)), int(rng.choice([8, 24, 60])), rng.uniform(0.2, 1.5)
+    rates = np.sort(10.0 ** rng.uniform(0.0, np.log10(160.0 * samples), n))
+    loss = float(rng.choice([0.0, 0.02, 0.5])) / np.pi
+    # Uncoupled: rounding of a full K would change the slow rates.
+    system = system_of(
+        M=np.eye(n),
+        C=2.0 * loss * np.eye(n),
+        K=np.diag(rates**2 + loss**2),
+        f=wave(rng.standard_normal(n)),
+    )
+    # The slow ones ring by far more than the fast ones.
+    size = 10.0 ** (rng.uniform(-6.0, 0.0) * np.arange(n) / n)
+    steady = system.array("f", np.zeros(1))[0] / (rates**2 + loss**2 - 1.0 + 2j * loss)
+    start = steady.real + size, (1j * steady).real
+    rtol = float(10.0 ** rng.uniform(-8.0, -2.0))
+    found = simulate(system, 1.0, turns, initial=start, samples=samples, rtol=rtol)
+    time = found.theta[:, None]
+    ring = np.exp(-loss * time) * (np.cos(rates * time) + loss / rates * np.sin(rates * time))
+    exact = (steady * np.exp(1j * time)).real + size * ring
+    return _of_motion(found, exact)
 
 
 @over_scenes(2)

@@ -9,6 +9,8 @@ from elastolink.runtime.gallery import beale
 from elastolink.runtime.gallery.beale import FLEXIBLE, HEAVY, STIFF, rod, stiff_tip
 from elastolink.runtime.gallery.drawing import peak
 from elastolink.runtime.periodic import floquet_multipliers
+from elastolink.runtime.periodic.equation import equation_of
+from elastolink.runtime.periodic.transition import method, segments_of
 from rod_reference import TIPS
 
 # Deflections leave the linear range at resonances; the equations stay linear.
@@ -29,14 +31,20 @@ def test_the_tip_from_rest_is_that_of_a_fixed_mesh():
 
 
 @pytest.mark.slow
-def test_steps_of_a_turn_are_enough():
-    for scene, formulation, modes in ((STIFF, "polynomial", 6), (HEAVY, "overhang", 3)):
-        system = rod(scene, formulation, modes)
-        fewest, usual, more = (
-            beale.tip_from_rest(system, 90.0, steps=steps)[1] for steps in (720, 1440, 2880)
-        )
-        assert peak(more - usual) < 1e-6 * peak(more)
-        assert peak(more - fewest) < 1e-6 * peak(more)
+@pytest.mark.parametrize("scene", [STIFF, HEAVY])
+@pytest.mark.parametrize("damping", [{}, {"rod__relaxation_time": 0.002}])
+def test_ten_polynomial_modes_of_the_paper_from_rest(scene, damping):
+    """Its Fig. 5 by ``simulate``, beside fixed steps that are stable at any length."""
+    system, count = rod(scene, "polynomial", 10, **damping), 1440
+    theta, tip = beale.tip_from_rest(system, 90.0)
+    equation = equation_of(system, 90.0, {}, forcing=True)
+    state, states = np.append(np.zeros(20), 1.0), []
+    for one in segments_of(equation, count, method("gauss", 6)).maps[0]:
+        state = one @ state
+        states.append(state[:10] * equation.scale[0])
+    shapes = system.shapes(np.ones(1), theta[1:])[:, 0]
+    fixed = system.reference_length * np.sum(shapes * np.array(states)[1::2], axis=1)
+    assert peak(tip[1:] - fixed) < 1e-6 * peak(fixed)
 
 
 def test_constrained_and_linear_free_free_modes_agree_where_deflections_are_small():

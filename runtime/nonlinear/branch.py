@@ -184,7 +184,7 @@ def special_points(solver: Solver, before: Orbit, after: Orbit) -> Iterator[Spec
         except _FAILURES:
             continue
         measure = solver.measure(found)
-        yield Special(kind, found, measure, _value_error(solver, found, measure, kind))
+        yield Special(kind, found, measure, value_error(solver, found, kind, measure))
 
 
 def _located(solver: Solver, before: Orbit, after: Orbit, test: Callable[[Orbit], float]) -> Orbit:
@@ -217,8 +217,9 @@ def _located(solver: Solver, before: Orbit, after: Orbit, test: Callable[[Orbit]
     return last[0]
 
 
-def _value_error(solver: Solver, orbit: Orbit, measure: Measure, kind: str) -> float:
+def value_error(solver: Solver, orbit: Orbit, kind: str, measure: Measure | None = None) -> float:
     """Return the error estimate of the parameter at a special point."""
+    measure = measure or solver.measure(orbit)
     if kind == "fold":
         return measure.value_error
     test, step = TESTS[kind], 1e-4

@@ -11,9 +11,8 @@ from .orbit import STAGES, Lost
 from .segments import Motion, NotFinite, Problem, Ramp, chained, sweep
 
 # Newton's iteration of a revolution: the last correction, and how many.
-_LAST, _ITERATIONS = 1e-9, 12
-# Steps of a revolution at first and at the most.
-_FIRST, _MOST = 12, 768
+_LAST, _ITERATIONS, _PATIENCE = 1e-9, 12, 5
+_FIRST = 12  # steps of a revolution at first, for each coordinate
 
 
 @dataclass(frozen=True)
@@ -25,10 +24,13 @@ class Marcher:
     problem : Problem
     rtol : float
         Wanted error of a revolution, relative to its size.
+    most : int
+        Steps of a revolution at the most.
     """
 
     problem: Problem
     rtol: float = 1e-8
+    most: int = 768
 
     def revolution(
         self, value: float, states: Array, guess: Motion | None = None, ramp: Ramp | None = None
@@ -45,7 +47,7 @@ class Marcher:
             steps = len(motion.x) // runs
             if found is not None and _tail(found) <= self.rtol:
                 return found
-            if 2 * steps > _MOST:
+            if 2 * steps > self.most:
                 raise Lost("a revolution cannot be computed from its beginning")
             if found is not None:
                 motion = _finer(found, int(np.ceil(1.4 * steps)))
@@ -68,7 +70,7 @@ class Marcher:
         runs, size = states.shape
         m = len(motion.x) // runs
         before = np.inf
-        for _ in range(_ITERATIONS):
+        for count in range(_ITERATIONS):
             try:
                 swept = sweep(self.problem, value, motion, periodic=False, ramp=ramp)
             except (NotFinite, np.linalg.LinAlgError):
@@ -80,7 +82,7 @@ class Marcher:
             change = (whole[:-1] @ first + added[:-1])[..., 0].swapaxes(0, 1).reshape(-1, size)
             scale = np.maximum(_sizes(motion, self.problem.system.small), _sizes_of(states))
             large = float(np.max(np.abs(change) / scale))
-            if not np.isfinite(large):
+            if not np.isfinite(large) or (count > _PATIENCE and large > 1.0):
                 return None
             part = 1.0 if large <= 1.0 else max(1.0 / large, 0.1)
             a = swept.stage_loads[..., 0] + (swept.response @ change[:, None, :, None])[..., 0]

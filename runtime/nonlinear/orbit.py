@@ -157,6 +157,7 @@ class Solver:
 
         Raises `Lost` where there is none near.
         """
+        direction = direction.resampled(len(motion.x))
         before, first = np.inf, 0.0
         by_parameter: bool | Array = True
         for _ in range(_ITERATIONS):

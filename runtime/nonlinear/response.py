@@ -94,6 +94,7 @@ class ResponseCurve(Result):
     unit: str = ""
     orbits: tuple[Orbit, ...] = ()
     special_orbits: tuple[Orbit, ...] = ()
+    source: Solver
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
         **dict.fromkeys(
@@ -419,6 +420,7 @@ def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float])
         unit=problem.system.unit,
         orbits=tuple(orbit for orbit, _ in points),
         special_orbits=tuple(point.orbit for point in special),
+        source=solver,
     )
 
 

@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 202 operations
-Content hash 42db8d773f448dede03c3b6b54382d1b; derived with SymPy 1.14.0.
+Content hash 2c433448a1d77c26261045cada08eac4; derived with SymPy 1.14.0.
 """
 
 __all__ = ["element"]
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"internal_node","mechanism":"beam_elemen'
     't","modes":null,"outputs":[]}'
 )
-CONTENT = "42db8d773f448dede03c3b6b54382d1b"
+CONTENT = "2c433448a1d77c26261045cada08eac4"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

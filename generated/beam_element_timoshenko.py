@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 216 operations
-Content hash 3976f066f20e0937937719ead6138122; derived with SymPy 1.14.0.
+Content hash 41ca1f6b9fdb3e699adb264bc3906ed6; derived with SymPy 1.14.0.
 """
 
 __all__ = ["element"]
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"timoshenko","mechanism":"beam_element",'
     '"modes":null,"outputs":[]}'
 )
-CONTENT = "3976f066f20e0937937719ead6138122"
+CONTENT = "41ca1f6b9fdb3e699adb264bc3906ed6"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

@@ -16,7 +16,7 @@ Cost per evaluation:
     shaking_force: 86 operations
     shaking_moment: 88 operations
     load_forces: 59 operations
-Content hash 18b1434334405a619777459e12ce1bf6; derived with SymPy 1.14.0.
+Content hash cd9c0b94ed90dd641f9f7a77d9be257d; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -29,7 +29,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"forces","mechanism":"quick_return","mod'
     'es":null,"outputs":[]}'
 )
-CONTENT = "18b1434334405a619777459e12ce1bf6"
+CONTENT = "cd9c0b94ed90dd641f9f7a77d9be257d"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

@@ -213,8 +213,9 @@ def stability_chart(
     Raises
     ------
     BadInput
-        If an axis or option is unusable; if a crank speed is wanted and missing; if modes and
-        axes would take an hour or so.
+        If an axis or option is unusable, or values along the axes make no system: a chart is one
+        series over both (``sweep("stability_chart", ...)`` leaves such points out); if a crank
+        speed is wanted and missing; if modes and axes would take an hour or so.
     """
     require_system(system)
     names, axes = _axes(system, x, y)

@@ -84,8 +84,8 @@ def sweep(
     Sweep
         ``outputs`` by name, shape ``(*grid, ...)``; of a folder they are maps of its files.  Its
         error is the largest of the pieces, its checks are the worst of each.  A point that cannot
-        be worked out, of a chart excepted, is NaN (or an empty text), its error among the
-        ``failures``; whole numbers and truths become floats then.
+        be worked out (of a chart: that makes no system) is NaN (or an empty text), its error among
+        the ``failures``; whole numbers and truths become floats then.
 
     Warns
     -----

@@ -141,7 +141,7 @@ def damaged(rows, rng):
 
 @pytest.mark.parametrize("seed", range(5))
 def test_damaged_manifests_and_modules_are_never_believed(sound, tmp_path, monkeypatch, seed):
-    """What is found is the module of its spec, else another folder's; the command mends the rest."""
+    """What is found is the module of its spec, or another folder's; the command mends the rest."""
     rng = np.random.default_rng(seed)
     entries = read_manifest(sound)
     monkeypatch.setenv("ELASTOLINK_GENERATED", str(tmp_path / "bad"))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
-from numbers import Real
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -13,7 +12,7 @@ import numpy as np
 from ..beams.element_forms import required_structure
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic
-from ..core.inputs import numbers
+from ..core.inputs import is_finite, numbers
 from ..core.maxima import local_maxima
 from ..core.results import Check, Result
 from ..recovery.stress_over_speed import StressCurve, shade_unstable, stress_curve
@@ -185,12 +184,12 @@ def quiet_speeds(
 def _limits(limits: float | Mapping[str, float], links: list[str]) -> dict[str, float]:
     named = dict(limits) if isinstance(limits, Mapping) else dict.fromkeys(links, limits)
     problems = []
-    strange = sorted(set(named) - set(links))
+    strange = sorted(map(str, set(named) - set(links)))
     if strange or not named:
         found = ", ".join(strange) or "no link"
         problems.append(Problem("limits", found, f"some of {links}", "correct the name"))
     for link, value in named.items():
-        if not (isinstance(value, Real) and np.isfinite(value) and value > 0):
+        if not (is_finite(value) and value > 0):
             fix = "give a stress in Pa"
             problems.append(Problem(f"limits of {link}", repr(value), "a positive stress", fix))
     if problems:

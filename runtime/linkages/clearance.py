@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import BadInput, Problem, bad
-from ..core.inputs import is_finite
+from ..core.inputs import is_finite, require_kind
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .four_bar import FourBar
 from .joint_play import OUTPUTS, CrankPosition, Outputs, Play, Route
@@ -323,6 +323,7 @@ def _checked(
             raise bad("joint", repr(joint)[:60], "none beside clearances by joint", "leave it out")
         given = dict(clearances)
     else:
+        require_kind("joint", joint, (str, type(None)), 'name it by its links, as "23"')
         given = {"34" if joint is None else joint: clearances}
     longest = max(abs(size) for size in linkage.lengths.values())
     problems = []

@@ -193,7 +193,7 @@ def flywheel_inertia(machine: Machine, speed: float, fluctuation: float = 0.02) 
     >>> wheel.inertia > 0 and abs(wheel.fluctuation - 0.02) < 1e-12
     True
     """
-    if not_finite("flywheel_inertia", {"fluctuation": fluctuation}) or not 0 < fluctuation < 1:
+    if not_finite("flywheel_inertia", {"fluctuation": fluctuation}) or not 1e-100 < fluctuation < 1:
         given = repr(fluctuation)[:60]
         raise bad("fluctuation", given, "a number between 0 and 1", "0.02 is usual")
     steady = torque_fluctuation(machine, speed)
@@ -367,7 +367,7 @@ def _confirmed(
 def _require(machine: Machine, speed: float) -> None:
     require_machine(machine)
     machine.linkage.require_full_turn()
-    if not_finite("speed", {"speed": speed}) or speed == 0:
+    if not_finite("speed", {"speed": speed}) or not speed * speed:
         given = repr(speed)[:60]
         raise bad("speed", given, "a finite crank speed, not zero", "give one in rad/s")
     turns = _SCATTERED + TURN * _TURNS[:, np.newaxis]

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..core.errors import BadInput, Problem, bad
+from ..core.inputs import require_mapping
 from .derived import complete
 from .scene import ReadOnlyTable, Scene
 from .validation import find_layout, nearest, show, validate
@@ -61,8 +62,10 @@ def load_scene(
     >>> scene.get("links.crank"), round(scene.get("links.coupler"), 4)
     (0.08, 0.381)
     """
+    given = {} if overrides is None else overrides
+    require_mapping("overrides", given, 'say {"links.crank": "0.1 m"}, for example')
     name, text = _find(name_or_path)
-    return scene_from_document(name, _parse(text, name), overrides)
+    return scene_from_document(name, _parse(text, name), given)
 
 
 def scene_from_document(

@@ -189,7 +189,7 @@ def _limits(limits: float | Mapping[str, float], links: list[str]) -> dict[str, 
         found = ", ".join(strange) or "no link"
         problems.append(Problem("limits", found, f"some of {links}", "correct the name"))
     for link, value in named.items():
-        if not (is_finite(value) and value > 0):
+        if not (is_finite(value) and value > 1e-100):
             fix = "give a stress in Pa"
             problems.append(Problem(f"limits of {link}", repr(value), "a positive stress", fix))
     if problems:

@@ -43,6 +43,8 @@ def arguments(**given: ArrayLike) -> tuple[tuple[Array, ...], tuple[int, ...]]:
     damping = arrays[list(given).index("damping")]
     if np.any(damping < 0.0):
         raise bad("damping", float(damping.min()), "K >= 0", "damping takes energy out")
+    if np.any(damping > 1e100):
+        raise bad("damping", float(damping.max()), "K up to 1e100", "its square is no number")
     try:
         return arrays, np.broadcast_shapes(*(item.shape for item in arrays))
     except ValueError as reason:

@@ -453,8 +453,8 @@ def _batch(
 ) -> tuple[Array, dict[str, Array], tuple[int, ...]]:
     """Return speeds, parameter values and the shape to which they broadcast."""
     speeds = numbers("speed", speed)
-    # The square of a larger one, times a mass, may be no number.
-    if not np.all((speeds > 0) & (speeds <= 1e100)):
+    # The squares of others, or the inverse ones, times a mass or a stiffness may be no numbers.
+    if not np.all((speeds >= 1e-100) & (speeds <= 1e100)):
         raise bad("speed", speed, "positive finite speeds [rad/s]", "leave out speeds <= 0")
     values = {name: numbers(name, value) for name, value in parameters.items()}
     for name, value in values.items():

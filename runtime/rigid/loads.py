@@ -9,7 +9,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from ..core.errors import BadInput, Problem, bad
-from ..core.inputs import are_finite
+from ..core.inputs import are_finite, names_problems
 from ..linkages.linkage import Array, LinkMotion, PointMotion
 from .inputs import not_finite
 
@@ -275,7 +275,9 @@ class TorsionSpring:
         rates = {"stiffness": self.stiffness, "damping": self.damping}
         problems = not_finite(where, rates, least=0.0)
         problems += not_finite(where, {"free_angle": self.free_angle, "preload": self.preload})
-        if self.first == self.second:
+        ends = (self.first, self.second)
+        problems += names_problems(f"{where}: first, second", ends)
+        if not problems and self.first == self.second:
             given = f"both ends on {self.first!r}"
             problems.append(Problem(where, given, "two different links", "name another link"))
         if problems:

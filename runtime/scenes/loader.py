@@ -9,8 +9,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from ..core.errors import BadInput, Problem, bad
-from ..core.inputs import require_mapping
+from ..core.errors import BadInput, Problem, bad, shown
 from .derived import complete
 from .scene import ReadOnlyTable, Scene
 from .validation import find_layout, nearest, show, validate
@@ -63,7 +62,9 @@ def load_scene(
     (0.08, 0.381)
     """
     given = {} if overrides is None else overrides
-    require_mapping("overrides", given, 'say {"links.crank": "0.1 m"}, for example')
+    if not isinstance(given, Mapping):
+        fix = 'say {"links.crank": "0.1 m"}, for example'
+        raise bad("overrides", shown(given), "a mapping from keys", fix)
     name, text = _find(name_or_path)
     return scene_from_document(name, _parse(text, name), given)
 

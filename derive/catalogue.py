@@ -126,6 +126,13 @@ CATALOGUE = (
         specs=(ModelSpec("beam", "free_free_modes"),),
     ),
     CatalogueEntry(
+        mechanism="beam",
+        formulations=("tangent_harmonics",),
+        module=".models.beam_tangent_harmonics",
+        sources=("beam_tangent_harmonics.py",),
+        specs=(ModelSpec("beam", "tangent_harmonics"),),
+    ),
+    CatalogueEntry(
         mechanism="beam_element",
         formulations=_BEAMS,
         module=".models.beam_elements",
@@ -188,6 +195,18 @@ CATALOGUE = (
             "overhang_waves.py",
         ),
         specs=(ModelSpec("quick_return", "overhang_modes"),),
+    ),
+    *(
+        CatalogueEntry(
+            mechanism=name,
+            formulations=("inextensible",),
+            module=f".models.inextensible_coupler:{name.upper()}",
+            sources=("inextensible_coupler.py",),
+            specs=(ModelSpec(name, "inextensible", flexible=("coupler",)),),
+            closed_in_modes=True,
+            choices=Choices(flexible=("coupler",)),
+        )
+        for name in ("four_bar", "slider_crank")
     ),
     *(_rigid(name, "forces", "", "crank_acceleration") for name in _LINKAGES),
     *(_rigid(name, "multibody", ":MULTIBODY", "drive") for name in _LINKAGES),

@@ -15,6 +15,7 @@ from .modal import IDENTITY, Modes
 from .records import EquationsOfMotion, VariationalEquations
 from .spec import Family, ModelSpec
 from .staged import Steps, chosen_outputs
+from .stations import Block, Stations
 
 
 @dataclass(frozen=True)
@@ -68,6 +69,10 @@ class ConstrainedSystem:
     dropped : mapping
         Terms that a caller may leave out, to the parameters and numbers of modes that then vanish
         and the multipliers whose constraints are released.
+    stations : Stations, optional
+        Where the last coordinate stands for one of each station (see :mod:`.stations`).
+    blocks : mapping
+        Array name to its matrix over the stations.
     """
 
     equations: EquationsOfMotion
@@ -75,6 +80,8 @@ class ConstrainedSystem:
     steps: Steps = field(default_factory=Steps)
     modes: Modes | None = None
     dropped: Mapping[tuple[str, ...], tuple[str, ...]] = field(default_factory=dict)
+    stations: Stations | None = None
+    blocks: Mapping[str, Block] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -123,13 +130,12 @@ def lower_constrained(
 
     Raises ``ValueError`` if an open function is applied to more than one argument.
     """
-    e, v, modes = system.equations, system.variations, system.modes
+    e, v, modes, stations = system.equations, system.variations, system.modes, system.stations
     outer = {argument.name: argument for argument in description.arguments}
-    if modes is not None:
-        each = outer[modes.amplitude]
-        for symbol in (*e.velocities, *(v.accelerations if v else ())):
-            if symbol.name.startswith(f"{modes.amplitude}_d"):
-                outer[symbol.name] = replace(each, name=symbol.name, meaning="")
+    many = modes.amplitude if modes else stations.angle if stations else None
+    for symbol in (*e.velocities, *(v.accelerations if v else ())):
+        if many is not None and symbol.name.startswith(f"{many}_d"):
+            outer[symbol.name] = replace(outer[many], name=symbol.name, meaning="")
     time = _argument(e.t, "Time", outer)
     positions = [_argument(q, "Coordinate", outer) for q in e.coordinates]
     velocities = [_argument(q, "", outer) for q in e.velocities]
@@ -144,6 +150,8 @@ def lower_constrained(
             "gamma": e.gamma,
         },
     }
+    if stations is not None:  # what closes a loop at two levels, before the velocities are known
+        arrays["constraints"]["velocity_rhs"] = e.velocity_rhs
     states = {"constraints": positions, "dynamics": [*positions, *velocities]}
     if v is not None:
         arrays["variations"] = {
@@ -156,10 +164,13 @@ def lower_constrained(
         more += [_argument(lam, "Multiplier", outer) for lam in e.multipliers]
         states["variations"] = [*positions, *velocities, *more]
     forms = [matrix for group in arrays.values() for matrix in group.values()]
+    forms += [part for block in system.blocks.values() for part in block.expressions]
     values = external_values([*forms, *(value for _, value in system.steps.steps)])
+    blocks = {name: block.with_each(values.plain) for name, block in system.blocks.items()}
     external = values.symbols if modes is None else sp.symbols(modes.external)
     passed = [_argument(s, "Passed in", outer) for s in external]
-    numbers = [] if modes is None else [outer[name] for name in modes.numbers]
+    indexed = modes or stations
+    numbers = [outer[name] for name in indexed.numbers] if indexed else []
     kernels = [
         _ArrayKernel(
             name,
@@ -167,6 +178,7 @@ def lower_constrained(
             (*states[name], time, *passed, *description.parameters, *numbers),
             {key: values.plain(matrix) for key, matrix in arrays[name].items()},
             () if modes is None else (IDENTITY.name, *modes.numbers),
+            {key: block for key, block in blocks.items() if key in arrays[name]},
         )
         for name in arrays
     ]
@@ -178,11 +190,18 @@ def lower_constrained(
     if modes is not None:
         words = "Coordinate that stands for one of each mode, and the numbers of modes and pairs."
         tables += (Table("MODES", (modes.amplitude, modes.numbers), words),)
+    if stations is not None:
+        tables += (Table("STATIONS", (stations.angle, stations.numbers), _STATION_WORDS),)
     tables += drops_table(system.dropped)
     steps = _plain_steps(system.steps, values)
     return _module(spec, "constrained", kernels, steps, description, tables)
 
 
+_STATION_WORDS = (
+    "Coordinate that stands for one of each station, and the numbers of stations and pairs.  In "
+    "ARRAYS a matrix over the stations has its diagonal and, beside it, products of factors of the "
+    "rows, a kernel, and factors of the columns."
+)
 _SUMMARIES = {
     "constraints": "Return the constraints and their Jacobian",
     "dynamics": "Return everything in the equations of motion at acceleration level",
@@ -227,20 +246,37 @@ class _ArrayKernel:
     arguments: tuple[Argument, ...]
     arrays: Mapping[str, sp.ImmutableDenseMatrix]
     matrices: tuple[str, ...] = ()
+    blocks: Mapping[str, Block] = field(default_factory=dict)
 
     def lowered(self, steps: Steps) -> tuple[Kernel, dict[str, object]]:
         """Return the kernel and, by array, its shape and where each returned entry belongs."""
         found: dict[sp.Expr, int] = {}
         results: list[Result] = []
         places: dict[str, object] = {}
+
+        def place(entry: sp.Expr, *name: str) -> int:
+            if entry not in found:
+                found[entry] = len(results)
+                results.append(Result("_".join(name), "float or ndarray", "", ""))
+            return found[entry]
+
         for array, matrix in self.arrays.items():
-            entries = []
+            entries: list[tuple[object, ...]] = []
             for (i, j), entry, kind in self._filled(matrix):
-                if entry not in found:
-                    found[entry] = len(results)
-                    name = "_".join([array, str(i + 1), str(j + 1), *kind])
-                    results.append(Result(name, "float or ndarray", "", ""))
-                entries.append((i, j, found[entry], *kind))
+                at = place(entry, array, str(i + 1), str(j + 1), *kind)
+                entries.append((i, j, at, *kind))
+            if array in self.blocks:
+                block, i, j = self.blocks[array], matrix.rows - 1, matrix.cols - 1
+                where = array, str(i + 1), str(j + 1)
+                if block.diagonal != 0:
+                    entries.append((i, j, place(block.diagonal, *where, "diagonal")))
+                for number, (left, kernel, right) in enumerate(block.products, start=1):
+                    sides = (
+                        place(side, *where, kernel.name, f"{word}{number}")
+                        for side, word in ((left, "left"), (right, "right"))
+                    )
+                    first, second = sides
+                    entries.append((i, j, first, kernel.name, second))
             places[array] = (matrix.shape, tuple(entries))
         outputs = list(zip(results, found, strict=True))
         return lower_kernel(self.name, self.summary, self.arguments, steps, outputs), places

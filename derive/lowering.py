@@ -13,6 +13,7 @@ from .ir import Argument, Description, Kernel, ModuleSpec, Result, Statement, Ta
 from .modal import COUNTED_MODES, EACH_MODE, ModeProduct, ModeSum
 from .spec import ModelSpec
 from .staged import ClosedForm, KernelForms, Step, Steps
+from .stations import StationProduct, StationSum
 
 _FUNCTIONS: dict[type[sp.Function], str] = {
     sp.sin: "sin",
@@ -84,6 +85,11 @@ class _Printer:
             return f"_sum({', '.join(self.line(a)[0] for a in e.args)})", _ATOM
         if isinstance(e, ModeProduct):
             return f"_product({', '.join(self.line(a)[0] for a in e.args)})", _ATOM
+        if isinstance(e, StationSum):
+            return f"xp.sum({self.line(e.args[0])[0]}, axis=-1, keepdims=True)", _ATOM
+        if isinstance(e, StationProduct):  # the kernels are symmetric
+            kernel, values = e.args
+            return f"{self._wrap(values, _ATOM)} @ {self._wrap(kernel, _ATOM)}", _PRODUCT
         for kind, name in _FUNCTIONS.items():
             if isinstance(e, kind):
                 return f"xp.{name}({', '.join(self.line(a)[0] for a in e.args)})", _ATOM

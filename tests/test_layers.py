@@ -25,7 +25,7 @@ PIL clarabel matplotlib mpl_toolkits pint tqdm xarray exudyn heyoka numba flint 
 # From bottom to top; `docs/architecture.md` shows the same.
 LAYERS = """
 core linkages rigid beams systems scenes hill periodic recovery constrained frequencies
-stability design sweeps gallery cli
+stability nonlinear design sweeps gallery cli
 """
 
 

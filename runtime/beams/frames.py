@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse
 from ..core.families import MATRICES, LinearPeriodic, Term
 from ..core.inputs import are_finite, names_problems, require_mapping
 from ..linkages.linkage import LinkMotion
@@ -135,8 +135,7 @@ def _check_form(
         if missing:
             found = f"none for {', '.join(missing)}"
             problems.append(Problem("elements", found, "one each", "add them"))
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)
 
 
 def _check(
@@ -158,8 +157,7 @@ def _check(
             problems.append(
                 Problem("sections", f"none for {', '.join(missing)}", "one each", "add")
             )
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)
 
 
 def without_stretching(system: LinearPeriodic) -> LinearPeriodic:

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated import beam_section_sandwich
-from ..core.errors import BadInput, Problem, bad
-from ..core.inputs import is_finite, require_kind, require_positive, sign_problems
+from ..core.errors import BadInput, bad, refuse
+from ..core.inputs import is_finite, number_problems, require_kind, require_positive
 from .section import Section
 
 Array = NDArray[np.float64]
@@ -32,7 +32,7 @@ class ElasticLayer:
     density: float  # mass per volume [kg/m^3]
 
     def __post_init__(self) -> None:
-        _refuse(sign_problems("ElasticLayer", self, vars(self), positive=True, fix=_SI))
+        refuse(number_problems("ElasticLayer", vars(self), "positive", _SI))
 
 
 @dataclass(frozen=True)
@@ -48,12 +48,10 @@ class ViscoelasticLayer:
     density: float  # mass per volume [kg/m^3]
 
     def __post_init__(self) -> None:
-        names = [name for name in vars(self) if name != "loss_factor"]
-        problems = sign_problems("ViscoelasticLayer", self, names, positive=True, fix=_SI)
-        problems += sign_problems(
-            "ViscoelasticLayer", self, ["loss_factor"], positive=False, fix="correct it"
-        )
-        _refuse(problems)
+        positive = dict(vars(self))
+        free = {"loss_factor": positive.pop("loss_factor")}
+        problems = number_problems("ViscoelasticLayer", positive, "positive", _SI)
+        refuse(problems + number_problems("ViscoelasticLayer", free, "not negative"))
 
 
 @dataclass(frozen=True)
@@ -145,11 +143,6 @@ def sandwich_section(
 
 
 _SI = "give SI units"
-
-
-def _refuse(problems: list[Problem]) -> None:
-    if problems:
-        raise BadInput(*problems)
 
 
 def _stiffness(

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import BadInput, Problem, bad, refuse
 from ..core.families import LinearPeriodic, Term
 from ..core.inputs import are_finite
 from .assembly import AngleArrays, Array, in_own_axes, rotation, turned
@@ -400,8 +400,7 @@ def _check(
         problems.append(Problem("rayleigh", found, "two numbers, 0 or more", fix))
     if not are_finite(gravity, 2):
         problems.append(Problem("gravity", repr(gravity), "two finite numbers", "correct them"))
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)
 
 
 def lumped_values(

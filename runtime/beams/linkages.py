@@ -8,7 +8,7 @@ from functools import partial
 from types import MappingProxyType
 from typing import Any
 
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse
 from ..core.families import LinearPeriodic
 from ..core.inputs import require_kind, require_mapping
 from ..linkages import FourBar, Linkage, QuickReturn, SliderCrank
@@ -176,8 +176,7 @@ def _check_names(
     if masses is not None:
         require_mapping("joint_masses", masses, 'say {"B": 0.2}, for example')
     problems = node_value_problems(nodes)
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)
     links, letters = set(bars), set(_letters(bars))
     known = {
         "sections": (set(sections), links),
@@ -194,5 +193,4 @@ def _check_names(
         missing = sorted(links - known[name][0])
         if missing:
             problems.append(Problem(name, f"none for {', '.join(missing)}", "one each", "add it"))
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..core.errors import BadInput, bad
-from ..core.inputs import is_finite, require_positive, sign_problems
+from ..core.errors import bad, refuse
+from ..core.inputs import is_finite, number_problems, require_positive
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,14 +49,11 @@ class Section:
         names = ["area", "second_moment", "modulus", "density"]
         optional = ("thickness", "shear_stiffness")
         names += [name for name in optional if getattr(self, name) is not None]
-        problems = sign_problems(
-            "Section", self, names, positive=True, fix="give SI units, lengths in metres"
-        )
-        problems += sign_problems(
-            "Section", self, ["retardation"], positive=False, fix="correct it"
-        )
-        if problems:
-            raise BadInput(*problems)
+        positive = {name: getattr(self, name) for name in names}
+        fix = "give SI units, lengths in metres"
+        problems = number_problems("Section", positive, "positive", fix)
+        problems += number_problems("Section", {"retardation": self.retardation}, "not negative")
+        refuse(problems)
 
     @classmethod
     def rectangle(

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import BadInput, Problem, bad, shown
+from ..core.errors import Problem, bad, refuse, shown
 from ..core.inputs import are_finite, is_finite, names_problems, require_kind
 from ..linkages.linkage import LinkMotion
 from .elements import KINDS
@@ -221,8 +221,7 @@ class Beam:
             fix = "give Section.shear_stiffness, or poisson to Section.rectangle"
             problems.append(Problem(where, "no shear stiffness", "one for 'timoshenko'", fix))
         problems += _division_problems(where, self.elements)
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
         if not isinstance(self.elements, int):
             object.__setattr__(self, "elements", tuple(float(part) for part in self.elements))
 
@@ -304,8 +303,7 @@ class Node:
             problems.append(
                 Problem(f"{where}: force", str(self.force), "two numbers", "correct it")
             )
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -347,8 +345,7 @@ class Structure:
             for one in given:
                 require_kind(what, one, kind, f"make each with {kind.__name__}")
         problems = _name_problems(self.beams, self.nodes)
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
         self._require_connected()
         self._require_closed()
 

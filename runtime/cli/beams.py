@@ -155,7 +155,6 @@ def _known(value: float | None, form: str) -> str:
 
 
 def _unstable_lines(ranges: Sequence[tuple[float, float]]) -> list[str]:
-    """Return a line per range of speeds that is not known to be stable."""
     return [f"unstable from {low:.5g} to {high:.5g} rad/s" for low, high in ranges]
 
 

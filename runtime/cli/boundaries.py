@@ -144,7 +144,6 @@ def _of_mode(options: argparse.Namespace, form: hill.HillForm, regions: tuple[in
 def _of_modes(
     options: argparse.Namespace, system: LinearPeriodic, speeds: tuple[float, float]
 ) -> int:
-    """Boundaries in crank speed of all modes in a range."""
     edges = stability.stability_edges(system, speeds)
     rows = [
         (f"{label} ?" if doubtful else label, _rpm(first), _rpm(last), _rpm(last - first, 3))
@@ -204,8 +203,7 @@ def _bars(ax: Any, exact: hill.Boundaries, frequency: float) -> None:
             right = frequency / sqrt(low) if low > 0.0 else 2.0 * frequency / sqrt(high)
             left = frequency / sqrt(high)
             ax.barh(str(n), (right - left) * rpm, left=left * rpm, height=0.6)
-    ax.set_xlabel("crank speed [rpm]")
-    ax.set_ylabel("region")
+    ax.set(xlabel="crank speed [rpm]", ylabel="region")
 
 
 def _perturb(options: argparse.Namespace) -> int:
@@ -290,7 +288,6 @@ def _formulas(options: argparse.Namespace) -> int:
 
 
 def _values(text: str) -> Array | list[float]:
-    """Return one value or evenly spaced ones."""
     if ":" in text:
         return opt.values(text, "dimensionless", "--mu")
     return [opt.quantity(text, "dimensionless", "--mu")]

@@ -33,8 +33,8 @@ def add(commands: Any) -> None:
     of = "a place or rate (theta4, omega3, position ...) or a force (x34, torque ...)"
     opt.add(series, {"--of NAME": of}, required=True)
     opt.add(series, {"--order N": "highest harmonic; default %(default)s"}, type=int, default=8)
-    accuracy = "of each coefficient, over the largest value; default 1e-12"
-    opt.add(series, {"--accuracy EPS": accuracy}, type=float)
+    accuracy = "of each coefficient, over the largest value; default %(default)s"
+    opt.add(series, {"--accuracy EPS": accuracy}, type=float, default=1e-12)
     speed = "constant crank speed for forces, e.g. '195 rpm'; default operation.speed"
     opt.add(series, {"--speed SPEED": speed})
 
@@ -57,7 +57,6 @@ def _curve(options: argparse.Namespace) -> int:
 
 
 def _point(text: str, linkage: linkages.Linkage, link: str) -> tuple[float, float]:
-    """Return the place of a point in its link [m]."""
     along, comma, across = text.partition(",")
     if not comma or "," in across:
         raise bad("--point", repr(text), "ALONG,ACROSS", "write it like 0.5,0.3 or '6 in,2 in'")
@@ -108,8 +107,7 @@ def _harmonics(options: argparse.Namespace) -> int:
     elastolink harmonics smith_1972_12_6_12_12 --of torque --speed '10 rad/s'
     """
     source = _source(options, opt.load(options))
-    given = {} if options.accuracy is None else {"accuracy": options.accuracy}
-    found = linkages.harmonics(source, order=options.order, **given)
+    found = linkages.harmonics(source, order=options.order, accuracy=options.accuracy)
     lines = opt.columns(
         ("harmonic", "", range(len(found.a))),
         ("cosine", ".12g", found.a),

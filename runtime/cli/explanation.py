@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -19,14 +19,11 @@ from ...derive.spec import BEAM_FORMULATIONS, Entry, ModelSpec, read_manifest
 from ..core.errors import ElastolinkError, bad
 from ..core.families import MATRICES, VECTORS, LinearPeriodic
 from ..core.modules import search_path
-from ..core.plotting import axes_or_new
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..periodic.equation import SPEED_POWER, equation_of
 from ..scenes import Scene, load_scene
 from .probe import EMITTED, bare_name
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 # What must not load, whatever is asked of a scene; reading units takes pint, which takes Jinja2.
 _UNWANTED = ("sympy", "jinja2", "mpmath", "matplotlib")
@@ -316,7 +313,6 @@ def _choices(spec: ModelSpec) -> tuple[str, ...]:
 
 
 def _terms(scene: Scene) -> dict[str, str]:
-    """Return the terms that a scene may leave out, and whether it does."""
     spec = scene.model_spec()
     offered, dropped = _choices(spec), set(spec.drop)
     if scene.model["formulation"] in BEAM_FORMULATIONS:
@@ -380,7 +376,6 @@ def _listed(names: Iterable[str]) -> str:
 
 
 def _by_kind(kinds: Mapping[str, str]) -> dict[str, list[str]]:
-    """Return the names of each kind."""
     found: dict[str, list[str]] = defaultdict(list)
     for name, kind in kinds.items():
         found[kind].append(name)

@@ -169,7 +169,6 @@ def _torque(options: argparse.Namespace, scene: Scene) -> rigid.TorqueLine | flo
 
 
 def _run_lines(found: rigid.RunUp) -> list[str]:
-    """Return the table of a run, and how it ended."""
     speed, fluctuation = float(found.speed[-1]), found.fluctuation
     balance = found.checks["energy less work, relative"].value
     rows = [

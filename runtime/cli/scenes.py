@@ -154,8 +154,7 @@ def _draw_frame(scene: Scene, ax: Axes) -> Axes:
 
 def _to_scale(ax: Axes) -> Axes:
     ax.set_aspect("equal", adjustable="datalim")
-    ax.set_xlabel("x [m]")
-    ax.set_ylabel("y [m]")
+    ax.set(xlabel="x [m]", ylabel="y [m]")
     return ax
 
 
@@ -166,6 +165,5 @@ def _draw_function(scene: Scene, ax: Axes) -> Axes:
 
     theta = np.linspace(0.0, 2 * np.pi, 361)
     ax.plot(np.degrees(theta), PeriodicFunction(**scene["function"])(theta))
-    ax.set_xlabel("theta [deg]")
-    ax.set_ylabel("f(theta)")
+    ax.set(xlabel="theta [deg]", ylabel="f(theta)")
     return ax

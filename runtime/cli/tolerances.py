@@ -184,7 +184,6 @@ def _drive(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
 
 
 def _width(pair: str) -> tuple[str, float]:
-    """Return name and width of a tolerance in SI units."""
     name, width = opt.pair(pair, "--tolerance", "NAME=WIDTH", "crank='0.05 mm'")
     dimension = _DIMENSIONS.get(name.rpartition(".")[2], "length")
     return name, opt.size(width, dimension, f"--tolerance {name}")
@@ -208,7 +207,6 @@ def _table(found: Tolerances) -> list[str]:
 
 
 def _trial(trial: ToleranceTrial) -> list[str]:
-    """Return what the random linkages say."""
     kept = trial.samples - trial.lost
     lines = [f"{kept} random linkages of {trial.samples} reach every angle ({trial.method})"]
     for name, check in sorted(trial.checks.items()):

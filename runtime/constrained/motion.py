@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from numbers import Real
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from ..core.errors import LINEAR_RANGE, LinearRangeWarning, bad
 from ..core.families import Constrained, Guard
 from ..core.inputs import numbers, require_kind
-from ..core.plotting import axes_or_new
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from .collocation import collocation
 from .consistent import consistent_state
@@ -32,10 +32,6 @@ from .equations import (
     Tolerance,
     constraint_norms,
 )
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 _MOST_SAMPLES = 2_000_000
 

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.inputs import require_kind
-from ..core.plotting import multiplier_plane
+from ..core.plotting import Axes, multiplier_plane
 from ..core.results import Check, Result, provenance
 from .equations import EPS, Array
 from .orbits import LEFT, OrbitSource, PeriodicOrbit, Shooting, Shot, Tangent
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 ComplexArray = NDArray[np.complex128]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from numbers import Real
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,7 +13,7 @@ from ..core.errors import SelfCheckFailed, bad
 from ..core.families import Constrained
 from ..core.families.multipliers import check_rank, scaling
 from ..core.inputs import numbers, require_kind
-from ..core.plotting import axes_or_new
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..periodic.ring import solve_ring
 from .collocation import Nodes, integrals, nodes, stage_matrix
@@ -27,9 +27,6 @@ from .equations import (
     solved,
 )
 from .motion import linear_range, march
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 STAGES = 12
 # Phase of the fastest motion that a first step covers [rad]; 12 stages err 1e-14 a step at 5.

@@ -59,15 +59,7 @@ def extrema_analysis(count: int) -> Array:
 
 def basis(x: Array, count: int) -> Array:
     """Return ``T_0 ... T_{count-1}`` at ``x`` (shape ``(n,)``, within [-1, 1]): ``(count, n)``."""
-    table = np.empty((count, x.size))
-    table[0] = 1.0
-    if count > 1:
-        table[1] = x
-    twice = 2.0 * x
-    for k in range(2, count):
-        np.multiply(twice, table[k - 1], out=table[k])
-        table[k] -= table[k - 2]
-    return table
+    return np.asarray(np.polynomial.chebyshev.chebvander(x, count - 1).T)
 
 
 def coefficients2(values: Array) -> Array:

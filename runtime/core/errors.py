@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import unicodedata
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 # Deflection over the length of its link beyond which linear equations are no longer believed.
@@ -95,6 +96,12 @@ class LinearRangeWarning(ElastolinkWarning):
 def bad(where: str, found: object, expected: str, fix: str) -> BadInput:
     """Return a :class:`BadInput` with one problem."""
     return BadInput(Problem(where, str(found), expected, fix))
+
+
+def refuse(problems: Sequence[Problem]) -> None:
+    """Raise :class:`BadInput` with all that is wrong, if anything is."""
+    if problems:
+        raise BadInput(*problems)
 
 
 def warn_of_large_deflection(

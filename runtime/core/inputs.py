@@ -10,7 +10,7 @@ from typing import Any, TypeGuard
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import BadInput, Problem, bad
+from .errors import Problem, bad, refuse, shown
 
 
 def is_whole(value: object, least: int, most: int | None = None) -> TypeGuard[int]:
@@ -28,6 +28,12 @@ def require_whole(where: str, value: object, least: int, most: int, fix: str = "
     return int(value)
 
 
+# What a number of a sign is called, and the least one.
+_SIGNS = {
+    "any": ("a finite number", -math.inf),
+    "not negative": ("a finite number, 0 or more", 0.0),
+    "positive": ("a positive number", math.ulp(0.0)),
+}
 # The kind of device, in DLPack's numbering, whose memory NumPy sees.
 _HOST = 1
 
@@ -89,17 +95,16 @@ def is_one_of(value: object, names: Iterable[str]) -> bool:
     return isinstance(value, str) and value in names
 
 
-def sign_problems(
-    where: str, record: object, names: Iterable[str], *, positive: bool, fix: str
+def number_problems(
+    where: str, given: Mapping[str, Any], sign: str = "any", fix: str = "correct it"
 ) -> list[Problem]:
-    """Return what is wrong with attributes that are to be positive, or not negative."""
-    expected = "a positive number" if positive else "a number, 0 or more"
-    found = []
-    for name in names:
-        value = getattr(record, name)
-        if not (is_finite(value) and (value > 0 or (not positive and value == 0))):
-            found.append(Problem(f"{where}.{name}", repr(value), expected, fix))
-    return found
+    """Return what is wrong with numbers of a sign: ``any``, ``not negative`` or ``positive``."""
+    expected, least = _SIGNS[sign]
+    return [
+        Problem(f"{where}.{name}", shown(value), expected, fix)
+        for name, value in given.items()
+        if not (is_finite(value) and value >= least)
+    ]
 
 
 def names_problems(where: str, value: object) -> list[Problem]:
@@ -112,21 +117,13 @@ def names_problems(where: str, value: object) -> list[Problem]:
 def names_in_a_row(where: str, value: object) -> tuple[str, ...]:
     """Return a row of names, one alone being a row of one; refuse anything else."""
     row = (value,) if isinstance(value, str) else value
-    problems = names_problems(where, row)
-    if problems:
-        raise BadInput(*problems)
+    refuse(names_problems(where, row))
     return tuple(row)  # type: ignore[arg-type]
 
 
 def require_positive(where: str, **values: Any) -> None:
     """Refuse values that are not positive numbers, all of them in one error."""
-    problems = [
-        Problem(f"{where}: {name}", repr(value), "a positive number", "give it in SI units")
-        for name, value in values.items()
-        if not (is_finite(value) and value > 0)
-    ]
-    if problems:
-        raise BadInput(*problems)
+    refuse(number_problems(where, values, "positive", "give it in SI units"))
 
 
 def require_kind(where: str, value: object, kind: type | tuple[type, ...], fix: str) -> None:

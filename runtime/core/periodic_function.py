@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .errors import bad
 from .inputs import numbers_in_a_row
-from .sampling import finite_angles, values_at
+from .sampling import finite_angles, irregular_angles, values_at
 
 Array = NDArray[np.float64]
 
@@ -305,9 +305,7 @@ def _analyse(samples: Array) -> tuple[Array, Array]:
 
 def _gap(f: Callable[[Array], ArrayLike], found: PeriodicFunction, label: str) -> float:
     """Compare at angles off every grid: samples alone cannot tell 32 theta from 0 theta."""
-    golden = 0.6180339887498949
-    places = (golden * np.arange(1, _PROBES + 1)) % 1.0
-    theta = np.asarray(2.0 * np.pi * places, dtype=np.float64)
+    theta = irregular_angles(_PROBES)
     return float(np.max(np.abs(values_at(f, theta, label) - found(theta))))
 
 

@@ -12,8 +12,10 @@ from .errors import bad
 from .results import write_whole
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+    from matplotlib.axes import Axes as Axes
     from matplotlib.figure import Figure
+else:  # what annotations name; matplotlib loads with the first picture
+    Axes = "matplotlib.axes.Axes"
 
 FORMATS = (".png", ".svg", ".pdf")
 _METADATA: dict[str, dict[str, Any]] = {

@@ -29,6 +29,12 @@ class Remembered(Generic[_Values]):
         return last[1]
 
 
+def irregular_angles(count: int) -> Array:
+    """Return angles of a turn by the golden section, ``(count,)``: none of regular samples."""
+    places = (0.6180339887498949 * np.arange(1, count + 1)) % 1.0
+    return np.asarray(2.0 * np.pi * places, dtype=np.float64)
+
+
 def finite_angles(theta: ArrayLike) -> Array:
     """Return angles as an array of any shape; refuse any that is not finite."""
     angles = np.asarray(theta, dtype=float)

@@ -216,7 +216,6 @@ def _factor(unit: str, dimension: str, where: str, text: str) -> Decimal:
 
 
 def _product(factors: Iterable[tuple[str, int]]) -> _Unit:
-    """Return the product of powers of known units."""
     factor, powers, counts = Decimal(1), dict[str, Fraction](), frozenset[str]()
     for name, power in factors:
         unit = _unit(name)

@@ -8,7 +8,6 @@ matrices holds it across as a spring of a part of its axial stiffness would.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,7 +70,7 @@ class ChangingLength:
         """Return the rows of the deflections over the links' lengths, ``(nt, k, n)``."""
 
         def find(system: LinearPeriodic, own: Places) -> ByName:
-            return {"rows": deflection_rows(system, angle[own])}
+            return {"rows": np.asarray(system.deflection_rows(angle[own]))}
 
         return self._between(time, find)["rows"]
 
@@ -95,11 +94,6 @@ class ChangingLength:
                     total[name] = np.zeros((len(time), *value.shape[1:]))
                 total[name][own] += value * weight.reshape(-1, *(1,) * (value.ndim - 1))
         return total
-
-
-def deflection_rows(system: LinearPeriodic, angle: Array) -> Array:
-    """Return the rows of the deflections of links of beams over their lengths, ``(nt, k, n)``."""
-    return cast(Callable[[Array], Array], system.relative_deflection)(angle)
 
 
 def _cubic(place: Array) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,13 +13,11 @@ from ..beams.element_forms import required_structure
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result
 from ..linkages import FourBar, transmission_angle
 from ..recovery.stress_over_speed import ELSEWHERE, StressCurve, stress_curve
 from .speed_profile import Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _LENGTHS = ("frame", "crank", "coupler", "follower")
 
@@ -68,13 +66,10 @@ class StressEffect(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the largest stress of all links over the speed, a line for each value."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         for value, rows in zip(self.values, self.maximum, strict=True):
             ax.semilogy(self.speed, np.max(rows, axis=1) / 1e6, label=f"{value:g}", linewidth=0.9)
-        ax.set_xlabel("crank speed [rad/s]")
-        ax.set_ylabel("largest stress [MPa]")
+        ax.set(xlabel="crank speed [rad/s]", ylabel="largest stress [MPa]")
         ax.legend(title=self.name)
         return ax
 
@@ -96,7 +91,7 @@ def damping_effect(
     if "damping_ratio" not in system.parameters:
         fix = "add it with with_modal_damping"
         raise bad("damping_effect", "a system without modal damping", "damping_ratio", fix)
-    return effect_of(system, "damping_ratio", _values("ratios", ratios), speeds, rtol)
+    return effect_of(system, "damping_ratio", positive_row("ratios", ratios), speeds, rtol)
 
 
 def length_effect(
@@ -113,13 +108,14 @@ def length_effect(
     A length that the system has not, and a value with which the crank cannot turn, are refused.
     """
     required_structure(system)
-    return effect_of(system, name, _values("values", values), speeds, rtol)
+    return effect_of(system, name, positive_row("values", values), speeds, rtol)
 
 
-def _values(where: str, values: Sequence[float]) -> Array:
+def positive_row(where: str, values: ArrayLike, what: str = "numbers") -> Array:
+    """Return positive numbers in a row; refuse anything else."""
     array = np.atleast_1d(numbers(where, values))
     if array.ndim != 1 or not array.size or not np.all(np.isfinite(array) & (array > 0)):
-        raise bad(where, str(values), "positive numbers", "correct them")
+        raise bad(where, str(values), f"positive {what}", "correct them")
     return array
 
 
@@ -174,7 +170,6 @@ def effect_of(
 
 
 def _transmission(system: LinearPeriodic, name: str, values: Array) -> Array | None:
-    """Return the extreme transmission angles of a four-bar for values of a length."""
     if name not in system.geometry or not set(_LENGTHS) <= set(system.geometry):
         return None
     angles = []

@@ -6,15 +6,13 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..core.errors import BadInput, ElastolinkError, Problem, bad
-from ..core.inputs import require_kind, sign_problems
+from ..core.errors import ElastolinkError, Problem, bad, refuse
+from ..core.inputs import number_problems, require_kind
 from ..core.results import Result
 from ..recovery.stress_over_speed import missed_by_parabolas
 from ..recovery.stresses import FIBRES, StressResult
-
-Array = NDArray[np.float64]
+from .speed_profile import Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,14 +43,12 @@ class Material:
 
     def __post_init__(self) -> None:
         """Check the values."""
-        names = ("tensile_strength", "endurance_limit", "exponent", "knee")
-        problems = sign_problems("Material", self, names, positive=True, fix="correct it")
+        problems = number_problems("Material", vars(self), "positive")
         if not problems and self.endurance_limit >= self.tensile_strength:
             expected = f"less than tensile_strength, {self.tensile_strength:g}"
             found = f"{self.endurance_limit:g}"
             problems.append(Problem("Material.endurance_limit", found, expected, "swap them"))
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -190,7 +186,6 @@ def _between(fine: Array) -> tuple[Array, Array]:
 
 
 def _cycles(history: Array) -> tuple[Array, Array, Array]:
-    """Return ranges, means and counts of the cycles of a periodic history."""
     try:
         import rainflow
     except ImportError:

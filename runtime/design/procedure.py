@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, ClassVar, cast
+from typing import ClassVar, cast
 
 import numpy as np
 
@@ -12,15 +12,13 @@ from ..beams.element_forms import required_structure
 from ..core.errors import LINEAR_RANGE, BadInput, bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
+from ..core.plotting import Axes
 from ..core.progress import bar
 from ..core.results import Check, Result
 from ..recovery.stress_over_speed import StressCurve
 from .effects import StressEffect, effect_of
 from .quiet import Band, QuietSpeeds, quiet_speeds
 from .speed_profile import Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 # Damping ratios that are tried, over the system's own, and lengths over the design's.
 _DAMPING = (1.0, 1.25, 1.5, 2.0, 3.0)
@@ -175,7 +173,6 @@ def running_speed(
 
 
 def _place(quiet: QuietSpeeds, band: Band) -> int:
-    """Return the place of the running speed among the speeds."""
     return int(np.argmin(np.abs(quiet.speed - band.best)))
 
 

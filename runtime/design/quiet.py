@@ -5,21 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from ..beams.element_forms import required_structure
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite, numbers
 from ..core.maxima import local_maxima
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result
 from ..recovery.stress_over_speed import StressCurve, shade_unstable, stress_curve
 from .speed_profile import Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True)
@@ -104,8 +102,6 @@ class QuietSpeeds(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the ratios over the speed, the limit, the bands, and what is unstable."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         for link, values in zip(self.links, self.ratio.T, strict=True):
             ax.semilogy(self.speed, values, label=link, linewidth=0.9)
@@ -113,8 +109,7 @@ class QuietSpeeds(Result):
         for band in self.bands:
             ax.axvspan(band.low, band.high, color="tab:green", alpha=0.12, linewidth=0.0)
         shade_unstable(ax, self.unstable)
-        ax.set_xlabel("crank speed [rad/s]")
-        ax.set_ylabel("largest stress over its limit")
+        ax.set(xlabel="crank speed [rad/s]", ylabel="largest stress over its limit")
         ax.legend()
         return ax
 
@@ -192,8 +187,7 @@ def _limits(limits: float | Mapping[str, float], links: list[str]) -> dict[str, 
         if not (is_finite(value) and value > 1e-100):
             fix = "give a stress in Pa"
             problems.append(Problem(f"limits of {link}", repr(value), "a positive stress", fix))
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)
     return {link: float(value) for link, value in named.items()}
 
 

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from numbers import Real
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..beams.element_forms import required_structure
-from ..core.errors import BadInput, Problem
+from ..core.errors import bad
 from ..core.families import LinearPeriodic
-from ..core.inputs import numbers
+from ..core.inputs import is_finite
 from ..core.results import Result, provenance
 from ..frequencies import natural_frequencies
 from ..recovery.stresses import stress_operator
+from .effects import positive_row
 from .speed_profile import Array
 
 _ANGLES = 256
@@ -64,14 +64,9 @@ def screen(system: LinearPeriodic, speeds: ArrayLike, *, damping: float) -> Scre
     z n w/W)``, z the damping ratio.  Resonances at W/n are in it, infinite without damping;
     parametric terms and the other modes are not.
     """
-    given = np.atleast_1d(numbers("speeds", speeds))
-    problems = []
-    if given.ndim != 1 or not given.size or not np.all(np.isfinite(given) & (given > 0)):
-        problems.append(Problem("speeds", str(speeds), "positive crank speeds", "correct them"))
-    if not (isinstance(damping, Real) and np.isfinite(damping) and damping >= 0):
-        problems.append(Problem("damping", repr(damping), "a ratio, 0 or more", "correct it"))
-    if problems:
-        raise BadInput(*problems)
+    given = positive_row("speeds", speeds, "crank speeds")
+    if not (is_finite(damping) and damping >= 0):
+        raise bad("damping", repr(damping), "a ratio, 0 or more", "correct it")
     structure = required_structure(system)
     mean = float(natural_frequencies(system, count=1).mean[0])
     theta = system.period * np.arange(_ANGLES) / _ANGLES

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import BadInput, Problem
+from ..core.errors import Problem, refuse
 
 Array = NDArray[np.float64]
 
@@ -45,8 +45,7 @@ class SpeedProfile:
     def __post_init__(self) -> None:
         """Check the values, and hold copies that do not change."""
         problems = _problems(self.times, self.speeds, self.geometry)
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
         object.__setattr__(self, "times", tuple(float(t) for t in self.times))
         object.__setattr__(self, "speeds", tuple(float(w) for w in self.speeds))
         fixed = {name: tuple(float(v) for v in given) for name, given in self.geometry.items()}

@@ -6,27 +6,25 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from numbers import Real
-from typing import TYPE_CHECKING, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from ..beams.assembly import in_own_axes, products
 from ..beams.element_forms import required_structure
 from ..beams.elements import placed_rotation, placed_shapes
-from ..core.errors import LINEAR_RANGE, BadInput, Problem, bad, warn_of_large_deflection
+from ..core.errors import LINEAR_RANGE, Problem, bad, refuse, warn_of_large_deflection
 from ..core.families import LinearPeriodic, require_system
 from ..core.inputs import is_one_of, is_whole, require_whole
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..frequencies.held import held_frequencies
 from ..periodic import steady_state
 from ..periodic.reduced import ReducedSystem, reduced_system
 from ..recovery.stress_over_speed import missed_by_parabolas
-from .changing_length import ChangingLength, deflection_rows
+from .changing_length import ChangingLength
 from .speed_profile import Array, SpeedProfile
 from .unsteady import FORCES, Drive, arrays_of, generator_of, march
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _STAGES = 3
 # Steps whose motion and stresses are recovered together.
@@ -86,16 +84,13 @@ class Transient(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the largest stress of each link over the time, and the crank speed."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         for link, values in zip(self.links, self.stress.T, strict=True):
             ax.plot(self.time, values / 1e6, linewidth=0.7, label=link)
         beside = ax.twinx()
         beside.plot(self.time, self.speed, color="0.4", linestyle="--", linewidth=0.9)
         beside.set_ylabel("crank speed [rad/s]")
-        ax.set_xlabel("time [s]")
-        ax.set_ylabel("largest stress [MPa]")
+        ax.set(xlabel="time [s]", ylabel="largest stress [MPa]")
         ax.legend(loc="upper left")
         return ax
 
@@ -290,7 +285,6 @@ class _Run:
 
     @cached_property
     def _first(self) -> Array:
-        """The state at the first time."""
         speed = float(self.profile.speeds[0])
         size = self.followed.size
         if self.start == "rest" or speed == 0.0:
@@ -333,10 +327,11 @@ class _Run:
             part = slice(begin, begin + _CHUNK)
             time = found.time[part]
             angle = self.profile.angle(time)
-            if self.changing is None:
-                rows = deflection_rows(self.full, angle)
-            else:
-                rows = self.changing.deflections(angle, time)
+            rows: Any = (
+                self.full.deflection_rows(angle)
+                if self.changing is None
+                else self.changing.deflections(angle, time)
+            )
             values = np.einsum("tkn,tn->tk", rows, found.q[part])
             largest = max(largest, float(np.max(np.abs(values))))
         return largest
@@ -460,5 +455,4 @@ def _check(
     if profile.geometry and modes is not None:
         fix = "set modes=None: the modes of one length are not those of another"
         problems.append(Problem("modes", str(modes), "None where a length changes", fix))
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..core.collocation import gauss_maps
-from ..core.families import DAMPING, LinearPeriodic
+from ..core.families import DAMPING, MATRICES, VECTORS, LinearPeriodic
 from .speed_profile import Array, SpeedProfile
 
 # Forces of inertia and loads, with the power of the speed.
@@ -46,16 +46,8 @@ def arrays_of(
 
     By name, ``(nt, n, n)`` or ``(nt, n)``; those without a term are left out.
     """
-    scales = system.scale_values()
-    found: dict[str, Array] = {}
-    for term in system.terms:
-        if only is not None and term.array not in only:
-            continue
-        value = term(drive.angle)
-        factor = drive.speed**term.power * (1.0 if term.scale is None else scales[term.scale])
-        value = value * factor.reshape(-1, *(1,) * (value.ndim - 1))
-        found[term.array] = found[term.array] + value if term.array in found else value
-    return found
+    names = [name for name in only or MATRICES + VECTORS if system.has(name)]
+    return {name: system.array(name, drive.angle, drive.speed) for name in names}
 
 
 def generator_of(arrays: Mapping[str, Array], drive: Drive) -> Array:

@@ -10,25 +10,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..core.families import LinearPeriodic, require_system
+from ..core.families import Array, LinearPeriodic, require_system
 from ..core.inputs import numbers, require_whole
-from ..core.plotting import axes_or_new
+from ..core.plotting import Axes, axes_or_new
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
 from ..periodic.decoupled.slow_modes import SlowModes, SlowMonodromy
 from .held import HeldModes, buckling_speed, held_modes, mean_frequencies
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
 
 
 def running_frequencies(

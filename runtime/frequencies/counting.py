@@ -11,23 +11,18 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.errors import BadInput, Problem, bad
-from ..core.families import Transcendental
+from ..core.errors import Problem, bad, refuse
+from ..core.families import Array, Transcendental
 from ..core.inputs import is_finite, is_whole, numbers_in_a_row, require_kind
-from ..core.plotting import axes_or_new
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from .frames import Assembly, DynamicStiffness, divided_for, narrow_enough
 from .members import functions, phases
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
 
 UNIT = 2.0**-53
 
@@ -615,5 +610,4 @@ def _check(upto: float | None, count: int | None) -> None:
         problems.append(Problem("upto", repr(upto), "a positive frequency [rad/s]", "correct it"))
     if count is not None and not is_whole(count, 1):
         problems.append(Problem("count", repr(count), "a whole number from 1", "correct it"))
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)

@@ -5,26 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import BadInput, bad
-from ..core.families import DAMPING, LinearPeriodic, require_system
+from ..core.families import DAMPING, Array, LinearPeriodic, require_system
 from ..core.inputs import require_whole, speed_span
 from ..core.maxima import local_maxima
-from ..core.plotting import axes_or_new
+from ..core.plotting import Axes, axes_or_new
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
 from .held import buckling_speed, held_frequencies, mean_frequencies
 from .multiplier_maxima import Maxima, meissner_maxima, multiplier_maxima
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 

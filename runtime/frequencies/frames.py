@@ -13,11 +13,10 @@ from ..beams.frames import eliminated
 from ..beams.linear import lumped_values
 from ..beams.structure import Freedoms, PlacedElement, Structure, number_freedoms
 from ..core.errors import bad
-from ..core.families import Transcendental
+from ..core.families import Array, Transcendental
 from ..core.inputs import is_finite, names_problems, numbers, require_kind, require_mapping
 from .members import functions, member_inertias, member_matrices, phases
 
-Array = NDArray[np.float64]
 Pieces = Mapping[str, tuple[float, ...]]
 
 

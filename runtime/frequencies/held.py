@@ -7,16 +7,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, bad
-from ..core.families import LinearPeriodic, require_system
+from ..core.families import Array, LinearPeriodic, require_system
 from ..core.inputs import numbers_in_a_row
 from ..core.maxima import narrowed, summits
 from ..core.trigonometric import even_angles
 from ..periodic.moving_basis import flexible_modes
-
-Array = NDArray[np.float64]
 
 _EPS = float(np.finfo(float).eps)
 

@@ -5,26 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..beams.element_forms import required_structure
 from ..beams.section import Section
 from ..beams.structure import Structure
 from ..core.errors import bad
-from ..core.families import LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..core.inputs import numbers, require_kind, require_positive, require_whole
-from ..core.plotting import axes_or_new
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
 from .held import held_frequencies, mean_frequencies
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
 
 # Powers of thickness and width in area and second moment of a flat bar.
 _POWERS: Mapping[str, tuple[int, int]] = {"thickness": (1, 3), "width": (1, 1)}

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...generated import beam_dynamic_stiffness
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse
 
 Array: TypeAlias = NDArray[Any]
 
@@ -117,5 +117,4 @@ def _require_positive(values: dict[str, ArrayLike]) -> None:
         if not usable or not bool(np.all(array.real > 0)):
             fix = "give SI units; a beam of no length joins its nodes"
             problems.append(Problem(name, repr(value), "positive numbers", fix))
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)

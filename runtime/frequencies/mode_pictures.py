@@ -6,24 +6,20 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..beams.assembly import in_own_axes
 from ..beams.element_forms import required_structure
 from ..beams.elements import placed_shapes
 from ..beams.structure import Structure
 from ..core.errors import bad
-from ..core.families import LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..core.inputs import is_finite, require_whole
-from ..core.plotting import axes_or_new, new_figure
+from ..core.plotting import Axes, axes_or_new, new_figure
 from .held import crank_angles
 from .natural import NaturalFrequencies, natural_frequencies
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-Array = NDArray[np.float64]
 
 
 def deflected_links(

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import BadInput, bad
-from ..core.families import DAMPING, LinearPeriodic
+from ..core.families import DAMPING, Array, LinearPeriodic
 from ..core.results import Check
 from ..hill import Meissner, discriminant
 from ..periodic import Prepared, prepare, reduced_system
@@ -22,7 +22,6 @@ from ..periodic.decoupled.riccati import plain_equation
 from ..periodic.decoupled.slow_modes import frozen_frequencies
 from ..periodic.equation import equation_of, sampled
 
-Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
 

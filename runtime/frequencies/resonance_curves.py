@@ -5,25 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from numbers import Real
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..core.families import LinearPeriodic, require_system
+from ..core.families import Array, LinearPeriodic, require_system
 from ..core.inputs import numbers
 from ..core.maxima import local_maxima, narrowed
-from ..core.plotting import axes_or_new
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Result, provenance
 from ..periodic.periodic_motion import SteadyState, quiet_state
 from .critical import label_speeds
 from .held import mean_frequencies
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

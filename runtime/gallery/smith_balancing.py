@@ -60,7 +60,6 @@ def example() -> tuple[Machine, float]:
 def _weights(
     case: Case, offset: float = _OFFSET, thickness: float = _THICKNESS
 ) -> dict[str, Counterweight]:
-    """Return the counterweights of a case, steel discs."""
     return case_counterweights(example()[0], case, offset, density=7850.0, thickness=thickness)
 
 

@@ -154,8 +154,6 @@ def _exact_over_first(estimate: Estimate, hertz: float) -> float:
 
 
 def _estimate_words() -> dict[str, object]:
-    """Return the numbers of the conclusion."""
-
     def texts(values: Sequence[float], digits: int = 3) -> str:
         parts = [f"{value:.{digits}f}" for value in values]
         return f"{', '.join(parts[:-1])} and {parts[-1]}"
@@ -278,7 +276,6 @@ def modes_table(axes: Panels) -> Drawn:
 
 
 def _mode_words() -> dict[str, object]:
-    """Return the numbers of the notes."""
     every = [(case, one) for case in _CASES for one in regions(*case)[0]]
     sums = [one for _, one in every if one.kind == "sum"]
     others = [(case, one) for case, one in every if one.kind != "principal 1"]

@@ -256,7 +256,6 @@ def end_loads(axes: Panels, proportions: str) -> Drawn:
 
 
 def _sizes(proportions: str) -> list[float]:
-    """Return the peaks of phi, f1, f2 and f3."""
     parts = end_load(linkage_of(proportions), np.linspace(0.0, 2 * pi, 2881))
     return [peak(parts[name]) for name in ("phi", "f1", "f2", "f3")]
 

@@ -186,7 +186,6 @@ def _terms(linkage: str, theta: Array) -> dict[str, Array]:
 
 
 def _claims(rig: Rig) -> list[float]:
-    """Return what section 9.5 says of single rigs."""
     damping = []
     for row in contents("smith")["estimate"]:
         if row["chart"] == rig.figure:
@@ -309,7 +308,6 @@ def _rms(equation: str) -> tuple[float, float, float]:
 
 
 def _summary() -> list[Sequence[Any]]:
-    """Return which equation is nearer."""
     rows: list[Sequence[Any]] = []
     for name in EQUATIONS:
         count = sum(one.nearest == name for one in _COMPARED)

@@ -18,7 +18,7 @@ may be open within its rounding.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
@@ -31,6 +31,7 @@ from ..core.chebyshev import analysis, nodes
 from ..core.errors import BadInput, bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, DeferredChecks, Result, provenance
+from ..core.roots import bracketed_roots
 from .checks import EPS, Array, Index, Mask, axes_over, check_function, check_regions, points
 from .fourier_matrix import banded, by_parity, chunks, stacked, truncation
 from .half_trace import discriminant, growth_rate
@@ -413,10 +414,10 @@ def _end(
     """
     sign, turned = 1.0 if n % 2 == 0 else -1.0, np.where(inner < outer, -1.0, 1.0)
 
-    def share(t: Array, which: Index) -> Array:
+    def share(which: Index, lam2: Array) -> tuple[Array, float]:
         # The logarithm of half trace over level, clipped where all are alike.
-        half = discriminant(f, turned[which] * t, mu[which], k[which])
-        return np.asarray(np.log(np.clip(sign * half.value / half.level, 1e-304, 1e304)))
+        half = discriminant(f, lam2, mu[which], k[which])
+        return np.asarray(np.log(np.clip(sign * half.value / half.level, 1e-304, 1e304))), 0.0
 
     def sure(lam2: Array, which: Index, above: bool) -> Mask:
         # Whether the half trace is above, or below, by more than its error.
@@ -425,7 +426,7 @@ def _end(
         error = np.where(np.isfinite(half.value), half.error, 0.0) + 2.0 * EPS * half.level
         return np.asarray(gap > error if above else gap < -error)
 
-    place = turned * crossing(share, turned * outer, turned * inner)
+    place = bracketed_roots(share, outer, inner)[0]
     error = 2.0 * EPS * (np.maximum(np.abs(place), k * k) + 1.0)
     left = np.arange(place.size)
     # Proposals of the error, each three times the one before.
@@ -467,37 +468,6 @@ def _from_half_trace(
         open_ = np.zeros(there.shape, dtype=bool)
         ends.put(there, Ends(lower, upper, np.maximum(first, last), open_))
     return ends
-
-
-def crossing(function: Callable[[Array, Index], Array], low: Array, high: Array) -> Array:
-    """Return the roots of functions negative at ``low`` and not at ``high``, Illinois' rule.
-
-    All points advance at once; ``function`` gets their numbers as well.
-    """
-    every = np.arange(low.size)
-    a, b = low.copy(), high.copy()
-    fa, fb = function(a, every), function(b, every)
-    side = np.zeros(low.size, dtype=np.int64)
-    x, before = b.copy(), a.copy()
-    for _ in range(100):
-        resolution = 2.0 * EPS * np.abs(x)
-        left = np.flatnonzero((np.abs(x - before) > resolution) & (np.abs(b - a) > resolution))
-        if not left.size:
-            break
-        before[left] = x[left]
-        rise = fb[left] - fa[left]
-        new = b[left] - fb[left] * (b[left] - a[left]) / np.where(rise == 0.0, 1.0, rise)
-        inside = (new >= a[left]) & (new <= b[left])
-        x[left] = np.where(inside, new, 0.5 * (a[left] + b[left]))
-        value = function(x[left], left)
-        below = value < 0.0
-        lower, upper = left[below], left[~below]
-        # An end that stays twice counts half.
-        fb[lower[side[lower] == -1]] *= 0.5
-        fa[upper[side[upper] == 1]] *= 0.5
-        a[lower], fa[lower], side[lower] = x[lower], value[below], -1
-        b[upper], fb[upper], side[upper] = x[upper], value[~below], 1
-    return x
 
 
 # ---------------------------------------------------------------- the largest exponent

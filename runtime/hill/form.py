@@ -93,8 +93,6 @@ def hill_form(system: LinearPeriodic) -> HillForm:
 
 
 def _series(term: Term) -> PeriodicFunction:
-    """Return the only entry of a term as a Fourier series."""
-
     def entry(theta: Array) -> Array:
         return term(np.ravel(theta))[:, 0, 0].reshape(np.shape(theta))
 

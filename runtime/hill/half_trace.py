@@ -266,7 +266,6 @@ class _Work:
         return value.reshape(shape), error.reshape(shape)
 
     def _halves(self, ix: Index, iy: Index, axis: int) -> list[tuple[Index, Index]]:
-        """Cut a box in two at the middle of an axis."""
         along = (self.x[ix], self.y[iy])[axis]
         lower = along <= 0.5 * (along.min() + along.max())
         if lower.all():

@@ -19,7 +19,8 @@ from numpy.typing import ArrayLike
 
 from ...generated import hill_meissner
 from ..core.errors import bad
-from .checks import EPS, Array, finite
+from ..core.roots import bracketed_roots
+from .checks import EPS, Array, Index, finite
 from .transfer import Exponents, HalfTraces, in_parts, normalised, product
 
 _interval: Callable[..., tuple[Array, Array]] = hill_meissner.interval
@@ -190,7 +191,7 @@ def _root(f: Array, t: Array, mu: Array, n: int, kind: _Kind) -> tuple[Array, Ar
     """Return the boundary of region n that belongs to one kind, with its error, each ``(m,)``."""
     # y2 has its first zero where y1' has its second.
     order = n // 2 - 1 if kind is _Y2 else n // 2
-    target, count = kind.end + order * pi, order + (kind.end == pi)
+    target = kind.end + order * pi
     reach = np.sort(-np.outer(f, mu), axis=0)
     size = np.abs(reach).max(axis=0)
     low, high = (
@@ -201,21 +202,19 @@ def _root(f: Array, t: Array, mu: Array, n: int, kind: _Kind) -> tuple[Array, Ar
         middle = 0.5 * (low + high)
         above = _phase(middle, mu, kind.start, f, t) >= target
         low, high = np.where(above, low, middle), np.where(above, middle, high)
-    # Alone between the ends now, but for the round-off of the phase: the sign of the factor knows
-    # the zero to the last digit.  Beyond it y is (-1)^j at j pi, y' of the other sign a quarter on.
+    # Alone between the ends now, but for the round-off of the phase: the factor knows the zero to
+    # the last digit.
     wide = (high - low) + 64.0 * EPS * (1.0 + n) * (1.0 + np.abs(high) + size)
-    low, high = low - wide, high + wide
-    sign = (-1.0) ** (count + kind.row)
-    for _ in range(40):
-        middle = 0.5 * (low + high)
-        above = sign * _factor(middle, mu, kind, f, t)[0] > 0.0
-        low, high = np.where(above, low, middle), np.where(above, middle, high)
-    root = 0.5 * (low + high)
+
+    def factor(which: Index, lam2: Array) -> tuple[Array, float]:
+        return _factor(lam2, mu[which], kind, f, t)[0], 0.0
+
+    root, width, _ = bracketed_roots(factor, low - wide, high + wide)
     step = 1e-6 * (1.0 + np.abs(root))
     noise = _factor(root, mu, kind, f, t)[1]
     ends = [_factor(root + side * step, mu, kind, f, t)[0] for side in (1.0, -1.0)]
     slope = np.abs(ends[0] - ends[1]) / (2.0 * step)
-    return root, noise / np.maximum(slope, 1e-300) + EPS * np.abs(root) + (high - low)
+    return root, noise / np.maximum(slope, 1e-300) + EPS * np.abs(root) + width
 
 
 def _factor(lam2: Array, mu: Array, kind: _Kind, f: Array, t: Array) -> tuple[Array, Array]:

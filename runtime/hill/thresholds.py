@@ -19,8 +19,9 @@ from ..core.errors import BadInput, bad
 from ..core.maxima import local_maxima, narrowed
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
+from ..core.roots import bracketed_roots
 from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
-from .boundaries import crossing, ends_at, hill_boundaries, largest_exponent, sample_of
+from .boundaries import ends_at, hill_boundaries, largest_exponent, sample_of
 from .checks import EPS, Array, Index, Mask, axes_over, check_function, check_regions, points
 from .perturbation import CONTRACTION, Sums
 
@@ -174,16 +175,16 @@ def _to_order(f: PeriodicFunction, n: int, mu: Array) -> tuple[Closing, Mask]:
     """Return the critical damping to order 8, ``|B| = |Im A|``, and where that does not settle."""
     operator = effective_operator((f,), n, HIGHEST + BEYOND, damped=True)
 
-    def excess(k: Array, which: Index) -> Array:
+    def excess(which: Index, k: Array) -> tuple[Array, float]:
         a, b = operator.components(np.stack([mu[which], k]))
         drag, split = a[:HIGHEST].imag.sum(axis=0), b[:HIGHEST].sum(axis=0)
-        return np.asarray(np.abs(drag) - np.abs(split))
+        return np.asarray(np.abs(drag) - np.abs(split)), 0.0
 
     with np.errstate(all="ignore"):
-        split = -excess(np.zeros_like(mu), np.arange(mu.size))
+        split = -excess(np.arange(mu.size), np.zeros_like(mu))[0]
         # Where the components overflow there is nothing to start from, and the ratio flags it.
         split = np.where(np.isfinite(split), split, 0.0)
-        k = crossing(excess, np.zeros_like(mu), 4.0 * split / n)
+        k = bracketed_roots(excess, np.zeros_like(mu), 4.0 * split / n)[0]
         rate = np.where(k > 0.0, np.clip(split / k, 0.25 * n, 4.0 * n), n)
         sums = _sums(operator, f, mu, k)
         left = sums.turned + sums.spread
@@ -313,7 +314,6 @@ def _opening(closing: Solver, n: int, damping: Array, top: float) -> tuple[Array
 
 
 def _sure(closing: Solver, mu: Array) -> Array:
-    """Return the critical damping less its error."""
     known = closing(mu)
     return known.damping - known.error
 
@@ -359,11 +359,11 @@ def _peaks(closing: Solver, grid: Array, value: Array) -> tuple[Array, Array]:
 def _refined(closing: Solver, wanted: Array, low: Array, high: Array) -> Array:
     """Solve ``log K_crit(mu) = log K`` in log mu; the rows are those of :func:`_opening`."""
 
-    def excess(x: Array, which: Index) -> Array:
+    def excess(which: Index, x: Array) -> tuple[Array, float]:
         k = closing(np.exp(x)).damping
-        return np.asarray(np.log(np.maximum(k / wanted[which], 1e-3)))
+        return np.asarray(np.log(np.maximum(k / wanted[which], 1e-3))), 0.0
 
-    x = crossing(excess, low, high)
+    x = bracketed_roots(excess, low, high)[0]
     at, step = closing(np.exp(x)), 1e-4
     with np.errstate(divide="ignore", invalid="ignore"):
         up, down = (closing(np.exp(x + d)).damping for d in (step, -step))

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.inputs import is_finite, require_whole
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Result, provenance
 from .classification import SYMBOLS, classify, number_of_signs
 from .linkage import Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 # Of the plane: to the right more output, upwards more frame.
 _AXES = np.array([[-1.0, 1.0, 0.0], [-1.0, -1.0, 2.0]]) / np.sqrt([[2.0], [6.0]])
@@ -62,8 +59,6 @@ class BasePlane(Result):
 
     def plot(self, ax: Axes | None = None, *, mark: Sequence[float] | None = None) -> Axes:
         """Draw regions and borders with the symbols of the classes; ``mark`` is one linkage."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         for symbol, corners in self.regions.items():
             flat = corners @ _AXES.T

@@ -7,20 +7,18 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from numbers import Real
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import Any, Literal, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import bad
+from ..core.errors import bad, shown
+from ..core.plotting import Axes
 from ..core.results import Result, provenance
 from .four_bar import FourBar, LoopSums
 from .linkage import EPS, finite_array
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 # A four-bar linkage can lie flat, and so change its assembly, where one of three sums is zero:
 #
@@ -52,7 +50,6 @@ class BarkerClass:
 
 
 def _table() -> tuple[BarkerClass, ...]:
-    """Return the fourteen rows."""
     shapes = (
         ("crank-crank-crank", "CCC", "double crank (drag link)"),
         ("crank-rocker-rocker", "CRR", "crank rocker"),
@@ -370,12 +367,11 @@ def _many(lengths: NDArray[Any]) -> NDArray[np.int64]:
 
 
 def _four_bar_of(lengths: Iterable[float]) -> FourBar:
-    """Return a linkage of four lengths, or raise BadInput."""
     wanted = "4 lengths: frame, crank, coupler, follower"
     try:
         four: list[Any] = [*lengths]
     except (TypeError, KeyError) as refusal:
-        found = repr(lengths)[:60]
+        found = shown(lengths)
         raise bad("lengths", found, f"a linkage, or {wanted}", "give four lengths") from refusal
     if len(four) != 4:
         raise bad("lengths", f"{len(four)} of them", wanted, "give four lengths")

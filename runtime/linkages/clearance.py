@@ -6,23 +6,21 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.deferred import DeferredField, DeferredGroup
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse, shown
 from ..core.inputs import is_finite, require_kind
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .four_bar import FourBar
 from .joint_play import OUTPUTS, CrankPosition, Outputs, Play, Route
-from .linkage import EPS, Array, finite_array
+from .linkage import EPS, Array, finite_array, require_linkage
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _JOINTS = ("12", "23", "34", "41")
 # Fields that are computed when they are first looked at.
@@ -129,8 +127,6 @@ class ClearanceRange(Result):
         label : str, optional
             By default the clearances.
         """
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         if label is None:
             label = ", ".join(f"c{joint} = {c:.4g}" for joint, c in self.clearances.items())
@@ -222,13 +218,11 @@ def clearance_range(
     >>> round(float(play.width), 4), round(float(play.small), 4)
     (0.0503, 0.0503)
     """
-    outputs = next((of for kind, of in OUTPUTS.items() if isinstance(linkage, kind)), None)
-    if outputs is None:
-        expected = "FourBar, SliderCrank or QuickReturn"
-        raise bad("linkage", repr(linkage)[:60], expected, "give one of them")
+    require_linkage(linkage)
+    outputs = next(of for kind, of in OUTPUTS.items() if isinstance(linkage, kind))
     link = outputs.links[0] if link is None else link
     if link not in outputs.links:
-        raise bad("link", repr(link)[:60], f"one of {', '.join(outputs.links)}", "choose one")
+        raise bad("link", shown(link), f"one of {', '.join(outputs.links)}", "choose one")
     plays = _checked(linkage, clearances, joint)
     if theta is None and linkage.crank_turns:
         theta = np.linspace(0.0, math.tau, 361)
@@ -317,10 +311,9 @@ def _checked(
     clearances: float | Mapping[str, float],
     joint: str | None,
 ) -> dict[str, float]:
-    """Return the clearances by joint, or raise BadInput."""
     if isinstance(clearances, Mapping):
         if joint is not None:
-            raise bad("joint", repr(joint)[:60], "none beside clearances by joint", "leave it out")
+            raise bad("joint", shown(joint), "none beside clearances by joint", "leave it out")
         given = dict(clearances)
     else:
         require_kind("joint", joint, (str, type(None)), 'name it by its links, as "23"')
@@ -331,12 +324,11 @@ def _checked(
         where = f"clearances[{name!r}]"
         if name not in _JOINTS:
             fix = "name the joint by its two links"
-            problems.append(Problem(where, repr(name)[:60], f"one of {', '.join(_JOINTS)}", fix))
+            problems.append(Problem(where, shown(name), f"one of {', '.join(_JOINTS)}", fix))
         if not (is_finite(value) and 0.0 <= value <= longest):
             expected = f"a clearance from 0 to the longest length, {longest:g}"
-            problems.append(Problem(where, repr(value)[:60], expected, "correct it"))
-    if problems:
-        raise BadInput(*problems)
+            problems.append(Problem(where, shown(value), expected, "correct it"))
+    refuse(problems)
     return {name: float(given[name]) for name in _JOINTS if name in given}
 
 
@@ -367,13 +359,11 @@ def _extremes(task: _Task) -> tuple[WidthExtreme, WidthExtreme]:
 
 
 def _errors(task: _Task) -> dict[str, Array]:
-    """Return the errors of the result in its units."""
     error, nominal_error = task.route.errors(task.position, *task.slack, task.play)
     return {"error": task.in_units(2.0 * error), "nominal_error": task.in_units(nominal_error)}
 
 
 def _checks(task: _Task) -> dict[str, Check]:
-    """Close the loop at both ends, and take a small part of the clearances."""
     return {
         "loop closure at both ends over its round-off": Check(_gap(task), 1.0),
         "small clearances against the first order": Check(_first_order(task), 1.0),

@@ -205,7 +205,10 @@ def _each_once(path: Path, pairs: Array) -> Doubles:
     for i in range(len(first)):
         # Where the branches nearly touch, the crossing is loose along them.
         slack = 1e-9 + 1e3 * EPS / max(float(sine[i]), EPS)
-        if all(_distance(first, second, i, j) > slack for j in kept):
+        a, b = first[kept], second[kept]
+        # How far the pairs are apart, either way round.
+        ways = [np.maximum(_turn(first[i] - x), _turn(second[i] - y)) for x, y in ((a, b), (b, a))]
+        if np.all(np.minimum(*ways) > slack):
             kept.append(i)
     kept.sort(key=lambda i: float(first[i]))
     chosen = np.column_stack([first[kept], second[kept]]).reshape(-1, 2)
@@ -218,14 +221,8 @@ def _crossing_sine(one: Taylor, two: Taylor) -> Array:
     return np.asarray(np.where(product > 0, sine, 0.0))
 
 
-def _distance(first: Array, second: Array, i: int, j: int) -> float:
-    """Return how far two pairs of parameters are apart, either way round."""
-
-    def turn(x: float) -> float:
-        return abs((x + pi) % TURN - pi)
-
-    straight = max(turn(first[i] - first[j]), turn(second[i] - second[j]))
-    return min(straight, max(turn(first[i] - second[j]), turn(second[i] - first[j])))
+def _turn(x: Array) -> Array:
+    return np.asarray(np.abs((x + pi) % TURN - pi))
 
 
 def _newton(path: Path, first: Array, second: Array) -> Array:

@@ -6,20 +6,18 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from math import pi
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from ..core.errors import BadInput, bad
 from ..core.inputs import is_one_of, numbers, require_whole
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .circuits import Circuit, Complex, Taylor, planar
 from .curve_points import Doubles, crossings, double_points, slowest
 from .four_bar import FourBar
 from .linkage import EPS, Array, Linkage, require_linkage
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 # Panels to begin with, and how often they are halved.
 _PANELS, _HALVINGS = 24, 60
@@ -154,7 +152,6 @@ class CouplerCurve(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw path and linkage at some positions, cusps and double points marked."""
-        from ..core.plotting import axes_or_new
         from .pictures import draw_curve
 
         ax = axes_or_new(ax)

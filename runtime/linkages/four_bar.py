@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...generated import four_bar_kinematics
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse
 from .linkage import (
     ROUND_OFFS,
     TINY,
@@ -158,8 +158,7 @@ class FourBar(Linkage):
                         f"the linkage {why}; shorten this link or lengthen another",
                     )
                 )
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
     @property
     def reach(self) -> tuple[float, float]:

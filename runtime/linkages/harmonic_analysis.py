@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,12 +12,10 @@ from numpy.typing import ArrayLike
 from ..core.errors import bad
 from ..core.inputs import require_whole
 from ..core.periodic_function import PeriodicFunction
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
-from ..core.sampling import values_at
+from ..core.sampling import irregular_angles, values_at
 from .linkage import EPS, TURN, Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 Function = Callable[[Array], ArrayLike]
 Source: TypeAlias = Function | tuple[Any, ...]
@@ -96,8 +94,6 @@ class Harmonics(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw cosine and sine coefficients as bars beside each other (Smith Fig. 7)."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         m = np.arange(1, self.order + 1)
         ax.bar(m - 0.2, self.a[1:], 0.38, color="tab:blue", label="cosine $a_m$")
@@ -162,7 +158,7 @@ def harmonics(source: Source, *, order: int = 8, accuracy: float = 1e-12) -> Har
 def _doubled(f: Callable[[Array], Array], name: str, order: int, accuracy: float) -> Harmonics:
     """Return the harmonics of a periodic function, its angles doubled until they stay."""
     count = max(64, 4 * 2 ** int(np.ceil(np.log2(order + 1))))
-    probes = np.asarray(TURN * ((_GOLDEN * np.arange(1, _PROBES + 1)) % 1.0), dtype=np.float64)
+    probes = irregular_angles(_PROBES)
     at_probes = values_at(f, probes, name)
     largest, evaluations = float(np.max(np.abs(at_probes))), _PROBES
     before: np.ndarray[Any, Any] | None = None
@@ -192,13 +188,13 @@ def _doubled(f: Callable[[Array], Array], name: str, order: int, accuracy: float
         if 2 * count > 2**17:
             break
         count *= 2
-    rest = float(np.max(np.abs(at_probes - _series(low)(probes))))
+    series = _series(low)
+    rest = float(np.max(np.abs(at_probes - series(probes))))
     dropped = float(np.sum(np.abs(full[order + 1 :])))
     error = 2.0 * _last_change(changes, settled) + 2.0 * EPS * largest
     if constant:
         # A pulse between two samples, of this height or of 1: 2/turn times its area.
         error += 2.0 * max(largest, 1.0) / count
-    series = _series(low)
     change = max(changes[-2:]) / max(largest, 5e-324)
     return Harmonics(
         name=name,

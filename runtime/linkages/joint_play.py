@@ -296,7 +296,6 @@ def _across_coupler(
 
 
 def _quick_return(linkage: QuickReturn, link: str) -> Route:
-    """Return the play of the rod's angle."""
     frame, crank, rod = linkage.unit_lengths.values()
     short, long = abs(frame - crank), frame + crank
 

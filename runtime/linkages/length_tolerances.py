@@ -7,20 +7,20 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse, shown
 from ..core.inputs import is_finite, is_one_of, is_whole
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .linkage import EPS, Array, Linkage, drive_of
 from .parametric import ANGLE, Parametric
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
+    from ..rigid.machine import Machine
 
 Masses = Literal["fixed", "bars"]
 Distribution = Literal["normal", "uniform"]
@@ -34,16 +34,6 @@ _SYMBOLS = {"theta3": r"$\theta_3$", "theta4": r"$\theta_4$"}
 
 # Standard deviations over the tolerance.
 _SPREADS = {"normal": 1.0 / 3.0, "uniform": 1.0 / math.sqrt(3.0)}
-
-
-class Varied(Protocol):
-    """What may have tolerances: a linkage, or a machine."""
-
-    def parametric(
-        self, theta: Array, speed: Array, acceleration: Array, masses: Masses = "fixed"
-    ) -> Parametric:
-        """Return its outputs as a function of its numbers."""
-        ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,22 +103,14 @@ class Tolerances(Result):
         With tolerances that are standard deviations of independent parameters, or a fixed multiple
         of them, the standard deviation of the output, or the same multiple of it.
         """
-        shares, largest = self._relative
-        return np.asarray(largest[:, 0] * np.sqrt(np.sum(np.square(shares), axis=1)))
+        # The root of a sum of squares of any size.
+        return np.asarray(np.hypot.reduce(self.deviations, axis=1))
 
     @property
     def contribution(self) -> Array:
         """Share of each parameter in the squared root-sum-square, (outputs, parameters, ...)."""
-        squares = np.square(self._relative[0])
-        total = np.sum(squares, axis=1, keepdims=True)
-        return np.asarray(squares / np.where(total > 0.0, total, 1.0))
-
-    @property
-    def _relative(self) -> tuple[Array, Array]:
-        """Deviations over the largest of each output, and that: squares of any size are safe."""
-        size = np.abs(self.deviations)
-        largest = np.max(size, axis=1, keepdims=True)
-        return size / np.where(largest > 0.0, largest, 1.0), largest
+        total = self.root_sum_square[:, np.newaxis]
+        return np.square(self.deviations / np.where(total > 0.0, total, 1.0))
 
     def place(self, output: str) -> int:
         """Return the place of an output on the first axis.
@@ -262,8 +244,6 @@ class Tolerances(Result):
         BadInput
             If there is no such output, or the crank angles are not a one-dimensional array.
         """
-        from ..core.plotting import axes_or_new
-
         if self.theta2.ndim != 1:
             shape = f"crank angles of shape {self.theta2.shape}"
             raise bad("plot", shape, "a one-dimensional array", "choose one speed, a row of angles")
@@ -297,7 +277,7 @@ class Tolerances(Result):
 
 
 def tolerances(
-    linkage_or_machine: Varied,
+    linkage_or_machine: Linkage | Machine,
     tolerance: Mapping[str, float],
     theta: ArrayLike | None = None,
     speed: ArrayLike = 1.0,
@@ -349,10 +329,10 @@ def tolerances(
     (7, 2)
     """
     if isinstance(linkage_or_machine, type) or not hasattr(linkage_or_machine, "parametric"):
-        given = repr(linkage_or_machine)[:60]
+        given = shown(linkage_or_machine)
         raise bad("tolerances", given, "a linkage or a Machine", "give a FourBar, say")
     if not is_one_of(masses, ("fixed", "bars")):
-        raise bad("masses", repr(masses)[:60], "'fixed' or 'bars'", "choose one")
+        raise bad("masses", shown(masses), "'fixed' or 'bars'", "choose one")
     if theta is None:
         theta = np.linspace(0.0, 2.0 * np.pi, 361)
     angles, drive = drive_of(theta, speed, acceleration)
@@ -390,7 +370,6 @@ def tolerances(
 
 
 def _checked(model: Parametric, tolerance: object) -> dict[str, float]:
-    """Return the tolerances as floats."""
     if not isinstance(tolerance, Mapping):
         given = type(tolerance).__name__
         raise bad("tolerance", given, "a mapping from name to number", "write {'crank': 1e-4}")
@@ -403,18 +382,16 @@ def _checked(model: Parametric, tolerance: object) -> dict[str, float]:
             fix = "correct the name; masses need a Machine"
             problems.append(Problem(where, repr(name), f"one of {', '.join(known)}", fix))
         elif not (is_finite(width) and width >= 0.0):
-            problems.append(Problem(where, repr(width)[:60], "zero or more", "correct it"))
+            problems.append(Problem(where, shown(width), "zero or more", "correct it"))
         elif width >= limits.get(name, math.inf):
             what = "a quarter turn" if name == ANGLE else "the length"
             expected = f"less than {what}, {limits[name]:g}"
             problems.append(Problem(where, f"{width:g}", expected, "narrow it"))
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)
     return {str(name): float(width) for name, width in tolerance.items()}
 
 
 def _require_reach(linkage: Linkage, sizes: Mapping[str, float], theta: Array) -> None:
-    """Raise BadInput where a linkage within the tolerances cannot reach an angle."""
 
     def left(widths: Mapping[str, float], angles: Array) -> Array:
         return margin(box_of(linkage.lengths, widths), angles, widths.get(ANGLE, 0.0))

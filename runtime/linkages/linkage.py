@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from inspect import signature
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, TypeVar
+from typing import Any, ClassVar, Literal, Self, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,11 +17,9 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.deferred import Deferred, DeferredField
 from ..core.errors import Problem, bad
 from ..core.inputs import is_finite, is_one_of, numbers
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ..core.twofold import Twofold
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 Array: TypeAlias = NDArray[np.float64]
 Assembly: TypeAlias = Literal["open", "crossed"]
@@ -160,8 +158,6 @@ class Motion(Result, ABC):
         With a crank speed, each curve is scaled by a power of ten, named in the legend, so that all
         of them can be seen.
         """
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         degrees = np.degrees(self.theta2)
         units: dict[str, None] = {}
@@ -178,8 +174,7 @@ class Motion(Result, ABC):
             units[size + unit] = None
             label = words if unit == "1" else f"{words} [{size}{unit}]"
             ax.plot(degrees, values / 10.0**power, label=label)
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel(", ".join(units))
+        ax.set(xlabel="crank angle [deg]", ylabel=", ".join(units))
         ax.legend()
         return ax
 
@@ -323,7 +318,6 @@ class Motion(Result, ABC):
         return LinkMotion(start, still, still, angle, speed, change)
 
     def _at_crank_pin(self, angle: Array, speed: Array, change: Array) -> LinkMotion:
-        """Return the motion of a link that begins at B."""
         pin = self.link("crank").point(self.linkage.lengths["crank"])
         return LinkMotion(pin.position, pin.velocity, pin.acceleration, angle, speed, change)
 
@@ -473,10 +467,8 @@ class Linkage(ABC):
         """Return the motion; its error and checks are computed when they are first read."""
         angles, drive = drive_of(theta, speed, acceleration)
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            m = {
-                "theta2": angles,
-                **emitted(self, self.kinematics, "motion", angles, self.unit_lengths),
-            }
+            moved = emitted(self, self.kinematics, "motion", angles, self.unit_lengths)
+        m = {"theta2": angles, **{name: np.asarray(value) for name, value in moved.items()}}
         reached = np.logical_and.reduce([np.isfinite(value) for value in m.values()])
         self.require(reached & self._decided(m), angles, self._expected)
         shape = drive[0].shape
@@ -599,25 +591,22 @@ def emitted(
     Assembly and winding are the linkage's.
     """
     call: Callable[..., Any] = getattr(module, function)
-    given = {**values, "assembly": linkage.branch}
+    given = {"assembly": linkage.branch, **values}
     names = arguments(call)[1:]
-    if "winding" in names:
+    if "winding" in names and "winding" not in values:
         crank, frame = (np.real(values[name]) for name in ("crank", "frame"))
         given["winding"] = np.greater(crank, frame).astype(float)
     returned = call(theta, **{name: given[name] for name in names})
-    return dict(zip(module.RETURNS[function], map(np.asarray, returned), strict=True))
+    return dict(zip(module.RETURNS[function], returned, strict=True))
 
 
 def _without_rounding(linkage: Linkage, theta: Array) -> dict[str, Any]:
     """Return places and rates by the crank angle to twice the digits, of the unit lengths."""
     lengths = linkage.unit_lengths
-    known = {name: Twofold(value) for name, value in lengths.items()}
-    known["assembly"] = Twofold(linkage.branch)
-    known["winding"] = Twofold(float(lengths["crank"] > lengths.get("frame", np.inf)))
-    call = linkage.kinematics.motion
+    known: dict[str, Any] = {name: Twofold(value) for name, value in lengths.items()}
+    known["winding"] = float(lengths["crank"] > lengths.get("frame", np.inf))
     with np.errstate(all="ignore"):
-        returned = call(Twofold(theta), **{name: known[name] for name in arguments(call)[1:]})
-    return dict(zip(linkage.kinematics.RETURNS["motion"], returned, strict=True))
+        return emitted(linkage, linkage.kinematics, "motion", Twofold(theta), known)
 
 
 @cache

@@ -75,7 +75,6 @@ class Parametric:
         return values, slopes
 
     def _size(self, name: str) -> float:
-        """Return the size of numbers of a kind."""
         return 1.0 if name == ANGLE else max(abs(size) for size in self.linkage.lengths.values())
 
     def _angle(self, numbers: Mapping[str, Any]) -> Any:

@@ -13,14 +13,12 @@ import numpy as np
 
 from ..core.errors import bad
 from ..core.inputs import require_kind, require_whole
-from ..core.plotting import new_figure, require_writable
+from ..core.plotting import Axes, new_figure, require_writable
 from ..core.results import write_whole
 from .circuits import Circuit, Complex
 from .linkage import Array, Linkage, require_linkage
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from .curves import CouplerCurve
 
 _COLOURS = {
@@ -182,7 +180,6 @@ class _Film:
 
 
 def _trace(motion: Circuit, curve: CouplerCurve) -> Complex:
-    """Return the path of a curve's point."""
     s = np.linspace(0.0, 2.0 * pi, max(721, len(curve.parameter) + 1))
     place = complex(curve.along, curve.across) / motion.scale
     return np.asarray(motion.scale * motion.path(s, curve.link, place, 0).c[0])
@@ -201,7 +198,6 @@ def _bars(motion: Circuit, s: float) -> dict[str, Complex]:
 
 
 def _pins(motion: Circuit, s: float) -> Complex:
-    """Return the places of the moving pins."""
     at = motion.joints(np.array([s]))
     names = ("B",) if motion.linkage.mechanism == "quick_return" else ("B", "C")
     return np.array([complex(at[name][0]) for name in names])
@@ -237,8 +233,7 @@ def _draw_frame(ax: Axes, motion: Circuit, places: Iterable[Complex] = ()) -> No
     ax.set_xlim(float(np.min(drawn.real)) - edge, float(np.max(drawn.real)) + edge)
     ax.set_ylim(float(np.min(drawn.imag)) - edge, float(np.max(drawn.imag)) + edge)
     ax.set_aspect("equal")
-    ax.set_xlabel("x [m]")
-    ax.set_ylabel("y [m]")
+    ax.set(xlabel="x [m]", ylabel="y [m]")
 
 
 def _draw_linkage(ax: Axes, motion: Circuit, s: float, alpha: float = 1.0) -> dict[str, Any]:

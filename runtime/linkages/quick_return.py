@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...generated import quick_return_kinematics
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse
 from .linkage import (
     EPS,
     ROUND_OFFS,
@@ -119,8 +119,7 @@ class QuickReturn(Linkage):
                     "the rod never reaches the block; lengthen it",
                 )
             )
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
     @property
     def geometry(self) -> Mapping[str, float]:
@@ -199,7 +198,6 @@ class QuickReturn(Linkage):
         return np.asarray(ROUND_OFFS * moved / m["slide"])
 
     def _error(self, m: Mapping[str, Array]) -> Array:
-        """Return what a unit round-off of the angle and of each length does, three times."""
         frame, crank, _ = self.unit_lengths.values()
         theta2, theta4 = m["theta2"], m["theta4"]
         turned = ROUND_OFFS * (np.abs(theta2 * m["omega4"]) + np.abs(theta4)) + self._blur(m)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...generated import slider_crank_kinematics
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse
 from ..core.inputs import is_finite
 from .linkage import (
     ROUND_OFFS,
@@ -135,8 +135,7 @@ class SliderCrank(Linkage):
                     "they cannot reach the guide; bring it nearer or lengthen one of them",
                 )
             )
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
     @property
     def limits(self) -> Limits:

@@ -10,21 +10,19 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import fsum, pi, tau
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.errors import bad
+from ..core.errors import bad, shown
 from ..core.inputs import are_finite
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from .four_bar import FourBar, LoopSums
 from .linkage import EPS, Array, require_linkage
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _RECOMMENDED = (math.radians(40.0), math.radians(140.0))
 # The half-angle formulas: every sum is rounded once, and so are two roots, their products, a
@@ -100,8 +98,6 @@ class TransmissionAngle(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the transmission angle against the crank angle, with its band and extremes."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         for first, last in self.crank_ranges:
             theta = np.linspace(first, last, 721)
@@ -114,8 +110,7 @@ class TransmissionAngle(Result):
         for name, angle in self.dead_centres.items():
             at = math.degrees(angle)
             ax.axvline(at, color="0.5", ls=":", label=f"dead centre, {name}: {at:.4g} deg")
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel("transmission angle [deg]")
+        ax.set(xlabel="crank angle [deg]", ylabel="transmission angle [deg]")
         ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=3, fontsize=8)
         return ax
 
@@ -140,7 +135,8 @@ class TransmissionAngle(Result):
             If an angle is not a finite number, or the linkage cannot reach it or folds there.
         """
         motion = self.linkage.motion(theta)
-        ratio, error = _speed_ratio(self.linkage, motion)
+        rate = "slider_velocity" if isinstance(self.linkage, SliderCrank) else "omega4"
+        ratio = getattr(motion, rate)
         with np.errstate(divide="ignore"):
             advantage = 1.0 / ratio
         return MechanicalAdvantage(
@@ -149,7 +145,8 @@ class TransmissionAngle(Result):
             speed_ratio=ratio,
             poles=np.array([*self.dead_centres.values()]),
             method=motion.method,
-            error=error,
+            # With the round-off of the reciprocal.
+            error=motion.errors[rate] + EPS * np.abs(ratio),
             error_norm="speed ratio, absolute, entrywise",
             checks=motion.checks,
             provenance=motion.provenance,
@@ -185,8 +182,6 @@ class MechanicalAdvantage(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the mechanical advantage against the crank angle, its poles dotted."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         order = np.argsort(self.theta2, axis=None)
         shown = np.where(np.abs(self.advantage) < 50.0, self.advantage, np.nan)
@@ -194,8 +189,7 @@ class MechanicalAdvantage(Result):
         for pole in self.poles:
             ax.axvline(math.degrees(pole % math.tau), color="0.5", ls=":", lw=1.0)
         ax.axhline(0.0, color="0.8", lw=0.8)
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel("mechanical advantage")
+        ax.set(xlabel="crank angle [deg]", ylabel="mechanical advantage")
         return ax
 
 
@@ -222,8 +216,7 @@ def transmission_angle(
         If the band is not two rising angles between 0 and pi, or this is no linkage.
     """
     if not (are_finite(band, 2) and 0.0 <= band[0] < band[1] <= pi):
-        given = repr(band)[:60]
-        raise bad("band", given, "two angles, 0 <= low < high <= pi", "give radians, rising")
+        raise bad("band", shown(band), "two angles, 0 <= low < high <= pi", "give radians, rising")
     band = float(band[0]), float(band[1])
     require_linkage(linkage)
     if isinstance(linkage, SliderCrank):
@@ -441,22 +434,3 @@ def _cosine(linkage: FourBar | SliderCrank | QuickReturn, theta: Any) -> Any:
     diagonal = frame**2 + crank**2 - 2.0 * frame * crank * np.cos(theta)
     cosine = (coupler**2 + follower**2 - diagonal) / (2.0 * coupler * follower)
     return np.clip(cosine, -1.0, 1.0)
-
-
-def _speed_ratio(linkage: FourBar | SliderCrank | QuickReturn, motion: Any) -> tuple[Array, Array]:
-    """Return output speed over crank speed, and what the error of the angles does to it."""
-    if isinstance(linkage, FourBar):
-        ratio = motion.omega4
-        sine = np.abs(np.sin(motion.transmission_angle))
-        aligned = np.abs(np.cos(motion.theta4 - motion.theta3))
-        passed_on = linkage.crank / linkage.follower + np.abs(ratio) * aligned
-        return ratio, 2.0 * motion.error * passed_on / sine + 4.0 * EPS * np.abs(ratio)
-    if isinstance(linkage, SliderCrank):
-        ratio = motion.slider_velocity
-        cosine = np.abs(np.cos(motion.theta3))
-        turned = 2.0 * EPS * (np.abs(motion.theta2) + 8.0 / cosine) / cosine**2
-        return ratio, linkage.crank * turned + 4.0 * EPS * np.abs(ratio)
-    ratio = motion.omega4
-    turned = EPS * (np.abs(motion.theta2) + 4.0)
-    lever = (linkage.frame + linkage.crank) / motion.slide
-    return ratio, turned * lever**2 * (1.0 + np.abs(ratio))

@@ -58,7 +58,9 @@ def energy_balance(
         power -= _form(equation.at("damping", theta)[0], rate, rate)
     if equation.forced:
         power += np.sum(equation.at("force", theta)[0] * rate, axis=-1)
-    work, coarse = _integral(power, step, 1), _integral(power, step, 2)
+    fine, coarse = _simpson(power, step), _simpson(power[::2], 2.0 * step)
+    # Boole's rule.
+    work = fine + (fine - coarse) / 15.0
     size = float(np.max(np.abs(energy))) + step * float(np.sum(np.abs(power)))
     if not 0.0 < size < np.inf:
         return None
@@ -72,13 +74,6 @@ def _form(matrices: Array, left: Array, right: Array) -> Array:
     return value
 
 
-def _integral(values: Array, step: float, every: int) -> float:
-    """Return the integral by Boole's rule, or Simpson's where every other value is left out."""
-    chosen, h = values[::every], step * every
-    if every == 1:
-        weights = np.tile([14.0, 32.0, 12.0, 32.0], (len(chosen) - 1) // 4)
-        weights[0] = 7.0
-        return float(2.0 * h / 45.0 * (weights @ chosen[:-1] + 7.0 * chosen[-1]))
-    weights = np.tile([2.0, 4.0], (len(chosen) - 1) // 2)
-    weights[0] = 1.0
-    return float(h / 3.0 * (weights @ chosen[:-1] + chosen[-1]))
+def _simpson(values: Array, step: float) -> float:
+    inner = 4.0 * float(np.sum(values[1:-1:2])) + 2.0 * float(np.sum(values[2:-1:2]))
+    return step / 3.0 * (float(values[0] + values[-1]) + inner)

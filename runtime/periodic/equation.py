@@ -21,10 +21,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import BadInput, bad
-from ..core.families import LinearPeriodic, Term, require_system
+from ..core.families import Array, LinearPeriodic, Term, require_system
 from ..core.inputs import numbers
-
-Array = NDArray[np.float64]
 
 # Power of the speed that an array carries once d/dt = speed * d/dtheta and the equation has been
 # divided by speed^2; S and g act only when the crank accelerates.
@@ -451,7 +449,6 @@ def equation_of(
 def _batch(
     speed: ArrayLike, parameters: Mapping[str, ArrayLike]
 ) -> tuple[Array, dict[str, Array], tuple[int, ...]]:
-    """Return speeds, parameter values and the shape to which they broadcast."""
     speeds = numbers("speed", speed)
     # The squares of others, or the inverse ones, times a mass or a stiffness may be no numbers.
     if not np.all((speeds >= 1e-100) & (speeds <= 1e100)):
@@ -652,7 +649,6 @@ def _fields(known: SampledSystem, factors: Mapping[int, Array]) -> dict[str, Fie
 
 
 def _scale(equation: Equation) -> Array:
-    """Return the unit of each coordinate at each member."""
     mass = np.diagonal(equation.mean("mass"), axis1=-2, axis2=-1)
     stiffness = np.abs(np.diagonal(equation.mean("stiffness"), axis1=-2, axis2=-1))
     if not np.all(mass > 0):

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import LINEAR_RANGE, bad, warn_of_large_deflection
-from ..core.families import LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..core.inputs import is_one_of, numbers
 from ..core.progress import bar
 from ..core.results import Check, DeferredChecks, Result, provenance
@@ -25,7 +25,6 @@ from .transition import Method, method, predicted_error, product, segments_from
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 
 SCIPY_METHODS = ("RK45", "DOP853", "Radau", "BDF", "LSODA")
 _EPS = float(np.finfo(float).eps)
@@ -237,8 +236,6 @@ def _within(period: float, start: float) -> float:
 
 
 class _Grid:
-    """The given angles of a motion."""
-
     def __init__(self, period: float, start: float, revolutions: float, samples: int) -> None:
         self.start, self.step = start, 2.0 * np.pi / samples
         whole = revolutions * samples
@@ -551,17 +548,25 @@ def _start(
             fix = "give initial=(q, qd)"
             raise bad("initial", "nothing, and no forcing acts", "a start away from rest", fix)
         return np.concatenate([np.zeros(2 * n), [1.0]])
+    q, qd = start_values(equation.system, initial)
+    state = equation.state(float(start), q, qd / float(equation.speed[0]))
+    return np.append(state, 1.0) if equation.forced else state
+
+
+def start_values(
+    system: LinearPeriodic, initial: tuple[ArrayLike, ArrayLike] | Sequence[ArrayLike]
+) -> list[Array]:
+    """Return coordinates and their time derivatives, ``(n,)`` each; refuse what is no start."""
     if not isinstance(initial, (tuple, list)) or len(initial) != 2:
         raise bad("initial", initial, "a pair (q, qd)", "give coordinates and time derivatives")
-    parts = []
+    parts, n = [], system.size
     for name, part in zip(("q", "qd"), initial, strict=True):
         values = numbers(f"initial {name}", part)
         if values.shape not in ((), (1,), (n,)) or not np.all(np.isfinite(values)):
-            fix = f"one per coordinate: {', '.join(equation.system.labels)}"
+            fix = f"one per coordinate: {', '.join(system.labels)}"
             raise bad(f"initial {name}", part, f"{n} finite numbers", fix)
         parts.append(np.broadcast_to(values, (n,)))
-    state = equation.state(float(start), parts[0], parts[1] / float(equation.speed[0]))
-    return np.append(state, 1.0) if equation.forced else state
+    return parts
 
 
 def _number(name: str, value: ArrayLike) -> float:
@@ -574,7 +579,6 @@ def _number(name: str, value: ArrayLike) -> float:
 def _check_arguments(
     method: str, revolutions: float, rtol: float, samples: int, bound: float, start: float
 ) -> None:
-    """Raise :class:`BadInput` where an argument of ``simulate`` is unusable."""
     names = ("auto", *SCIPY_METHODS)
     if not is_one_of(method, names):
         raise bad("method", repr(method), f"one of {names}", "choose 'auto'")

@@ -113,13 +113,12 @@ class StillModes:
     mass: Array
 
 
-def moving_basis(system: LinearPeriodic, modes: int, *, angles: int | None = None) -> MovingBasis:
+def moving_basis(system: LinearPeriodic, modes: int) -> MovingBasis:
     """Return a smooth periodic basis of the lowest modes of M and K held still at each angle.
 
     From angle to angle the basis is carried along with the least rotation within the subspace (the
     orthogonal factor of ``Phi(theta_k)^T M Phi(theta_k-1)``); the rotation that is left after a
-    period is spread evenly over it.  By default it is fixed at as many even angles as it needs, 64
-    to 2048.
+    period is spread evenly over it.  It is fixed at as many even angles as it needs, 64 to 2048.
 
     Refused where M or K is not positive definite, the number of modes is none of 1 to n, or the
     subspace is not smooth and periodic: the frequencies of modes m and m + 1 come too close.
@@ -127,12 +126,8 @@ def moving_basis(system: LinearPeriodic, modes: int, *, angles: int | None = Non
     modes = require_whole("modes", modes, 1, system.size)
     if system.is_constant("M") and system.is_constant("K"):
         return _fixed_basis(system, modes)
-    count = _FEWEST if angles is None else int(angles)
-    while True:
-        found = carried_basis(system.period, modes, still_modes(system, count))
-        if angles is not None or found.tail <= _RESOLVED or 2 * count > _MOST:
-            break
-        count *= 2
+    held = partial(still_modes, system)
+    found = smooth_basis(system.period, modes, held, (_FEWEST, _MOST), _RESOLVED)
     if not found.tail <= _USABLE:
         gap = float(np.min(found.left_out / found.kept))
         raise _rough(modes, f"a ratio of {gap:.6g} between the next frequency and its highest")
@@ -146,6 +141,25 @@ def _fixed_basis(system: LinearPeriodic, modes: int) -> MovingBasis:
     series = PeriodicArray(values.astype(complex), system.period)
     kept, left_out = _border(squares, modes)
     return MovingBasis(series, theta, values, np.zeros_like(values), kept, left_out, 0.0)
+
+
+def smooth_basis(
+    period: float,
+    modes: int,
+    held: Callable[[int], StillModes],
+    angles: tuple[int, int],
+    smooth: float,
+) -> MovingBasis:
+    """Return the basis at even angles, the fewest, doubled up to the most until it is smooth.
+
+    ``held`` gives the modes of the mechanism held still at a number of even angles.
+    """
+    count, most = angles
+    while True:
+        found = carried_basis(period, modes, held(count))
+        if found.tail <= smooth or 2 * count > most:
+            return found
+        count *= 2
 
 
 def carried_basis(period: float, modes: int, still: StillModes) -> MovingBasis:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..core.families import LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..core.inputs import require_between
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .equation import Equation, equation_of
@@ -22,7 +22,6 @@ from .transition import Method, choose, product, refined, segments_of
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 _EPS = float(np.finfo(float).eps)

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.collocation import legendre_integrals
 from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import LINEAR_RANGE, LinearRangeWarning, bad, warn_of_large_deflection
-from ..core.families import LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..core.inputs import is_one_of, numbers, require_between
 from ..core.progress import bar
 from ..core.results import Check, DeferredChecks, Result, provenance
@@ -28,7 +28,6 @@ from .transition import Method, method, refined, segments_of
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 METHODS = ("auto", "harmonic_balance")
@@ -473,7 +472,6 @@ def _check_arguments(chosen: str, rtol: float, samples: int) -> None:
 
 
 def _check_forcing(equation: Equation) -> None:
-    """Refuse a system on which nothing acts."""
     if not equation.forced or not np.any(equation.largest_force()):
         there = any(term.array in "fhp" for term in equation.system.terms)
         found = "forcing that is zero" if there else "a system without forcing f, h, p"
@@ -481,7 +479,6 @@ def _check_forcing(equation: Equation) -> None:
 
 
 def _check_memory(equation: Equation, angles: int) -> None:
-    """Refuse motions that would fill the memory."""
     each = angles * 2 * equation.size
     if len(equation.speed) * each > _MOST_FLOATS:
         raise bad(

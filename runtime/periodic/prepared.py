@@ -14,18 +14,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.deferred import DeferredGroup
 from ..core.errors import LINEAR_RANGE, bad
-from ..core.families import LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..core.inputs import numbers, require_between, require_whole
 from ..core.results import Check, DeferredChecks, provenance
 from .compiled import CompiledTable, require_numba
 from .equation import SPEED_POWER, Equation, SampledSystem, at_geometry, equation_of, sampled
-from .motion import Trajectory, simulate
+from .motion import Trajectory, simulate, start_values
 from .multipliers import Monodromy, conditions, rounding_error
 from .periodic_motion import SteadyState, peaks
 from .tables import Table, flows_at, next_rung, table_of
 from .transition import cheapest
-
-Array = NDArray[np.float64]
 
 # Ratio of the speeds of one table.
 _RATIO = 1.5
@@ -186,7 +184,7 @@ class Prepared:
             q=q,
             qd=given * slope,
             speed=given,
-            steps=int(self._table_of(given).groups.shape[1]),
+            steps=int(self.tables[self._place(given)].groups.shape[1]),
             status=0,
             message="the end was reached",
             labels=self.system.labels,
@@ -272,7 +270,9 @@ class Prepared:
             speed = float(speeds[0])
             one = self._compiled_at(speed).periodic(1.0 / speed, 1.0 / self.scale[-1])
             return one[0][None], one[1][None], np.array(one[2:3])
-        return closed(*self._flows(speeds), 1.0 / self.scale[-1])
+        flows, whole = self._flows(speeds)
+        states, reach = closed(flows, whole, 1.0 / self.scale[-1])
+        return states, whole, reach
 
     def _march(self, speed: float, first: Array, periods: int) -> tuple[Array, Array]:
         """Return the states of a motion, and the largest size of each component at the starts."""
@@ -287,19 +287,11 @@ class Prepared:
         return np.concatenate([states, starts[-1:]]), np.max(np.abs(starts), axis=0)
 
     def _start(self, speed: float, initial: tuple[ArrayLike, ArrayLike]) -> Array:
-        n = self.system.size
-        if not isinstance(initial, (tuple, list)) or len(initial) != 2:
-            raise bad("initial", initial, "a pair (q, qd)", "give coordinates and time derivatives")
-        parts = []
-        for part in initial:
-            values = numbers("initial", part)
-            if values.shape not in ((), (1,), (n,)) or not np.all(np.isfinite(values)):
-                raise bad("initial", part, f"{n} finite numbers", "one per coordinate")
-            parts.append(np.broadcast_to(values, (n,)))
+        n, (q, qd) = self.system.size, start_values(self.system, initial)
         # The scaled state is (q, p) / scale; the readout at angle 0 is linear in both.
         state = 1.0 / self.scale
-        state[:n] = parts[0] / self.scale[:n]
-        rest = parts[1] / speed - self.readout[0, :, :n] @ state[:n]
+        state[:n] = q / self.scale[:n]
+        rest = qd / speed - self.readout[0, :, :n] @ state[:n]
         state[n : 2 * n] = np.linalg.solve(self.readout[0, :, n : 2 * n], rest)
         return state
 
@@ -313,14 +305,10 @@ class Prepared:
         return given
 
     def _place(self, speed: float) -> int:
-        """Return which of the tables holds a speed."""
         for place, table in enumerate(self.tables[:-1]):
             if speed <= 1.0 / table.low:
                 return place
         return len(self.tables) - 1
-
-    def _table_of(self, speed: float) -> Table:
-        return self.tables[self._place(speed)]
 
     def _compiled_at(self, speed: float) -> CompiledTable:
         return self.compiled[self._place(speed)]
@@ -483,8 +471,8 @@ class TableMaker:
         gaps = np.max(np.abs(ours[0] - theirs[0])[:, :, :n], axis=(0, 1))
         flow = np.maximum(flow, _MARGIN * gaps)
         if slowest.forced:
-            states, _, reach = closed(*ours, 1.0 / self.scale[-1])
-            wanted, _, _ = closed(*theirs, 1.0 / self.scale[-1])
+            states, reach = closed(*ours, 1.0 / self.scale[-1])
+            wanted, _ = closed(*theirs, 1.0 / self.scale[-1])
             size = (reach + 1.0) * np.max(np.abs(wanted[:, 0]), axis=1)
             gaps = np.max(np.abs(states - wanted)[:, :, :n], axis=1) / size[:, None]
             motion = np.maximum(motion, _MARGIN * np.max(gaps, axis=0))
@@ -498,8 +486,8 @@ class TableMaker:
         return np.asarray(rows * unit[:, None])
 
 
-def closed(flows: Array, whole: Array, unit: float) -> tuple[Array, Array, Array]:
-    """Return periodic states ``(ns, nt, m)``, the flows over the period and the reach of the start.
+def closed(flows: Array, whole: Array, unit: float) -> tuple[Array, Array]:
+    """Return periodic states ``(ns, nt, m)`` and the reach of the start.
 
     The reach is the largest sum of a row of ``(I - X)^-1``.
     """
@@ -508,7 +496,7 @@ def closed(flows: Array, whole: Array, unit: float) -> tuple[Array, Array, Array
     first = np.full((len(whole), m + 1), unit)
     first[:, :m] = (inverse @ whole[:, :m, m:])[..., 0] * unit
     states = (flows @ first[:, None, :, None])[..., 0]
-    return states, whole, np.max(np.sum(np.abs(inverse), axis=-1), axis=-1)
+    return states, np.max(np.sum(np.abs(inverse), axis=-1), axis=-1)
 
 
 def _check_inertia(system: LinearPeriodic) -> None:

@@ -137,7 +137,6 @@ def _reduced_anew(
     modes: int,
     geometry: Mapping[str, float],
 ) -> LinearPeriodic:
-    """Return another geometry's system on its own modes."""
     return reduced_system(replace(rebuild(geometry), parameters=dict(parameters)), modes)
 
 
@@ -165,7 +164,6 @@ def projections(array: str, values: Array, phi: Array, slope: Array) -> Iterator
 
 
 def _fixed_terms(system: LinearPeriodic, phi: MovingBasis) -> tuple[Term, ...]:
-    """Return the terms on a basis that does not move."""
     return tuple(replace(term, function=_on_fixed(term, phi.values)) for term in system.terms)
 
 

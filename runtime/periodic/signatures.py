@@ -42,7 +42,6 @@ def signatures_of(vectors: ComplexArray, multipliers: ComplexArray, error: Array
 
 
 def _signs(values: ComplexArray, vectors: ComplexArray, error: Array) -> Signs:
-    """Return the signatures of one matrix."""
     signs = np.zeros(len(values), dtype=np.int8)
     # Within ten errors two multipliers are taken as one, and a modulus for 1.
     distance = np.abs(values[:, None] - values)

@@ -13,20 +13,17 @@ from itertools import pairwise
 from math import ceil, log
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.errors import BadInput, bad
-from ..core.families import LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..core.trigonometric import even_angles
 from .equation import SampledSystem, sampled
-from .moving_basis import still_modes
+from .moving_basis import smooth_basis, still_modes
 from .multipliers import conditions
 from .prepared import TableMaker, closed
 from .tables import Table, flows_at
 from .transition import cheapest
-from .truncation import TruncatedSystem, arrays_at, modes_offered, smooth_basis, truncated_on
-
-Array = NDArray[np.float64]
+from .truncation import TruncatedSystem, arrays_at, modes_offered, truncated_on
 
 # Ratio of the ends of a range of speeds: tables of 16 nodes follow it to 1e-8.
 _RATIO = 2.0
@@ -34,8 +31,9 @@ _RATIO = 2.0
 _NODES = 16
 # Speeds whose motions are lifted together.
 _TOGETHER = 64
-# Even angles at which the modes are carried round, at the least.
-_CARRIED = 128
+# Even angles at which the modes are carried round, at the least and the most, and the upper
+# harmonics of the basis, over the largest, that are small enough.
+_CARRIED, _SMOOTH = (128, 1024), 1e-9
 
 
 @dataclass(frozen=True)
@@ -81,7 +79,7 @@ class SweptMotions:
             part = slice(begin, begin + _TOGETHER)
             flows = self.table.flows(1.0 / speeds[part])
             z, reach = reduced(self.truncated, flows, self.scale)
-            q, _ = self.truncated.lift(z, speeds[part])
+            q = self.truncated.lift(z, speeds[part])
             yield part, q, reach * self.motion_error
 
     def growth(self, speeds: Array) -> Growth:
@@ -100,7 +98,7 @@ def reduced(
     Over the largest size of the motion: that of its start times the reach of the ring.
     """
     m = truncated.size
-    states, _, reach = closed(*flows, 1.0 / scale[-1])
+    states, reach = closed(*flows, 1.0 / scale[-1])
     size = np.max(np.abs(states[:, :, :m]), axis=(1, 2))
     start = np.max(np.abs(states[:, 0]), axis=1)
     return states[:, :, :m] * scale[:m], (reach + 1.0) * start / size
@@ -153,14 +151,20 @@ class Truncations:
         """Return the truncation to a number of modes; None where these do not stay smooth."""
         key = modes, angles
         if key not in self._made:
-            try:
-                basis = smooth_basis(self.system, modes, max(angles, _CARRIED), self._held)
-            except BadInput:
-                self._made[key] = None
-            else:
-                made = truncated_on(self.system, basis, self._arrays(len(basis.theta)))
-                self._made[key] = made, sampled(made, forcing=True)
+            self._made[key] = self._truncated(modes, max(angles, _CARRIED[0]))
         return self._made[key]
+
+    def _truncated(self, modes: int, angles: int) -> tuple[TruncatedSystem, SampledSystem] | None:
+        system, every = self.system, modes == self.system.size
+        reach = angles, angles if every else _CARRIED[1]
+        try:
+            basis = smooth_basis(system.period, modes, self._held, reach, _SMOOTH)
+        except BadInput:
+            return None
+        if not (every or basis.tail <= _SMOOTH):
+            return None
+        made = truncated_on(system, basis, self._arrays(len(basis.theta)))
+        return made, sampled(made, forcing=True)
 
     def usable(self, least: int, angles: int) -> list[int]:
         """Return the next two numbers of modes from one on (one at the end) that are smooth."""
@@ -190,7 +194,7 @@ class Truncations:
         waves = np.max(np.abs(np.fft.rfft(z, axis=1)), axis=2)
         upper = np.max(waves[:, 3 * waves.shape[1] // 4 :], axis=1)
         tail = float(np.max(upper / np.max(waves, axis=1)))
-        q, _ = truncated.lift(z, speeds)
+        q = truncated.lift(z, speeds)
         return Trial(truncated, q, growth_of(flows[1][:, :-1, :-1], rtol), tail)
 
     def _required(self, modes: int, angles: int) -> tuple[TruncatedSystem, SampledSystem]:

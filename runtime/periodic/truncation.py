@@ -12,26 +12,20 @@ left is answered statically afterwards (:meth:`TruncatedSystem.lift`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from ..core.errors import bad
-from ..core.families import LinearPeriodic, Term
-from ..core.inputs import require_whole
+from ..core.families import Array, LinearPeriodic, Term
 from ..core.trigonometric import differentiated, interpolated, resampled
 from .equation import SPEED_POWER
-from .moving_basis import MovingBasis, StillModes, carried_basis, still_modes
+from .moving_basis import MovingBasis, still_modes
 from .reduced import projections
 
-Array = NDArray[np.float64]
-
-# Even angles at which the modes are carried round, and the upper harmonics of the basis, over the
-# largest, that are small enough.
-_FEWEST, _MOST, _SMOOTH = 128, 1024, 1e-9
+# Even angles at which the gaps between frequencies are looked at.
+_LOOKED_AT = 64
 # Least ratio of the first frequency left out to the last one kept, at every angle.
 _GAP = 1.02
 # Static corrections of a lifted motion: the first takes a hundredth, the second a hundredth of it.
@@ -40,7 +34,7 @@ _CORRECTIONS = 2
 
 @dataclass(frozen=True)
 class TruncatedSystem(LinearPeriodic):
-    """A linear periodic system on its lowest modes; make it with :func:`modal_truncation`.
+    """A linear periodic system on its lowest modes; make it with :func:`truncated_on`.
 
     Attributes
     ----------
@@ -54,8 +48,6 @@ class TruncatedSystem(LinearPeriodic):
         F there, shape ``(nt, n, n)``.
     arrays : mapping of (str, int) to ndarray
         The arrays of the full system there, by name and power of the speed in its force.
-    highest_kept, lowest_left_out : float
-        Highest frequency that is kept and lowest that is left out, at any angle [rad/s].
     """
 
     full: LinearPeriodic | None = None
@@ -63,81 +55,28 @@ class TruncatedSystem(LinearPeriodic):
     modes: Array = field(default_factory=partial(np.zeros, 0))
     flexibility: Array = field(default_factory=partial(np.zeros, 0))
     arrays: Mapping[tuple[str, int], Array] = field(default_factory=dict)
-    highest_kept: float = np.inf
-    lowest_left_out: float = np.inf
 
-    def lift(self, z: Array, speed: ArrayLike) -> tuple[Array, Array]:
-        """Return periodic motions of the whole system, ``(ns, nt, n)``, and how sure they are.
+    def lift(self, z: Array, speeds: Array) -> Array:
+        """Return periodic motions of the whole system, ``(ns, nt, n)``.
 
         What the modes leave of the whole equation is answered statically by the others, twice.  The
         motions ``z`` of the truncated system are at even angles, ``(ns, any, m)``, at crank speeds
-        [rad/s], ``(ns,)``; the second number is the last correction over the motion, by the largest
-        of each coordinate, ``(ns,)``.
+        [rad/s], ``(ns,)``.
         """
-        speeds = np.atleast_1d(np.asarray(speed, dtype=float))
         # Arrays are applied to all motions at once: the motions are the last axis.
         reduced = np.moveaxis(resampled(np.moveaxis(z, 1, 0), len(self.theta)), 1, -1)
         q = self.modes @ reduced
-        change = np.zeros(q.shape[1:])
         for _ in range(_CORRECTIONS):
-            correction = self.flexibility @ unmet_forces(self.arrays, self.period, q, speeds)
-            q = q + correction
-            change = np.max(np.abs(correction), axis=0)
-        size = np.max(np.abs(q), axis=0)
-        relative = np.max(change / np.where(size > 0.0, size, 1.0), axis=0)
-        return np.moveaxis(q, -1, 0), relative
-
-
-def modal_truncation(
-    system: LinearPeriodic, modes: int | None = None, *, angles: int = _FEWEST
-) -> TruncatedSystem:
-    """Return a system on its lowest modes, the others following in equilibrium.
-
-    M and K are positive definite.  By default the modes are the first, from four on, that leave a
-    gap to the next frequency at every angle.  They are carried at ``angles`` even angles of the
-    period, a power of two, or more where they need them.  Refused is a number of modes that is none
-    of 1 to n, and modes that span no smooth periodic subspace.
-    """
-    candidates = modes_offered(system) if modes is None else [modes]
-    number = require_whole("modes", candidates[0], 1, system.size)
-    basis = smooth_basis(system, number, angles)
-    return truncated_on(system, basis, arrays_at(system, basis.theta))
+            q = q + self.flexibility @ unmet_forces(self.arrays, self.period, q, speeds)
+        return np.moveaxis(q, -1, 0)
 
 
 def modes_offered(system: LinearPeriodic, least: int = 4) -> list[int]:
     """Return the numbers of modes with a gap to the next frequency at every angle, rising."""
-    squares = still_modes(system, _FEWEST // 2).squares
+    squares = still_modes(system, _LOOKED_AT).squares
     ratio = np.sqrt(np.min(squares[:, 1:] / squares[:, :-1], axis=0))
     numbers = [m for m in range(least, system.size) if ratio[m - 1] >= _GAP]
     return [*numbers, system.size]
-
-
-def smooth_basis(
-    system: LinearPeriodic,
-    modes: int,
-    angles: int = _FEWEST,
-    held: Callable[[int], StillModes] | None = None,
-) -> MovingBasis:
-    """Return the lowest modes, carried smoothly round the period, at that many angles or more.
-
-    ``held`` gives the modes of the mechanism held still at a number of even angles.  A subspace
-    that is not smooth or not periodic is refused.
-    """
-    count = angles
-    while True:
-        still = still_modes(system, count) if held is None else held(count)
-        basis = carried_basis(system.period, modes, still)
-        if basis.tail <= _SMOOTH or modes == system.size:
-            return basis
-        if 2 * count > _MOST:
-            ratio = float(np.min(basis.left_out / basis.kept))
-            raise bad(
-                f"modes = {modes}",
-                f"a ratio of {ratio:.6g} between the next frequency and the highest one kept",
-                "a subspace that is smooth and periodic in the crank angle",
-                "keep one mode more or less, so that the next frequency keeps its distance",
-            )
-        count *= 2
 
 
 def truncated_on(
@@ -178,8 +117,6 @@ def truncated_on(
         modes=phi,
         flexibility=flexibility,
         arrays=arrays,
-        highest_kept=float(np.max(basis.kept)),
-        lowest_left_out=float(np.min(basis.left_out)),
     )
 
 
@@ -251,7 +188,6 @@ class _Coupling:
 def _couplings(
     arrays: Mapping[tuple[str, int], Array], phi: Array, slope: Array, period: float
 ) -> dict[int, _Coupling]:
-    """Return the couplings by power of the speed."""
     nt, n, m = phi.shape
     found: dict[int, _Coupling] = {}
     for (array, power), values in arrays.items():

@@ -24,7 +24,7 @@ from ..beams.structure import Beam, PlacedElement, Structure
 from ..core.errors import BadInput, Problem, bad, shown
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_one_of, is_whole, numbers
-from ..core.plotting import axes_or_new
+from ..core.plotting import Axes, axes_or_new
 from .beam_motion import BeamMotion, beam_motion
 from .beam_result import (
     MotionValues,
@@ -37,8 +37,6 @@ from .beam_result import (
 from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from .beam_motion import Motion
 
 METHODS = ("equilibrium", "shape")
@@ -324,7 +322,6 @@ def _doubt(
     method: str,
     own: Mapping[str, Array],
 ) -> dict[str, Any]:
-    """Return the error estimate and its norm."""
     norm = "largest error of axial force [N], shear force [N], moment [N m]"
     finer = on_finer_mesh(system, moving)
     if finer is None:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..beams.assembly import Array
 from ..beams.element_forms import required_structure
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.results import Check
@@ -58,8 +58,7 @@ class BeamMotion:
                 found = "a value that is not finite"
                 fix = "look at the motion's own checks: there may be no single periodic one"
                 problems.append(Problem(name, found, "finite numbers", fix))
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
     @property
     def slope(self) -> Array:
@@ -80,12 +79,14 @@ def beam_motion(system: LinearPeriodic, motion: Motion | float | None) -> BeamMo
     """
     # Loaded here: the response knows frequencies, and these know beams.
     from ..periodic import SteadyState, Trajectory
+    from ..periodic.periodic_motion import quiet_state
 
     structure = required_structure(system)
     if motion is None or not structure.moving:
         return standing(system, motion)
     if isinstance(motion, Real) and not isinstance(motion, bool):
-        motion = quiet_steady_state(system, float(numbers("motion", motion)))
+        # Mesh and equations err far more than this.
+        motion = quiet_state(system, float(numbers("motion", motion)), 1e-7)
     if isinstance(motion, SteadyState):
         made = _steady(motion)
     elif isinstance(motion, Trajectory):
@@ -113,14 +114,6 @@ def beam_motion(system: LinearPeriodic, motion: Motion | float | None) -> BeamMo
 def chunks(motion: BeamMotion) -> list[slice]:
     """Return pieces of 256 angles of a motion, so that the arrays of one fit the memory."""
     return [slice(start, start + 256) for start in range(0, len(motion.theta), 256)]
-
-
-def quiet_steady_state(system: LinearPeriodic, speed: float) -> SteadyState:
-    """Return the steady state at a speed [rad/s]; the caller looks at the linear range."""
-    from ..periodic.periodic_motion import quiet_state
-
-    # Mesh and equations err far more than this.
-    return quiet_state(system, speed, 1e-7)
 
 
 def _steady(motion: SteadyState) -> BeamMotion:

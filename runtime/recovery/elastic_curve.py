@@ -15,15 +15,13 @@ from ..beams.structure import Beam
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite
-from ..core.plotting import axes_or_new
+from ..core.plotting import Axes, axes_or_new
 from .beam_forces import recovery, stations_of
 from .beam_motion import BeamMotion, beam_motion, chunks
 from .beam_result import BeamResult, checked_forms, in_motion
 from .finer_mesh import with_mesh
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from .beam_motion import Motion
 
 
@@ -117,7 +115,6 @@ def _doubt(
     place: tuple[float, float],
     own: tuple[Array, float],
 ) -> dict[str, float | str]:
-    """Return the error estimate and its norm."""
     shift, doubt = own
 
     def change(finer: LinearPeriodic, motion: BeamMotion) -> float:

@@ -13,7 +13,7 @@ from ..beams.assembly import Array
 from ..beams.element_forms import ElementForms, required_structure
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
-from ..core.plotting import axes_or_new
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check
 from .beam_forces import propagated
 from .beam_motion import BeamMotion, beam_motion
@@ -21,8 +21,6 @@ from .beam_result import BeamResult, MotionValues, in_motion, over_motion
 from .finer_mesh import ROUNDING, with_mesh
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from .beam_motion import Motion
 
 _PARTS = ("x", "y", "moment")
@@ -45,9 +43,6 @@ class PinReactions(BeamResult):
     drag : ndarray
         Forces [N] without a counterpart in the structure, such as those of modal damping: what
         they do to the structure, shape ``(nt, 2)``.
-    momentum_rate : ndarray
-        Rate of change of the momentum less weight and constant loads [N], shape ``(nt, 2)``; the
-        ground and the drag bring it about.
     error : float
         Largest error of a force [N], moments over the longest beam's length: by the error of the
         motion and, where it was found on a finer mesh too, by that of the mesh.
@@ -56,12 +51,10 @@ class PinReactions(BeamResult):
     on_beams: Mapping[tuple[str, str], Array]
     of_ground: Mapping[str, Array]
     drag: Array
-    momentum_rate: Array
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
         **BeamResult.dimensions,
         "drag": ("sample", "direction"),
-        "momentum_rate": ("sample", "direction"),
     }
 
     def arrays(self) -> dict[str, Array]:
@@ -155,7 +148,6 @@ def pin_reactions(system: LinearPeriodic, motion: Motion | float | None = None) 
         on_beams=on_beams,
         of_ground=of_ground,
         drag=drag,
-        momentum_rate=rate,
         **in_motion(system, moving, doubt, checks),
     )
 
@@ -232,7 +224,6 @@ def _outside_forces(forms: ElementForms, values: MotionValues) -> Array:
 def _doubt(
     system: LinearPeriodic, motion: BeamMotion, on_beams: Mapping[tuple[str, str], Array]
 ) -> dict[str, float | str]:
-    """Return the error estimate and its norm."""
     longest = max(beam.length for beam in required_structure(system).beams)
     scale = np.array([1.0, 1.0, 1.0 / longest])
     own = np.stack(list(on_beams.values())) * scale

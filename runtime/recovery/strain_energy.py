@@ -14,7 +14,7 @@ from ..beams.element_forms import ElementForms, required_structure
 from ..beams.recovery_forms import LinearForm
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
-from ..core.plotting import axes_or_new
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check
 from ..core.trigonometric import differentiated, even_angles, interpolated
 from .beam_motion import BeamMotion, beam_motion, chunks
@@ -22,8 +22,6 @@ from .beam_result import BeamResult, MotionValues, in_motion, over_motion
 from .finer_mesh import with_mesh
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from .beam_motion import Motion
 
 
@@ -291,8 +289,6 @@ def beam_energies(system: LinearPeriodic, motion: Motion | float | None = None) 
 
 
 def _doubt(system: LinearPeriodic, moving: BeamMotion, strain: Array) -> dict[str, float | str]:
-    """Return the error estimate and its norm."""
-
     def change(finer: LinearPeriodic, motion: BeamMotion) -> float:
         better = np.sum(_energies(finer, motion)["strain"], axis=1)
         return float(np.max(np.abs(better - np.sum(strain, axis=1))))
@@ -302,7 +298,6 @@ def _doubt(system: LinearPeriodic, moving: BeamMotion, strain: Array) -> dict[st
 
 
 def _energies(system: LinearPeriodic, motion: BeamMotion) -> dict[str, Any]:
-    """Return the energies and powers of a motion by name."""
     slopes = force_slopes(system)
     return over_motion(
         system, motion, lambda forms, values: Energies(forms, values, slopes).by_name()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 from ..beams.element_forms import required_structure
 from ..beams.recovery_forms import RIGID, LinearForm
 from ..core.errors import LINEAR_RANGE, bad
-from ..core.families import DAMPING, LinearPeriodic
+from ..core.families import DAMPING, Array, LinearPeriodic
 from ..core.inputs import numbers, require_between
-from ..core.plotting import axes_or_new
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import differentiated, even_angles, resampled
 from ..periodic.equation import equation_of
@@ -24,11 +24,6 @@ from ..periodic.swept_motions import Growth, Trial, Truncations, speed_ranges
 from ..periodic.truncation import arrays_at
 from .beam_forces import require_method
 from .stresses import stress_operator
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
 
 # Angles of a revolution at first and at the most, and the upper quarter of a motion's harmonics,
 # over the largest, times the wanted error, that asks for more of them.
@@ -315,8 +310,6 @@ class Peaks:
 
 @dataclass(frozen=True)
 class _Range:
-    """What one range of speeds gives."""
-
     peaks: Peaks  # their errors with those of the motion and of the truncation
     modes: int
     growth: Growth  # the largest multipliers
@@ -477,7 +470,6 @@ def _require_damped(system: LinearPeriodic) -> None:
 
 
 def _checked(system: LinearPeriodic, speeds: ArrayLike, rtol: float) -> Array:
-    """Return the speeds; refuse arguments that are unusable."""
     required_structure(system)
     given = np.atleast_1d(numbers("speeds", speeds))
     if given.ndim != 1 or not given.size or not np.all(np.isfinite(given) & (given > 0)):

@@ -14,10 +14,10 @@ from ..beams.assembly import Array
 from ..beams.element_forms import ElementForms, required_structure
 from ..beams.recovery_forms import LinearForm, stacked
 from ..core.deferred import DeferredField, DeferredGroup
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite, numbers_in_a_row
-from ..core.plotting import axes_or_new
+from ..core.plotting import Axes, axes_or_new
 from ..core.trigonometric import even_angles, resampled
 from .beam_forces import (
     METHODS,
@@ -33,8 +33,6 @@ from .beam_result import StationResult, checked_forms, in_motion, stations_on
 from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from .beam_motion import Motion
 
 Stations = int | Mapping[str, ArrayLike] | None
@@ -51,8 +49,7 @@ def fibre_factors(system: LinearPeriodic, stations: Sequence[Station]) -> tuple[
         for name in dict.fromkeys(station.beam for station in stations)
         if sections[name].thickness is None
     ]
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)
     own = [sections[station.beam] for station in stations]
     levers = [0.5 * (section.thickness or 0.0) / section.second_moment for section in own]
     return np.array([1.0 / section.area for section in own]), np.array(levers)
@@ -292,8 +289,7 @@ class StressResult(StationResult):
                 problems.append(Problem(f"limit of {link}", repr(own), "a stress [Pa]", fix))
             else:
                 found[link] = float(own) / abs(peak.value) if peak.value else np.inf
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
         return found
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -403,7 +399,6 @@ def _still(
     method: str,
     levers: tuple[Array, Array],
 ) -> dict[str, Array]:
-    """Return the stresses of the quasi-static motion."""
     still = frozen(system, moving)
     axial, bending = stresses(system, still, stations, method, levers, frozen=True)
     return {"axial": axial, "bending": bending}
@@ -417,7 +412,6 @@ def _doubt(
     levers: tuple[Array, Array],
     own: tuple[Array, Array],
 ) -> dict[str, float | str]:
-    """Return the error estimate with its parts and its norm."""
     by_motion = motion_error(system, moving, stations, levers)
     norm = "largest error of a stress over angles and stations [Pa]"
     finer = on_finer_mesh(system, moving)

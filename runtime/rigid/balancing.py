@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, bad
 from ..core.inputs import names_in_a_row, require_mapping, require_whole
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..linkages.linkage import Array, finite_array
 from .counterweights import (
@@ -26,9 +27,6 @@ from .inputs import finite_number, require_link
 from .machine import Machine, require_machine
 from .optimum import Candidate, Design, ForceBasis, Measure, Search, best_counterweights
 from .peaks import TERMS
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 # The force in the crank pin, the driving torque and the moment on the frame, equally weighted.
 DEFAULT_WEIGHTS: Mapping[str, float] = {"f23": 1.0, "torque": 1.0, "shaking_moment": 1.0}
@@ -82,8 +80,6 @@ class Balancing(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the relative peaks as bars, those with a weight darker."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         names = list(self.relative)
         counted = [self.weights.get(name, 0.0) > 0.0 for name in names]
@@ -187,7 +183,6 @@ def _compared(
     acceleration: float,
     angles: ArrayLike | None,
 ) -> Balancing:
-    """Return what the counterweights of a case do to every peak."""
     balanced = with_counterweights(machine, added.values())
     unbalanced, _ = _turn_peaks(machine, speed, acceleration, angles)
     after, where = _turn_peaks(balanced, speed, acceleration, angles)
@@ -220,7 +215,6 @@ def _searched(
     angles: ArrayLike | None,
     measure: Measure = "peak",
 ) -> Search:
-    """Return the search that :func:`balance` makes."""
     require_machine(machine)
     speed, acceleration = finite_number(speed, "speed"), finite_number(acceleration, "acceleration")
     if measure not in ("peak", "rms"):
@@ -248,7 +242,6 @@ def _searched(
 
 
 def _described(search: Search, best: Candidate) -> Balancing:
-    """Return the result for the counterweights of a search."""
     added, p = _counterweights(search, best.x), search.design.parameters(best.x)
     balanced, where = _sizes(search.basis, search.theta, p, search.between, search.measure)
     relative = _relative(balanced, search.unbalanced)
@@ -432,8 +425,6 @@ class TradeOff(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the curve and mark the cases of Smith's Fig. 20."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         ax.plot(self.first_values, self.second_values, ".-", label="least possible")
         for name, (x, y) in self.cases.items():
@@ -541,7 +532,6 @@ def _cases(
     angles: ArrayLike | None,
     terms: tuple[str, str],
 ) -> dict[str, tuple[float, float]]:
-    """Return the relative peaks of the cases that the linkage has."""
     peaks: dict[str, tuple[float, float]] = {}
     for case in CASES:
         try:

@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
-from ..core.errors import BadInput, Problem, bad
-from .inputs import finite_number, not_finite, require_link
+from ..core.errors import Problem, bad, refuse
+from ..core.inputs import number_problems
+from .inputs import finite_number, require_link
 from .machine import Machine, require_machine
 from .masses import MassDistribution
 
@@ -52,15 +53,14 @@ class Counterweight:
     def __post_init__(self) -> None:
         """Check the numbers."""
         where = "Counterweight"
-        problems = not_finite(where, {"along": self.along, "across": self.across})
-        problems += not_finite(where, {"mass": self.mass}, least=0.0)
-        problems += not_finite(where, {"radius": self.radius}, least=0.0)
+        problems = number_problems(where, {"along": self.along, "across": self.across})
+        sizes = {"mass": self.mass, "radius": self.radius}
+        problems += number_problems(where, sizes, "not negative")
         problems += _cylinder_problems(where, self.density, self.thickness)
         if not problems and self.radius and self.density is not None:
             expected = "a radius, or density and thickness"
             problems.append(Problem(f"{where}.radius", "all three", expected, "leave one out"))
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
     @property
     def own_inertia(self) -> float:
@@ -114,8 +114,7 @@ class Bounds:
         """Check the numbers."""
         problems = _not_positive("Bounds", {"mass": self.mass, "offset": self.offset})
         problems += _cylinder_problems("Bounds", self.density, self.thickness)
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
 
 def with_counterweights(machine: Machine, counterweights: Iterable[Counterweight]) -> Machine:
@@ -133,15 +132,10 @@ def with_counterweights(machine: Machine, counterweights: Iterable[Counterweight
 
 def _not_positive(where: str, values: Mapping[str, float | None]) -> list[Problem]:
     given = {name: value for name, value in values.items() if value is not None}
-    return not_finite(where, given) or [
-        Problem(f"{where}.{name}", f"{value:g}", "a number above zero", "correct it")
-        for name, value in given.items()
-        if value <= 0.0
-    ]
+    return number_problems(where, given, "positive")
 
 
 def _cylinder_problems(where: str, density: float | None, thickness: float | None) -> list[Problem]:
-    """Return what is wrong with density and thickness of a cylinder."""
     problems = _not_positive(where, {"density": density, "thickness": thickness})
     if not problems and (density is None) != (thickness is None):
         expected = "both density and thickness, or none"

@@ -99,7 +99,6 @@ class Evaluation:
         return {name: out[row] for name, row in rows.items()}
 
     def _numbers(self, speed: Array, acceleration: Array) -> dict[str, Any]:
-        """Return drive, geometry and masses as the emitted functions call them."""
         linkage = self.machine.linkage
         numbers: dict[str, Any] = {"speed": speed, "acceleration": acceleration}
         lengths = linkage.lengths.items()

@@ -5,22 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from ..core.errors import bad
+from ..core.errors import bad, shown
+from ..core.inputs import is_finite
 from ..core.maxima import summits
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ..core.trigonometric import interpolated
 from ..linkages.linkage import EPS, TURN, Array
 from .forces import driving_torque
-from .inputs import not_finite
 from .machine import Machine, require_machine
 from .one_freedom import OneFreedom
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _FEWEST, _MOST = 1024, 2**15
 # The speeds have settled where they move by no more, relative; the check allows for jitter.
@@ -67,14 +65,11 @@ class TorqueFluctuation(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the torque and its mean against the crank angle."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         degrees = np.degrees(np.append(self.theta, self.theta[0] + TURN))
         ax.plot(degrees, np.append(self.torque, self.torque[0]))
         ax.axhline(self.mean_torque, color="0.5", linestyle="--", label="mean")
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel("driving torque [N m]")
+        ax.set(xlabel="crank angle [deg]", ylabel="driving torque [N m]")
         ax.legend()
         return ax
 
@@ -151,12 +146,9 @@ class Flywheel(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the crank speed with the flywheel against the crank angle."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         ax.plot(np.degrees(self.theta), self.speeds)
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel("crank speed [rad/s]")
+        ax.set(xlabel="crank angle [deg]", ylabel="crank speed [rad/s]")
         return ax
 
 
@@ -193,9 +185,8 @@ def flywheel_inertia(machine: Machine, speed: float, fluctuation: float = 0.02) 
     >>> wheel.inertia > 0 and abs(wheel.fluctuation - 0.02) < 1e-12
     True
     """
-    if not_finite("flywheel_inertia", {"fluctuation": fluctuation}) or not 1e-100 < fluctuation < 1:
-        given = repr(fluctuation)[:60]
-        raise bad("fluctuation", given, "a number between 0 and 1", "0.02 is usual")
+    if not (is_finite(fluctuation) and 1e-100 < fluctuation < 1):
+        raise bad("fluctuation", shown(fluctuation), "a number between 0 and 1", "0.02 is usual")
     steady = torque_fluctuation(machine, speed)
     first_order = steady.energy_fluctuation / (fluctuation * speed**2)
     motion = _motion(machine, steady, fluctuation)
@@ -342,7 +333,6 @@ def _mean_check(machine: Machine, speed: float, mean: float, size: float) -> dic
 def _confirmed(
     machine: Machine, motion: _Motion, start: float, reached: float, share: float
 ) -> dict[str, Check]:
-    """Run a revolution under the motor's torque."""
     from .motor_run import run_up
 
     run = run_up(
@@ -367,9 +357,8 @@ def _confirmed(
 def _require(machine: Machine, speed: float) -> None:
     require_machine(machine)
     machine.linkage.require_full_turn()
-    if not_finite("speed", {"speed": speed}) or not speed * speed:
-        given = repr(speed)[:60]
-        raise bad("speed", given, "a finite crank speed, not zero", "give one in rad/s")
+    if not (is_finite(speed) and speed * speed):
+        raise bad("speed", shown(speed), "a finite crank speed, not zero", "give one in rad/s")
     turns = _SCATTERED + TURN * _TURNS[:, np.newaxis]
     torque = driving_torque(machine, turns, speed).torque
     size = float(np.max(np.abs(torque)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,23 +13,18 @@ from numpy.typing import ArrayLike
 from ..core.deferred import Deferred, DeferredField
 from ..core.errors import bad
 from ..core.inputs import names_in_a_row
-from ..core.plotting import axes_or_new
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import BROADCAST, DeferredChecks, Result, provenance
 from ..linkages.linkage import TURN, Array, checked_drive
 from .evaluation import FRAME_FORCE, Evaluation, Output
 from .machine import Machine, require_machine
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 _LATER = DeferredField()
 OUTPUTS: tuple[Output, ...] = ("pins", "torque", "shaking_force", "shaking_moment")
+_JOINTS = ("12", "23", "34", "41")
 _POLAR = {
-    "12": ("x12", "y12", "pin force 12"),
-    "23": ("x23", "y23", "pin force 23"),
-    "34": ("x34", "y34", "pin force 34"),
-    "41": ("x41", "y41", "pin force 41"),
-    "frame": ("shaking_x", "shaking_y", "force on the frame"),
+    **{joint: (f"x{joint}", f"y{joint}", f"pin force {joint}") for joint in _JOINTS},
+    "frame": (*FRAME_FORCE, "force on the frame"),
 }
 _CURVES = {
     "torque": ("torque", "driving torque [N m]"),
@@ -66,7 +61,7 @@ class RigidForces(Result):
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
         (
             *("theta2", "speed", "acceleration", "torque", "error", "couple34", "couple41"),
-            *(axis + joint for axis in "xy" for joint in ("12", "23", "34", "41")),
+            *(axis + joint for axis in "xy" for joint in _JOINTS),
             *FRAME_FORCE,
             "shaking_moment",
         ),
@@ -267,8 +262,7 @@ def _over_the_turn(ax: Axes, theta: Array, values: Array, label: str) -> Axes:
     for row, value in _curves(degrees, values):
         ax.plot(row, value)
     ax.axhline(0.0, color="0.7", linewidth=0.8)
-    ax.set_xlabel("crank angle [deg]")
-    ax.set_ylabel(label)
+    ax.set(xlabel="crank angle [deg]", ylabel=label)
     return ax
 
 
@@ -279,8 +273,7 @@ def _hodograph(ax: Axes, theta: Array, x: Array, y: Array, label: str) -> Axes:
     _mark(ax, *_curves(angles, x, y)[0])
     ax.plot(0.0, 0.0, "+", color="k")
     ax.set_aspect("equal", adjustable="datalim")
-    ax.set_xlabel("X [N]")
-    ax.set_ylabel("Y [N]")
+    ax.set(xlabel="X [N]", ylabel="Y [N]")
     ax.set_title(label)
     return ax
 

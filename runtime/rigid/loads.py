@@ -8,10 +8,9 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
-from ..core.errors import BadInput, Problem, bad
-from ..core.inputs import are_finite, names_problems
+from ..core.errors import BadInput, Problem, bad, refuse, shown
+from ..core.inputs import are_finite, names_problems, number_problems
 from ..linkages.linkage import Array, LinkMotion, PointMotion
-from .inputs import not_finite
 
 End: TypeAlias = tuple[str, float, float]
 Wrench: TypeAlias = tuple[Array, Array, Array]
@@ -96,16 +95,15 @@ class Load:
         numbers: dict[str, Any] = {"along": self.along, "across": self.across}
         if not callable(self.couple):
             numbers["couple"] = self.couple
-        problems = not_finite("Load", numbers)
+        problems = number_problems("Load", numbers)
         if not (callable(self.force) or are_finite(self.force, 2)):
             expected = "a pair of finite numbers"
-            problems.append(Problem("Load.force", repr(self.force)[:60], expected, "give (fx, fy)"))
+            problems.append(Problem("Load.force", shown(self.force), expected, "give (fx, fy)"))
         for name, choices in (("axes", ("fixed", "link")), ("given", ("angle", "motion"))):
             if getattr(self, name) not in choices:
-                given = repr(getattr(self, name))[:60]
+                given = shown(getattr(self, name))
                 problems.append(Problem(f"Load.{name}", given, f"one of {choices}", "choose one"))
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
     @property
     def links(self) -> tuple[str, ...]:
@@ -180,13 +178,14 @@ class Spring:
         for name in ("first", "second"):
             problems += _end_problems(f"Spring.{name}", getattr(self, name))
         names = ("stiffness", "free_length", "damping")
-        problems += not_finite("Spring", {name: getattr(self, name) for name in names}, least=0.0)
-        problems += not_finite("Spring", {"preload": self.preload})
+        problems += number_problems(
+            "Spring", {name: getattr(self, name) for name in names}, "not negative"
+        )
+        problems += number_problems("Spring", {"preload": self.preload})
         if not problems and self.first[0] == self.second[0]:
             given = f"both ends on {self.first[0]!r}"
             problems.append(Problem("Spring", given, "two different links", "move an end"))
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
     @property
     def links(self) -> tuple[str, ...]:
@@ -273,15 +272,14 @@ class TorsionSpring:
         """Check the numbers and the links."""
         where = "TorsionSpring"
         rates = {"stiffness": self.stiffness, "damping": self.damping}
-        problems = not_finite(where, rates, least=0.0)
-        problems += not_finite(where, {"free_angle": self.free_angle, "preload": self.preload})
+        problems = number_problems(where, rates, "not negative")
+        problems += number_problems(where, {"free_angle": self.free_angle, "preload": self.preload})
         ends = (self.first, self.second)
         problems += names_problems(f"{where}: first, second", ends)
         if not problems and self.first == self.second:
             given = f"both ends on {self.first!r}"
             problems.append(Problem(where, given, "two different links", "name another link"))
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
     @property
     def links(self) -> tuple[str, ...]:
@@ -345,7 +343,7 @@ def evaluated(law: Any, given: Any, size: int, where: str, shape: tuple[int, ...
     except (TypeError, ValueError):
         fits = False
     if not fits:
-        raise bad(where, f"{value!r}"[:60], expected, "correct what the callable returns")
+        raise bad(where, shown(value), expected, "correct what the callable returns")
     if not np.all(np.isfinite(values)):
         raise bad(where, "a value that is not finite", expected, "correct the callable")
     return values
@@ -363,5 +361,5 @@ def _one_more(given: Any, shape: tuple[int, ...]) -> Any:
 def _end_problems(where: str, end: object) -> list[Problem]:
     if not (isinstance(end, tuple) and len(end) == 3 and isinstance(end[0], str)):
         fix = "write it like ('crank', 0.1, 0.0)"
-        return [Problem(where, repr(end)[:60], "a link and two coordinates", fix)]
-    return not_finite(where, {"along": end[1], "across": end[2]})
+        return [Problem(where, shown(end), "a link and two coordinates", fix)]
+    return number_problems(where, {"along": end[1], "across": end[2]})

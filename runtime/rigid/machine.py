@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from functools import reduce
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import Problem, bad, refuse, shown
 from ..core.inputs import are_finite
 from ..linkages.linkage import Array, Linkage
 from .loads import FRAME, Load, Spring, TorsionSpring, Wrench
@@ -71,12 +70,11 @@ class Machine:
         problems = _mass_problems(self.masses, self.linkage.links)
         if not are_finite(self.gravity, 2):
             fix = "write it like (0.0, -9.81)"
-            given = repr(self.gravity)[:60]
+            given = shown(self.gravity)
             problems.append(Problem("Machine.gravity", given, "two finite components", fix))
         for name, kinds in (("loads", (Load,)), ("springs", (Spring, TorsionSpring))):
             problems += _item_problems(name, getattr(self, name), kinds, self.linkage.links)
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
         object.__setattr__(self, "masses", dict(self.masses))
         object.__setattr__(self, "gravity", tuple(float(part) for part in self.gravity))
         object.__setattr__(self, "loads", tuple(self.loads))
@@ -266,9 +264,7 @@ def require_machine(machine: object) -> None:
 
 
 def _sum(parts: Iterable[Array], motion: Any) -> Array:
-    none: Array = np.zeros(np.shape(motion.theta2))
-    add: Callable[[Array, Array], Array] = np.add
-    return np.asarray(reduce(add, parts, none))
+    return np.asarray(sum(parts, np.zeros(np.shape(motion.theta2))))
 
 
 def _mass_problems(masses: object, links: tuple[str, ...]) -> list[Problem]:

@@ -7,8 +7,8 @@ import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ..core.errors import BadInput, bad
-from .inputs import not_finite
+from ..core.errors import bad, refuse
+from ..core.inputs import number_problems
 
 
 @dataclass(frozen=True)
@@ -156,7 +156,5 @@ class MassDistribution:
 
 
 def _require(sizes: Mapping[str, object], **places: object) -> None:
-    """Refuse sizes that are no finite numbers of zero or more, and places that are no numbers."""
-    problems = not_finite("MassDistribution", sizes, least=0.0)
-    if problems := problems + not_finite("MassDistribution", places):
-        raise BadInput(*problems)
+    problems = number_problems("MassDistribution", sizes, "not negative")
+    refuse(problems + number_problems("MassDistribution", places))

@@ -7,22 +7,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from numbers import Real
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
-from ..core.errors import BadInput, Problem, bad
-from ..core.inputs import is_finite, is_whole
+from ..core.errors import Problem, bad, refuse, shown
+from ..core.inputs import is_finite, is_whole, number_problems
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ..linkages.linkage import TURN, Array
 from .forces import RigidForces, rigid_forces
-from .inputs import finite_number, not_finite
+from .inputs import finite_number
 from .machine import Machine, require_machine
 from .one_freedom import OneFreedom
 from .stepping import Goals, Run, Status, TorqueLaw, integrate
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _LONGEST = TURN / 24.0
 
@@ -123,12 +121,9 @@ class RunUp(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the crank speed over time."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         ax.plot(self.time, self.speed)
-        ax.set_xlabel("time [s]")
-        ax.set_ylabel("crank speed [rad/s]")
+        ax.set(xlabel="time [s]", ylabel="crank speed [rad/s]")
         return ax
 
 
@@ -262,7 +257,6 @@ def _name(torque: object) -> str:
 
 
 def _require(machine: object, ends: Mapping[str, object], numbers: Mapping[str, object]) -> None:
-    """Raise BadInput with everything that makes a run impossible."""
     require_machine(machine)
     if all(value is None for value in ends.values()):
         raise bad("run_up", "no end", "revolutions or duration", "give revolutions=10, for example")
@@ -279,9 +273,8 @@ def _require(machine: object, ends: Mapping[str, object], numbers: Mapping[str, 
             least = 2 if name == "samples" else 1
             fits, expected = is_whole(value, least), f"a whole number, {least} or more"
         if not fits:
-            problems.append(Problem(name, repr(value)[:60], expected, "correct it"))
-    if problems:
-        raise BadInput(*problems)
+            problems.append(Problem(name, shown(value), expected, "correct it"))
+    refuse(problems)
 
 
 @dataclass(frozen=True)
@@ -312,13 +305,12 @@ class TorqueLine:
     def __post_init__(self) -> None:
         """Check the numbers."""
         given = {"stall": self.stall, "no_load_speed": self.no_load_speed}
-        problems = not_finite("TorqueLine", given)
+        problems = number_problems("TorqueLine", given)
         if not problems and not self.stall * self.no_load_speed > 0:
             pair = f"stall {self.stall:g} N m, no-load speed {self.no_load_speed:g} rad/s"
             fix = "correct a sign, or give a callable"
             problems.append(Problem("TorqueLine", pair, "two numbers of one sign, not zero", fix))
-        if problems:
-            raise BadInput(*problems)
+        refuse(problems)
 
     def __call__(self, speed: Any, angle: Any = 0.0, time: Any = 0.0) -> Any:
         """Return the torque [N m] at a speed [rad/s]."""
@@ -331,7 +323,7 @@ def torque_law(torque: object) -> TorqueLaw:
         value = finite_number(torque, "torque")
         return lambda speed, angle, time: value
     if not callable(torque) or isinstance(torque, type):
-        raise bad("torque", repr(torque)[:60], "a number or a callable", "give a TorqueLine")
+        raise bad("torque", shown(torque), "a number or a callable", "give a TorqueLine")
     law: Any = torque
     try:
         parameters = inspect.signature(law).parameters.values()
@@ -358,7 +350,7 @@ def _checked(law: TorqueLaw) -> TorqueLaw:
             place = f"speed {speed:.6g} rad/s, angle {angle:.6g} rad, time {time:.6g} s"
             raise bad(
                 "torque",
-                f"{value!r}"[:60] + f" from the torque law at {place}",
+                shown(value) + f" from the torque law at {place}",
                 "a finite number [N m]",
                 "correct the torque law",
             )

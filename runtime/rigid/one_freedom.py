@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.errors import bad
+from ..core.errors import bad, shown
 from ..core.inputs import is_finite
 from ..core.maxima import narrowed
 from ..core.trigonometric import even_angles, interpolated, tail
@@ -31,8 +31,7 @@ class OneFreedom:
 
     def __init__(self, machine: Machine, flywheel: float = 0.0) -> None:
         if not (is_finite(flywheel) and flywheel >= 0):
-            given = repr(flywheel)[:60]
-            raise bad("flywheel", given, "a finite inertia, zero or more", "correct it")
+            raise bad("flywheel", shown(flywheel), "a finite inertia, zero or more", "correct it")
         self.machine, self.flywheel = machine, float(flywheel)
         self.hasty = any(load.given == "motion" for load in machine.loads) or any(
             spring.dampers is not None for spring in machine.springs
@@ -168,8 +167,7 @@ def _series(function: Callable[[Array], Array]) -> Callable[[float], float] | No
     def series(theta: float) -> float:
         return float((terms @ np.exp(orders * theta)).real)
 
-    count = 64
-    while count <= 1024:
+    for count in (64, 128, 256, 512, 1024):
         values = np.asarray(function(even_angles(TURN, count)))
         # A series ends in round-off, and meets its function off the samples, or is not used.
         if tail(values) <= 1e-14:
@@ -177,5 +175,4 @@ def _series(function: Callable[[Array], Array]) -> Callable[[float], float] | No
             orders = 1j * np.arange(len(terms))
             gap = max(abs(series(at) - float(function(np.array(at)))) for at in _PROBES)
             return series if gap <= 1e-12 * float(np.max(np.abs(values))) else None
-        count *= 2
     return None

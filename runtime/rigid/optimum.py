@@ -23,7 +23,8 @@ import numpy as np
 from scipy import linalg, optimize, sparse
 
 from ..core.errors import BadInput, bad
-from ..linkages.linkage import Array
+from ..core.trigonometric import even_angles, tail
+from ..linkages.linkage import TURN, Array
 from .machine import Machine
 from .masses import MassDistribution
 from .peaks import TERMS, forces_of, highest
@@ -464,15 +465,12 @@ class ForceBasis:
 
     def grid(self) -> Array:
         """Return equally spaced angles of a turn, dense enough for the peaks between them."""
-        n = 256
-        while True:
-            theta = 2.0 * np.pi * np.arange(n) / n
-            spectra = [np.abs(np.fft.rfft(force, axis=0)) for force in self.forces(theta).values()]
-            tails = [float(s[len(s) * 3 // 4 :].max() / (s.max() or 1.0)) for s in spectra]
+        for count in (256, 512, 1024, 2048, 4096, 8192):
+            theta = even_angles(TURN, count)
             # The tail of the forces' spectrum at which the peaks between samples are safe.
-            if n >= 8192 or max(tails) < 1e-10:
-                return theta
-            n *= 2
+            if max(map(tail, self.forces(theta).values())) < 1e-10:
+                break
+        return theta
 
 
 @dataclass(frozen=True)

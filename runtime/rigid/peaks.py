@@ -114,27 +114,30 @@ def highest(forces: Forces, theta: Array, *, around: bool) -> dict[str, tuple[Ar
     ends = (-np.inf, np.inf) if around else (theta[0], theta[-1])
     places = {name: _local(_sizes(each), around) for name, each in sampled.items()}
     starts = {name: theta[at] for name, at in places.items()}
-    # All at once: an evaluation for all costs little more than one for each.
     for half in (width, width / 8.0):
         middles = {name: np.clip(at, ends[0] + half, ends[1] - half) for name, at in starts.items()}
-        offsets = (half * _NODES)[np.newaxis, :]
-        joined = np.concatenate([*middles.values()])
-        near = forces((joined[:, np.newaxis] + offsets).ravel())
-        first = 0
-        for name, at in middles.items():
-            rows = np.sum(near[name] ** 2, axis=1).reshape(-1, len(_NODES))
-            starts[name] = at + half * _summits(rows[first : first + len(at)])
-            first += len(at)
-    final = forces(np.concatenate([*starts.values()]))
-    peaks, first = {}, 0
-    for name, at in starts.items():
-        refined, sample = final[name][first : first + len(at)], sampled[name][places[name]]
+        nodes = {name: np.add.outer(at, half * _NODES) for name, at in middles.items()}
+        for name, near in _at_own(forces, nodes).items():
+            squares = np.sum(near**2, axis=1).reshape(-1, len(_NODES))
+            starts[name] = middles[name] + half * _summits(squares)
+    peaks = {}
+    for name, refined in _at_own(forces, starts).items():
+        sample = sampled[name][places[name]]
         # Where a load jumps, no polynomial is better than the sample.
         worse = _sizes(refined) < _sizes(sample)
         values = np.where(worse[:, np.newaxis], sample, refined)
-        peaks[name] = (np.where(worse, theta[places[name]], at), values)
-        first += len(at)
+        peaks[name] = (np.where(worse, theta[places[name]], starts[name]), values)
     return peaks
+
+
+def _at_own(forces: Forces, places: Mapping[str, Array]) -> dict[str, Array]:
+    """Return each force at angles of its own; all at once costs little more than one alone."""
+    values = forces(np.concatenate([at.ravel() for at in places.values()]))
+    own, first = {}, 0
+    for name, at in places.items():
+        own[name] = values[name][first : first + at.size]
+        first += at.size
+    return own
 
 
 def _sizes(forces: Array) -> Array:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from ..core.errors import BadInput, Problem
+from ..core.errors import Problem, refuse
 from .schema import Key, Table, choice, not_negative, positive, quantities
 
 # Terms of the moving beams that a scene may leave out, and names for sets of them.
@@ -124,8 +124,7 @@ def complete_beams(values: dict[str, dict[str, Any]], links: Iterable[str]) -> N
     needs_shear = values["model"]["formulation"] == "timoshenko_beams"
     for where, table in tables.items():
         problems += _complete_section(where, table, material, needs_shear)
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)
 
 
 def _complete_section(

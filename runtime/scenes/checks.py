@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import BadInput, Problem, bad, refuse
 from ..core.units import describe, to_si
 from .linkage_tables import LINKS
 from .schema import Layout
@@ -121,8 +121,7 @@ def check_chart(values: Values, layout: Layout) -> None:
     if "x" in chart and chart.get("x") == chart.get("y"):
         found, expected = repr(chart["y"]), "another parameter than chart.x"
         problems.append(Problem("chart.y", found, expected, "change one"))
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)
 
 
 def _read_range(chart: dict[str, Any], axis: str, layout: Layout) -> None:
@@ -136,8 +135,7 @@ def _read_range(chart: dict[str, Any], axis: str, layout: Layout) -> None:
     for i, item in enumerate(chart[f"{axis}_range"]):
         with collecting(problems):
             numbers.append(to_si(item, dimension, f"{where}[{i}]"))
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)
     lowest = numbers[0]
     if dimension != "dimensionless" and not (lowest > 0 or (lowest == 0 and name in _VANISH)):
         start = "from 0 up" if name in _VANISH else "above 0"
@@ -161,8 +159,7 @@ def check_measured(values: Values, layout: Layout) -> None:
             found, expected = f"{len(b)} values", f"{len(a)}, as many as measured.{first}"
             fix = "complete the shorter list"
             problems.append(Problem(f"measured.{other}", found, expected, fix))
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)
 
 
 def check_series(values: Values, layout: Layout) -> None:

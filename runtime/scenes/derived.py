@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from ...derive.spec import BEAM_FORMULATIONS
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import BadInput, Problem, bad, refuse
 from .beam_tables import complete_beams
 from .checks import check_body, collecting
 from .rod_tables import complete_crank, complete_rod
@@ -47,8 +47,7 @@ def complete(values: Values, layout: Layout) -> None:
             with collecting(problems):
                 _complete_bar(link, values[link], length, gravity, balanced=link in balanced)
                 check_body(link, values[link])
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)
 
 
 def _pad_series(function: dict[str, Any]) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from ...derive.spec import BEAM_FORMULATIONS, DERIVED_AS, NAMED_DROPS
 from .beam_tables import (
     BEAM_DROPS,
@@ -32,7 +34,7 @@ from .linkage_tables import (
     rigid_tables,
 )
 from .rod_tables import ROD, ROD_LINKS, ROD_PARAMETERS
-from .schema import Key, Layout, Table, not_negative
+from .schema import Key, Layout, Table, not_negative, positive
 
 _RIGID = ("kinematics", "forces")
 
@@ -87,6 +89,55 @@ FLEXIBLE_COUPLER = Layout(
     links=LINKS[1:],
     parameters=_COUPLER_PARAMETERS,
     closed_in_modes=True,
+)
+
+# What is uniform has no inertia of its own, and what is not straight when unloaded has a bow.
+_UNIFORM_COUPLER = replace(
+    COUPLER,
+    keys=(
+        *(key for key in COUPLER.keys if key.name not in ("inertia", "first_moment")),
+        Key("bow", "deflection of its middle when unloaded", dimension="length", default=0.0),
+    ),
+)
+_BENT_PARAMETERS = {
+    name: dimension
+    for name, dimension in _COUPLER_PARAMETERS.items()
+    if name not in ("coupler_inertia", "coupler_first_moment")
+}
+INEXTENSIBLE_COUPLER = replace(
+    FLEXIBLE_COUPLER,
+    formulations=("inextensible",),
+    tables=(
+        FOUR_BAR_LENGTHS,
+        rigid_link("crank"),
+        _UNIFORM_COUPLER,
+        rigid_link("follower", inertia_required=True),
+        ACTING_GRAVITY,
+        OPERATION,
+        MEASURED,
+        chart_table(_BENT_PARAMETERS),
+    ),
+    outputs=("motion", "variations"),
+    parameters=_BENT_PARAMETERS,
+)
+INEXTENSIBLE_ROD = replace(
+    INEXTENSIBLE_COUPLER,
+    mechanism="slider_crank",
+    tables=(
+        SLIDER_CRANK_LENGTHS,
+        rigid_link("crank"),
+        _UNIFORM_COUPLER,
+        Table(
+            "slider",
+            "the slider",
+            (positive("mass", "mass of the slider", "mass", required=True),),
+            required=True,
+        ),
+        ACTING_GRAVITY,
+        OPERATION,
+    ),
+    links=SLIDER_CRANK_LINKS[:2],
+    parameters={},
 )
 
 _ROD_TABLES = (ROD_LINKS, ROD, OPERATION, chart_table(ROD_PARAMETERS))
@@ -174,7 +225,9 @@ FRAME_OF_BEAMS = Layout(
 LAYOUTS = (
     RIGID_FOUR_BAR,
     FLEXIBLE_COUPLER,
+    INEXTENSIBLE_COUPLER,
     SLIDER_CRANK,
+    INEXTENSIBLE_ROD,
     QUICK_RETURN,
     FLEXIBLE_ROD,
     FREE_FREE_ROD,

@@ -9,7 +9,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from ..core.errors import BadInput, Problem, bad, shown
+from ..core.errors import Problem, bad, refuse, shown
 from .derived import complete
 from .scene import ReadOnlyTable, Scene
 from .validation import find_layout, nearest, show, validate
@@ -118,8 +118,7 @@ def _override(tables: dict[str, Any], overrides: Mapping[str, Any]) -> None:
             target.pop(key, None)
         else:
             target[key or table] = plain
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)
     layout = find_layout(tables)
     for dotted in overrides:
         table, _, key = str(dotted).partition(".")

@@ -8,9 +8,10 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from ..core.errors import BadInput, Problem
-from ..core.families import LinearPeriodic
+from ..core.families import LinearPeriodic, Nonlinear
 from ..core.modules import find_module
 from ..systems import assemble
+from ..systems.driven import driven_system
 
 if TYPE_CHECKING:
     from .scene import Scene
@@ -18,8 +19,10 @@ if TYPE_CHECKING:
 _NOT_PHYSICS = ("model", "operation", "chart")
 
 
-def own_system(scene: Scene) -> LinearPeriodic:
-    """Return the linear-periodic system of a scene that declares its own tables.
+def own_system(scene: Scene) -> LinearPeriodic | Nonlinear:
+    """Return the system of a scene that declares its own tables.
+
+    That is the linear-periodic one, or the nonlinear one of a model without constraints.
 
     Every parameter and every argument of the emitted module is looked up among the scene's
     numbers, as ``KEY`` or as ``TABLE_KEY``; where two tables share a key, only the latter names
@@ -28,21 +31,27 @@ def own_system(scene: Scene) -> LinearPeriodic:
     """
     emitted = find_module(scene.model_spec())
     numbers = _numbers(scene)
-    parameters = list(emitted.module.PARAMETERS)
+    driven = emitted.module.FAMILY == "constrained"
+    parameters = [n for n in emitted.module.PARAMETERS if not (driven and n == "speed")]
     arguments = _arguments(emitted.module) - set(parameters) - set(emitted.module.EXTERNAL)
     missing = sorted((set(parameters) | arguments) - set(numbers))
     if missing:
         known = f"one of {sorted(numbers)}"
         fix = f"module {emitted.entry.module} takes it: declare it in [schema] and give it"
         raise BadInput(*(Problem(name, "nothing", known, fix) for name in missing))
+    origin = {"scene": scene.name, "scene_digest": scene.digest()}
+    limits = _limits(scene, parameters)
+    if driven:
+        values = {name: numbers[name] for name in parameters}
+        return driven_system(emitted, values, limits=limits, provenance=origin)
     return assemble(
         emitted.module,
         geometry={name: numbers[name] for name in sorted(arguments)},
         parameters={name: numbers[name] for name in parameters},
         modes=scene.model.get("modes"),
         drop=emitted.dropped,
-        limits=_limits(scene, parameters),
-        provenance={"scene": scene.name, "scene_digest": scene.digest(), **emitted.provenance},
+        limits=limits,
+        provenance={**origin, **emitted.provenance},
     )
 
 

@@ -16,7 +16,7 @@ from .schema import Layout
 from .validation import nearest
 
 if TYPE_CHECKING:
-    from ..core.families import Constrained, LinearPeriodic
+    from ..core.families import Constrained, LinearPeriodic, Nonlinear
     from ..linkages import Linkage
     from ..rigid import Machine
 
@@ -27,6 +27,7 @@ _BUILDERS = {
     "quick_return": ("..systems.from_scene", "rod_of_scene"),
 }
 _BEAM_BUILDER = ("..systems.beam_scenes", "beams_of_scene")
+_BENT_BUILDER = ("..systems.inextensible", "inextensible_system")
 _OWN_BUILDER = (".own", "own_system")
 LINKAGES = {"four_bar": "FourBar", "slider_crank": "SliderCrank", "quick_return": "QuickReturn"}
 # Keys that no file gives and that follow from the others.
@@ -197,7 +198,7 @@ class Scene:
         spec = ModelSpec.from_mapping(table).derived()
         return spec.with_(modes=None) if self.layout.closed_in_modes else spec
 
-    def system(self) -> LinearPeriodic | Constrained:
+    def system(self) -> LinearPeriodic | Constrained | Nonlinear:
         """Return the family object that the solvers accept.
 
         Raises
@@ -213,8 +214,10 @@ class Scene:
         module, function = _BUILDERS.get(mechanism, _OWN_BUILDER)
         if self.layout.formulations == tuple(BEAM_FORMULATIONS):
             module, function = _BEAM_BUILDER
+        if self.layout.formulations == ("inextensible",):
+            module, function = _BENT_BUILDER
         builder = getattr(importlib.import_module(module, __package__), function)
-        built: LinearPeriodic | Constrained = builder(self)
+        built: LinearPeriodic | Constrained | Nonlinear = builder(self)
         return built
 
     def linear_system(self) -> LinearPeriodic:
@@ -223,7 +226,7 @@ class Scene:
         Raises
         ------
         BadInput
-            As :meth:`system`, and if the scene's formulation is constrained.
+            As :meth:`system`, and if the scene's formulation is constrained or nonlinear.
         """
         from ..core.families import LinearPeriodic
 
@@ -233,6 +236,9 @@ class Scene:
             given = f"formulation '{name}', whose equations are constrained"
             fix = f"--set model.formulation='{name}_linear', or see constrained_motion"
             fix += " and periodic_orbit"
+            if self.layout.formulations == ("inextensible",):
+                given = f"formulation '{name}', whose equations are nonlinear"
+                fix = "--set model.formulation=complete, or see response_curve"
             raise bad(f"scene {self.name}", given, "a linear formulation", fix)
         return found
 

@@ -10,7 +10,7 @@ from itertools import chain, pairwise
 from typing import Any
 
 from ...derive.spec import ModelSpec
-from ..core.errors import BadInput, Problem, bad, shown
+from ..core.errors import BadInput, Problem, bad, refuse, shown
 from ..core.units import DIMENSIONS, expected, to_si
 from .checks import check_chart, check_geometry, check_measured, check_series, collecting
 from .declared import declared_layout
@@ -267,8 +267,7 @@ def _each(reader: _Reader, value: object, key: Key, where: str) -> tuple[Any, ..
     for i, item in enumerate(_list(value, key, where)):
         with collecting(problems):
             found.append(reader(item, key, f"{where}[{i}]"))
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)
     return tuple(found)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..core.families import LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..core.inputs import require_between, speed_span
 from ..core.results import Check, Result, provenance
 from ..periodic import Monodromy, monodromy
@@ -22,7 +22,6 @@ from .fourier_matrices import real_matrices, waves
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 Matrices = dict[int, Array]
 
 _EPS = float(np.finfo(float).eps)

@@ -516,12 +516,10 @@ class _Surface:
 
 
 def _on_line(lines: Lines | HillLines, place: _Place) -> tuple[Array, Array]:
-    """Return the invariants on a line, and the weights of their errors."""
     return lines.line(*place)(place[3])
 
 
 def _gap_on_line(lines: Lines, item: tuple[float, float, float, Array, Array]) -> Array:
-    """Return by how much another solution differs on a line."""
     return lines.error(*item)
 
 

@@ -76,7 +76,6 @@ def draw_chart(chart: StabilityChart, ax: Axes | None) -> Axes:
 
 
 def _shade(ax: Axes, chart: StabilityChart, x: Array, y: Array) -> None:
-    """Shade each kind of instability that occurs."""
     from matplotlib.colors import ListedColormap
 
     codes = np.zeros(chart.kind.shape)
@@ -142,7 +141,6 @@ def _shown(name: str, values: Array) -> Array:
 
 
 def _reach_in(chart: StabilityChart, curves: BoundaryCurves) -> bool:
-    """Return whether some end lies within the chart."""
     values = chart.x if curves.along == chart.x_name else chart.y
     ends = np.concatenate([curves.lower, curves.upper])
     with np.errstate(invalid="ignore"):

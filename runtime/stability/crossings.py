@@ -13,11 +13,12 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.roots import bracketed_roots
 from ..frequencies.multiplier_maxima import refined_maxima
 from ..periodic.multipliers import conditions
 from .labels import held_modes, meeting_labels, pair_shares
 from .over_speed import MatricesOverSpeed
-from .pairs import bracketed_roots, perturbation_size, phase_grid
+from .pairs import perturbation_size, phase_grid
 from .regions import Regions, joined
 
 Array = NDArray[np.float64]
@@ -135,9 +136,8 @@ class Crossings:
             return (own - 2 * noise, np.zeros_like(noise)) if self._sharp else (own, noise)
 
         first, second = self._speed[row], self._speed[row + 1]
-        root, width, slope = bracketed_roots(
-            level, first, second, value[row, rank], value[row + 1, rank]
-        )
+        values = value[row, rank], value[row + 1, rank]
+        root, width, slope = bracketed_roots(level, first, second, values)
         last = self.levels(root)
         error = width + 4 * _EPS * root
         with np.errstate(divide="ignore", invalid="ignore"):

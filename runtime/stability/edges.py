@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import BadInput, bad
-from ..core.families import DAMPING, LinearPeriodic
+from ..core.families import DAMPING, Array, LinearPeriodic
 from ..core.inputs import is_finite, numbers, require_between, speed_span
 from ..core.results import Check, Result, provenance
 from ..periodic import floquet_multipliers
@@ -35,7 +35,6 @@ from .regions import Regions, edge_checks, joined
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
 
@@ -308,7 +307,6 @@ def _contradicted(checks: Mapping[str, Check]) -> float:
 def _check_within(
     slow: SlowSystem, wanted: tuple[float, float], parameters: Mapping[str, float]
 ) -> None:
-    """Refuse a range that slow modes do not hold for."""
     if parameters:
         fix = "give them to slow_system"
         raise bad("parameters", sorted(parameters), "none beside a SlowSystem", fix)

@@ -11,6 +11,8 @@ import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 
+from ..core.maxima import local_maxima
+
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
@@ -266,7 +268,7 @@ class Several:
         if not self.lossless:
             # A narrow range between two points shows as a high of the growth.
             growth = self._growth(sigma)
-            for high in _lows(-growth):
+            for high in local_maxima(growth).tolist():
                 if growth[high] <= self._limit:
                     parts += self._zoomed(sigma, high, lambda x: -self._growth(x))
             return np.unique(np.concatenate(parts))
@@ -274,7 +276,7 @@ class Several:
         distance = self._distances(sigma)
         for column in range(distance.shape[1]):
             gap = distance[:, column]
-            for low in _lows(gap):
+            for low in local_maxima(-gap).tolist():
                 # Exponents that coincide all along differ by round-off alone.
                 if gap[low] > 1e-12 * np.max(gap):
                     parts += self._zoomed(sigma, low, partial(self._distance, column))
@@ -295,8 +297,3 @@ class Several:
                 break
             left, right = float(inner[max(best - 1, 0)]), float(inner[min(best + 1, 16)])
         return parts
-
-
-def _lows(values: Array) -> list[int]:
-    lows = (values[1:-1] < values[:-2]) & (values[1:-1] < values[2:])
-    return [int(place) + 1 for place in np.flatnonzero(lows)]

@@ -17,10 +17,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..core.families import LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..periodic.equation import SPEED_POWER, sampled
 
-Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..core.families import DAMPING, LinearPeriodic
+from ..core.families import DAMPING, Array, LinearPeriodic
 from ..core.inputs import numbers_in_a_row, speed_span
 from ..core.results import Check, Result, provenance
 from ..periodic import floquet_multipliers
@@ -20,7 +20,6 @@ from .meetings import Resonance, resonances
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 # Where the feet are, as a share of the least value; and how far their speeds may be off the range.

@@ -10,19 +10,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..core.families import DAMPING, LinearPeriodic
+from ..core.families import DAMPING, Array, LinearPeriodic
 from ..core.inputs import is_whole, speed_span
-from ..core.trigonometric import even_angles
-from ..periodic.equation import SPEED_POWER, at_geometry, equation_of
+from ..core.roots import bracketed_roots
+from ..periodic.equation import at_geometry, equation_of, sampled
 from ..periodic.signatures import form_matrix
-from .pairs import bracketed_roots
 
-Array = NDArray[np.float64]
 Kind = Literal["principal", "sum", "difference"]
 # Kind, modes from 1, and harmonic.
 Condition = tuple[Kind, tuple[int, int], int]
 
-_ARRAYS = ("M", "A", "B", "K", "Kg")
 # Real part, over the modulus, up to which an exponent of the mean system counts as imaginary.
 IMAGINARY = 1e-7
 
@@ -76,35 +73,21 @@ class MeanSystem:
     """
 
     def __init__(self, system: LinearPeriodic, parameters: Mapping[str, ArrayLike]) -> None:
-        self.system = system
-        count = 1024 if any(not term.constant for term in system.terms) else 1
-        theta = even_angles(system.period, count)
-        scales = system.scale_values(**parameters)
-        # Name of the array, power of the speed, and mean.
-        self._means = [
-            (
-                "K" if term.array == "Kg" else term.array,
-                float(SPEED_POWER[term.array] + term.power),
-                (1.0 if term.scale is None else float(scales[term.scale]))
-                * np.mean(term(theta[:1] if term.constant else theta), axis=0),
-            )
-            for term in system.terms
-            if term.array in _ARRAYS
-        ]
+        self.system, self._parameters = system, parameters
+        self._known = sampled(system.without(*DAMPING))
 
     def _generator(self, speed: Array) -> Array:
         """Return L at crank speeds ``(nb,)`` [rad/s], shape ``(nb, 2n, 2n)``."""
-        n = self.system.size
-        total = {name: np.zeros((len(speed), n, n)) for name in ("M", "A", "B", "K")}
-        for name, power, mean in self._means:
-            total[name] += (speed**power)[:, None, None] * mean
-        return generator(total["M"], total["A"], total["B"] - total["K"])
+        equation = equation_of(self._known, speed, self._parameters)
+        return generator(*(equation.mean(name) for name in ("mass", "gyroscopic", "stiffness")))
 
     def frequencies(self, speed: Array) -> Array:
         """Return frequencies in radians per radian of crank angle, rising; ``(nb, n)``.
 
         Not a number for modes that do not oscillate, the first ones.
         """
+        if not len(speed):
+            return np.zeros((0, self.system.size))
         values = np.linalg.eigvals(self._generator(speed)).astype(complex)
         upper = np.where(_turning(values), values.imag, np.nan)
         # Modes that do not oscillate are the lowest: the others keep their numbers.
@@ -141,14 +124,14 @@ class MeanSystem:
             passing = (value[:-1] * value[1:] <= 0) & (value[1:] != 0)
         which, change = np.nonzero(passing.T)
 
-        def distance(index: NDArray[np.intp], at: Array) -> tuple[Array, Array]:
+        def distance(index: NDArray[np.intp], at: Array) -> tuple[Array, float]:
             nu, rows, condition = self.frequencies(at), np.arange(len(at)), which[index]
             other = nu[rows, second[condition]]
             both = nu[rows, first[condition]] + np.where(minus[condition], -other, other)
-            return np.asarray(both - turns[condition]), np.zeros(len(at))
+            return np.asarray(both - turns[condition]), 0.0
 
-        brackets = grid[change], grid[change + 1], value[change, which], value[change + 1, which]
-        places = bracketed_roots(distance, *brackets)[0]
+        values = value[change, which], value[change + 1, which]
+        places = bracketed_roots(distance, grid[change], grid[change + 1], values)[0]
         # Where a mode ends, at a divergence, the numbers of the others jump.
         met = np.abs(distance(np.arange(len(places)), places)[0]) < 1e-7
         return [places[met & (which == k)] for k in range(len(conditions))]

@@ -22,14 +22,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
-from ..core.families import DAMPING, LinearPeriodic
+from ..core.families import DAMPING, Array, LinearPeriodic
 from ..core.trigonometric import even_angles
 from ..hill.bloch import recursion
 from ..periodic.equation import SPEED_POWER, sampled
 from ..periodic.signatures import form_matrix
 from .meetings import IMAGINARY, Resonance
 
-Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 # Samples over a period of the crank angle by degree and power of sigma.
 Series = dict[tuple[int, int], Array]

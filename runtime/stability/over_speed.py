@@ -6,15 +6,12 @@ from collections.abc import Mapping
 from math import ceil, log
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..core.families import LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..periodic import monodromy
 from ..periodic.equation import sampled
 from ..periodic.prepared import TableMaker
 from ..periodic.tables import Table
-
-Array = NDArray[np.float64]
 
 
 class MatricesOverSpeed:

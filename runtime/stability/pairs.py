@@ -11,15 +11,15 @@ speed, while their moduli start with a square root.  Near a narrow tongue it is 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
+from ..core.roots import bracketed_roots
 from ..periodic.equation import equation_of
-from ..periodic.multipliers import conditions
+from ..periodic.multipliers import conditions, eigenvalues
 from ..periodic.signatures import form_matrix, signatures_of
 from .over_speed import MatricesOverSpeed
 
@@ -114,12 +114,9 @@ def sampled_phases(matrices: MatricesOverSpeed, span: tuple[float, float], more:
 
 def _signed(scaled: Array, error: Array) -> tuple[NDArray[np.complex128], NDArray[np.int8]]:
     """Return the multipliers of symplectic matrices and their Krein signatures, ``(nb, 2n)``."""
-    values, vectors = (part.astype(complex) for part in np.linalg.eig(scaled))
-    shift = perturbation_size(scaled, error)[:, None]
-    # Near a double multiplier the condition number explodes and the square root holds.
-    root = 2 * np.sqrt(np.linalg.norm(scaled, axis=(-2, -1))[:, None] * shift)
+    values, own, vectors = eigenvalues(scaled, perturbation_size(scaled, error))
     # signatures_of takes for one what lies within ten errors.
-    return values, signatures_of(vectors, values, 0.1 * np.fmin(conditions(vectors) * shift, root))
+    return values, signatures_of(vectors, values, 0.1 * own)
 
 
 def _positive(angle: Array, signs: NDArray[np.int8]) -> tuple[Array, Flags]:
@@ -421,9 +418,8 @@ class _Search:
             pair = self._at(index[rows], speed)
             return pair.gap, pair.noise
 
-        roots, width, slope = bracketed_roots(
-            gap, outer, inner, self.g[side, index], self.depth[index]
-        )
+        values = self.g[side, index], self.depth[index]
+        roots, width, slope = bracketed_roots(gap, outer, inner, values)
         last = self._at(index, roots)
         with np.errstate(divide="ignore", invalid="ignore"):
             error = last.noise / np.abs(slope)
@@ -432,62 +428,3 @@ class _Search:
         turn = np.exp(1j * middle)
         turn = np.where(np.real(turn * np.exp(-1j * last.plus)) < 0, -turn, turn)
         return roots, error + width + 16 * _EPS * roots, np.angle(turn)
-
-
-Gap = Callable[[Index, Array], tuple[Array, Array]]
-
-
-def bracketed_roots(
-    function: Gap, first: Array, second: Array, f_first: Array, f_second: Array
-) -> tuple[Array, Array, Array]:
-    """Return the zeros of many functions between brackets, by Chandrupatla's rule.
-
-    With them the width of the last bracket, 0 where the value is all error, and the slope between
-    its ends, each ``(k,)``.  ``function`` takes numbers of functions and places, and returns values
-    and their errors.
-    """
-    a, fa, b, fb = np.array(second), np.array(f_second), np.array(first), np.array(f_first)
-    c, fc = np.array(b), np.array(fb)
-    part = np.full(len(a), 0.5)
-    # Where the value is all error, the bracket says nothing more; the slope is of one before.
-    slope = np.divide(fb - fa, b - a, out=np.zeros_like(a), where=b != a)
-    width = np.abs(b - a)
-    active = np.flatnonzero(width > 0)
-    for _ in range(100):
-        if not len(active):
-            break
-        x = a[active] + part[active] * (b[active] - a[active])
-        value, noise = function(active, x)
-        same = np.sign(value) == np.sign(fa[active])
-        c[active] = np.where(same, a[active], b[active])
-        fc[active] = np.where(same, fa[active], fb[active])
-        rows = active[~same]
-        b[rows], fb[rows] = a[rows], fa[rows]
-        a[active], fa[active] = x, value
-        span = np.abs(b[active] - a[active])
-        clear = (np.abs(value) > 8 * noise) & (span > 0)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            steep = (fb[active] - value) / (b[active] - x)
-        slope[active] = np.where(clear, steep, slope[active])
-        quiet = np.abs(value) <= 0.5 * noise
-        width[active] = np.where(quiet, 0.0, span)
-        ended = quiet | (span <= 4 * _EPS * np.abs(x))
-        part[active] = _chandrupatla(a, b, c, fa, fb, fc, active)
-        active = active[~ended]
-    return a, np.minimum(width, np.abs(b - a)), slope
-
-
-def _chandrupatla(
-    a: Array, b: Array, c: Array, fa: Array, fb: Array, fc: Array, index: Index
-) -> Array:
-    """Return the part of the bracket to go next: inverse quadratic where safe, else one half."""
-    xa, xb, xc, ya, yb, yc = (v[index] for v in (a, b, c, fa, fb, fc))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        xi, phi = (xa - xb) / (xc - xb), (ya - yb) / (yc - yb)
-        good = (phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi)
-        part = ya / (yb - ya) * yc / (yb - yc)
-        part = part + (xc - xa) / (xb - xa) * ya / (yc - ya) * yb / (yc - yb)
-    part = np.where(good & np.isfinite(part), part, 0.5)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        least = np.minimum(2 * _EPS * np.abs(xa) / np.abs(xb - xa), 0.5)
-    return np.clip(part, least, 1 - least)

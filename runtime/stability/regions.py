@@ -8,11 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.families import LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..core.results import Check
 from ..periodic import FloquetMultipliers, floquet_multipliers
-
-Array = NDArray[np.float64]
 
 # Growth, over its error, from which a verdict tells.
 _TELLING = 20.0

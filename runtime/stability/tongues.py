@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..core.families import LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..core.inputs import numbers, require_whole
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ..hill.bloch import BEYOND, HIGHEST
@@ -23,7 +23,6 @@ from .operators import ResonantOperator, resonant_operator
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 _EPS = float(np.finfo(float).eps)
@@ -201,7 +200,6 @@ def tongue(
 def _checked(
     parameter: tuple[str, ArrayLike] | None, parameters: Mapping[str, float]
 ) -> tuple[str | None, Array]:
-    """Return the parameter's name and its values."""
     if parameter is None:
         return None, np.zeros(())
     if len(parameter) != 2 or not isinstance(parameter[0], str):
@@ -217,7 +215,6 @@ def _checked(
 def _operator(
     system: LinearPeriodic, parameters: Mapping[str, float], resonance: Resonance, order: int
 ) -> ResonantOperator:
-    """Return the effective operator, two orders beyond the wanted."""
     span = resonance.speed / _NEAR, resonance.speed * _NEAR
     condition = resonance.kind, resonance.modes, resonance.harmonic
     meetings = MeanSystem(system, parameters).meetings(span, [condition])[0]
@@ -286,7 +283,6 @@ def _detunings(
 
 
 def _speed(sigma: complex, at: float) -> complex:
-    """Return the speed at a detuning."""
     return at / (1 + sigma) if np.isfinite(sigma) else sigma
 
 
@@ -389,7 +385,6 @@ class TongueChecks:
 
 
 def _some(places: NDArray[np.intp]) -> list[int]:
-    """Return an even sample of places."""
     if not len(places):
         return []
     chosen = np.unique(np.linspace(0, len(places) - 1, 3).round().astype(int))

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Result
 
 if TYPE_CHECKING:
     import xarray
-    from matplotlib.axes import Axes
 
 AnyArray = NDArray[Any]
 
@@ -116,8 +116,6 @@ class Sweep(Result):
         BadInput
             If there are more than two axes, or no such output.
         """
-        from ..core.plotting import axes_or_new
-
         if len(self.axes) > 2:
             raise bad("Sweep.plot", f"{len(self.axes)} axes", "one or two", "use the outputs")
         plain = [name for name, array in self.outputs.items() if array.ndim == len(self.axes)]

@@ -114,7 +114,6 @@ def sweep(
 
 
 def _stored(plan: Plan, executor: Executor | None, place: Path, progress: bool) -> Sweep:
-    """Return the whole sweep, from the store what is there."""
     request = request_of(plan.task.name, plan.subject, plan.grid, plan.options, plan.outputs)
     kept = Store(place, request, plan.grid)
     done = kept.finished()
@@ -195,7 +194,6 @@ def _place(store: str | os.PathLike[str]) -> Path:
 def _pieces(
     plan: Plan, executor: Executor | None, wanted: list[int], progress: bool
 ) -> Iterator[tuple[int, Piece]]:
-    """Yield the pieces that are wanted as they are done."""
     points = plan.grid.points
     sizes = [plan.grid.run(number) for number in wanted]
     done = points - sum(run.stop - run.start for run in sizes)

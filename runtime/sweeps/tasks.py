@@ -271,7 +271,6 @@ def _by_geometry(
 
 
 def _points(axes: Mapping[str, Array]) -> dict[str, Array]:
-    """Return the values of all points of a piece, by the name of their axis."""
     mesh = np.meshgrid(*axes.values(), indexing="ij")
     return {name: part.ravel() for name, part in zip(axes, mesh, strict=True)}
 
@@ -300,7 +299,6 @@ def _each(
     options: Mapping[str, Any],
     outputs: Outputs,
 ) -> Piece:
-    """Call a function at one point after another."""
     own = _own_values(function, subject, tuple(axes))
     arrays: list[dict[str, AnyArray]] = []
     results: list[Result] = []
@@ -354,7 +352,6 @@ def _own_values(
 
 
 def _moved(subject: Any, values: dict[str, float]) -> Any:
-    """Return the subject with other values of its own."""
     if not values:
         return subject
     if not isinstance(subject, LinearPeriodic):
@@ -366,7 +363,6 @@ def _moved(subject: Any, values: dict[str, float]) -> Any:
 
 
 def _wanted(arrays: dict[str, AnyArray], outputs: Outputs) -> dict[str, AnyArray]:
-    """Return the arrays that are wanted."""
     if outputs is None:
         return arrays
     missing = [name for name in outputs if name not in arrays]
@@ -384,7 +380,6 @@ def _arrays_of(answer: Any) -> dict[str, AnyArray]:
 
 
 def _stacked(name: str, values: list[AnyArray | None]) -> AnyArray:
-    """Return the values of all points in one array."""
     shapes = {None if value is None else value.shape for value in values}
     kinds = {None if value is None else value.dtype.kind for value in values}
     if len(shapes) > 1 or kinds & {"O", None}:

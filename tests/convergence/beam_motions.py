@@ -16,6 +16,7 @@ from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.linkages.linkage import LinkMotion
 from elastolink.runtime.recovery import BeamMotion
 from elastolink.runtime.recovery.stresses import StressResult
+from elastolink.runtime.rigid import Machine, MassDistribution
 from elastolink.runtime.systems import with_modal_damping
 from periodic_systems import second_order
 
@@ -138,6 +139,19 @@ def four_bar(elements=1, sections=SECTIONS, **options):
 def damped_four_bar(elements=1, **options):
     """Return the elastic four-bar with 2 % of modal damping."""
     return with_modal_damping(four_bar(elements, **options), 0.02)
+
+
+def rigid_machine(linkage, masses):
+    """Return the machine of rigid bars and point masses at the ends of the links named; weight."""
+    bars = {
+        name: MassDistribution.uniform_bar(section.mass_per_length * length, length)
+        for name, section in SECTIONS.items()
+        if (length := linkage.lengths.get(name))
+    }
+    for link, mass in masses.items():
+        point = MassDistribution.point(mass, along=linkage.lengths.get(link, 0.0))
+        bars[link] = bars.get(link, MassDistribution()) + point
+    return Machine(linkage, bars, gravity=(0.0, -9.81))
 
 
 def of_history(history, error=0.0):

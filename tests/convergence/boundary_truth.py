@@ -83,6 +83,11 @@ def hill_rows(a, b, drag, n, steps):
 
 def schur(rows, n, x):
     """Return the matrix that is left of ``rows - x`` for k = n/2, with x added again."""
+    return _eliminated(rows, n, x)[0]
+
+
+def _eliminated(rows, n, x):
+    """Return that matrix, and what went: pivots with their diagonals and rows, in order."""
     work = {key: dict(row) for key, row in rows.items()}
     for key, row in work.items():
         row[key] = row.get(key, 0) - x
@@ -92,9 +97,11 @@ def schur(rows, n, x):
             columns[column].add(key)
     outer = sorted((key for key in work if key[0] > n), reverse=True)
     inner = sorted(key for key in work if key[0] < n)
+    gone = []
     for pivot in (*outer, *inner):
         row = work.pop(pivot)
         diagonal = row.pop(pivot)
+        gone.append((pivot, diagonal, row))
         for column in row:
             columns[column].discard(pivot)
         for other in columns[pivot]:
@@ -109,7 +116,29 @@ def schur(rows, n, x):
                     target[column] = -(factor * value >> BITS)
                     columns[column].add(other)
     kinds = (COS, SIN) if n else (COS,)
-    return [[work[n, i].get((n, j), 0) + (x if i == j else 0) for j in kinds] for i in kinds]
+    left = [[work[n, i].get((n, j), 0) + (x if i == j else 0) for j in kinds] for i in kinds]
+    return left, gone
+
+
+def solutions(rows, n, x):
+    """Return by key the cosines and sines of the solutions at an eigenvalue x, as mpf.
+
+    They are two where both ends coincide.
+    """
+    left, gone = _eliminated(rows, n, x)
+    if not n:
+        return [_put_back(rows, gone, {(n, COS): ONE})]
+    (p, q), (r, s) = left
+    starts = [max((q, x - p), (x - s, r), key=lambda pair: max(map(abs, pair)))]
+    if max(map(abs, starts[0])) < ONE // 10 ** (DIGITS - 10):
+        starts = [(ONE, 0), (0, ONE)]
+    return [_put_back(rows, gone, {(n, COS): c, (n, SIN): s}) for c, s in starts]
+
+
+def _put_back(rows, gone, v):
+    for pivot, diagonal, row in reversed(gone):
+        v[pivot] = -sum(value * v[column] for column, value in row.items()) // diagonal
+    return {key: number(v[key]) for key in rows}
 
 
 def eigenvalue(matrix, side):
@@ -170,6 +199,17 @@ def boundary(functions, weights, drag, n, side, digits=DIGITS):
         if found is None or (before is not None and abs(found - before) < 4 * small):
             return None if found is None else number(found)
         before, reach = found, reach + width
+
+
+def near(rows, n, x, digits=DIGITS):
+    """Return the eigenvalues that the iteration finds from x, in fixed point, the lower first."""
+    found = []
+    for side in (-1, 1)[: 2 if n else 1]:
+        try:
+            found.append(_fixed_point(rows, n, side, ONE // 10**digits, x))
+        except ArithmeticError:
+            continue
+    return sorted(value for value in found if value is not None)
 
 
 def coefficients(f, drag, n, side, order):

@@ -14,6 +14,7 @@ from beam_motions import STEEL, periodic_motion, rocking_bar
 from elastolink.runtime.beams import Section, linkage_system
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import FourBar, SliderCrank
+from elastolink.runtime.periodic.periodic_motion import quiet_state
 from elastolink.runtime.recovery import (
     BeamMotion,
     beam_energies,
@@ -23,7 +24,6 @@ from elastolink.runtime.recovery import (
     stress,
 )
 from elastolink.runtime.recovery.beam_forces import stations_of
-from elastolink.runtime.recovery.beam_motion import quiet_steady_state
 from elastolink.runtime.recovery.finer_mesh import intervals_for, solved
 from elastolink.runtime.recovery.stresses import fibre_factors, largest_difference, stresses
 from elastolink.runtime.systems import with_modal_damping
@@ -91,7 +91,7 @@ def pairs_of(rng, kind, elements):
     else:
         system, speed = elastic_linkage(rng, kind, elements)
     method = "equilibrium" if rng.integers(2) else "shape"
-    steady, true = quiet_steady_state(system, speed), fine(system, elements)
+    steady, true = quiet_state(system, speed, 1e-7), fine(system, elements)
     found = stress(system, steady, stations=PLACES, method=method)
     pins = pin_reactions(system, steady)
     every = len(found.theta) // COUNT if kind is None else 1

@@ -127,26 +127,36 @@ def test_estimates_cover_the_errors_and_are_not_idle(kind, count):
     covers(*every_error_is_known(linkage, points(count, seed)), count)
 
 
+SPEED, ACCELERATION = 3.0, -2.0
+
+
 def points_of_links(kind, point, along, across):
-    """Return told and actual errors of a point of each link whose turning the truth knows."""
-    motion, _ = compared(kind, point)
-    told, actual = [], []
+    """Return told and actual errors of a point of each link that the truth knows, driven."""
+    linkage, told, actual = compared(kind, point)[0].linkage, [], []
+    motion = linkage.motion(point.inputs["theta2"], SPEED, ACCELERATION)
     with mpmath.workdps(80):
         truth = TRUTHS[kind]({name: mpmath.mpf(v) for name, v in point.arguments.items()})
-        turn = {"crank": (mpmath.mpf(point.inputs["theta2"]), mpmath.mpf(1), mpmath.mpf(0))}
+
+        def driven(place, first, second):
+            return [place, SPEED * first, SPEED**2 * second + ACCELERATION * first]
+
+        turn = {"crank": driven(mpmath.mpf(point.inputs["theta2"]), 1, 0)}
         for name, number in (("coupler", "3"), ("follower", "4"), ("rod", "4"), ("block", "4")):
-            if name in motion.linkage.links and f"theta{number}" in truth:
-                turn[name] = tuple(truth[rate + number] for rate in ("theta", "omega", "alpha"))
-        pin = _turning(*turn["crank"], mpmath.mpf(motion.linkage.lengths["crank"]))
-        far = {"follower": "frame", "rod": "frame"}
+            if name in linkage.links and f"theta{number}" in truth:
+                turn[name] = driven(*(truth[rate + number] for rate in ("theta", "omega", "alpha")))
+        pin = _turning(*turn["crank"], mpmath.mpf(linkage.lengths["crank"]))
+        frame = mpmath.mpf(linkage.lengths.get("frame", 0))
+        origins = {"crank": [0, 0, 0], "coupler": pin, "block": pin}
+        origins |= {"follower": [frame, 0, 0], "rod": [-frame, 0, 0]}
+        if kind is SliderCrank:
+            turn["slider"] = [0, 0, 0]
+            rates = (truth[f"slider_{rate}"] for rate in ("velocity", "acceleration"))
+            origins["slider"] = driven(mpmath.mpc(truth["position"], linkage.offset), *rates)
         for name, rates in turn.items():
             exact = _turning(*rates, mpmath.mpc(along, across))
-            if name in ("coupler", "block"):
-                exact = [one + other for one, other in zip(pin, exact, strict=True)]
-            elif name in far:
-                exact[0] += (1 if name == "follower" else -1) * mpmath.mpf(
-                    motion.linkage.lengths["frame"]
-                )
+            exact = [
+                one + more for one, more in zip(exact, origins.get(name, [0] * 3), strict=True)
+            ]
             found = vars(motion.point(name, along, across))
             errors = vars(motion.point_errors(name, along, across))
             for (field, value), true in zip(found.items(), exact, strict=True):

@@ -332,7 +332,6 @@ class LinearPeriodic:
         return self.scales({**self.parameters, **changes})
 
     def _within_limits(self, name: str, value: ArrayLike) -> None:
-        """Refuse values of a parameter that it cannot have."""
         limit = self.limits.get(name)
         expected = f"finite numbers, {limit}" if limit else "numbers"
         try:
@@ -344,7 +343,9 @@ class LinearPeriodic:
             if not np.all(usable):
                 raise bad(name, values[~usable].flat[0], expected, "correct it")
 
-    def array(self, name: str, theta: ArrayLike, speed: float = 1.0, **changes: float) -> Array:
+    def array(
+        self, name: str, theta: ArrayLike, speed: float | Array = 1.0, **changes: float
+    ) -> Array:
         """Evaluate one array at crank angles.
 
         Parameters
@@ -353,8 +354,9 @@ class LinearPeriodic:
             ``M A B S C D K Kg f h g p``.
         theta : array_like
             Crank angles [rad], shape ``(nt,)``.
-        speed : float
-            Crank speed [rad/s]; matters only for terms with an extra power of it.
+        speed : float or ndarray
+            Crank speed [rad/s], or that at each angle, ``(nt,)``; matters only for terms with an
+            extra power of it.
         **changes : float
             Parameter values that replace the system's own.
 
@@ -366,11 +368,12 @@ class LinearPeriodic:
         angles = np.atleast_1d(np.asarray(theta, dtype=float))
         shape = (self.size,) * (2 if name in MATRICES else 1)
         total = np.zeros((*angles.shape, *shape))
+        pace = np.reshape(speed, (-1, *(1,) * len(shape)))
         scales = self.scale_values(**changes)
         for term in self.terms:
             if term.array == name:
                 factor = 1.0 if term.scale is None else scales[term.scale]
-                total = total + factor * speed**term.power * term(angles)
+                total = total + factor * pace**term.power * term(angles)
         return total
 
     def with_parameters(self, **changes: float) -> LinearPeriodic:

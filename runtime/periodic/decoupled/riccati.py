@@ -216,8 +216,6 @@ def _cancelled(equation: Equation, frames: Frames, scale: Array) -> float:
 
 
 class _Riccati:
-    """The iteration for W at one speed."""
-
     def __init__(
         self, period: float, k: int, parts: Array, stiffness: Array, drag: Array, scale: Array
     ) -> None:

@@ -9,15 +9,14 @@ from numpy.typing import NDArray
 
 from ...core.collocation import gauss_maps
 from ...core.errors import BadInput, bad
-from ...core.families import LinearPeriodic
+from ...core.families import Array, LinearPeriodic
 from ...core.inputs import require_whole
 from ...core.trigonometric import even_angles, interpolated
 from ..equation import Equation, sampled
-from ..multipliers import conditions
+from ..multipliers import conditions, eigenvalues
 from ..transition import product
 from .riccati import Frames, SlowPart, moving_frames, plain_equation, slow_part
 
-Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 _EPS = float(np.finfo(float).eps)
@@ -67,15 +66,10 @@ class SlowMonodromy:
     def multipliers(self) -> tuple[ComplexArray, Array]:
         """Return the eigenvalues of the matrix and their absolute errors, ``(2k,)`` each."""
         m = len(self.matrix)
-        values, vectors = np.linalg.eig(self.matrix)
         norm = float(np.linalg.norm(self.matrix))
         shift = m * self.error * float(np.max(np.abs(self.matrix))) + 4 * m * _EPS * norm
-        # Near an r-fold eigenvalue the condition number explodes and the r-th root holds.
-        radius = 2 * np.sqrt(norm * shift)
-        near = np.sum(np.abs(values[:, None] - values) <= radius, axis=-1)
-        root = 2 * norm * (shift / norm) ** (1 / np.maximum(near, 2))
-        own = conditions(vectors.astype(complex)[None])[0]
-        return values.astype(complex), np.minimum(own * shift, root)
+        values, error, _ = eigenvalues(self.matrix[None], np.array([shift]))
+        return values[0], error[0]
 
 
 class SlowModes:

@@ -6,18 +6,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.errors import BadInput, bad
-from ...core.families import DAMPING, LinearPeriodic, Term
+from ...core.families import DAMPING, Array, LinearPeriodic, Term
 from ...core.inputs import numbers, require_whole, speed_span
 from ...core.trigonometric import interpolated
 from ..equation import Equation, SampledSystem, at_geometry, sampled
 from ..reduced import projections
 from .riccati import Frames, moving_frames, plain_equation, slow_part
 from .slow_modes import decoupling_error, frozen_frequencies, gap_choices, integrated
-
-Array = NDArray[np.float64]
 
 # Degrees in the speed squared that are tried, the part of an array left out that is enough, and
 # that from which more degrees show round-off alone.
@@ -137,7 +134,6 @@ class _Choice:
 
 
 def _chosen(top: Equation, modes: int | None) -> _Choice:
-    """Return the basis for the highest speed."""
     frequency = frozen_frequencies(top)
     if modes is not None:
         return _tried(top, require_whole("modes", modes, 1, top.size - 1), frequency)
@@ -181,7 +177,6 @@ def _searched(top: Equation, frequency: Array) -> _Choice | None:
 
 
 def _tried(top: Equation, modes: int, frequency: Array) -> _Choice:
-    """Return the basis for a number of modes and what it costs."""
     frames = moving_frames(top, modes)
     slow = slow_part(top, frames)
     rate = float(np.max(frequency[:, modes - 1]) / top.speed[0])

@@ -14,7 +14,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...core.errors import BadInput, Problem, bad
+from ...core.errors import Problem, bad, refuse
 from ...core.inputs import is_finite, numbers, require_whole
 
 Array = NDArray[np.float64]
@@ -126,8 +126,7 @@ def require_numbers(
         usable = {"other than 0": abs(number) > 0, "from 0": number >= 0, "above 0": number > 0}
         if not usable[allowed]:
             problems.append(Problem(name, short(value), f"a finite number {allowed}", "correct it"))
-    if problems:
-        raise BadInput(*problems)
+    refuse(problems)
 
 
 def require_drop(drop: object, known: tuple[str, ...]) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ import math
 import elastolink as el
 import numpy as np
 import pytest
-from command_runs import refused, shown, told
+from command_runs import shown, told
 
 RIG = "smith_1972_101104_sixteenth_inch"
 
@@ -70,7 +70,3 @@ def test_coefficients(capsys) -> None:
 def test_formulas(capsys) -> None:
     text = shown(capsys, "perturb", "mathieu", "--order", "3", "--latex")
     assert text.count("{") == text.count("}") and r"B_{3} &= " in text
-
-
-def test_an_order_out_of_range(capsys) -> None:
-    assert "expected 1 to 8" in refused(capsys, "perturb", "mathieu", "--order", "9")

@@ -48,6 +48,7 @@ boundaries smith_1972_101104_sixteenth_inch --mu 0.3 | a scene of Hill's equatio
 boundaries smith_1972_101104_sixteenth_inch --set model.modes=2 --order 2 | one undamped mode
 perturb smith_1972_101104_sixteenth_inch --set model.modes=2 | one mode
 perturb mathieu --latex --plot x.png | without --latex
+perturb mathieu --order 9 | expected 1 to 8
 clearance smith_1972_10_8_10_10 | --clearance
 clearance smith_1972_10_8_10_10 --clearance '0.1 s' | --clearance
 clearance smith_1972_10_8_10_10 --at '55=0.1 in' | --at

@@ -1,15 +1,6 @@
 import numpy as np
 import pytest
 from elastolink.runtime.core import chebyshev
-from hypothesis import given
-from hypothesis import strategies as st
-
-
-@given(count=st.integers(1, 60), seed=st.integers(0, 99))
-def test_values_at_nodes_give_the_coefficients_back(count, seed):
-    c = np.random.default_rng(seed).uniform(-1, 1, (count, 3))
-    values = chebyshev.tensor_values(c, chebyshev.nodes(count), chebyshev.nodes(3))
-    np.testing.assert_allclose(chebyshev.coefficients2(values), c, rtol=0, atol=1e-13)
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 7), (9, 1), (9, 4), (4, 9)])
@@ -21,13 +12,6 @@ def test_points_and_tensor_agree(shape):
     np.testing.assert_allclose(grid, expected, atol=1e-13)
     points = chebyshev.point_values(c, np.repeat(x, 11), np.tile(y, 13))
     np.testing.assert_allclose(points.reshape(13, 11), expected, atol=1e-13)
-
-
-def test_nodes_are_odd_and_inside():
-    for count in (1, 2, 17, 300):
-        x = chebyshev.nodes(count)
-        np.testing.assert_array_equal(x, -x[::-1])
-        assert np.all(np.abs(x) < 1)
 
 
 def test_length_and_unit():

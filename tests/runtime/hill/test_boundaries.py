@@ -15,17 +15,6 @@ from hypothesis import strategies as st
 FUNCTIONS = functions()
 
 
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_mu_zero_gives_the_squares(name):
-    regions = range(0, 9)
-    found = hill_boundaries(FUNCTIONS[name], 0.0, regions)
-    exact = np.arange(9) ** 2 / 4
-    assert found.lower[0] == -np.inf
-    np.testing.assert_allclose(found.upper, exact, rtol=0, atol=1e-13)
-    np.testing.assert_allclose(found.lower[1:], exact[1:], rtol=0, atol=1e-13)
-    assert np.all(np.abs(found.upper - exact) <= found.error)
-
-
 @settings(max_examples=15, deadline=None)
 @given(
     shape=st.sampled_from([(), (1,), (5,), (2, 3), (0,), (2, 1, 2)]),

@@ -7,7 +7,7 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import characteristic_exponents, hill_boundaries
-from hill_functions import COSINE, GENERAL, functions
+from hill_functions import COSINE, functions
 
 FUNCTIONS = functions()
 
@@ -40,13 +40,6 @@ def test_the_ends_of_the_bands_are_the_boundaries(mu):
         assert abs(bottom - ends.upper[band]) <= slack
         assert abs(top - ends.lower[band + 1]) <= slack
         assert np.argmin(found.lam2[band]) == band % 2
-
-
-def test_without_a_function_the_bands_are_parabolas():
-    nu = np.linspace(0, 0.5, 9)
-    found = bands_of(GENERAL, 0.0, nu, (0, 1, 2, 3))
-    exact = np.stack([nu**2, (1 - nu) ** 2, (1 + nu) ** 2, (2 - nu) ** 2])
-    assert np.all(np.abs(found.lam2 - exact) <= found.error)
 
 
 def test_exponents_of_a_constant_coefficient():

@@ -52,18 +52,6 @@ def test_arguments_broadcast(shapes, seed):
         assert abs(alone.value - found.value[index]) <= alone.error + found.error[index]
 
 
-@extended
-def test_damping_scales_and_shifts():
-    f = FUNCTIONS["f3 (5,1,5,2)"]
-    lam2, mu, k = np.linspace(0.1, 9, 7)[:, None], np.linspace(0.2, 2, 5), 0.07
-    found = discriminant(f, lam2, mu, k)
-    truth = half_traces(f, lam2, mu, k)
-    assert np.all(np.abs(found.value - truth) <= found.error)
-    bare = discriminant(f, lam2 - k * k, mu)
-    np.testing.assert_allclose(found.value, np.exp(-2 * np.pi * k) * bare.value, atol=1e-13)
-    assert found.level == pytest.approx(np.exp(-2 * np.pi * k) * np.cosh(2 * np.pi * k), rel=1e-15)
-
-
 def test_the_level_is_where_a_multiplier_reaches_the_unit_circle():
     """rho^2 - 2 X rho + exp(-4 pi K) = 0, Smith (7.9) with the damped Wronskian."""
     f = PeriodicFunction([0.0, 1.0])

@@ -41,26 +41,6 @@ def test_normalisation_and_sign():
         np.testing.assert_allclose(found(theta + 2 * np.pi), sign * found(theta), atol=1e-11)
 
 
-def test_mathieu_functions_are_even_or_odd():
-    """At q > 0 (mu < 0) the lower end of an odd region has the odd solution, se_1."""
-    q = 1.0
-    for order in (None, 4):
-        even = boundary_solution(COSINE, -q / 2, 1, "upper", order)
-        odd = boundary_solution(COSINE, -q / 2, 1, "lower", order)
-        assert np.abs(even.b).max() < 1e-12
-        assert np.abs(odd.a).max() < 1e-12
-
-
-def test_several_parameters():
-    second = PeriodicFunction([0.0, 0.0, 1.0])
-    whole = COSINE * 0.1 + second * 0.05
-    for order in (None, 5):
-        several = boundary_solution([COSINE, second], [0.1, 0.05], 2, "upper", order)
-        one = boundary_solution(whole, 1.0, 2, "upper", order)
-        np.testing.assert_allclose(several(THETA), one(THETA), atol=1e-12)
-    assert several.mu.shape == (2,)
-
-
 def test_where_the_ends_coincide_every_solution_will_do():
     """Only cos 3 theta: region 1 is closed, and both ends have solutions."""
     f = PeriodicFunction([0.0, 0.0, 0.0, 1.0])

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import QuickReturn, SliderCrank
-from elastolink.runtime.linkages.base_planes import base_plane
 from elastolink.runtime.linkages.classification import CLASSES, SYMBOLS, classify
 from random_linkages import grashof_symbol
 
@@ -114,15 +113,6 @@ def test_quick_return(crank, turns):
     assert found.turns["rod"] == turns
     assert found.category == "Grashof"
     assert np.sign(found.distance) == (1 if turns else -1)
-
-
-@pytest.mark.parametrize("lam", [0.7, 1.2, 3.0**0.5, 2.5, 20.0])
-def test_regions_fill_the_plane(lam):
-    plane = base_plane(lam, 61)
-    assert sum(plane.shares.values()) == pytest.approx(1.0, abs=1e-12)
-    assert {SYMBOLS[n] for n in np.unique(plane.numbers)} >= {"GCCC", "GRCR", "GRRC"}
-    assert ("RRR2" in plane.regions) == (lam < 1.7)
-    assert ("GCRR" in plane.regions) == (lam > 1.8)
 
 
 def test_the_mark_leaves_its_symbol_free():

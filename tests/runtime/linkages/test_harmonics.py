@@ -10,15 +10,6 @@ CRANK_ROCKER = FourBar(2.0, 1.0, 2.0, 2.0)
 DRAG_LINK = FourBar(2.0, 4.0, 4.5, 3.9)
 
 
-@pytest.mark.parametrize("name", ["theta3", "theta4"])
-def test_sine_coefficients_of_a_crank_rocker_in_closed_form(name):
-    # The sine part of both angles is that of the diagonal's direction: -(l2/l1)^m / m.
-    found = harmonics((CRANK_ROCKER, name), order=20)
-    m = np.arange(1, 21)
-    assert found.b[1:] == pytest.approx(-(0.5**m) / m, abs=float(found.error))
-    assert found.secular == 0.0 and found.passed
-
-
 def test_secular_part_of_a_drag_link():
     found = harmonics((DRAG_LINK, "theta4"), order=20)
     m = np.arange(1, 21)

@@ -203,13 +203,9 @@ def test_strong_damping_keeps_the_small_exponent():
 # The record ----------------------------------------------------------------------------------
 
 
-def test_records_plot_and_save(tmp_path):
+def test_picture():
     found = floquet_multipliers(_general(), [1.0, 2.0])
     assert found.plot().get_xlabel() == "real part of multiplier"
-    saved = np.load(found.save(tmp_path / "found.npz"))
-    np.testing.assert_array_equal(saved["multipliers"], found.multipliers)
-    matrices = monodromy(_general(), [1.0, 2.0])
-    assert np.load(matrices.save(tmp_path / "m.npz"))["matrix"].shape == (2, 4, 4)
 
 
 # What is hard to see --------------------------------------------------------------------------

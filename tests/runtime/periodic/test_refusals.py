@@ -15,7 +15,6 @@ from elastolink.runtime.periodic import (
     simulate,
     steady_state,
 )
-from elastolink.runtime.periodic.truncation import modal_truncation
 from periodic_systems import forced_mathieu, system_of, wave
 
 SYSTEM = forced_mathieu()
@@ -107,7 +106,6 @@ CASES = {
     prepared(lambda ready: ready.simulate(80.0, 1, 1.0)): [({}, "initial")],
     prepared(lambda ready: ready.simulate(80.0, 1, (np.nan, 0.0))): [({}, "initial")],
     prepared(lambda ready: ready.steady_state(80.0), forcing=False): [({}, "steady_state")],
-    modal_truncation: [({"modes": 0}, "modes"), ({"modes": 5}, "modes")],
     reduced_system: [({"modes": modes}, "modes") for modes in (0, 10, 2.5, True)],
 }
 

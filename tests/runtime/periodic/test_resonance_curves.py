@@ -1,4 +1,4 @@
-"""Peaks over many speeds, resonances and frozen frequencies."""
+"""Peaks over many speeds, and resonances."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from elastolink import resonance_curve, steady_state
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.frequencies import natural_frequencies
 from periodic_systems import forced_mathieu
 
 
@@ -33,18 +32,6 @@ def test_strong_damping_and_a_slow_crank_cost_nothing():
         for k in range(1, 40)
     )
     np.testing.assert_allclose(peak, 2e-4 * np.max(np.abs(q)), rtol=1e-5)
-
-
-def test_held_frequencies_and_their_mean():
-    found = natural_frequencies(forced_mathieu(), np.array([0.0, np.pi]))
-    np.testing.assert_allclose(found.frequency[:, 0], np.sqrt([10.7, 7.9]), rtol=1e-14)
-    even = np.linspace(0, 2 * np.pi, 200, endpoint=False)
-    np.testing.assert_allclose(found.mean, np.mean(np.sqrt(9.3 + 1.4 * np.cos(even))), rtol=1e-13)
-    assert found.passed
-    with pytest.raises(BadInput, match="theta"):
-        natural_frequencies(forced_mathieu(), [])
-    with pytest.raises(BadInput, match="no natural frequency"):
-        natural_frequencies(forced_mathieu(k=1.0))
 
 
 def test_resonances_are_found_and_labelled():

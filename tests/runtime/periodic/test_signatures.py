@@ -7,7 +7,7 @@ import pytest
 import scipy.linalg
 from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.periodic.signatures import signatures_of
-from periodic_systems import coupled_pair, system_of
+from periodic_systems import coupled_pair
 
 
 def symplectic_unit(n):
@@ -42,20 +42,6 @@ def sign_of(spectrum, value):
 
 
 # Hand cases ----------------------------------------------------------------------------------
-
-
-def test_oscillator_turns_anticlockwise_with_positive_sign():
-    """q = exp(i w t), p = i w q: kappa = 2 w > 0."""
-    w, speed = 1.3, 4.1
-    found = floquet_multipliers(system_of(M=np.eye(1), K=w**2 * np.eye(1)), speed)
-    turn = np.exp(2j * np.pi * w / speed)
-    spectrum = found.multipliers, found.signatures
-    assert (sign_of(spectrum, turn), sign_of(spectrum, np.conj(turn))) == (1, -1)
-
-
-def test_two_uncoupled_oscillators_one_of_negative_energy():
-    found = signed(_joined(_rotation(0.7), _rotation(-2.0)))
-    assert [sign_of(found, np.exp(1j * a)) for a in (0.7, -2.0, 2.0)] == [1, 1, -1]
 
 
 def test_multiple_multipliers_are_decided_where_the_form_is_definite():

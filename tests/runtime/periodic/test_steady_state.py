@@ -74,17 +74,6 @@ def test_no_single_motion_at_a_multiplier_of_one_is_told(method):
     assert gap <= state.error[1, 0] * size
 
 
-def test_near_a_resonance_the_error_grows_like_the_inverse_distance():
-    shifts, eps = np.array([1e-2, 1e-5, 1e-8]), np.finfo(float).eps
-    with pytest.warns(LinearRangeWarning):
-        state = steady_state(forced_mathieu(), 3.0, mu=0.0, c=0.0, k=9.0 + shifts)
-    for index, shift in enumerate(shifts):
-        gap, size = gap_and_size(state, index, 3.0, k=9.0 + shift, mu=0.0, c=0.0)
-        assert gap / size <= state.error[index, 0] + 8 * eps * 9.0 / shift
-        # Not idle: the loss of digits is the distance's.
-        assert state.error[index, 0] <= 1e-9 + 1e4 * eps / shift
-
-
 @pytest.mark.parametrize("k", [-4.0, -400.0, -1e5])
 def test_growth_within_the_period_costs_no_digits(k):
     # exp(2 pi sqrt(1e5)) = 1e863 in a turn: no product of the flow could be formed.

@@ -9,16 +9,17 @@ import pytest
 from beam_motions import (
     BAR,
     FOUR_BAR,
+    JOINT_MASSES,
     SECTIONS,
     cantilever,
     four_bar,
     periodic_motion,
+    rigid_machine,
     rocking,
     turning_bar,
 )
 from elastolink.runtime.beams import KINDS
 from elastolink.runtime.recovery.strain_energy import beam_energies
-from elastolink.runtime.rigid import Machine, MassDistribution
 from elastolink.runtime.systems import with_modal_damping
 
 VISCOUS = {name: replace(s, retardation=3e-5) for name, s in SECTIONS.items()}
@@ -65,13 +66,8 @@ def test_strain_energy_of_a_cantilever_by_hand(kind):
 def test_kinetic_energy_of_stiff_links_is_that_of_rigid_ones():
     system = four_bar().with_parameters(elasticity=1e8)
     found = beam_energies(system, periodic_motion(system, 10.0))
-    bodies = {}
-    for name, section in SECTIONS.items():
-        length = FOUR_BAR.lengths[name]
-        bodies[name] = MassDistribution.uniform_bar(section.mass_per_length * length, length)
-        if name != "coupler":
-            bodies[name] += MassDistribution.point(0.174, length)
-    rigid = Machine(FOUR_BAR, bodies).kinetic_energy(found.theta, 10.0)
+    masses = {"crank": JOINT_MASSES["B"], "follower": JOINT_MASSES["C"]}
+    rigid = rigid_machine(FOUR_BAR, masses).kinetic_energy(found.theta, 10.0)
     np.testing.assert_allclose(found.kinetic, rigid, rtol=1e-8)
 
 

@@ -14,6 +14,7 @@ from beam_motions import (
     damped_four_bar,
     four_bar,
     periodic_motion,
+    rigid_machine,
     rocking,
     turning_bar,
 )
@@ -22,25 +23,9 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import SliderCrank
 from elastolink.runtime.recovery import pin_reactions
 from elastolink.runtime.recovery.strain_energy import beam_energies
-from elastolink.runtime.rigid import Machine, MassDistribution, rigid_forces
+from elastolink.runtime.rigid import rigid_forces
 
 SLIDER = SliderCrank(crank=0.1, coupler=0.37, offset=0.06)
-
-
-def machine(linkage, masses):
-    """Return the rigid machine: uniform bars, each joint mass on the link that is named."""
-    bars = {
-        name: MassDistribution.uniform_bar(
-            mass=SECTIONS[name].mass_per_length * linkage.lengths[name],
-            length=linkage.lengths[name],
-        )
-        for name in SECTIONS
-        if name in linkage.lengths
-    }
-    for link, mass in masses.items():
-        point = MassDistribution.point(mass, along=linkage.lengths.get(link, 0.0))
-        bars[link] = bars[link] + point if link in bars else point
-    return Machine(linkage, bars, gravity=(0.0, -9.81))
 
 
 def gaps_to_rigid(elasticity):
@@ -48,7 +33,7 @@ def gaps_to_rigid(elasticity):
     system = damped_four_bar(gravity=(0.0, -9.81)).with_parameters(elasticity=elasticity)
     found = pin_reactions(system, periodic_motion(system, 30.0))
     masses = {"crank": JOINT_MASSES["B"], "follower": JOINT_MASSES["C"]}
-    rigid = rigid_forces(machine(FOUR_BAR, masses), found.theta, 30.0)
+    rigid = rigid_forces(rigid_machine(FOUR_BAR, masses), found.theta, 30.0)
     pairs = {
         "A": (found.of_ground["A"][:, :2], rigid.f12),
         "B": (found.force("B", "coupler"), rigid.f23),
@@ -77,7 +62,7 @@ def test_rigid_limit_of_the_slider_crank():
         gravity=(0.0, -9.81),
     ).with_parameters(elasticity=1e6)
     found = pin_reactions(system, periodic_motion(system, 30.0))
-    rigid = rigid_forces(machine(SLIDER, {"slider": 0.3}), found.theta, 30.0)
+    rigid = rigid_forces(rigid_machine(SLIDER, {"slider": 0.3}), found.theta, 30.0)
     size = np.max(np.abs(rigid.f12))
     assert np.max(np.abs(found.force("B", "coupler") - rigid.f23)) <= 1e-5 * size
     # The guide pushes across alone, and the ground there takes nothing along.

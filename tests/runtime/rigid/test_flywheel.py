@@ -28,17 +28,6 @@ def bars(linkage, **more):
     return Machine(linkage, masses, **more)
 
 
-def test_a_sine_by_hand() -> None:
-    """The load couple a + b sin on the crank: E = -b cos, a fluctuation of 2 b."""
-    load = Load("crank", couple=lambda t: -3.0 - 2.0 * np.sin(t))
-    found = torque_fluctuation(Machine(ROCKER, loads=(load,)), 8.0)
-    assert found.mean_torque == pytest.approx(3.0, rel=1e-14)
-    assert found.energy_fluctuation == pytest.approx(4.0, rel=1e-12)
-    assert found.slowest == pytest.approx(math.pi, abs=1e-6)
-    assert min(found.fastest, TURN - found.fastest) == pytest.approx(0.0, abs=1e-6)
-    assert found.passed
-
-
 @pytest.mark.parametrize(
     "linkage", [ROCKER, SliderCrank(0.1, 0.35, 0.04), QuickReturn(0.3, 0.1, 0.6)]
 )

@@ -11,7 +11,6 @@ from elastolink.runtime.periodic.equation import equation_of
 from elastolink.runtime.stability.chart_lines import is_mirrored
 from elastolink.runtime.stability.invariants import (
     from_sum,
-    in_sum,
     largest_modulus,
     surely_stable,
 )
@@ -80,17 +79,6 @@ def test_two_axes_of_geometry():
     assert np.isnan(chart.natural_frequency)
 
 
-def test_damped_chart_agrees_with_multipliers():
-    system = rod(PolynomialBasis(2), damping=40.0, internal_damping=0.5)
-    chart = el.stability_chart(system, ("speed", SPEEDS[::4]), ("crank_ratio", RATIOS[::4]))
-    rng = np.random.default_rng(7)
-    for _ in range(10):
-        i, j = rng.integers(len(chart.y)), rng.integers(len(chart.x))
-        direct = el.floquet_multipliers(system, chart.x[j], crank_ratio=chart.y[i])
-        assert chart.largest[i, j] == pytest.approx(np.max(np.abs(direct.multipliers)), abs=1e-8)
-    assert chart.passed
-
-
 @pytest.mark.parametrize("modes", [1, 2, 3, 4])
 def test_signs_prove_only_what_is_true(modes):
     """Random roots about the ends: the roots themselves tell."""
@@ -131,15 +119,6 @@ def test_damping_is_never_taken_for_a_mirror_image():
     assert is_mirrored(equation_of(plain, 500.0))
     for other in (rod(PolynomialBasis(3), damping=20.0), plain.with_terms(Term("Kg", None, wavy))):
         assert not is_mirrored(equation_of(other, 500.0))
-
-
-def test_sums_and_coefficients_are_two_forms_of_one_polynomial():
-    """Hand case: rho = exp(+-i a) has z = 2 cos a."""
-    angles = np.array([0.3, 1.1, 2.9])
-    polynomial = np.poly(2.0 * np.cos(angles))[1:]
-    whole = np.poly(np.exp(1j * np.concatenate([angles, -angles]))).real
-    assert np.allclose(from_sum(polynomial), whole[1:4], atol=1e-14)
-    assert np.allclose(in_sum(whole[1:4]), polynomial, atol=1e-14)
 
 
 def test_too_many_segments_are_refused():

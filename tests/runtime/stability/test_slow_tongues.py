@@ -112,12 +112,3 @@ def test_multipliers_of_the_practical_range_are_on_the_circle(ratio, modes):
     assert np.all(np.abs(found.signatures) == 1)
     assert np.all(np.abs(np.log(np.abs(found.multipliers))) <= 2 * found.error)
     assert np.max(found.error) < 1e-9
-
-
-def test_viscous_damping_takes_its_rate_from_every_growth():
-    """0.2 percent: the slowest decay in the practical range is zeta w1 itself, 1.716 1/s."""
-    damped = _rod(0.3, **{"rod.damping_ratio": 0.002, "rod.damping_law": "viscous"})
-    speed = np.array([5.3, 11.0, 20.0])
-    values = el.floquet_multipliers(damped, speed, rtol=1e-9).multipliers
-    rate = np.log(np.abs(values)) * speed[:, None] / (2 * np.pi)
-    np.testing.assert_allclose(rate, -0.002 * 858.228, rtol=1e-5)

@@ -130,8 +130,5 @@ def test_a_tongue_that_reaches_beyond_the_range_keeps_its_lower_end(rod):
     assert grows[0] < 1e-6 < grows[1]
 
 
-def test_plot_and_export(curves, tmp_path):
-    axes = curves.plot()
-    assert axes.get_xlabel().startswith("crank speed")
-    curves.save(tmp_path / "curves.json")
-    assert (tmp_path / "curves.json").stat().st_size > 0
+def test_picture(curves):
+    assert curves.plot().get_xlabel().startswith("crank speed")

@@ -29,18 +29,6 @@ def _pair(pull=0.02, own=0.0, damping=(0.0, 0.0)) -> LinearPeriodic:
 # First order ---------------------------------------------------------------------------------
 
 
-def test_sum_region_has_the_width_of_first_order():
-    """Mettler: |speed - (w1 + w2)| < e/(2 sqrt(w1 w2)), corrections of the order e^2."""
-    for pull in (0.02, 0.04):
-        found = stability_edges(_pair(pull), (3.0, 3.6))
-        at = region_of(found, "sum", 1)
-        half = pull / (2 * np.sqrt(LOW * HIGH))
-        assert abs(0.5 * found.width[at] - half) < 0.5 * pull**2
-        assert abs(0.5 * (found.lower + found.upper)[at] - LOW - HIGH) < 0.5 * pull**2
-        assert found.modes[at].tolist() == [1, 2]
-        assert found.passed, found.checks
-
-
 @pytest.mark.parametrize(
     ("system", "span", "least"),
     [(_pair(0.3, own=1.0), (1.3, 6.0), 4), (rig(**{"model.modes": 2}), (81.0, 81.7), 1)],

@@ -58,13 +58,12 @@ def test_another_geometry_damps_the_modes_that_it_has():
     assert moved.parameters["damping_ratio"] == RATIO
 
 
-def test_geometry_then_ratio_then_geometry_again():
-    """Ratio changed as a parameter stays so; and back again is where it was."""
-    first = with_modal_damping(_rod(0.1), RATIO)
-    back = first.with_geometry(crank_ratio=0.3).with_geometry(crank_ratio=0.1)
-    theta = np.array([0.4, 2.0])
-    np.testing.assert_array_equal(back.array("C", theta), first.array("C", theta))
-    doubled = first.with_parameters(damping_ratio=2 * RATIO).with_geometry(crank_ratio=0.3)
+def test_a_ratio_changed_as_a_parameter_stays_so():
+    doubled = (
+        with_modal_damping(_rod(0.1), RATIO)
+        .with_parameters(damping_ratio=2 * RATIO)
+        .with_geometry(crank_ratio=0.3)
+    )
     np.testing.assert_allclose(_ratios(doubled, 1.0), 2 * RATIO, rtol=1e-9)
 
 

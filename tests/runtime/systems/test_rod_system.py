@@ -70,9 +70,6 @@ def by_newton(numbers, basis, theta, speed, acceleration, taut):
     return stiffness, damping, mass * integral(e, e), -mass * bend * integral(e, eta)
 
 
-LONG_CRANK = {**NUMBERS, "crank_ratio": 1.5, "frame": 0.4}  # the rod turns round
-
-
 @pytest.mark.parametrize("drop", [(), PRINTED])
 @pytest.mark.parametrize("rates", [(5.0, 11.0), (7.0, 0.0)])
 @pytest.mark.parametrize(
@@ -138,15 +135,6 @@ def test_damping_through_d_alone_counts_as_damping():
     constant = Term("M", None, np.ones((1, 1)))
     still = replace(one.without("A", "M", "C", "K"), terms=(constant, *one.without("M").terms))
     assert not is_hill(still)
-
-
-def test_multipliers_with_d_multiply_to_liouvilles_determinant():
-    """trace(M^-1 C) alone: with viscous damping c/m for each coordinate, whatever D does."""
-    system = rod_system(PlainBasis(3), **{**FLEXIBLE, "damping": 50.0})
-    found = el.floquet_multipliers(system, 300.0, rtol=1e-12)
-    expected = np.exp(-3 * 50.0 / 7.15 * 2 * np.pi / 300.0)
-    assert np.prod(found.multipliers) == pytest.approx(expected, rel=1e-10)
-    assert found.passed
 
 
 # ---------------------------------------------------------------- geometry and arguments

@@ -1,0 +1,188 @@
+"""The inextensible coupler of a four-bar or a slider-crank: geometrically exact equations.
+
+The coupler BC keeps its length: with the angle phi of its tangent, its points are
+``r(s) = B + l3 int_0^s (cos phi, sin phi) ds``.  A bent coupler is a shorter coupler, and whatever
+shortens it accelerates coupler and follower: so the equations soften.  Kinetic energy is that of
+the true positions, strain energy that of the true curvature.  The angle is taken at stations along
+the coupler; the integrals along it are sums over pairs of stations, whose kernels follow from the
+cosines ``cos(n pi s)`` that pass through the stations (``beam_tangent_harmonics``).
+
+The loop is closed by constraints, whose multipliers are the force at C.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ..entries import ConstrainedSystem
+from ..ir import Argument, Description
+from ..lagrange import variational_equations
+from ..pipeline import Model
+from ..records import EquationsOfMotion, Lagrangian
+from ..spec import Choices, ModelSpec
+from ..stations import EACH_STATION, Stations, closed_in_stations
+
+STATIONS = Stations("phi", ("end", "moment", "bow"), ("inertia", "bending", "drag"))
+_T = sp.Symbol("t", real=True)
+_THETA = sp.Function("theta")(_T)
+_CRANK, _COUPLER, _DENSITY, _STIFFNESS, _DAMPING = sp.symbols(
+    "crank coupler mass_per_length bending_stiffness damping", positive=True
+)
+_FRAME, _FOLLOWER, _INERTIA = sp.symbols("frame follower follower_inertia", positive=True)
+_OFFSET, _MOMENT, *_PULL = sp.symbols("offset follower_first_moment gravity_x gravity_y", real=True)
+_SLIDER = sp.Symbol("slider_mass", positive=True)
+
+
+@dataclass(frozen=True)
+class _Driven:
+    """What the end C of the coupler drives: its coordinate, energies, and the place of C."""
+
+    coordinate: sp.Expr
+    energy: sp.Expr
+    place: tuple[sp.Expr, sp.Expr]
+
+
+def _driven(mechanism: str) -> _Driven:
+    if mechanism == "slider_crank":
+        position = sp.Function("x4")(_T)
+        energy = _SLIDER * (position.diff(_T) ** 2 / 2 + _PULL[0] * position)
+        return _Driven(position, energy, (position, _OFFSET))
+    psi = sp.Function("psi")(_T)
+    pull = _PULL[0] * sp.cos(psi) + _PULL[1] * sp.sin(psi)
+    energy = _INERTIA / 2 * psi.diff(_T) ** 2 + _MOMENT * pull
+    return _Driven(psi, energy, (_FRAME + _FOLLOWER * sp.cos(psi), _FOLLOWER * sp.sin(psi)))
+
+
+def lagrangian(mechanism: str, stations: int = 2) -> Lagrangian:
+    """Return energies, constraints and damping of the coupler with a number of stations."""
+    each = range(1, stations + 1)
+    angles = [sp.Function(f"phi{i}")(_T) for i in each]
+    tangents = [(sp.cos(phi), sp.sin(phi)) for phi in angles]
+    pin = (_CRANK * sp.cos(_THETA), _CRANK * sp.sin(_THETA))
+    driven = _driven(mechanism)
+
+    def along(name: str, values: list[sp.Expr]) -> sp.Expr:
+        """Return an integral along the coupler."""
+        return sp.Add(*(sp.Symbol(f"{name}_{i}") * v for i, v in zip(each, values, strict=True)))
+
+    def twice(name: str, values: list[sp.Expr]) -> sp.Expr:
+        """Return an integral along the coupler of a product of two integrals or derivatives."""
+        pairs = [(i, j) for i in range(stations) for j in range(stations)]
+        return sp.Add(
+            *(STATIONS.pair(name, i + 1, j + 1) * values[i] * values[j] for i, j in pairs)
+        )
+
+    # (B' + l3 int t' ds)^2 / 2 in both directions; the pin alone moves as it is prescribed.
+    energy = sp.S.Zero
+    for axis in (0, 1):
+        directions = [tangent[axis] for tangent in tangents]
+        rates = [direction.diff(_T) for direction in directions]
+        energy += twice("inertia", rates) / 2 * _COUPLER**2
+        energy += _COUPLER * pin[axis].diff(_T) * along("moment", rates)
+        energy += _PULL[axis] * _COUPLER * along("moment", directions)
+    bent = [phi - sp.Symbol(f"bow_{i}") for i, phi in zip(each, angles, strict=True)]
+    strain = _STIFFNESS / _COUPLER * twice("bending", bent) / 2
+    dissipation = _DAMPING * _COUPLER**3 * twice("drag", [phi.diff(_T) for phi in angles]) / 2
+    ends = [along("end", [tangent[axis] for tangent in tangents]) for axis in (0, 1)]
+    return Lagrangian(
+        coordinates=(driven.coordinate, *angles),
+        t=_T,
+        expression=driven.energy + _DENSITY * _COUPLER * energy - strain,
+        constraints=tuple(
+            pin[axis] + _COUPLER * ends[axis] - driven.place[axis] for axis in (0, 1)
+        ),
+        forces={phi: -dissipation.diff(phi.diff(_T)) for phi in angles},
+    )
+
+
+def _energies(spec: ModelSpec) -> Lagrangian:
+    return lagrangian(spec.mechanism)
+
+
+def _discretise(spec: ModelSpec, equations: EquationsOfMotion) -> ConstrainedSystem:
+    closed = closed_in_stations(STATIONS, equations, variational_equations(equations))
+    return ConstrainedSystem(
+        closed.equations, closed.variations, stations=STATIONS, blocks=closed.blocks
+    )
+
+
+def _describe(spec: ModelSpec) -> Description:
+    shape = "float or ndarray, shape (..., 1)"
+    slider = spec.mechanism == "slider_crank"
+    driven = (
+        Argument("x4", shape, "m", "Place of the slider's pin C along the guide")
+        if slider
+        else Argument("psi", shape, "rad", "Follower angle")
+    )
+    vector, kernel = "ndarray, shape (Q,)", "ndarray, shape (Q, Q)"
+    arguments = [
+        driven,
+        Argument("phi", EACH_STATION, "rad", "Angle of the coupler's tangent at the stations"),
+        Argument("t", "float or ndarray, shape (..., 1)", "s", "Time"),
+        Argument("theta", shape, "rad", "Crank angle"),
+        Argument("theta_d1", shape, "rad/s", "Crank speed"),
+        Argument("theta_d2", shape, "rad/s^2", "Crank acceleration"),
+        Argument("end", vector, "", "Weights of int f ds along the coupler, of unit length"),
+        Argument("moment", vector, "", "Weights of int (1 - s) f ds"),
+        Argument("bow", vector, "rad", "Angle of the unloaded coupler's tangent"),
+        Argument("inertia", kernel, "", "int (int f) (int g) ds, integrals from the crank pin"),
+        Argument("bending", kernel, "", "int f' g' ds"),
+        Argument("drag", kernel, "", "int (int f) (int g) ds of what has no mean"),
+    ]
+    lengths = (
+        ("crank", "coupler", "offset") if slider else ("frame", "crank", "coupler", "follower")
+    )
+    words = {
+        "frame": "Length of the frame",
+        "crank": "Length of the crank",
+        "coupler": "Length of the coupler",
+        "follower": "Length of the follower",
+        "offset": "Height of the guide over the crank's pivot",
+    }
+    parameters = [Argument(name, "float", "m", words[name]) for name in lengths]
+    parameters += [
+        Argument("bending_stiffness", "float", "N m^2", "EI of the coupler"),
+        Argument("mass_per_length", "float", "kg/m", "mu of the coupler"),
+        Argument("damping", "float", "N s/m^2", "Viscous damping of the coupler per length"),
+        Argument("gravity_x", "float", "m/s^2", "Acceleration of gravity along x"),
+        Argument("gravity_y", "float", "m/s^2", "Acceleration of gravity along y"),
+    ]
+    parameters += (
+        [Argument("slider_mass", "float", "kg", "Mass of the slider")]
+        if slider
+        else [
+            Argument("follower_inertia", "float", "kg m^2", "I4 of the follower about D"),
+            Argument("follower_first_moment", "float", "kg m", "m4 r4 of the follower about D"),
+        ]
+    )
+    name = "slider-crank" if slider else "four-bar linkage"
+    return Description(
+        title=f"Inextensible flexible coupler of a {name}, geometrically exact",
+        references=("Smith 9.6, further work 2",),
+        arguments=tuple(arguments),
+        parameters=tuple(parameters),
+        notes=(
+            "The coupler's points are r(s) = B + coupler int (cos phi, sin phi) ds.  Arrays with a "
+            "value at each of the Q stations have them on their last axis, all others one value "
+            "there.",
+            "Multipliers: force on C along x and y, up to its sign.",
+        ),
+    )
+
+
+def _model(mechanism: str) -> Model:
+    return Model(
+        mechanism=mechanism,
+        formulations=("inextensible",),
+        energies=_energies,
+        describe=_describe,
+        discretise=_discretise,
+        closed_in_modes=True,
+        choices=Choices(flexible=("coupler",)),
+    )
+
+
+FOUR_BAR = _model("four_bar")
+SLIDER_CRANK = _model("slider_crank")

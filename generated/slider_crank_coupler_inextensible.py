@@ -1,0 +1,260 @@
+"""Inextensible flexible coupler of a slider-crank, geometrically exact.
+
+Emitted by regenerate-equations from a symbolic derivation.  Do not edit.
+
+Model: mechanism slider_crank, formulation inextensible, flexible coupler, any number of modes.
+Equations: Smith 9.6, further work 2.
+
+The coupler's points are r(s) = B + coupler int (cos phi, sin phi) ds.  Arrays with a value at each
+of the Q stations have them on their last axis, all others one value there.
+
+Multipliers: force on C along x and y, up to its sign.
+
+Cost per evaluation:
+    constraints: 20 operations
+    dynamics: 69 operations
+    variations: 74 operations
+Content hash 92a4191c2fafb61ffb8de35d6a284cca; derived with SymPy 1.14.0.
+"""
+
+import numpy as np
+
+__all__ = ["constraints", "dynamics", "variations"]
+FAMILY = "constrained"
+SPEC = (
+    '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"inextensible","mechanism":"sli'
+    'der_crank","modes":null,"outputs":[]}'
+)
+CONTENT = "92a4191c2fafb61ffb8de35d6a284cca"
+
+# Unit and meaning of arguments and results.
+QUANTITIES = {
+    "crank": ("m", "Length of the crank"),
+    "coupler": ("m", "Length of the coupler"),
+    "offset": ("m", "Height of the guide over the crank's pivot"),
+    "bending_stiffness": ("N m^2", "EI of the coupler"),
+    "mass_per_length": ("kg/m", "mu of the coupler"),
+    "damping": ("N s/m^2", "Viscous damping of the coupler per length"),
+    "gravity_x": ("m/s^2", "Acceleration of gravity along x"),
+    "gravity_y": ("m/s^2", "Acceleration of gravity along y"),
+    "slider_mass": ("kg", "Mass of the slider"),
+    "x4": ("m", "Place of the slider's pin C along the guide"),
+    "phi": ("rad", "Angle of the coupler's tangent at the stations"),
+    "t": ("s", "Time"),
+    "theta": ("rad", "Crank angle"),
+    "theta_d1": ("rad/s", "Crank speed"),
+    "theta_d2": ("rad/s^2", "Crank acceleration"),
+    "end": ("", "Weights of int f ds along the coupler, of unit length"),
+    "moment": ("", "Weights of int (1 - s) f ds"),
+    "bow": ("rad", "Angle of the unloaded coupler's tangent"),
+    "inertia": ("", "int (int f) (int g) ds, integrals from the crank pin"),
+    "bending": ("", "int f' g' ds"),
+    "drag": ("", "int (int f) (int g) ds of what has no mean"),
+    "lam_1": ("", "Multiplier"),
+    "lam_2": ("", "Multiplier"),
+}
+PARAMETERS = (
+    "crank", "coupler", "offset", "bending_stiffness", "mass_per_length", "damping", "gravity_x",
+    "gravity_y", "slider_mass",
+)
+
+# Names of what each function returns, in order.
+RETURNS = {
+    "constraints": (
+        "constraints_1_1", "constraints_2_1", "jacobian_1_1", "jacobian_1_2", "jacobian_2_2",
+        "velocity_rhs_1_1", "velocity_rhs_2_1",
+    ),
+    "dynamics": (
+        "mass_1_1", "mass_2_2_inertia_left1", "mass_2_2_inertia_right1", "mass_2_2_inertia_left2",
+        "mass_2_2_inertia_right2", "rest_1_1", "rest_2_1", "forces_2_1", "jacobian_1_1",
+        "jacobian_1_2", "jacobian_2_2", "velocity_rhs_1_1", "velocity_rhs_2_1", "gamma_1_1",
+        "gamma_2_1",
+    ),
+    "variations": (
+        "damping_2_2_drag_left1", "damping_2_2_drag_right1", "damping_2_2_inertia_left2",
+        "damping_2_2_inertia_right2", "damping_2_2_inertia_left3", "damping_2_2_inertia_right3",
+        "stiffness_2_2_diagonal", "stiffness_2_2_bending_right1", "stiffness_2_2_inertia_right2",
+        "stiffness_2_2_inertia_right3", "jacobian_rate_1_2", "jacobian_rate_2_2",
+        "jacobian_acceleration_1_2", "jacobian_acceleration_2_2",
+    ),
+}
+COORDINATES = ("x4", "phi")
+MULTIPLIERS = ("lam_1", "lam_2")
+EXTERNAL = ("theta", "theta_d1", "theta_d2")
+
+# Coordinate that stands for one of each station, and the numbers of stations and pairs.  In ARRAYS
+# a matrix over the stations has its diagonal and, beside it, products of factors of the rows, a
+# kernel, and factors of the columns.
+STATIONS = ("phi", ("end", "moment", "bow", "inertia", "bending", "drag"))
+
+# Of each function its arrays: shape, and row, column and place among what it returns.
+ARRAYS = {
+    "constraints": {
+        "constraints": ((2, 1), ((0, 0, 0), (1, 0, 1))),
+        "jacobian": ((2, 2), ((0, 0, 2), (0, 1, 3), (1, 1, 4))),
+        "velocity_rhs": ((2, 1), ((0, 0, 5), (1, 0, 6))),
+    },
+    "dynamics": {
+        "mass": ((2, 2), ((0, 0, 0), (1, 1, 1, "inertia", 2), (1, 1, 3, "inertia", 4))),
+        "rest": ((2, 1), ((0, 0, 5), (1, 0, 6))),
+        "forces": ((2, 1), ((1, 0, 7),)),
+        "jacobian": ((2, 2), ((0, 0, 8), (0, 1, 9), (1, 1, 10))),
+        "velocity_rhs": ((2, 1), ((0, 0, 11), (1, 0, 12))),
+        "gamma": ((2, 1), ((0, 0, 13), (1, 0, 14))),
+    },
+    "variations": {
+        "damping": (
+            (2, 2), ((1, 1, 0, "drag", 1), (1, 1, 2, "inertia", 3), (1, 1, 4, "inertia", 5)),
+        ),
+        "stiffness": (
+            (2, 2),
+            ((1, 1, 6), (1, 1, 0, "bending", 7), (1, 1, 4, "inertia", 8), (1, 1, 2, "inertia", 9)),
+        ),
+        "jacobian_rate": ((2, 2), ((0, 1, 10), (1, 1, 11))),
+        "jacobian_acceleration": ((2, 2), ((0, 1, 12), (1, 1, 13))),
+    },
+}
+
+
+def _namespace(array):
+    """Return the array namespace of an argument, NumPy where it has none."""
+    if hasattr(array, "__array_namespace__"):
+        return array.__array_namespace__()
+    return np
+
+
+def constraints(
+    x4, phi, t, theta, theta_d1, theta_d2, crank, coupler, offset, bending_stiffness,
+    mass_per_length, damping, gravity_x, gravity_y, slider_mass, end, moment, bow, inertia,
+    bending, drag,
+):
+    """Return the constraints and their Jacobian.
+
+    x4 : float or ndarray, shape (..., 1)
+    phi : ndarray, shape (..., Q)
+    t, theta, theta_d1, theta_d2 : float or ndarray, shape (..., 1)
+    crank to slider_mass : float
+    end, moment, bow : ndarray, shape (Q,)
+    inertia, bending, drag : ndarray, shape (Q, Q)
+    Returns float or ndarray each.
+    """
+    xp = _namespace(x4)
+    x0 = crank * xp.cos(theta)
+    x1 = coupler * end
+    x2 = x1 * xp.cos(phi)
+    x3 = crank * xp.sin(theta)
+    x5 = x1 * xp.sin(phi)
+    return (
+        x0 - x4 + xp.sum(x2, axis=-1, keepdims=True),
+        x3 - offset + xp.sum(x5, axis=-1, keepdims=True), -1, -x5, x2, x3 * theta_d1,
+        -x0 * theta_d1,
+    )
+
+
+def dynamics(
+    x4, phi, x4_dot, phi_dot, t, theta, theta_d1, theta_d2, crank, coupler, offset,
+    bending_stiffness, mass_per_length, damping, gravity_x, gravity_y, slider_mass, end, moment,
+    bow, inertia, bending, drag,
+):
+    """Return everything in the equations of motion at acceleration level.
+
+    x4 : float or ndarray, shape (..., 1)
+    phi : ndarray, shape (..., Q)
+    x4_dot : float or ndarray, shape (...)
+    phi_dot : ndarray, shape (..., Q)
+    t, theta, theta_d1, theta_d2 : float or ndarray, shape (..., 1)
+    crank to slider_mass : float
+    end, moment, bow : ndarray, shape (Q,)
+    inertia, bending, drag : ndarray, shape (Q, Q)
+    Returns float or ndarray each.
+    """
+    xp = _namespace(x4)
+    x0 = xp.cos(phi)
+    x1 = coupler**3
+    x2 = x1 * mass_per_length
+    x3 = x2 * x0
+    x4 = xp.sin(phi)
+    x5 = x2 * x4
+    x6 = mass_per_length * coupler**2 * moment
+    x7 = x4 * x6
+    x8 = x0 * x6
+    x9 = xp.sin(theta)
+    x10 = x9 * crank
+    x11 = theta_d2 * x10
+    x12 = xp.cos(theta)
+    x13 = x12 * crank
+    x14 = theta_d2 * x13
+    x15 = theta_d1**2
+    x16 = x13 * x15
+    x17 = phi_dot**2
+    x18 = x10 * x15
+    x19 = coupler * end
+    x20 = x19 * x4
+    x21 = x0 * x19
+    x22 = theta_d1 * crank
+    return (
+        slider_mass, x0, x3, x4, x5, -gravity_x * slider_mass,
+        (
+            x7 * gravity_x - x8 * gravity_y + x0 * ((-x17 * x5) @ inertia) + x11 * x7 + x14 * x8 +
+            x16 * x7 - x18 * x8 + x4 * ((x17 * x3) @ inertia) + (bending_stiffness * (phi - bow) /
+            coupler) @ bending
+        ),
+        (-x1 * phi_dot * damping) @ drag, -1, -x20, x21, x22 * x9, -x12 * x22,
+        x11 + x16 + xp.sum(x17 * x21, axis=-1, keepdims=True),
+        x18 - x14 + xp.sum(x17 * x20, axis=-1, keepdims=True),
+    )
+
+
+def variations(
+    x4, phi, x4_dot, phi_dot, x4_ddot, phi_ddot, lam_1, lam_2, t, theta, theta_d1, theta_d2, crank,
+    coupler, offset, bending_stiffness, mass_per_length, damping, gravity_x, gravity_y,
+    slider_mass, end, moment, bow, inertia, bending, drag,
+):
+    """Return the arrays of the motion linearised about a given one.
+
+    x4 : float or ndarray, shape (..., 1)
+    phi : ndarray, shape (..., Q)
+    x4_dot : float or ndarray, shape (...)
+    phi_dot : ndarray, shape (..., Q)
+    x4_ddot : float or ndarray, shape (...)
+    phi_ddot : ndarray, shape (..., Q)
+    lam_1, lam_2 : float or ndarray, shape (...)
+    t, theta, theta_d1, theta_d2 : float or ndarray, shape (..., 1)
+    crank to slider_mass : float
+    end, moment, bow : ndarray, shape (Q,)
+    inertia, bending, drag : ndarray, shape (Q, Q)
+    Returns float or ndarray each.
+    """
+    xp = _namespace(x4)
+    x0 = coupler**3
+    x1 = xp.cos(phi)
+    x2 = xp.sin(phi)
+    x3 = x0 * mass_per_length
+    x4 = 2 * x3 * phi_dot
+    x5 = coupler * end
+    x6 = x1 * x5
+    x7 = x2 * x5
+    x8 = mass_per_length * coupler**2 * moment
+    x9 = x1 * x8
+    x10 = x2 * x8
+    x11 = xp.sin(theta)
+    x12 = crank * x9
+    x13 = xp.cos(theta)
+    x14 = crank * x10
+    x15 = theta_d1**2
+    x16 = phi_ddot * x2
+    x17 = phi_dot**2
+    x18 = x1 * x17
+    x19 = x3 * (x16 + x18)
+    x20 = phi_ddot * x1
+    x21 = x20 - x17 * x2
+    return (
+        1, x0 * damping, x1, -x2 * x4, x2, x1 * x4,
+        (
+            x9 * gravity_x + x10 * gravity_y + lam_1 * x6 + lam_2 * x7 + x11 * theta_d2 * x12 - x13
+            * theta_d2 * x14 + x1 * (x19 @ inertia) + x11 * x15 * x14 + x13 * x15 * x12 + x2 *
+            ((-x3 * x21) @ inertia)
+        ),
+        bending_stiffness / coupler, x3 * x21, -x19, -phi_dot * x6, -phi_dot * x7,
+        coupler * end * x17 * x2 - x20 * x5, -x16 * x5 - x18 * x5,
+    )

@@ -1,0 +1,279 @@
+"""Branches of periodic motions: steps along them, special points, and the branches that cross."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..core.families import Array
+from .orbit import SHARE, Direction, Lost, Measure, Orbit, Solver, changed
+from .segments import Motion, NotFinite
+
+# First correction that a step aims at, relative; factors by which a step changes at once; its
+# first, its least and its largest length.
+_AIM = 0.02
+_LONGER, _SHORTER = 2.0, 0.3
+_FIRST, _LEAST, _LARGEST = 0.02, 1e-7, 1.0
+_WIDEST = 1.0 / 60.0  # part of the range that a step may change the parameter by
+# Relative amplitude at which a crossing branch is entered.
+_ENTERED = 0.02
+_LOCATED = 1e-12  # part of a step to which a special point is located
+_FAILURES = (Lost, NotFinite, np.linalg.LinAlgError)
+
+
+@dataclass(frozen=True)
+class Special:
+    """A point of a branch at which motions meet, or lose their stability."""
+
+    kind: str  # "fold", "doubling", "branch point" or "torus"
+    orbit: Orbit
+    measure: Measure
+    value_error: float
+
+
+def fold(orbit: Orbit) -> float:
+    """Return what vanishes at a fold: the parameter's part of the tangent."""
+    return orbit.tangent.value / orbit.tangent.span
+
+
+def doubling(orbit: Orbit) -> float:
+    """Return what vanishes where a multiplier is -1."""
+    return float(np.linalg.det(orbit.matrix + np.eye(len(orbit.matrix))))
+
+
+def branch_point(orbit: Orbit) -> float:
+    """Return what vanishes where branches cross."""
+    return orbit.border
+
+
+def torus(orbit: Orbit) -> float:
+    """Return what vanishes where a pair of complex multipliers passes the unit circle."""
+    pairs = np.abs(orbit.multipliers[orbit.multipliers.imag > 1e-9])
+    return float(np.log(pairs[np.argmin(np.abs(np.log(pairs)))])) if pairs.size else np.nan
+
+
+TESTS: dict[str, Callable[[Orbit], float]] = {
+    "fold": fold,
+    "doubling": doubling,
+    "branch point": branch_point,
+    "torus": torus,
+}
+
+
+@dataclass(frozen=True)
+class Branch:
+    """One branch, point by point, special points among them."""
+
+    points: tuple[tuple[Orbit, Measure], ...]
+    special: tuple[Special, ...]
+    ended: str  # why
+
+    @property
+    def turns(self) -> int:
+        """Revolutions of the drive after which the motions repeat."""
+        return self.points[0][0].motion.turns
+
+
+LEFT, CLOSED, JOINED = "it leaves the range", "it closes", "it joins a motion of fewer turns"
+
+
+def followed(
+    solver: Solver, begun: tuple[Orbit, Measure], bounds: tuple[float, float], most: int
+) -> Branch:
+    """Follow a branch from a motion along its tangent, locating special points on the way.
+
+    It ends where it leaves the range or cannot be followed, where it comes back to its beginning,
+    and where a motion of several turns becomes one of fewer.
+    """
+    points, special = [begun], []
+    ended = f"{most} points"
+    for orbit, measure, reason in _steps(solver, *begun, bounds, most):
+        if orbit is None or measure is None:
+            ended = reason
+            break
+        for found in special_points(solver, points[-1][0], orbit):
+            if bounds[0] <= found.orbit.value <= bounds[1]:
+                special.append(found)
+                points.append((found.orbit, found.measure))
+        points.append((orbit, measure))
+    return Branch(tuple(points), tuple(special), ended)
+
+
+def _steps(
+    solver: Solver, orbit: Orbit, measure: Measure, bounds: tuple[float, float], most: int
+) -> Iterator[tuple[Orbit | None, Measure | None, str]]:
+    """Yield the motions along a branch, and at last why it ends."""
+    step, first, away = _FIRST, orbit, False
+    for _ in range(most):
+        ahead = None
+        while ahead is None:
+            if step < _LEAST:
+                yield None, None, "it cannot be followed"
+                return
+            try:
+                value, guess = changed(orbit, orbit.tangent, step)
+                ahead, size = solver.corrected(value, guess, orbit.tangent)
+                if ahead.tangent.dot(orbit.tangent) < 0.5:
+                    raise Lost("the branch turns within a step")
+                ahead, measure = solver.refined(ahead)
+            except _FAILURES:
+                ahead, step = None, step * _SHORTER
+        if ahead.tangent.dot(orbit.tangent) < 0:
+            ahead = ahead.turned()
+        if _fewer_turns(orbit.motion, ahead.motion):
+            yield None, None, JOINED
+            return
+        yield ahead, measure, ""
+        if not bounds[0] <= ahead.value <= bounds[1]:
+            yield None, None, LEFT
+            return
+        passed = _passed(ahead, orbit, first)
+        if away and passed:
+            yield None, None, CLOSED
+            return
+        away = away or not passed
+        grown = float(np.clip(np.sqrt(_AIM / max(size, 1e-12)), _SHORTER, _LONGER))
+        reach = _WIDEST * solver.span / max(abs(ahead.tangent.value), 1e-12)
+        step, orbit = min(step * grown, _LARGEST, reach), ahead
+
+
+def _passed(ahead: Orbit, orbit: Orbit, first: Orbit) -> bool:
+    """Return True where the first motion of a branch lies on the step between two motions."""
+    angles = ahead.motion.step * np.arange(len(ahead.motion.x))
+    states = np.concatenate([ahead.motion.x, ahead.motion.v], axis=1)
+
+    def back(motion: Orbit) -> Direction:
+        x, v, _ = motion.motion.at(angles)
+        change = np.concatenate([x, v], axis=1) - states
+        return replace(ahead.tangent, states=change, value=motion.value - ahead.value)
+
+    change, step = back(first), ahead.tangent.dot(back(orbit))
+    along, square = ahead.tangent.dot(change), change.dot(change)
+    same_way = ahead.tangent.dot(first.tangent) > 0.0
+    return step <= along <= 0.0 and square - along * along <= (0.1 * step) ** 2 and same_way
+
+
+def halves(motion: Motion) -> Array:
+    """Return how the first half of a motion differs from the second, ``(k, n)``."""
+    half = np.pi * motion.turns
+    angles = half * np.arange(64) / 64
+    return np.asarray(motion.at(angles)[0] - motion.at(angles + half)[0])
+
+
+def _fewer_turns(before: Motion, after: Motion) -> bool:
+    """Return True where the halves of a motion have become equal between two points."""
+    if before.turns % 2:
+        return False
+    return bool(np.sum(halves(before) * halves(after)) <= 0.0)
+
+
+def special_points(solver: Solver, before: Orbit, after: Orbit) -> Iterator[Special]:
+    """Yield the special points between two motions, located."""
+    for kind, test in TESTS.items():
+        one, other = test(before), test(after)
+        if not one * other < 0.0:
+            continue
+        if kind == "torus" and np.sum(before.multipliers.imag > 0) != np.sum(
+            after.multipliers.imag > 0
+        ):
+            continue
+        try:
+            found = _located(solver, before, after, test)
+        except _FAILURES:
+            continue
+        measure = solver.measure(found)
+        yield Special(kind, found, measure, _value_error(solver, found, measure, kind))
+
+
+def _located(solver: Solver, before: Orbit, after: Orbit, test: Callable[[Orbit], float]) -> Orbit:
+    """Return the motion between two at which a test vanishes."""
+    from scipy.optimize import brentq
+
+    steps, stages = len(after.motion.x), after.motion.a.shape[1]
+    start = (
+        before.motion.resampled(steps, stages) if len(before.motion.x) != steps else before.motion
+    )
+    states = [np.concatenate([m.x, m.v], axis=1) for m in (start, after.motion)]
+    chord = replace(
+        after.tangent, states=states[1] - states[0], value=after.value - before.value
+    ).unit()
+    last = [after]
+
+    def value(part: float) -> float:
+        if part in (0.0, 1.0):
+            return test(after if part else before)
+        n = start.x.shape[1]
+        between = states[0] + part * (states[1] - states[0])
+        a = start.a + part * (after.motion.a - start.a)
+        guess = Motion(start.turns, between[:, :n], between[:, n:], a)
+        at = before.value + part * (after.value - before.value)
+        orbit, _ = solver.corrected(at, guess, chord)
+        last[0] = orbit if orbit.tangent.dot(before.tangent) >= 0 else orbit.turned()
+        return test(last[0])
+
+    brentq(value, 0.0, 1.0, xtol=_LOCATED, rtol=4 * np.finfo(float).eps, maxiter=60)
+    return last[0]
+
+
+def _value_error(solver: Solver, orbit: Orbit, measure: Measure, kind: str) -> float:
+    """Return the error estimate of the parameter at a special point."""
+    if kind == "fold":
+        return measure.value_error
+    test, step = TESTS[kind], 1e-4
+    value, guess = changed(orbit, orbit.tangent, step)
+    beside, _ = solver.corrected(value, guess, orbit.tangent)
+    slope = (test(beside) - test(orbit)) / step
+    rough = replace(orbit, whole=np.concatenate([orbit.whole[:-1], measure.rough[None]]))
+    along = SHARE * abs(test(rough) - test(orbit)) / abs(slope) if slope else np.inf
+    return measure.value_error + along * abs(orbit.tangent.value)
+
+
+def doubled(solver: Solver, orbit: Orbit) -> tuple[Orbit, Measure]:
+    """Return a first motion of twice the turns, beside a doubling."""
+    values, vectors = np.linalg.eig(orbit.matrix)
+    vector = np.real(vectors[:, np.argmin(np.abs(values + 1.0))])
+    change = orbit.whole[:-1] @ vector
+    motion, n = orbit.motion, orbit.motion.x.shape[1]
+    a = (orbit.swept.response @ change[:, None, :, None])[..., 0]
+    twice = Motion(
+        2 * motion.turns, *(np.concatenate([part] * 2) for part in (motion.x, motion.v, motion.a))
+    )
+    states, a = np.concatenate([change, -change]), np.concatenate([a, -a])
+    long = replace(orbit.tangent, states=states, value=0.0)
+    length = _ENTERED / float(np.sqrt(long.dot(long)))
+    for _ in range(6):
+        guess = twice.moved(length * states[:, :n], length * states[:, n:], length * a)
+        try:
+            return solver.fine(orbit.value, guess, long.unit())
+        except _FAILURES:
+            length *= _SHORTER
+    raise Lost("the branch of twice the turns cannot be entered")
+
+
+def crossing(solver: Solver, orbit: Orbit, sign: float) -> tuple[Orbit, Measure]:
+    """Return a first motion on the branch that crosses at a branch point, to one side."""
+    size = len(orbit.matrix)
+    equations = np.column_stack([orbit.matrix - np.eye(size), orbit.added[-1, :, 1] * solver.span])
+    vectors = np.linalg.svd(equations)[2][-2:]
+    ways = []
+    for vector in vectors:
+        value = float(vector[-1]) * solver.span
+        states = orbit.whole[:-1] @ vector[:-1] + value * orbit.added[:-1, :, 1]
+        ways.append(replace(orbit.tangent, states=states, value=value))
+    along = [orbit.tangent.dot(way) for way in ways]
+    mixed = replace(
+        ways[0],
+        states=along[1] * ways[0].states - along[0] * ways[1].states,
+        value=along[1] * ways[0].value - along[0] * ways[1].value,
+    ).unit()
+    length = sign * _ENTERED
+    for _ in range(6):
+        value, guess = changed(orbit, mixed, length)
+        try:
+            found, measure = solver.fine(value, guess, mixed.times(sign))
+            return found, measure
+        except _FAILURES:
+            length *= _SHORTER
+    raise Lost("the branch that crosses cannot be entered")

@@ -1,0 +1,301 @@
+"""Periodic motions: Newton's iteration at one value of a parameter, and across a direction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from ..core.families import Array
+from .segments import Motion, Problem, Sweep, chained, sweep
+
+EPS = float(np.finfo(float).eps)
+# Newton has arrived where its correction, relative to the motion, is below the first: its square
+# is round-off; or where it no longer falls below the second.
+_LAST, _SMALL = 3e-10, 1e-8
+_ITERATIONS, _MOST_ITERATIONS = 10, 40
+_NEAR = 1e-3
+# First correction beyond which a guess is refused, relative.
+_FAR = 0.3
+# Stages of the motion beside which errors are measured, less than those of the motion, and the
+# share of the difference that is taken for the error.
+_FEWER, SHARE = 2, 0.1
+STAGES, FIRST_STEPS, MOST_STEPS = 8, 12, 512
+
+
+class Lost(ArithmeticError):  # noqa: N818 - reads as what it is
+    """There is no periodic motion near a guess, or it cannot be followed."""
+
+
+@dataclass(frozen=True)
+class Direction:
+    """A change of a motion and of the parameter, with the sizes that changes are relative to."""
+
+    states: Array  # (m, 2n): changes of the states (x, v) at the beginnings of the steps
+    value: float  # change of the parameter
+    scale: Array  # (2n,): sizes of coordinates and rates
+    span: float  # size of the parameter
+
+    def dot(self, other: Direction) -> float:
+        """Return the inner product, in the sizes of this one."""
+        row, last = self.weights
+        states = other.resampled(len(row)).states
+        return float(np.sum(row * states) + last * other.value)
+
+    @cached_property
+    def weights(self) -> tuple[Array, float]:
+        """The inner product with this direction as a row: ``(m, 2n)`` and a number."""
+        return self.states / self.scale**2 / len(self.states), self.value / self.span**2
+
+    def times(self, factor: float) -> Direction:
+        """Return a multiple."""
+        return replace(self, states=factor * self.states, value=factor * self.value)
+
+    def unit(self) -> Direction:
+        """Return the direction with length 1."""
+        return self.times(1.0 / float(np.sqrt(self.dot(self))))
+
+    def resampled(self, steps: int) -> Direction:
+        """Return the direction at the beginnings of so many steps."""
+        m = len(self.states)
+        if steps == m:
+            return self
+        old, new = np.arange(m + 1) / m, np.arange(steps) / steps
+        closed = np.concatenate([self.states, self.states[:1]])
+        columns = [np.interp(new, old, column) for column in closed.T]
+        return replace(self, states=np.stack(columns, axis=-1))
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """A periodic motion at one value of the parameter, and what the motions next to it are like."""
+
+    value: float
+    motion: Motion
+    swept: Sweep  # its steps, linearised
+    # whole, added: (m + 1, 2n, 2n), (m + 1, 2n, 2): states at all ends by the first one, by what
+    # is wrong and by the parameter
+    whole: Array
+    added: Array
+    tangent: Direction  # along the branch, of unit length
+    # Determinant of the equations bordered by the tangent, rows of unit length: its sign changes
+    # at a branch point.
+    border: float
+
+    @property
+    def matrix(self) -> Array:
+        """The monodromy matrix of ``(x, dx/dtheta)``, shape ``(2n, 2n)``."""
+        return np.asarray(self.whole[-1])
+
+    @cached_property
+    def multipliers(self) -> Array:
+        """Floquet multipliers, the largest first."""
+        values = np.linalg.eigvals(self.matrix).astype(complex)
+        return np.asarray(values[np.argsort(-np.abs(values), kind="stable")])
+
+    def turned(self) -> Orbit:
+        """Return the motion with its tangent the other way."""
+        return replace(self, tangent=self.tangent.times(-1.0), border=-self.border)
+
+
+@dataclass(frozen=True)
+class Measure:
+    """How far a motion is from the true one, by a motion on fewer stages."""
+
+    error: float  # distance from the branch, relative to the motion
+    value_error: float  # the parameter's part of it
+    multiplier_errors: Array  # (2n,)
+    rough: Array  # (2n, 2n): monodromy matrix of the other motion
+
+
+@dataclass(frozen=True)
+class Solver:
+    """Newton's iteration for the periodic motions of a problem.
+
+    Attributes
+    ----------
+    problem : Problem
+    span : float
+        Range of the parameter, by which its changes are measured.
+    rtol : float
+        Wanted error of the motions, relative.
+    """
+
+    problem: Problem
+    span: float
+    rtol: float = 1e-8
+
+    def scale(self, motion: Motion) -> Array:
+        """Return the sizes of coordinates and rates, ``(2n,)``: the largest of each kind."""
+        n = motion.x.shape[1]
+        largest = (float(np.max(np.abs(values))) for values in (motion.x, motion.v))
+        return np.repeat([max(size, self.problem.system.small) for size in largest], n)
+
+    def settled(self, value: float, motion: Motion) -> Motion:
+        """Return the periodic motion near a guess at a value, by damped steps of Newton.
+
+        Raises `Lost` where there is none.
+        """
+        before = np.inf
+        for _ in range(_MOST_ITERATIONS):
+            swept = sweep(self.problem, value, motion)
+            change = closed(swept)
+            scale = self.scale(motion)
+            size = float(np.max(np.abs(change) / scale))
+            if not np.isfinite(size):
+                break
+            part = 1.0 if size <= 1.0 or np.all(scale == self.problem.system.small) else 1.0 / size
+            motion = taken(motion, swept, change, 0.0, part)
+            if size <= _LAST or (size <= _SMALL and size >= 0.5 * before):
+                return motion
+            before = size
+        raise Lost("no periodic motion was found near the guess")
+
+    def corrected(self, value: float, motion: Motion, direction: Direction) -> tuple[Orbit, float]:
+        """Return the motion nearest to a guess across a direction, and the first correction.
+
+        Raises `Lost` where there is none near.
+        """
+        before, first = np.inf, 0.0
+        by_parameter: bool | Array = True
+        for _ in range(_ITERATIONS):
+            swept = sweep(self.problem, value, motion, by_parameter=by_parameter)
+            whole, added = chained(swept.maps, swept.loads)
+            change, moved = _bordered(whole, added, direction)
+            size = self._size(change, moved, motion)
+            first = first or size
+            if not size < _FAR:
+                raise Lost("a correction is too large")
+            motion, value = taken(motion, swept, change, moved), value + moved
+            # The derivative by the parameter is renewed where the motion has all but settled.
+            by_parameter = swept.by_parameter if size > _NEAR else True
+            if size <= _LAST or (size <= _SMALL and size >= 0.5 * before):
+                return self._orbit(value, motion, swept, whole, added, direction), first
+            before = size
+        raise Lost(f"not there after {_ITERATIONS} corrections")
+
+    def _size(self, change: Array, moved: float, motion: Motion) -> float:
+        return max(float(np.max(np.abs(change) / self.scale(motion))), abs(moved) / self.span)
+
+    def _orbit(
+        self,
+        value: float,
+        motion: Motion,
+        swept: Sweep,
+        whole: Array,
+        added: Array,
+        direction: Direction,
+    ) -> Orbit:
+        """Return the motion with its tangent, in the sense of a direction."""
+        measured = replace(direction, scale=self.scale(motion), span=self.span)
+        change, moved = _bordered(whole, added, measured, along=1.0)
+        tangent = replace(measured, states=change, value=moved).unit()
+        rows = _bordered_matrix(whole, added, tangent)
+        border = float(np.linalg.det(rows / np.linalg.norm(rows, axis=1, keepdims=True)))
+        return Orbit(value, motion, swept, whole, added, tangent, border)
+
+    def measure(self, orbit: Orbit) -> Measure:
+        """Return how far a motion is from the true one."""
+        motion = orbit.motion
+        fewer = motion.resampled(len(motion.x), motion.a.shape[1] - _FEWER)
+        swept = sweep(self.problem, orbit.value, fewer)
+        whole, added = chained(swept.maps, swept.loads)
+        # What the parameter does differs but little by fewer stages.
+        added = np.concatenate([added, orbit.added[..., 1:]], axis=-1)
+        change, moved = _bordered(whole, added, orbit.tangent)
+        rounding = 16 * EPS * len(motion.x)
+        rough, errors = np.linalg.eigvals(whole[-1]).astype(complex), []
+        for multiplier in orbit.multipliers:
+            nearest = int(np.argmin(np.abs(rough - multiplier)))
+            errors.append(abs(rough[nearest] - multiplier))
+            rough = np.delete(rough, nearest)
+        size = float(np.linalg.norm(orbit.matrix))
+        return Measure(
+            SHARE * self._size(change, moved, motion) + rounding,
+            SHARE * abs(moved) + rounding * abs(orbit.value),
+            SHARE * np.asarray(errors) + rounding * size,
+            np.asarray(whole[-1]),
+        )
+
+    def fine(self, value: float, motion: Motion, direction: Direction) -> tuple[Orbit, Measure]:
+        """Return the motion across a direction, on as many steps as its error wants."""
+        orbit, _ = self.corrected(value, motion, direction)
+        return self.refined(orbit)
+
+    def refined(self, orbit: Orbit) -> tuple[Orbit, Measure]:
+        """Return a motion on as many steps as its error wants, and that error."""
+        while True:
+            measure, steps = self.measure(orbit), len(orbit.motion.x)
+            if measure.error <= self.rtol or steps >= MOST_STEPS * orbit.motion.turns:
+                return orbit, measure
+            motion = orbit.motion.resampled(int(np.ceil(1.3 * steps)), STAGES)
+            direction = orbit.tangent.resampled(len(motion.x))
+            orbit, _ = self.corrected(orbit.value, motion, direction)
+
+    def along_parameter(self, motion: Motion, sign: float = 1.0) -> Direction:
+        """Return the direction in which the parameter alone changes."""
+        n = motion.x.shape[1]
+        zero = np.zeros((len(motion.x), 2 * n))
+        return Direction(zero, sign * self.span, self.scale(motion), self.span)
+
+
+def changed(orbit: Orbit, direction: Direction, length: float) -> tuple[float, Motion]:
+    """Return value and motion beside an orbit, its accelerations as linearised."""
+    states, moved = length * direction.states, length * direction.value
+    swept, n = orbit.swept, orbit.motion.x.shape[1]
+    a = (swept.response @ states[:, None, :, None])[..., 0] + moved * swept.stage_loads[..., 1]
+    return orbit.value + moved, orbit.motion.moved(states[:, :n], states[:, n:], a)
+
+
+def closed(swept: Sweep) -> Array:
+    """Return the changes of the states ``(m, 2n)`` that close the period at one parameter.
+
+    Raises `Lost` where there are none.
+    """
+    whole, added = chained(swept.maps, swept.loads)
+    try:
+        first = np.linalg.solve(np.eye(whole.shape[-1]) - whole[-1], added[-1, :, 0])
+    except np.linalg.LinAlgError as singular:
+        raise Lost("a multiplier is 1") from singular
+    return np.asarray(whole[:-1] @ first + added[:-1, :, 0])
+
+
+def taken(motion: Motion, swept: Sweep, change: Array, moved: float, part: float = 1.0) -> Motion:
+    """Return a motion after a correction of its states."""
+    n = motion.x.shape[1]
+    a = swept.stage_loads[..., 0] + (swept.response @ change[:, None, :, None])[..., 0]
+    if moved:
+        a = a + moved * swept.stage_loads[..., 1]
+    return motion.moved(part * change[:, :n], part * change[:, n:], part * a)
+
+
+def _bordered_matrix(whole: Array, added: Array, direction: Direction) -> Array:
+    """Return the equations of first state and parameter: the period, and across a direction."""
+    row, last = direction.weights
+    size = whole.shape[-1]
+    matrix = np.empty((size + 1, size + 1))
+    matrix[:size, :size] = whole[-1] - np.eye(size)
+    matrix[:size, size] = added[-1, :, 1]
+    matrix[size, :size] = np.tensordot(row, whole[:-1], axes=([0, 1], [0, 1]))
+    matrix[size, size] = np.sum(row * added[:-1, :, 1]) + last
+    return matrix
+
+
+def _bordered(
+    whole: Array, added: Array, direction: Direction, along: float = 0.0
+) -> tuple[Array, float]:
+    """Return changes of states and parameter that close the period, by so much along.
+
+    With ``along`` what is wrong with the motion is left aside.
+    """
+    wrong = 0.0 if along else 1.0
+    row, _ = direction.weights
+    right = np.append(-wrong * added[-1, :, 0], along - wrong * np.sum(row * added[:-1, :, 0]))
+    try:
+        solution = np.linalg.solve(_bordered_matrix(whole, added, direction), right)
+    except np.linalg.LinAlgError as singular:
+        raise Lost("the branch has no single direction here") from singular
+    first, moved = solution[:-1], float(solution[-1])
+    change = whole[:-1] @ first + wrong * added[:-1, :, 0] + moved * added[:-1, :, 1]
+    return change, moved

@@ -1,0 +1,441 @@
+"""Response curves: the branches of periodic motions over a parameter, with their stability."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import bad
+from ..core.families import Array, Nonlinear
+from ..core.inputs import is_finite, numbers, require_kind, require_whole
+from ..core.plotting import Axes, axes_or_new
+from ..core.progress import bar
+from ..core.results import Check, Result, provenance
+from .branch import JOINED, Branch, crossing, doubled, followed
+from .orbit import FIRST_STEPS, MOST_STEPS, STAGES, Lost, Measure, Orbit, Solver, closed, taken
+from .segments import Motion, NotFinite, Problem, sweep
+
+_POINTS = 2000  # of one branch
+_BRANCHES = 24
+_SAMPLES = 256  # of a revolution, for the extremes of the deflection
+_LINEAR = 200  # values at which the linear answer is computed
+_RPM = 30.0 / np.pi
+_STYLE = {"fold": "o", "doubling": "s", "branch point": "D", "torus": "^"}
+_FAILURES = (Lost, NotFinite, np.linalg.LinAlgError)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ResponseCurve(Result):
+    """Periodic motions over a parameter: all branches one behind the other, point by point.
+
+    Attributes
+    ----------
+    parameter : str
+        What is varied.
+    value : ndarray, shape (k,)
+        Its values [SI; rad/s for the speed].
+    branch : ndarray of int, shape (k,)
+        Number of the branch, from 0.
+    turns : ndarray of int, shape (k,)
+        Revolutions of the drive after which the motion repeats.
+    lowest, highest : ndarray, shape (k,)
+        Extremes of the deflection over the period, in ``unit``.
+    multipliers : ndarray of complex, shape (k, 2n)
+        Floquet multipliers over the period, the largest first.
+    multiplier_error : ndarray, shape (k, 2n)
+        Their absolute errors.
+    error : ndarray, shape (k,)
+        Distance of the motion from the branch, relative to its largest coordinate and rate.
+    peak_error : ndarray, shape (k,)
+        Absolute error of the extremes.
+    special : tuple of str
+        Kinds of the special points: ``"fold"``, ``"doubling"``, ``"branch point"``, ``"torus"``.
+    special_value, special_error : ndarray, shape (p,)
+        The parameter there, and its absolute error.
+    special_branch : ndarray of int, shape (p,)
+    special_lowest, special_highest : ndarray, shape (p,)
+    ended : tuple of str
+        Why each branch ends.
+    linear_value, linear_lowest, linear_highest : ndarray, shape (l,)
+        The answer of the equations linearised about no deflection.
+    unit, parameter_unit : str
+        Units of the deflection and of the parameter.
+
+    Notes
+    -----
+    Branches that do not hang together with the one that begins at an end of the range are found
+    by :func:`search_branches` only, and never are all branches known.
+    """
+
+    parameter: str
+    value: Array
+    branch: NDArray[np.int64]
+    turns: NDArray[np.int64]
+    lowest: Array
+    highest: Array
+    multipliers: NDArray[np.complex128]
+    multiplier_error: Array
+    peak_error: Array
+    special: tuple[str, ...]
+    special_value: Array
+    special_error: Array
+    special_branch: NDArray[np.int64]
+    special_lowest: Array
+    special_highest: Array
+    ended: tuple[str, ...]
+    linear_value: Array
+    linear_lowest: Array
+    linear_highest: Array
+    unit: str = ""
+    orbits: tuple[Orbit, ...] = ()
+    special_orbits: tuple[Orbit, ...] = ()
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **dict.fromkeys(
+            ("value", "branch", "turns", "lowest", "highest", "error", "peak_error", "stable"),
+            ("point",),
+        ),
+        "peak_to_peak": ("point",),
+        "multipliers": ("point", "multiplier"),
+        "multiplier_error": ("point", "multiplier"),
+        **dict.fromkeys(("special_value", "special_error", "special_branch"), ("special_point",)),
+        **dict.fromkeys(("special_lowest", "special_highest"), ("special_point",)),
+        **dict.fromkeys(("linear_value", "linear_lowest", "linear_highest"), ("linear_point",)),
+        "special": ("special_point",),
+    }
+    exported: ClassVar[tuple[str, ...]] = ("stable", "peak_to_peak")
+
+    @property
+    def stable(self) -> NDArray[np.bool_]:
+        """True where no multiplier lies outside the unit circle by more than its error."""
+        return np.asarray(np.all(np.abs(self.multipliers) <= 1.0 + self.multiplier_error, axis=1))
+
+    @property
+    def peak_to_peak(self) -> Array:
+        """Highest less lowest deflection, shape ``(k,)``."""
+        return self.highest - self.lowest
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the peak-to-peak deflection: stable solid, unstable dotted, the linear one thin."""
+        ax = axes_or_new(ax)
+        speed = self.parameter == "speed"
+        factor, axis = (_RPM, "crank speed [rpm]") if speed else (1.0, f"{self.parameter} [SI]")
+        size, unit = (1e3, "mm") if self.unit == "m" else (1.0, self.unit)
+        ax.plot(
+            factor * self.linear_value,
+            size * (self.linear_highest - self.linear_lowest),
+            color="0.6",
+            linewidth=0.8,
+            label="linear",
+        )
+        stable, seen = self.stable, set()
+        for number in range(len(self.ended)):
+            (at,) = np.nonzero(self.branch == number)
+            if not at.size:
+                continue
+            colour = f"C{int(self.turns[at[0]]).bit_length() - 1}"
+            for part in np.split(at, np.flatnonzero(np.diff(stable[at].astype(int))) + 1):
+                # A stretch reaches to the first point of the next one, so that nothing is missing.
+                part = np.append(part, part[-1] + 1) if part[-1] < at[-1] else part
+                holds = bool(stable[part[0]])
+                turns = int(self.turns[part[0]])
+                label = f"{turns} turn{'s' * (turns > 1)}, {'stable' if holds else 'unstable'}"
+                ax.plot(
+                    factor * self.value[part],
+                    size * self.peak_to_peak[part],
+                    "-" if holds else ":",
+                    color=colour,
+                    label=None if label in seen else label,
+                )
+                seen.add(label)
+        for kind, value, low, high in zip(
+            self.special, self.special_value, self.special_lowest, self.special_highest, strict=True
+        ):
+            ax.plot(
+                [factor * value],
+                [size * (high - low)],
+                _STYLE[kind],
+                color="k",
+                markersize=4,
+                label=None if kind in seen else kind,
+            )
+            seen.add(kind)
+        largest = size * float(np.max(self.peak_to_peak, initial=0.0))
+        ax.set(xlabel=axis, ylabel=f"peak-to-peak deflection [{unit}]", ylim=(0.0, 1.1 * largest))
+        ax.legend(frameon=False, fontsize="small")
+        return ax
+
+
+def response_curve(
+    system: Nonlinear,
+    parameter: str,
+    bounds: tuple[float, float],
+    *,
+    speed: float | None = None,
+    turns: int = 1,
+    rtol: float = 1e-8,
+    starts: Iterable[tuple[float, Motion]] = (),
+    progress: bool = False,
+) -> ResponseCurve:
+    """Follow the periodic motions of a nonlinear system over a parameter.
+
+    Collocation of Gauss' with 8 stages on as many steps as the error wants, continued by its
+    pseudo-arclength.  Folds, doublings, crossings of branches and tori are located on the way;
+    branches that begin at doublings and crossings are followed too.
+
+    Parameters
+    ----------
+    system : Nonlinear
+        For example ``scene.system()`` of a scene with formulation ``inextensible``.
+    parameter : str
+        ``"speed"``, or a name of ``system.parameters``.
+    bounds : tuple of float
+        Lowest and highest value [SI].
+    speed : float, optional
+        Speed of the drive [rad/s] where something else is varied.
+    turns : int
+        Largest number of revolutions after which the motions repeat: doublings are followed up to
+        it.
+    rtol : float
+        Wanted error of the motions, relative.
+    starts : iterable of (float, Motion), optional
+        More motions from which branches are followed both ways, as they come from
+        :func:`search_branches`.
+    progress : bool
+        Whether to show a bar.
+
+    Returns
+    -------
+    ResponseCurve
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, or no periodic motion is found at either end of the range.
+    """
+    problem, low, high = _checked(system, parameter, bounds, speed)
+    require_whole("turns", turns, 1, 64)
+    if not (is_finite(rtol) and 1e-13 <= rtol <= 1e-3):
+        raise bad("rtol", repr(rtol), "a number from 1e-13 to 1e-3", "try 1e-8")
+    solver = Solver(problem, high - low, rtol)
+    with bar(progress, _BRANCHES, unit="branch") as tick:
+        branches = _all_branches(solver, (low, high), turns, list(starts), tick)
+    return _result(solver, branches, (low, high))
+
+
+def _checked(
+    system: Nonlinear, parameter: str, bounds: tuple[float, float], speed: float | None
+) -> tuple[Problem, float, float]:
+    """Return the problem and the range, having checked the arguments."""
+    fix = "take the .system() of a scene with formulation 'inextensible'"
+    require_kind("system", system, Nonlinear, fix)
+    known = ["speed", *sorted(system.parameters)]
+    if parameter not in known:
+        raise bad("parameter", repr(parameter), f"one of {known}", "correct the name")
+    values = numbers("bounds", bounds)
+    if values.shape != (2,) or not np.all(np.isfinite(values)) or not values[0] < values[1]:
+        raise bad("bounds", repr(bounds), "(low, high) with low < high", "correct it")
+    low, high = map(float, values)
+    if parameter == "speed":
+        if speed is not None:
+            raise bad("speed", speed, "none, since the speed is varied", "leave it out")
+        if not low > 0:
+            raise bad("bounds", repr(bounds), "positive speeds", "begin above 0")
+        return Problem(system, parameter, 0.0), low, high
+    if speed is None or not (is_finite(speed) and speed > 0):
+        raise bad("speed", repr(speed), "a positive speed of the drive [rad/s]", "give it")
+    for value in (low, high):
+        system.with_parameters(**{parameter: value})
+    return Problem(system, parameter, float(speed)), low, high
+
+
+def first_motion(problem: Problem, turns: int = 1) -> Motion:
+    """Return no motion, on as many steps as the number of coordinates suggests."""
+    steps = FIRST_STEPS * max(problem.system.size, 1) * turns
+    return Motion.rest(problem.system, turns, min(steps, MOST_STEPS), STAGES)
+
+
+def _all_branches(
+    solver: Solver,
+    bounds: tuple[float, float],
+    turns: int,
+    starts: list[tuple[float, Motion]],
+    tick: Callable[[int], None] | None,
+) -> list[Branch]:
+    """Return the branch from either end of the range, and those that begin on it."""
+    branches: list[Branch] = []
+    queue: list[tuple[Orbit, Measure]] = []
+    refused = ""
+    for value, sign in ((bounds[0], 1.0), (bounds[1], -1.0)):
+        try:
+            motion = solver.settled(value, first_motion(solver.problem))
+            begun = solver.fine(value, motion, solver.along_parameter(motion, sign))
+        except _FAILURES as failure:
+            refused = str(failure)
+            continue
+        _follow(solver, begun, bounds, branches, queue, turns, tick)
+    for value, motion in starts:
+        for sign in (1.0, -1.0):
+            begun = solver.fine(value, motion, solver.along_parameter(motion, sign))
+            _follow(solver, begun, bounds, branches, queue, turns, tick)
+    if not branches:
+        fix = "choose another range: begin where the motion is small"
+        raise bad("bounds", f"no periodic motion at either end ({refused})", "one", fix)
+    while queue and len(branches) < _BRANCHES:
+        _follow(solver, queue.pop(0), bounds, branches, queue, turns, tick)
+    return branches
+
+
+def _follow(
+    solver: Solver,
+    begun: tuple[Orbit, Measure],
+    bounds: tuple[float, float],
+    branches: list[Branch],
+    queue: list[tuple[Orbit, Measure]],
+    turns: int,
+    tick: Callable[[int], None] | None,
+) -> None:
+    """Follow a branch unless it is known, and add the beginnings of those that start on it."""
+    if any(_on(solver, begun[0], branch) for branch in branches):
+        return
+    branch = followed(solver, begun, bounds, _POINTS)
+    branches.append(branch)
+    if tick is not None:
+        tick(len(branches))
+    for point in branch.special:
+        try:
+            if point.kind == "doubling" and 2 * branch.turns <= turns:
+                queue.append(doubled(solver, point.orbit))
+            elif point.kind == "branch point":
+                queue += [crossing(solver, point.orbit, sign) for sign in (1.0, -1.0)]
+        except _FAILURES:
+            continue
+
+
+def _on(solver: Solver, orbit: Orbit, branch: Branch) -> bool:
+    """Return True for a motion that lies on a branch, from whatever turn it is counted."""
+    if branch.turns != orbit.motion.turns:
+        return False
+    values = [point.value for point, _ in branch.points]
+    if branch.ended == JOINED and abs(orbit.value - values[-1]) <= 2.0 * abs(
+        values[-1] - values[-2]
+    ):
+        return True
+    for (one, _), (other, _) in pairwise(branch.points):
+        if not min(one.value, other.value) <= orbit.value <= max(one.value, other.value):
+            continue
+        near = min(one, other, key=lambda point: abs(point.value - orbit.value))
+        try:
+            settled = solver.settled(orbit.value, near.motion)
+        except _FAILURES:
+            continue
+        if _same(solver, settled, orbit.motion):
+            return True
+    return False
+
+
+def _same(solver: Solver, one: Motion, other: Motion) -> bool:
+    """Return True for one motion, from whatever turn it is counted."""
+    angles = 2.0 * np.pi * one.turns * np.arange(64) / 64
+    place = float(solver.scale(one)[0])
+    here = one.at(angles)[0]
+    for turn in range(one.turns):
+        shifted = (angles + 2.0 * np.pi * turn) % (2.0 * np.pi * one.turns)
+        if float(np.max(np.abs(other.at(shifted)[0] - here))) < 1e-5 * place:
+            return True
+    return False
+
+
+def _extremes(problem: Problem, orbit: Orbit) -> tuple[float, float]:
+    """Return the extremes of the deflection over the period."""
+    count = _SAMPLES * orbit.motion.turns
+    step = 2.0 * np.pi * orbit.motion.turns / count
+    _, parameters = problem.at(orbit.value)
+
+    def shown(angles: NDArray[Any]) -> Array:
+        span = 2.0 * np.pi * orbit.motion.turns
+        q = orbit.motion.at(np.mod(angles, span))[0]
+        return problem.system.shown(q, parameters)
+
+    values = shown(step * np.arange(count))
+    found = []
+    for sign in (-1.0, 1.0):
+        place, width = step * float(np.argmax(sign * values)), step
+        best = float(np.max(sign * values))
+        for _ in range(4):  # parabolas through three places, each a tenth as wide
+            around = np.array([place - width, place, place + width])
+            left, middle, right = (sign * shown(around)).tolist()
+            bend = left - 2.0 * middle + right
+            if not bend < 0.0:
+                break
+            place += float(np.clip(0.5 * (left - right) / bend, -1.0, 1.0)) * width
+            best, width = max(best, float(sign * shown(np.array([place]))[0])), 0.1 * width
+        found.append(sign * best)
+    return found[0], found[1]
+
+
+def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float]) -> ResponseCurve:
+    problem = solver.problem
+    points = [point for branch in branches for point in branch.points]
+    counts = [len(branch.points) for branch in branches]
+    special = [point for branch in branches for point in branch.special]
+    extremes = np.array([_extremes(problem, orbit) for orbit, _ in points])
+    at_special = np.array([_extremes(problem, p.orbit) for p in special]).reshape(-1, 2)
+    error = np.array([measure.error for _, measure in points])
+    sizes = np.max(np.abs(extremes), axis=1)
+    linear = _linear(problem, bounds)
+    return ResponseCurve(
+        method="Gauss collocation with 8 stages, pseudo-arclength continuation",
+        error=error,
+        error_norm="distance from the branch, relative to the largest coordinate or rate",
+        checks={"accuracy": Check(float(np.max(error)), solver.rtol)},
+        provenance=provenance(problem.system.provenance),
+        parameter=problem.name,
+        value=np.array([orbit.value for orbit, _ in points]),
+        branch=np.repeat(np.arange(len(branches)), counts),
+        turns=np.array([orbit.motion.turns for orbit, _ in points]),
+        lowest=extremes[:, 0],
+        highest=extremes[:, 1],
+        multipliers=np.array([orbit.multipliers for orbit, _ in points]),
+        multiplier_error=np.array([measure.multiplier_errors for _, measure in points]),
+        peak_error=2.0 * error * sizes,
+        special=tuple(point.kind for point in special),
+        special_value=np.array([point.orbit.value for point in special]),
+        special_error=np.array([point.value_error for point in special]),
+        special_branch=np.repeat(
+            np.arange(len(branches)), [len(branch.special) for branch in branches]
+        ),
+        special_lowest=at_special[:, 0],
+        special_highest=at_special[:, 1],
+        ended=tuple(branch.ended for branch in branches),
+        linear_value=linear[0],
+        linear_lowest=linear[1],
+        linear_highest=linear[2],
+        unit=problem.system.unit,
+        orbits=tuple(orbit for orbit, _ in points),
+        special_orbits=tuple(point.orbit for point in special),
+    )
+
+
+def _linear(problem: Problem, bounds: tuple[float, float]) -> tuple[Array, Array, Array]:
+    """Return values and extremes of the motion by the equations linearised about no deflection."""
+    values = np.linspace(*bounds, _LINEAR)
+    rest = first_motion(problem)
+    low, high = np.full((2, _LINEAR), np.nan)
+    angles = 2.0 * np.pi * np.arange(_SAMPLES) / _SAMPLES
+    for i, value in enumerate(values.tolist()):
+        motion = linear_motion(problem, value, rest)
+        shown = problem.system.shown(motion.at(angles)[0], problem.at(value)[1])
+        low[i], high[i] = np.min(shown), np.max(shown)
+    return values, low, high
+
+
+def linear_motion(problem: Problem, value: float, rest: Motion) -> Motion:
+    """Return the periodic motion of the equations linearised about no deflection."""
+    swept = sweep(problem, value, rest)
+    return taken(rest, swept, closed(swept), 0.0)

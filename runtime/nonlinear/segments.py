@@ -1,0 +1,264 @@
+"""Motions over some revolutions as collocation steps, all of them evaluated and linearised at once.
+
+The independent variable is the angle of the drive.  With x and v = dx/dtheta at the beginning of
+each step and the accelerations a = d^2x/dtheta^2 at its Gauss points, what is left of the equations
+at the points and the gaps between the steps are to vanish.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..constrained.collocation import Nodes, integrals, nodes, stage_matrix
+from ..core.errors import SelfCheckFailed
+from ..core.families import Array
+from ..core.families.nonlinear import Drive, Nonlinear, Varied
+
+# Relative steps of the differences by a parameter: rounding and third derivatives leave 1e-10.
+_DIFFERENCE = 2.0**-17
+# Numbers of a batch of matrices that stay in a cache while they are solved.
+_CACHED = 1 << 18
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A system whose parameter ``name`` is varied: of the system, or the ``speed`` of the drive."""
+
+    system: Nonlinear
+    name: str
+    speed: float  # [rad/s], where it is not what is varied
+
+    def at(self, value: Any) -> tuple[Any, Mapping[str, float]]:
+        """Return speed and parameters at a value of what is varied."""
+        if self.name == "speed":
+            return value, self.system.parameters
+        return self.speed, {**self.system.parameters, self.name: value}
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A motion over whole revolutions as even collocation steps, each from a state of its own."""
+
+    turns: int
+    # x, v: (m, n): states at the beginnings of the steps
+    x: Array
+    v: Array
+    a: Array  # (m, s, n): accelerations at the Gauss points of each step
+
+    @property
+    def step(self) -> float:
+        """Length of a step [rad]."""
+        return 2.0 * np.pi * self.turns / len(self.x)
+
+    @property
+    def points(self) -> Nodes:
+        """Nodes of a step."""
+        return nodes(self.a.shape[1])
+
+    @property
+    def angles(self) -> Array:
+        """Drive angles of the Gauss points [rad], shape ``(m, s)``."""
+        start = np.arange(len(self.x))[:, None] + self.points.c
+        return np.asarray(self.step * start)
+
+    def stages(self) -> tuple[Array, Array]:
+        """Return coordinates and rates at the Gauss points, shape ``(m, s, n)``."""
+        h, points = self.step, self.points
+        x = self.x[:, None] + h * points.c[:, None] * self.v[:, None]
+        return x + h * h * (points.twice @ self.a), self.v[:, None] + h * (points.once @ self.a)
+
+    def ends(self) -> tuple[Array, Array]:
+        """Return the states at the ends of the steps, shape ``(m, n)`` each."""
+        h, b, c = self.step, self.points.b, self.points.c
+        x = self.x + h * (self.v + h * ((b * (1.0 - c)) @ self.a))
+        return x, self.v + h * (b @ self.a)
+
+    def at(self, angle: ArrayLike) -> tuple[Array, Array, Array]:
+        """Return coordinates, rates and accelerations at angles ``(k,)`` within the motion."""
+        within = np.atleast_1d(np.asarray(angle, dtype=float)) / self.step
+        j = np.clip(within.astype(int), 0, len(self.x) - 1)
+        part, h = within - j, self.step
+        terms = (self.points.series @ self.a)[j]
+        once, twice = integrals(part, terms)
+        legendre = np.polynomial.legendre.legvander(2.0 * part - 1.0, terms.shape[1] - 1)
+        x = self.x[j] + h * part[:, None] * self.v[j] + h * h * twice
+        return x, self.v[j] + h * once, np.einsum("ks,ksn->kn", legendre, terms)
+
+    def resampled(self, steps: int, stages: int, turns: int | None = None) -> Motion:
+        """Return the motion on other steps; on more turns it is repeated."""
+        turns = self.turns if turns is None else turns
+        h, span = 2.0 * np.pi * turns / steps, 2.0 * np.pi * self.turns
+        begin = h * np.arange(steps)
+        inner = begin[:, None] + h * nodes(stages).c
+        x, v, _ = self.at(begin % span)
+        a = self.at(inner.ravel() % span)[2].reshape(steps, stages, -1)
+        return Motion(turns, x, v, a)
+
+    def moved(self, x: Array, v: Array, a: Array) -> Motion:
+        """Return the motion with changes of its states and accelerations."""
+        return replace(self, x=self.x + x, v=self.v + v, a=self.a + a)
+
+    @classmethod
+    def rest(cls, system: Nonlinear, turns: int, steps: int, stages: int) -> Motion:
+        """Return no motion at all."""
+        n = system.size
+        return cls(turns, np.zeros((steps, n)), np.zeros((steps, n)), np.zeros((steps, stages, n)))
+
+
+class Sweep(NamedTuple):
+    """The steps of a motion linearised: what each passes on, and what is wrong with it.
+
+    States are ``(x, v)``.  ``loads`` are what is added at the end of each step: in its first
+    column the gap to the next one, stages corrected; then by the parameter, where it is wanted.
+    """
+
+    maps: Array  # (m, 2n, 2n)
+    loads: Array  # (m, 2n, k)
+    stage_loads: Array  # (m, s, n, k): the same for the accelerations at the points
+    response: Array  # (m, s, n, 2n): derivative of these accelerations by the beginning
+    by_parameter: Array  # (m, s, n, 1 or 0): derivative of the residual by the parameter
+
+
+class NotFinite(ArithmeticError):  # noqa: N818 - reads as what it is
+    """The equations cannot be evaluated along a motion."""
+
+
+class Ramp(NamedTuple):
+    """The acceleration of a drive [rad/s^2], and the angle at which it has its speed."""
+
+    acceleration: float
+    begin: float = 0.0
+
+
+def evaluated(
+    problem: Problem,
+    value: float | Array,
+    angles: Array,
+    states: tuple[Array, Array, Array],
+    *,
+    derivatives: bool = True,
+    ramp: Ramp | None = None,
+) -> Varied:
+    """Return residual and derivatives at drive angles, over the speed squared, by the angle.
+
+    ``states``: x, v and a at the angles, ``(*batch, n)`` each.  Where the speed is varied there may
+    be several values, which broadcast with the angles.
+    """
+    x, v, a = states
+    speed, parameters = problem.at(value)
+    rise = ramp.acceleration if ramp else 0.0
+    since = angles - ramp.begin if ramp else np.zeros_like(angles)
+    square = np.maximum(speed**2 + 2.0 * rise * since, 0.0)[..., None]
+    w: Array = np.sqrt(square)
+    drive = Drive(angles, w[..., 0], np.full_like(angles, rise))
+    # Several speeds: the states are those of each.
+    x, v, a = (np.broadcast_to(part, (*w.shape[:-1], part.shape[-1])) for part in (x, v, a))
+    try:
+        with np.errstate(all="ignore"):
+            found = problem.system.equations(
+                x, w * v, square * a + rise * v, drive, parameters, derivatives
+            )
+    except (SelfCheckFailed, np.linalg.LinAlgError) as lost:
+        raise NotFinite(str(lost)) from lost
+    residual = found.residual / square
+    if not np.all(np.isfinite(residual)):
+        raise NotFinite("the equations are not finite along the motion")
+    if not derivatives:
+        return Varied(residual)
+    w, square = w[..., None], square[..., None]
+    damping = found.damping / w + found.mass * (rise / square)
+    return Varied(residual, found.mass, damping, found.stiffness / square)
+
+
+def sweep(
+    problem: Problem,
+    value: float,
+    motion: Motion,
+    *,
+    by_parameter: bool | Array = False,
+    ramp: Ramp | None = None,
+    following: Callable[[Motion], tuple[Array, Array]] | None = None,
+) -> Sweep:
+    """Linearise all steps of a motion at once.
+
+    ``by_parameter``: whether the derivative by the parameter is wanted, or what it was at a motion
+    nearby, as it is returned.  ``following`` gives the states that the ends are to meet, by default
+    the beginnings of the next steps, round the period.
+    """
+    angles, states = motion.angles, (*motion.stages(), motion.a)
+    found = evaluated(problem, value, angles, states, ramp=ramp)
+    columns = [found.residual[..., None]]
+    if by_parameter is True:
+        columns.append(_by_parameter(problem, value, angles, states)[..., None])
+    elif by_parameter is not False:
+        columns.append(by_parameter)
+    m, s, n = motion.a.shape
+    h, points = motion.step, motion.points
+    try:
+        right = np.concatenate([*columns, found.stiffness, found.damping], axis=-1)
+        solved = -np.linalg.solve(found.mass, right)
+    except np.linalg.LinAlgError as singular:
+        raise NotFinite("the mass matrix is singular along the motion") from singular
+    k = len(columns)
+    by_x, by_v = solved[..., k : k + n], solved[..., k + n :]
+    late = (h * points.c)[:, None, None] * by_x + by_v
+    right = np.concatenate([solved[..., :k], by_x, late], axis=-1).reshape(m, s * n, -1)
+    stages = np.empty_like(right)
+    chunk = max(_CACHED // (s * n) ** 2, 1)
+    for first in range(0, m, chunk):
+        part = slice(first, first + chunk)
+        matrix = stage_matrix(by_x[part], by_v[part], h, points)
+        stages[part] = np.linalg.solve(matrix, right[part])
+    stages = stages.reshape(m, s, n, -1)
+    flat = stages.reshape(m, s, -1)
+    rise = (h * points.b) @ flat
+    move = (h * h * points.b * (1.0 - points.c)) @ flat
+    effect = np.concatenate([move.reshape(m, n, -1), rise.reshape(m, n, -1)], axis=1)
+    maps = effect[..., k:] + np.eye(2 * n) + h * np.eye(2 * n, k=n)
+    loads = effect[..., :k]
+    if following is None:
+        ahead = np.roll(motion.x, -1, axis=0), np.roll(motion.v, -1, axis=0)
+    else:
+        ahead = following(motion)
+    ends = motion.ends()
+    loads[..., 0] += np.concatenate(
+        [end - next_ for end, next_ in zip(ends, ahead, strict=True)], 1
+    )
+    by_value = columns[1] if k > 1 else np.empty((m, s, n, 0))
+    return Sweep(maps, loads, stages[..., :k], stages[..., k:], by_value)
+
+
+def _by_parameter(
+    problem: Problem, value: float, angles: Array, states: tuple[Array, Array, Array]
+) -> Array:
+    """Return the derivative of what :func:`evaluated` calls residual by the parameter."""
+    step = _DIFFERENCE * (abs(value) or 1.0)
+    if problem.name == "speed":
+        both = np.array([value + step, value - step]).reshape(2, *(1,) * angles.ndim)
+        above, below = evaluated(problem, both, angles, states, derivatives=False).residual
+    else:
+        above, below = (
+            evaluated(problem, at, angles, states, derivatives=False).residual
+            for at in (value + step, value - step)
+        )
+    return np.asarray((above - below) / (2.0 * step))
+
+
+def chained(maps: Array, loads: Array) -> tuple[Array, Array]:
+    """Return the states at all ends by the first one: ``y[j] = whole[j] y[0] + added[j]``.
+
+    Of maps ``(m, 2n, 2n)`` and loads ``(m, 2n, k)``; ``whole[0]`` is the identity, and the last
+    of the m + 1 belongs to the end of the motion.
+    """
+    m, size, k = loads.shape
+    both = np.empty((m + 1, size, size + k))
+    both[0] = np.eye(size, size + k)
+    for j in range(m):
+        np.matmul(maps[j], both[j], out=both[j + 1])
+        both[j + 1, :, size:] += loads[j]
+    return both[..., :size], both[..., size:]

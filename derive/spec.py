@@ -221,8 +221,8 @@ def read_manifest(folder: Path) -> dict[str, Entry]:
     """Return the entries of a folder's manifest by spec key.
 
     Empty where there is no manifest or it cannot be read; what another version wrote and this
-    one does not understand is left out.  Either way the module counts as missing, and the command
-    that makes it writes the manifest anew.
+    one does not understand is left out, and what does not stand where its spec belongs.  Either way
+    the module counts as missing, and the command that makes it writes the manifest anew.
     """
     try:
         rows = json.loads((folder / MANIFEST).read_bytes())["modules"].items()
@@ -232,9 +232,11 @@ def read_manifest(folder: Path) -> dict[str, Entry]:
     for key, row in rows:
         try:
             spec = ModelSpec.from_mapping(row["spec"])
-            found[key] = Entry(row["module"], spec, row["content"], row["text"])
+            entry = Entry(row["module"], spec, row["content"], row["text"])
         except (ValueError, LookupError, TypeError):
             continue
+        if (key, entry.module) == (spec.key(), spec.name()):
+            found[key] = entry
     return found
 
 

@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 81 operations
-Content hash 76db1cde6b97c302633aa55cb393cf5e; derived with SymPy 1.14.0.
+Content hash f232c1b06dcdd80f384fe685dad78c9b; derived with SymPy 1.14.0.
 """
 
 __all__ = ["element"]
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"cubic","mechanism":"beam_element","mode'
     's":null,"outputs":[]}'
 )
-CONTENT = "76db1cde6b97c302633aa55cb393cf5e"
+CONTENT = "f232c1b06dcdd80f384fe685dad78c9b"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

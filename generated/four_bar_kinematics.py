@@ -13,7 +13,7 @@ At theta2 = 0 both angles lie between -pi and pi.
 
 Cost per evaluation:
     motion: 158 operations
-Content hash 8489c46848c3d4a8878ec19ef57110d1; derived with SymPy 1.14.0.
+Content hash 5b22c8fd584a02d1e784b4658adb4b29; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -24,7 +24,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"kinematics","mechanism":"four_bar","mod'
     'es":null,"outputs":[]}'
 )
-CONTENT = "8489c46848c3d4a8878ec19ef57110d1"
+CONTENT = "5b22c8fd584a02d1e784b4658adb4b29"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

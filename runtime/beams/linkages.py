@@ -185,7 +185,7 @@ def _check_names(
         "nodes": (set(nodes or {}), letters),
     }
     for name, (found, expected) in known.items():
-        strange = sorted(found - expected)
+        strange = sorted(map(str, found - expected))
         if strange:
             expectation = f"some of {sorted(expected)}"
             problems.append(Problem(name, ", ".join(strange), expectation, "correct the name"))

@@ -11,13 +11,15 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import Problem, bad, refuse
+from ..core.errors import Problem, bad, refuse, shown
 from ..core.inputs import are_finite, is_finite, names_problems, require_kind
 from ..linkages.linkage import LinkMotion
 from .elements import KINDS
 from .section import Section
 
 Indices = NDArray[np.int64]
+# Elements of a beam: matrices of some thousands of coordinates.
+_MOST_ELEMENTS = 1000
 
 
 @dataclass(frozen=True)
@@ -529,9 +531,9 @@ def node_value_problems(nodes: object) -> list[Problem]:
 def _division_problems(where: str, elements: Any) -> list[Problem]:
     name = f"{where}: elements"
     if isinstance(elements, int) and not isinstance(elements, bool):
-        if elements < 1:
-            return [Problem(name, str(elements), "at least 1", "choose 3")]
-        return []
+        if 1 <= elements <= _MOST_ELEMENTS:
+            return []
+        return [Problem(name, shown(elements), f"1 to {_MOST_ELEMENTS}", "choose 3")]
     shares = tuple(elements) if isinstance(elements, (tuple, list, np.ndarray)) else ()
     if not shares or not all(is_finite(part) for part in shares):
         return [Problem(name, repr(elements), "a number or shares of the length", "choose 3")]

@@ -315,7 +315,7 @@ def _stored(
     with _workers(count) as pool:
         told = {"executor": pool, "store": options.store, "progress": shown}
         chart = sweeps.sweep(*what, options=fixed, **told)
-    left = 100.0 * float(chart["undecided"].mean())
+    left = 100.0 * float((chart["undecided"] == 1).mean())
     lines = [
         *_shares((x, y), chart["stable"], chart["kind"]),
         f"{left:.3g} % undecided",
@@ -329,7 +329,7 @@ def _stored(
 def _shares(names: tuple[str, str], stable: AnyArray, kind: AnyArray) -> list[str]:
     """Return what share of a chart ``(ny, nx)`` is unstable, and how much of it by combination."""
     ny, nx = stable.shape
-    unstable, mixed = 100.0 * float((~stable).mean()), 100.0 * float((kind == 2).mean())
+    unstable, mixed = 100.0 * float((stable == 0).mean()), 100.0 * float((kind == 2).mean())
     lines = [f"{names[0]} x {names[1]}: {nx} x {ny} points, {unstable:.3g} % unstable"]
     if mixed > 0:
         lines.append(f"{mixed:.3g} % by combination (complex multipliers)")

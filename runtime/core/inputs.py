@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from numbers import Integral, Real
 from typing import Any, TypeGuard
 
@@ -84,6 +84,17 @@ def are_finite(value: object, count: int) -> bool:
     return len(value) == count and all(is_finite(part) for part in value)
 
 
+def require_between(where: str, value: object, least: float, most: float, fix: str) -> None:
+    """Refuse what is no number within bounds, both allowed."""
+    if not (is_finite(value) and least <= value <= most):  # type: ignore[operator]
+        raise bad(where, repr(value), f"a number from {least:g} to {most:g}", fix)
+
+
+def is_one_of(value: object, names: Iterable[str]) -> bool:
+    """Return True for a text that is one of several; no other thing is, nor does it break this."""
+    return isinstance(value, str) and value in names
+
+
 def number_problems(
     where: str, given: Mapping[str, Any], sign: str = "any", fix: str = "correct it"
 ) -> list[Problem]:
@@ -101,6 +112,13 @@ def names_problems(where: str, value: object) -> list[Problem]:
     if isinstance(value, (tuple, list)) and all(isinstance(name, str) for name in value):
         return []
     return [Problem(where, repr(value), "names in a row", 'write ("x", "y"), for example')]
+
+
+def names_in_a_row(where: str, value: object) -> tuple[str, ...]:
+    """Return a row of names, one alone being a row of one; refuse anything else."""
+    row = (value,) if isinstance(value, str) else value
+    refuse(names_problems(where, row))
+    return tuple(row)  # type: ignore[arg-type]
 
 
 def require_positive(where: str, **values: Any) -> None:

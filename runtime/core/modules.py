@@ -39,7 +39,7 @@ class EmittedModule:
     @property
     def provenance(self) -> dict[str, str]:
         """Name and content hash, for results."""
-        return {"module": self.entry.module, "module_hash": self.entry.content}
+        return {"module": self.entry.module, "module_hash": self.module.CONTENT}
 
 
 def _loaded(entry: Entry, folder: Path, dropped: tuple[str, ...]) -> EmittedModule:

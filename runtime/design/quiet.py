@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
-from numbers import Real
 from typing import ClassVar
 
 import numpy as np
@@ -13,7 +12,7 @@ import numpy as np
 from ..beams.element_forms import required_structure
 from ..core.errors import Problem, bad, refuse
 from ..core.families import LinearPeriodic
-from ..core.inputs import numbers
+from ..core.inputs import is_finite, numbers
 from ..core.maxima import local_maxima
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result
@@ -180,12 +179,12 @@ def quiet_speeds(
 def _limits(limits: float | Mapping[str, float], links: list[str]) -> dict[str, float]:
     named = dict(limits) if isinstance(limits, Mapping) else dict.fromkeys(links, limits)
     problems = []
-    strange = sorted(set(named) - set(links))
+    strange = sorted(map(str, set(named) - set(links)))
     if strange or not named:
         found = ", ".join(strange) or "no link"
         problems.append(Problem("limits", found, f"some of {links}", "correct the name"))
     for link, value in named.items():
-        if not (isinstance(value, Real) and np.isfinite(value) and value > 0):
+        if not (is_finite(value) and value > 1e-100):
             fix = "give a stress in Pa"
             problems.append(Problem(f"limits of {link}", repr(value), "a positive stress", fix))
     refuse(problems)

@@ -14,8 +14,8 @@ from ..beams.assembly import in_own_axes, products
 from ..beams.element_forms import required_structure
 from ..beams.elements import placed_rotation, placed_shapes
 from ..core.errors import LINEAR_RANGE, Problem, bad, refuse, warn_of_large_deflection
-from ..core.families import LinearPeriodic
-from ..core.inputs import is_whole, require_whole
+from ..core.families import LinearPeriodic, require_system
+from ..core.inputs import is_one_of, is_whole, require_whole
 from ..core.maxima import missed_by_parabolas
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
@@ -432,6 +432,7 @@ def _result(run: _Run, found: _Motion, error: Array, rtol: float) -> Transient:
 def _check(
     system: LinearPeriodic, profile: SpeedProfile, modes: int | None, rtol: float, start: str
 ) -> None:
+    require_system(system)
     problems = []
     if not isinstance(profile, SpeedProfile):
         raise bad("profile", repr(profile), "a SpeedProfile", "make one: SpeedProfile.ramp")
@@ -442,7 +443,7 @@ def _check(
         problems.append(Problem("modes", repr(modes), "a number from 1, or None", "choose 8"))
     if not (isinstance(rtol, Real) and 1e-6 <= rtol <= 0.1):
         problems.append(Problem("rtol", repr(rtol), "a number from 1e-6 to 0.1", "choose 0.01"))
-    if start not in ("steady", "rest"):
+    if not is_one_of(start, ("steady", "rest")):
         problems.append(Problem("start", repr(start), "'steady' or 'rest'", "choose one"))
     strange = sorted(set(profile.geometry) - set(system.geometry))
     if strange:

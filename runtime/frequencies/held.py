@@ -105,7 +105,12 @@ def crank_angles(system: LinearPeriodic, theta: ArrayLike | None) -> Array:
     """Return checked crank angles; 361 over a period by default."""
     if theta is None:
         return np.linspace(0.0, system.period, 361)
-    return numbers_in_a_row("theta", theta, " [rad]")
+    angles = numbers_in_a_row("theta", theta, " [rad]")
+    # Beyond that an angle has no digit left of its place in the period.
+    largest = np.max(np.abs(angles))
+    if largest > 1e12:
+        raise bad("theta", f"{largest:g}", "angles up to 1e12 rad", "take whole periods off")
+    return angles
 
 
 def assurance(first: Array, second: Array, mass: Array, *, squared: bool = True) -> Array:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic, require_system
-from ..core.inputs import require_whole
+from ..core.inputs import is_finite, require_whole
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from .held import (
@@ -200,7 +200,8 @@ def natural_frequencies(
     if count is None:
         count = min(system.size, 6)
     count = require_whole("count", count, 1, system.size)
-    if not (isinstance(speed, (int, float)) and np.isfinite(speed) and speed >= 0.0):
+    # Beyond that its square, times a mass, is no number.
+    if not (is_finite(speed) and 0.0 <= speed <= 1e100):
         raise bad("speed", repr(speed), "a crank speed [rad/s], 0 or more", "correct it")
     period, start = system.period, float(angles[0])
     modes = partial(held_modes, system, parameters=parameters, speed=float(speed))

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..core.families import Array, LinearPeriodic
+from ..core.families import Array, LinearPeriodic, require_system
 from ..core.inputs import numbers
 from ..core.maxima import local_maxima, narrowed
 from ..core.plotting import Axes, axes_or_new
@@ -141,6 +141,7 @@ def resonance_curve(
     BadInput
         As :func:`~..periodic.steady_state`; and if the speeds do not rise.
     """
+    require_system(system)
     speeds = numbers("speed", speed)
     if not (isinstance(x, Real) and 0 <= x <= 1):
         raise bad("x", repr(x), "one place x/length from 0 to 1", "divide by the length")

@@ -7,6 +7,7 @@ import os
 import tempfile
 import warnings
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from html import escape
 from pathlib import Path
 
@@ -97,8 +98,14 @@ def reproduce(
 def _writable(folder: Path) -> Path:
     """Return a folder that can be made or written, refused here before any work starts."""
     whole = folder.absolute()
-    there = next(path for path in (whole, *whole.parents) if path.exists())
-    if not there.is_dir() or not os.access(there, os.W_OK):
+    try:
+        with suppress(FileNotFoundError):
+            whole.stat()
+        there = next(path for path in (whole, *whole.parents) if path.exists())
+        fits = there.is_dir() and os.access(there, os.W_OK)
+    except (OSError, ValueError):  # below a file, too long, or no name at all
+        fits = False
+    if not fits:
         raise bad("--out", repr(str(folder)), "a folder that can be written", "choose another")
     return folder
 

@@ -43,6 +43,8 @@ def arguments(**given: ArrayLike) -> tuple[tuple[Array, ...], tuple[int, ...]]:
     damping = arrays[list(given).index("damping")]
     if np.any(damping < 0.0):
         raise bad("damping", float(damping.min()), "K >= 0", "damping takes energy out")
+    if np.any(damping > 1e100):
+        raise bad("damping", float(damping.max()), "K up to 1e100", "its square is no number")
     try:
         return arrays, np.broadcast_shapes(*(item.shape for item in arrays))
     except ValueError as reason:
@@ -76,16 +78,12 @@ def check_regions(
     regions: Sequence[int], least: int = 0, most: int = LARGEST, name: str = "regions"
 ) -> tuple[int, ...]:
     """Return the numbers of regions (or bands), or refuse."""
-    try:
-        numbers = tuple(int(n) for n in regions)
-        good = all(n == given and n >= least for n, given in zip(numbers, regions, strict=True))
-    except (TypeError, ValueError, OverflowError):
-        good = False
-    if not good:
+    given = in_doubles(name, regions)
+    if given.ndim != 1 or not np.all((given >= least) & (given % 1.0 == 0.0)):
         raise bad(name, repr(regions), f"whole numbers >= {least}", "for example (1, 2)")
-    if numbers and max(numbers) > most:
-        raise bad(name, max(numbers), f"at most {most}", f"choose lower {name}")
-    return numbers
+    if np.any(given > most):
+        raise bad(name, f"{np.max(given):g}", f"at most {most}", f"choose lower {name}")
+    return tuple(given.astype(int).tolist())
 
 
 def axes_over(ax: Axes | None, where: str, name: str, values: Array) -> Axes:

@@ -127,6 +127,8 @@ def boundary_derivatives(
     check_function(f)
     numbers = check_regions(regions)
     (flat, friction), shape = points(mu=mu, damping=damping)
+    if not isinstance(directions, (tuple, list)):
+        raise bad("directions", repr(directions), "directions in a row", 'say ("mu", "K")')
     wanted = [_direction(f, item, i) for i, item in enumerate(directions)]
     ends = hill_boundaries(f, flat, numbers, friction)
     out = np.full((3, len(wanted), len(numbers), flat.size), np.nan)

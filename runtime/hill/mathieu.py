@@ -41,6 +41,11 @@ class Mathieu:
     a: ArrayLike
     q: ArrayLike
 
+    def __post_init__(self) -> None:
+        """Refuse what are no finite numbers."""
+        finite("a", self.a)
+        finite("q", self.q)
+
     @staticmethod
     def function() -> PeriodicFunction:
         """Return f = cos theta."""

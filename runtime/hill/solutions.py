@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, bad
+from ..core.inputs import is_one_of
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, Result, provenance
 from ..core.sampling import finite_angles
@@ -157,7 +158,7 @@ def boundary_solution(
     """
     functions, (*amps, k), shape = parameters_of(f, mu, damping)
     (number,) = check_regions((n,))
-    if end not in ("lower", "upper") or (end == "lower" and number == 0):
+    if not is_one_of(end, ("lower", "upper")) or (end == "lower" and number == 0):
         expected = "'upper'" if number == 0 else "'lower' or 'upper'"
         raise bad("end", repr(end), expected, "region 0 has an upper end alone")
     if shape:

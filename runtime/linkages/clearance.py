@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import Problem, bad, refuse, shown
-from ..core.inputs import is_finite
+from ..core.inputs import is_finite, require_kind
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .four_bar import FourBar
@@ -316,6 +316,7 @@ def _checked(
             raise bad("joint", shown(joint), "none beside clearances by joint", "leave it out")
         given = dict(clearances)
     else:
+        require_kind("joint", joint, (str, type(None)), 'name it by its links, as "23"')
         given = {"34" if joint is None else joint: clearances}
     longest = max(abs(size) for size in linkage.lengths.values())
     problems = []

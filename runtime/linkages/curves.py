@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..core.errors import BadInput, bad
-from ..core.inputs import require_whole
+from ..core.inputs import is_one_of, numbers, require_whole
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .circuits import Circuit, Complex, Taylor, planar
@@ -239,13 +239,12 @@ def coupler_curve(
 
 def _place(linkage: Linkage, link: str, along: float, across: float) -> complex:
     """Return the place in the link as a complex number [m], or raise BadInput."""
-    if link not in linkage.links:
+    if not is_one_of(link, linkage.links):
         raise bad("link", repr(link), f"one of {', '.join(linkage.links)}", "choose a moving link")
-    try:
-        place = complex(float(along), float(across))
-    except (TypeError, ValueError) as refusal:
-        given = f"{along!r}, {across!r}"[:60]
-        raise bad("along, across", given, "two lengths", "correct it") from refusal
+    pair = [numbers(name, value) for name, value in (("along", along), ("across", across))]
+    if pair[0].size != 1 or pair[1].size != 1:
+        raise bad("along, across", f"{along!r}, {across!r}"[:60], "two lengths", "correct it")
+    place = complex(*(float(part.item()) for part in pair))
     if not np.isfinite(place) or abs(place) > 1e6 * max(map(abs, linkage.lengths.values())):
         given = f"{place.real:g}, {place.imag:g}"
         raise bad("along, across", given, "lengths up to 1e6 of the linkage's", "correct it")

@@ -72,12 +72,12 @@ def mobility(
     """
     try:
         joined = [tuple(pin) for pin in pins]
+        wrong = [pin for pin in joined if len(pin) < 2 or len(set(pin)) < len(pin)]
     except (TypeError, KeyError) as refusal:
         fix = 'name links by joint: [("frame", "crank"), ...]'
         raise bad("pins", type(pins).__name__, "links in rows", fix) from refusal
-    for pin in joined:
-        if len(pin) < 2 or len(set(pin)) < len(pin):
-            raise bad("pins", repr(pin), "two or more different links", "name the links it joins")
+    if wrong:
+        raise bad("pins", repr(wrong[0]), "two or more different links", "name the links it joins")
     names = list(dict.fromkeys(link for pin in joined for link in pin))
     if not names:
         raise bad("pins", "none", "at least one pin", "describe the chain")

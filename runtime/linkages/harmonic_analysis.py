@@ -251,7 +251,7 @@ def _coefficients(
 
 def _function(source: Source) -> tuple[str, Function, dict[str, str]]:
     """Return name, function and provenance of a source, or raise BadInput."""
-    if callable(source):
+    if callable(source) and not isinstance(source, type):
         return str(getattr(source, "__name__", type(source).__name__)), source, {}
     forms = "write f, (linkage, 'theta4') or (machine, 'torque', 10.0)"
     if not (isinstance(source, tuple) and len(source) > 1):

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import Problem, bad, refuse, shown
-from ..core.inputs import is_finite, is_whole
+from ..core.inputs import is_finite, is_one_of, is_whole
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .linkage import EPS, Array, Linkage, drive_of
@@ -328,10 +328,10 @@ def tolerances(
     >>> band.worst_case.shape
     (7, 2)
     """
-    if not hasattr(linkage_or_machine, "parametric"):
+    if isinstance(linkage_or_machine, type) or not hasattr(linkage_or_machine, "parametric"):
         given = shown(linkage_or_machine)
         raise bad("tolerances", given, "a linkage or a Machine", "give a FourBar, say")
-    if masses not in ("fixed", "bars"):
+    if not is_one_of(masses, ("fixed", "bars")):
         raise bad("masses", shown(masses), "'fixed' or 'bars'", "choose one")
     if theta is None:
         theta = np.linspace(0.0, 2.0 * np.pi, 361)

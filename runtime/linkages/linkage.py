@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.deferred import Deferred, DeferredField
-from ..core.errors import Problem, bad, shown
-from ..core.inputs import is_finite
+from ..core.errors import Problem, bad
+from ..core.inputs import is_finite, is_one_of, numbers
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ..core.twofold import Twofold
@@ -696,10 +696,7 @@ def checked_drive(
 
 def finite_array(name: str, value: ArrayLike, meaning: str) -> Array:
     """Return an array of finite numbers, or raise BadInput."""
-    try:
-        array = np.array(value, dtype=float)
-    except (TypeError, ValueError) as refusal:
-        raise bad(name, shown(value), f"an array of {meaning}", "correct it") from refusal
+    array = numbers(name, value)
     if not np.all(np.isfinite(array)):
         raise bad(name, "a value that is not finite", f"finite {meaning}", "remove it")
     return array
@@ -716,7 +713,7 @@ def length_problems(owner: str, lengths: Mapping[str, Any]) -> list[Problem]:
 
 def assembly_problems(owner: str, assembly: object) -> list[Problem]:
     """Return what is wrong with the name of an assembly."""
-    if assembly in ("open", "crossed"):
+    if is_one_of(assembly, ("open", "crossed")):
         return []
     return [Problem(f"{owner}.assembly", repr(assembly), "'open' or 'crossed'", "choose one")]
 

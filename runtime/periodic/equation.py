@@ -450,7 +450,8 @@ def _batch(
     speed: ArrayLike, parameters: Mapping[str, ArrayLike]
 ) -> tuple[Array, dict[str, Array], tuple[int, ...]]:
     speeds = numbers("speed", speed)
-    if not (np.all(np.isfinite(speeds)) and np.all(speeds > 0)):
+    # The squares of others, or the inverse ones, times a mass or a stiffness may be no numbers.
+    if not np.all((speeds >= 1e-100) & (speeds <= 1e100)):
         raise bad("speed", speed, "positive finite speeds [rad/s]", "leave out speeds <= 0")
     values = {name: numbers(name, value) for name, value in parameters.items()}
     for name, value in values.items():

@@ -31,9 +31,9 @@ def balanced_motion(
     """Return the periodic motion of the first member at even angles, its error and condition.
 
     q and dq/dtheta have shape ``(samples, n)``.  The error of each coordinate over its peak,
-    ``(n,)``, is the difference to a motion of two thirds of the harmonics, and round-off; the
-    condition number is that of the equations in scaled coordinates, infinite where they are
-    singular.
+    ``(n,)``, is the difference to a motion of two thirds of the harmonics, times what the last
+    third is expected to leave of it, and round-off; the condition number is that of the equations
+    in scaled coordinates, infinite where they are singular.
     """
     harmonics = _FIRST
     before = _series(equation, 2 * harmonics // 3)[0]
@@ -43,12 +43,28 @@ def balanced_motion(
         size = np.max(np.abs(q), axis=0)
         size = np.where(size > 0.0, size, 1.0)
         gap = np.max(np.abs(q - _motion(equation, before, samples)[0]), axis=0) / size
+        # The last third tells how they fall where no mode answers in it or beyond.
+        highest = np.max(equation.frequency[0]) * equation.period / (2.0 * np.pi)
+        gap = _left(waves) * gap if highest < 2 * harmonics // 3 else gap
         error = gap + 8.0 * _EPS * min(condition, 1.0 / _EPS)
         more = (3 * harmonics) // 2
         enough = bool(np.all(error <= rtol)) or not np.isfinite(condition)
         if enough or (2 * more + 1) * equation.size > _MOST_UNKNOWNS:
             return q, slope, error, condition
         before, harmonics = waves, more
+
+
+def _left(waves: ComplexArray) -> Array:
+    """Return what share of an error the last third of the harmonics leaves, at most 1.
+
+    Twice the root of the fall from the third before it: harmonics beyond may fall half as fast.
+    """
+    third = len(waves) // 3
+    middle, last = (
+        np.max(np.abs(part), axis=0) for part in (waves[-2 * third : -third], waves[-third:])
+    )
+    share: Array = np.minimum(1.0, 2.0 * np.sqrt(last / np.maximum(middle, np.finfo(float).tiny)))
+    return share
 
 
 def _series(equation: Equation, harmonics: int) -> tuple[ComplexArray, float]:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import LINEAR_RANGE, bad, warn_of_large_deflection
 from ..core.families import Array, LinearPeriodic
-from ..core.inputs import numbers
+from ..core.inputs import is_one_of, numbers
 from ..core.progress import bar
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .energy import energy_balance
@@ -245,7 +245,7 @@ class _Grid:
     def __init__(self, period: float, start: float, revolutions: float, samples: int) -> None:
         self.start, self.step = start, 2.0 * np.pi / samples
         whole = revolutions * samples
-        self.intervals = ceil(whole - 1e-9)
+        self.intervals = max(1, ceil(whole - 1e-9))
         self.theta = start + self.step * np.arange(self.intervals + 1.0)
         self.theta[-1] = start + revolutions * 2.0 * np.pi
         # Intervals after which the coefficients repeat; all of them, where at no given angle.
@@ -599,7 +599,7 @@ def _check_arguments(
     method: str, revolutions: float, rtol: float, samples: int, bound: float, start: float
 ) -> None:
     names = ("auto", *SCIPY_METHODS)
-    if method not in names:
+    if not is_one_of(method, names):
         raise bad("method", repr(method), f"one of {names}", "choose 'auto'")
     for name, value in (("revolutions", revolutions), ("bound", bound)):
         if not 0 < _number(name, value) < np.inf:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic
+from ..core.inputs import require_between
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .equation import Equation, equation_of
 from .signatures import signatures_of
@@ -312,8 +313,7 @@ def rounding_error(equation: Equation, segments: int) -> Array:
 
 
 def _checked(rtol: float, parameters: Mapping[str, ArrayLike]) -> Mapping[str, ArrayLike]:
-    if not 1e-13 <= rtol <= 1e-2:
-        raise bad("rtol", rtol, "a number from 1e-13 to 1e-2", "choose 1e-8")
+    require_between("rtol", rtol, 1e-13, 1e-2, "choose 1e-8")
     return parameters
 
 

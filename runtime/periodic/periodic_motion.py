@@ -16,7 +16,7 @@ from ..core.collocation import legendre_integrals
 from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import LINEAR_RANGE, LinearRangeWarning, bad, warn_of_large_deflection
 from ..core.families import Array, LinearPeriodic
-from ..core.inputs import numbers
+from ..core.inputs import is_one_of, numbers, require_between
 from ..core.progress import bar
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .equation import Equation, equation_of
@@ -462,10 +462,9 @@ def _residual(equation: Equation, theta: Array, q: Array, slope: Array, error: f
 
 
 def _check_arguments(chosen: str, rtol: float, samples: int) -> None:
-    if chosen not in METHODS:
+    if not is_one_of(chosen, METHODS):
         raise bad("method", repr(chosen), f"one of {METHODS}", "choose 'auto'")
-    if not (isinstance(rtol, Real) and 1e-12 <= rtol <= 1e-2):
-        raise bad("rtol", repr(rtol), "a number from 1e-12 to 1e-2", "choose 1e-6")
+    require_between("rtol", rtol, 1e-12, 1e-2, "choose 1e-6")
     whole = isinstance(samples, Real) and 4 <= samples <= _MOST_SAMPLES and samples % 1 == 0
     if not whole:
         fix = "choose 256"

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.deferred import DeferredGroup
 from ..core.errors import LINEAR_RANGE, bad
 from ..core.families import Array, LinearPeriodic
-from ..core.inputs import numbers
+from ..core.inputs import numbers, require_between, require_whole
 from ..core.results import Check, DeferredChecks, provenance
 from .compiled import CompiledTable, require_numba
 from .equation import SPEED_POWER, Equation, SampledSystem, at_geometry, equation_of, sampled
@@ -388,10 +388,8 @@ def prepare(
     low, high = _ends(speeds)
     if compiled:
         require_numba()
-    if not (isinstance(samples, (int, np.integer)) and 1 <= samples <= 4096):
-        raise bad("samples", repr(samples), "a whole number from 1 to 4096", "take 64")
-    if not 1e-13 <= rtol <= 1e-4:
-        raise bad("rtol", rtol, "a number from 1e-13 to 1e-4", "choose 1e-10")
+    require_whole("samples", samples, 1, 4096, "take 64")
+    require_between("rtol", rtol, 1e-13, 1e-4, "choose 1e-10")
     plain = {name: _one(name, value) for name, value in parameters.items()}
     made, inside = at_geometry(system, plain)
     _check_inertia(made)

@@ -21,9 +21,9 @@ from ..beams.element_forms import ElementForms, required_structure
 from ..beams.elements import placed_rotation, placed_shapes
 from ..beams.recovery_forms import LinearForm, stacked
 from ..beams.structure import Beam, PlacedElement, Structure
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import BadInput, Problem, bad, shown
 from ..core.families import LinearPeriodic
-from ..core.inputs import numbers
+from ..core.inputs import is_one_of, is_whole, numbers
 from ..core.plotting import Axes, axes_or_new
 from .beam_motion import BeamMotion, beam_motion
 from .beam_result import (
@@ -65,8 +65,8 @@ def stations_of(
     """
     if stations is None or isinstance(stations, int):
         count = 25 if stations is None else stations
-        if isinstance(stations, bool) or count < 2:
-            raise bad("stations", repr(stations), "2 places or more on each beam", "choose 25")
+        if not is_whole(count, 2, 100_000):
+            raise bad("stations", shown(stations), "2 to 100000 places on each beam", "choose 25")
         wanted: Mapping[str, ArrayLike] = {
             beam.name: np.linspace(0.0, 1.0, count) for beam in structure.beams
         }
@@ -99,7 +99,7 @@ def _station(structure: Structure, beam: Beam, place: float) -> Station:
 
 def require_method(method: str) -> None:
     """Refuse a way to recover forces that is not known."""
-    if method not in METHODS:
+    if not is_one_of(method, METHODS):
         raise bad("method", repr(method), f"one of {METHODS}", "choose 'equilibrium'")
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from numbers import Real
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -12,6 +13,7 @@ from ..beams.assembly import Array
 from ..beams.element_forms import required_structure
 from ..core.errors import Problem, bad, refuse
 from ..core.families import LinearPeriodic
+from ..core.inputs import numbers
 from ..core.results import Check
 
 if TYPE_CHECKING:
@@ -82,9 +84,9 @@ def beam_motion(system: LinearPeriodic, motion: Motion | float | None) -> BeamMo
     structure = required_structure(system)
     if motion is None or not structure.moving:
         return standing(system, motion)
-    if isinstance(motion, (int, float, np.floating, np.integer)) and not isinstance(motion, bool):
+    if isinstance(motion, Real) and not isinstance(motion, bool):
         # Mesh and equations err far more than this.
-        motion = quiet_state(system, float(motion), 1e-7)
+        motion = quiet_state(system, float(numbers("motion", motion)), 1e-7)
     if isinstance(motion, SteadyState):
         made = _steady(motion)
     elif isinstance(motion, Trajectory):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from numbers import Real
 from typing import ClassVar
 
 import numpy as np
@@ -14,7 +13,7 @@ from ..beams.element_forms import required_structure
 from ..beams.recovery_forms import RIGID, LinearForm
 from ..core.errors import LINEAR_RANGE, bad
 from ..core.families import DAMPING, Array, LinearPeriodic
-from ..core.inputs import numbers
+from ..core.inputs import numbers, require_between
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import differentiated, even_angles
@@ -430,6 +429,5 @@ def _checked(system: LinearPeriodic, speeds: ArrayLike, rtol: float) -> Array:
     given = np.atleast_1d(numbers("speeds", speeds))
     if given.ndim != 1 or not given.size or not np.all(np.isfinite(given) & (given > 0)):
         raise bad("speeds", speeds, "positive finite speeds [rad/s], one row", "correct them")
-    if not (isinstance(rtol, Real) and 1e-6 <= rtol <= 1e-2):
-        raise bad("rtol", repr(rtol), "a number from 1e-6 to 1e-2", "choose 1e-4")
+    require_between("rtol", rtol, 1e-6, 1e-2, "choose 1e-4")
     return given

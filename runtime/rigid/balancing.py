@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, bad
-from ..core.inputs import require_whole
+from ..core.inputs import names_in_a_row, require_mapping, require_whole
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..linkages.linkage import Array, finite_array
@@ -220,7 +220,7 @@ def _searched(
     if measure not in ("peak", "rms"):
         raise bad("measure", repr(measure), "'peak' or 'rms'", "choose one")
     wanted = _terms(DEFAULT_WEIGHTS if weights is None else weights, "weights", zero=True)
-    tops = _terms(limits or {}, "limits", zero=False)
+    tops = _terms({} if limits is None else limits, "limits", zero=False)
     wanted = {term: weight for term, weight in wanted.items() if weight > 0.0}
     if not wanted:
         raise bad("weights", "no weight above zero", "at least one", "give --weights torque=1")
@@ -318,6 +318,7 @@ def _counterweights(search: Search, x: Array) -> dict[str, Counterweight]:
 
 
 def _terms(given: Mapping[str, float], where: str, *, zero: bool) -> dict[str, float]:
+    require_mapping(where, given, 'say {"torque": 1.0}, for example')
     terms = {}
     for term, value in given.items():
         if term not in TERMS:
@@ -335,7 +336,7 @@ def _links(machine: Machine, links: Sequence[str] | None) -> tuple[str, ...]:
     if links is None:
         # The first and the last link are joined to the frame; a slider does not turn.
         return tuple(link for link in (moving[0], moving[-1]) if link != "slider")
-    chosen = (links,) if isinstance(links, str) else tuple(links)
+    chosen = names_in_a_row("links", links)
     for link in chosen:
         require_link(link, tuple(name for name in moving if name != "slider"), "links")
     if not chosen or len(set(chosen)) != len(chosen):

@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from ..core.errors import bad, shown
-from ..core.inputs import number_problems
+from ..core.inputs import is_finite
 from ..core.maxima import summits
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
@@ -185,7 +185,7 @@ def flywheel_inertia(machine: Machine, speed: float, fluctuation: float = 0.02) 
     >>> wheel.inertia > 0 and abs(wheel.fluctuation - 0.02) < 1e-12
     True
     """
-    if number_problems("flywheel_inertia", {"fluctuation": fluctuation}) or not 0 < fluctuation < 1:
+    if not (is_finite(fluctuation) and 1e-100 < fluctuation < 1):
         raise bad("fluctuation", shown(fluctuation), "a number between 0 and 1", "0.02 is usual")
     steady = torque_fluctuation(machine, speed)
     first_order = steady.energy_fluctuation / (fluctuation * speed**2)
@@ -357,7 +357,7 @@ def _confirmed(
 def _require(machine: Machine, speed: float) -> None:
     require_machine(machine)
     machine.linkage.require_full_turn()
-    if number_problems("speed", {"speed": speed}) or speed == 0:
+    if not (is_finite(speed) and speed * speed):
         raise bad("speed", shown(speed), "a finite crank speed, not zero", "give one in rad/s")
     turns = _SCATTERED + TURN * _TURNS[:, np.newaxis]
     torque = driving_torque(machine, turns, speed).torque

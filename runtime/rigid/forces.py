@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from ..core.deferred import Deferred, DeferredField
 from ..core.errors import bad
+from ..core.inputs import names_in_a_row
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import BROADCAST, DeferredChecks, Result, provenance
 from ..linkages.linkage import TURN, Array, checked_drive
@@ -249,7 +250,7 @@ def shaking_moment(
 
 
 def _wanted(outputs: Sequence[Output]) -> tuple[Output, ...]:
-    given = (outputs,) if isinstance(outputs, str) else tuple(outputs)
+    given = names_in_a_row("outputs", outputs)
     unknown = [item for item in given if item not in OUTPUTS]
     if unknown or not given:
         raise bad("outputs", f"{unknown or 'nothing'}", f"some of {OUTPUTS}", "correct the names")

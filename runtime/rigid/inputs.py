@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-import math
+import numpy as np
 
 from ..core.errors import bad, shown
+from ..core.inputs import is_one_of, numbers
 
 
 def finite_number(value: object, where: str) -> float:
     """Return a finite number, or raise BadInput."""
-    try:
-        number = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError) as refusal:
-        raise bad(where, shown(value), "a number", "correct it") from refusal
-    if not math.isfinite(number):
+    number = numbers(where, value)
+    if number.size != 1 or not np.isfinite(number).all():
         raise bad(where, shown(value), "a finite number", "correct it")
-    return number
+    return float(number.item())
 
 
 def require_link(link: object, links: tuple[str, ...], where: str) -> None:
     """Raise BadInput where a linkage has no such moving link."""
-    if link not in links:
+    if not is_one_of(link, links):
         raise bad(where, repr(link), f"one of {', '.join(links)}", "correct the name")

@@ -9,7 +9,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from ..core.errors import BadInput, Problem, bad, refuse, shown
-from ..core.inputs import are_finite, number_problems
+from ..core.inputs import are_finite, names_problems, number_problems
 from ..linkages.linkage import Array, LinkMotion, PointMotion
 
 End: TypeAlias = tuple[str, float, float]
@@ -274,7 +274,9 @@ class TorsionSpring:
         rates = {"stiffness": self.stiffness, "damping": self.damping}
         problems = number_problems(where, rates, "not negative")
         problems += number_problems(where, {"free_angle": self.free_angle, "preload": self.preload})
-        if self.first == self.second:
+        ends = (self.first, self.second)
+        problems += names_problems(f"{where}: first, second", ends)
+        if not problems and self.first == self.second:
             given = f"both ends on {self.first!r}"
             problems.append(Problem(where, given, "two different links", "name another link"))
         refuse(problems)

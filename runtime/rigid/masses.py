@@ -50,7 +50,10 @@ class MassDistribution:
 
     def _underflows(self, moment: float) -> bool:
         """Return True where the least inertia of a first moment is below the normal numbers."""
-        return self.mass > 0.0 and (moment / math.sqrt(self.mass)) ** 2 < sys.float_info.min
+        if not self.mass > 0.0:
+            return False
+        root = moment / math.sqrt(self.mass)
+        return root * root < sys.float_info.min
 
     def __post_init__(self) -> None:
         """Refuse what no body can have."""

@@ -17,6 +17,7 @@ from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ..linkages.linkage import TURN, Array
 from .forces import RigidForces, rigid_forces
+from .inputs import finite_number
 from .machine import Machine, require_machine
 from .one_freedom import OneFreedom
 from .stepping import Goals, Run, Status, TorqueLaw, integrate
@@ -319,11 +320,9 @@ class TorqueLine:
 def torque_law(torque: object) -> TorqueLaw:
     """Return a motor torque as a function of speed, angle and time."""
     if isinstance(torque, Real) and not isinstance(torque, bool):
-        value = float(torque)
-        if not np.isfinite(value):
-            raise bad("torque", f"{value}", "a finite number", "correct it")
+        value = finite_number(torque, "torque")
         return lambda speed, angle, time: value
-    if not callable(torque):
+    if not callable(torque) or isinstance(torque, type):
         raise bad("torque", shown(torque), "a number or a callable", "give a TorqueLine")
     law: Any = torque
     try:

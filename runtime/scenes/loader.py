@@ -9,7 +9,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from ..core.errors import Problem, bad, refuse
+from ..core.errors import Problem, bad, refuse, shown
 from .derived import complete
 from .scene import ReadOnlyTable, Scene
 from .validation import find_layout, nearest, show, validate
@@ -61,8 +61,12 @@ def load_scene(
     >>> scene.get("links.crank"), round(scene.get("links.coupler"), 4)
     (0.08, 0.381)
     """
+    given = {} if overrides is None else overrides
+    if not isinstance(given, Mapping):
+        fix = 'say {"links.crank": "0.1 m"}, for example'
+        raise bad("overrides", shown(given), "a mapping from keys", fix)
     name, text = _find(name_or_path)
-    return scene_from_document(name, _parse(text, name), overrides)
+    return scene_from_document(name, _parse(text, name), given)
 
 
 def scene_from_document(

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic
-from ..core.inputs import speed_span
+from ..core.inputs import require_between, speed_span
 from ..core.results import Check, Result, provenance
 from ..periodic import Monodromy, monodromy
 from ..periodic.equation import equation_of
@@ -139,8 +139,7 @@ def speed_boundaries(
     """
     wanted = _wanted(multiplier)
     low, high = speed_span(speed_range)
-    if not 1e-14 <= rtol < 1:
-        raise bad("rtol", rtol, "a number from 1e-14 to 1", "choose 1e-11")
+    require_between("rtol", rtol, 1e-14, 1.0, "choose 1e-11")
     rate = float(equation_of(system, low, parameters).rate()[0])
     found = waves(system, parameters)
     reach = max(wave.reach for wave in found)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic, require_system
-from ..core.inputs import numbers_in_a_row
+from ..core.inputs import is_one_of, numbers_in_a_row, require_between
 from ..core.results import Check, Result
 from ..hill.form import is_hill
 from ..hill.perturbation import check_order
@@ -213,8 +213,9 @@ def stability_chart(
     Raises
     ------
     BadInput
-        If an axis or option is unusable; if a crank speed is wanted and missing; if modes and
-        axes would take an hour or so.
+        If an axis or option is unusable, or values along the axes make no system: a chart is one
+        series over both (``sweep("stability_chart", ...)`` leaves such points out); if a crank
+        speed is wanted and missing; if modes and axes would take an hour or so.
     """
     require_system(system)
     names, axes = _axes(system, x, y)
@@ -264,8 +265,7 @@ def stability_chart(
 def _check_options(
     system: LinearPeriodic, rtol: float, order: int, edges: bool, names: tuple[str, str]
 ) -> None:
-    if not 1e-13 <= rtol <= 1e-2:
-        raise bad("rtol", rtol, "a number from 1e-13 to 1e-2", "choose 1e-9")
+    require_between("rtol", rtol, 1e-13, 1e-2, "choose 1e-9")
     check_order(order)
     if order != 1 and not is_hill(system):
         raise bad(
@@ -281,8 +281,11 @@ def _check_options(
 def _axes(system: LinearPeriodic, x: Axis, y: Axis) -> tuple[tuple[str, str], tuple[Array, Array]]:
     known = ["speed", *sorted({*system.parameters, *system.geometry})]
     found = []
-    for label, (name, given) in (("x", x), ("y", y)):
-        if name not in known:
+    for label, axis in (("x", x), ("y", y)):
+        if not isinstance(axis, (tuple, list)) or len(axis) != 2:
+            raise bad(f"axis {label}", repr(axis), "a name and values", 'say ("speed", [20, 30])')
+        name, given = axis
+        if not is_one_of(name, known):
             raise bad(f"axis {label}", repr(name), f"one of {known}", "correct the name")
         values = numbers_in_a_row(f"axis {label}", given)
         if len(values) < 2 or np.any(np.diff(values) <= 0):

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..core.errors import BadInput, bad
 from ..core.families import DAMPING, Array, LinearPeriodic
-from ..core.inputs import is_finite, numbers, speed_span
+from ..core.inputs import is_finite, numbers, require_between, speed_span
 from ..core.results import Check, Result, provenance
 from ..periodic import floquet_multipliers
 from ..periodic.decoupled import SlowSystem
@@ -224,8 +224,7 @@ def stability_edges(
         or the range needs too many samples.
     """
     low, high = speed_span(speed_range)
-    if not (is_finite(rtol) and 1e-13 <= rtol <= 1e-6):
-        raise bad("rtol", rtol, "a number from 1e-13 to 1e-6", "choose 1e-11")
+    require_between("rtol", rtol, 1e-13, 1e-6, "choose 1e-11")
     if not (is_finite(margin) and 1.0 < margin <= 10.0):
         raise bad("margin", margin, "a factor between 1 and 10", "leave it out")
     slow: SlowSystem | None = None

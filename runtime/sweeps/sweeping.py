@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, ElastolinkWarning, bad, warn_of_large_deflection
 from ..core.families import LinearPeriodic
+from ..core.inputs import require_mapping
 from ..core.progress import bar
 from ..core.results import provenance
 from ..core.workers import check_executor, check_workers, run_on
@@ -84,8 +85,8 @@ def sweep(
     Sweep
         ``outputs`` by name, shape ``(*grid, ...)``; of a folder they are maps of its files.  Its
         error is the largest of the pieces, its checks are the worst of each.  A point that cannot
-        be worked out, of a chart excepted, is NaN (or an empty text), its error among the
-        ``failures``; whole numbers and truths become floats then.
+        be worked out (of a chart: that makes no system) is NaN (or an empty text), its error among
+        the ``failures``; whole numbers and truths become floats then.
 
     Warns
     -----
@@ -150,6 +151,7 @@ def planned(
     grid = grid_of(values, task.chunk if chunk is None else chunk, rows=task.rows)
     if isinstance(subject, Scene) and task.of_systems:
         subject = subject.linear_system() if task.name in NAMED else subject.system()
+    require_mapping("options", {} if options is None else options, "say options={'speed': 50.0}")
     told = dict(options or {})
     if task.name in NAMED:
         _check_axes(task, subject, grid, told)

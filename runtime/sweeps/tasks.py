@@ -8,6 +8,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import partial
 from importlib import import_module
+from itertools import pairwise
 from math import prod
 from typing import TYPE_CHECKING, Any
 
@@ -147,18 +148,77 @@ def _of_result(arrays: Mapping[str, AnyArray], *results: Result) -> Piece:
 def _chart(
     system: LinearPeriodic, axes: Mapping[str, Array], options: Mapping[str, Any], outputs: Outputs
 ) -> Piece:
+    """Return the chart of a piece; where points cannot be built, charts of the blocks of others."""
+    try:
+        return _of_result(*_block(system, axes, options, outputs))
+    except _FAILURES:
+        failures = _not_built(system, axes)
+        if not failures:
+            raise
+    shape = tuple(map(len, axes.values()))
+    built = np.ones(shape, bool)
+    built.flat[list(failures)] = False
+    arrays, charts = {}, []
+    for place in _blocks(built):
+        part = {name: axes[name][run] for name, run in zip(axes, place, strict=True)}
+        found, chart = _block(system, part, options, outputs)
+        charts.append(chart)
+        for name, values in found.items():
+            if name not in arrays:
+                kind = holding(values.dtype, failures)
+                arrays[name] = blank((built.size, *values.shape[1:]), kind)
+            own = arrays[name].reshape(*shape, *values.shape[1:])
+            own[place] = values.reshape(own[place].shape)
+    return replace(_of_result(arrays, *charts), failures=failures)
+
+
+def _block(
+    system: LinearPeriodic, axes: Mapping[str, Array], options: Mapping[str, Any], outputs: Outputs
+) -> tuple[dict[str, AnyArray], Result]:
+    """Return the arrays of a chart, ``(points, ...)``, and the chart; one value may stand alone."""
     from ..stability import stability_chart
 
-    (y, along_y), (x, along_x) = axes.items()
+    (y, along_y), (x, along_x) = (
+        (name, values if len(values) > 1 else _with_a_near_one(values))
+        for name, values in axes.items()
+    )
     told = {"boundaries": False, **options}
     chart = stability_chart(system, x=(x, along_x), y=(y, along_y), **told)
+    kept = tuple(slice(len(values)) for values in axes.values())
     arrays = {
-        name: getattr(chart, name)
+        name: getattr(chart, name)[kept]
         for name in ("stable", "largest", "slack", "undecided", "kind", "invariants")
     }
-    count = len(along_x) * len(along_y)
-    flat = {k: v.reshape(count, *v.shape[2:]) for k, v in arrays.items()}
-    return _of_result(_wanted(flat, outputs), chart)
+    flat = {k: v.reshape(-1, *v.shape[2:]) for k, v in arrays.items()}
+    return _wanted(flat, outputs), chart
+
+
+def _with_a_near_one(values: Array) -> Array:
+    """Return two values for one: a chart wants no less along an axis."""
+    return np.append(values, values + 1e-9 * (np.abs(values) + 1e-9))
+
+
+def _not_built(system: LinearPeriodic, axes: Mapping[str, Array]) -> dict[int, str]:
+    """Return by place the errors of the points whose values make no system."""
+    failures = {}
+    for place, row in enumerate(zip(*(v.tolist() for v in _points(axes).values()), strict=True)):
+        values = dict(zip(axes, row, strict=True))
+        values.pop("speed", None)
+        try:
+            _moved(system, values)
+        except _FAILURES as error:
+            failures[place] = _told(error)
+    return failures
+
+
+def _blocks(built: NDArray[np.bool_]) -> list[tuple[slice, slice]]:
+    """Return the blocks of a map: rows that are alike, and the runs of true values in them."""
+    found = []
+    turns = np.flatnonzero(np.any(built[1:] != built[:-1], axis=1)) + 1
+    for first, end in pairwise((0, *turns.tolist(), len(built))):
+        ends = np.flatnonzero(np.diff(built[first].astype(int), prepend=0, append=0))
+        found += [(slice(first, end), slice(*run)) for run in ends.reshape(-1, 2).tolist()]
+    return found
 
 
 def _by_geometry(

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
-from numbers import Real
 
 import numpy as np
 
 from ..errors import bad
+from ..inputs import is_finite
 from ..sampling import Remembered
 from .linear_periodic import Array, LinearPeriodic, Term, require_system
 
@@ -52,7 +52,7 @@ def with_modal_damping(system: LinearPeriodic, ratio: float) -> LinearPeriodic:
         If the ratio is no number, negative or not finite, or the system has that parameter already.
     """
     require_system(system)
-    if not (isinstance(ratio, Real) and np.isfinite(ratio) and ratio >= 0.0):
+    if not (is_finite(ratio) and ratio >= 0.0):
         raise bad("ratio", repr(ratio), "a finite number, 0 or more", "correct it")
     if "damping_ratio" in system.parameters:
         raise bad("system", "modal damping already", "none", "set its damping_ratio instead")

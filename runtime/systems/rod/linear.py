@@ -90,6 +90,9 @@ def rod_system(
         "damping": damping,
         "internal_damping": internal_damping,
     }
+    if not isinstance(basis, str) and not all(hasattr(basis, name) for name in ("array", "labels")):
+        fix = f"choose one of {list(BASES)}"
+        raise bad("basis", type(basis).__name__, "a name or a MovingBasis", fix)
     shapes = moving_basis(basis, modes) if isinstance(basis, str) else basis
     dropped = require_drop(drop, DROPPED)
     spec = ModelSpec("quick_return", "moving_basis", flexible=("rod",), drop=dropped)

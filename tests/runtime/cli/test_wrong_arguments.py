@@ -48,7 +48,7 @@ def wrong_calls(name):
     for action in own:
         values = WRONG
         if action.dest in PATHS:
-            values = ("--",)
+            values = ("--", "\0")
         elif action.dest == "set":
             values = SETTINGS
         for value in values:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shlex
@@ -12,9 +13,10 @@ from pathlib import Path
 
 import elastolink as el
 import elastolink.generated
+import numpy as np
 import pytest
 from elastolink.derive.regenerate import main
-from elastolink.derive.spec import MANIFEST, ModelSpec
+from elastolink.derive.spec import MANIFEST, ModelSpec, read_manifest
 from elastolink.runtime.core.modules import find_module
 
 PACKAGED = Path(elastolink.generated.__path__[0])
@@ -97,6 +99,75 @@ def test_a_broken_manifest_is_as_good_as_none(tmp_path, monkeypatch):
     (tmp_path / MANIFEST).write_text("{")
     monkeypatch.setenv("ELASTOLINK_GENERATED", str(tmp_path))
     assert find_module(HILL).folder == PACKAGED
+
+
+MODEL = str(EXAMPLES / "slider_crank_rod.py")
+
+
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory):
+    """Return a folder with two modules of a packaged model and one of a user's own."""
+    folder = tmp_path_factory.mktemp("emitted") / "sound"
+    table = '{"mechanism": "hill", "formulation": "plain", "outputs": ["stability"]}'
+    for what in (["hill_plain"], ["--spec", table], ["--model", MODEL]):
+        assert main([*what, "--out", str(folder)]) == 0
+    return folder
+
+
+def damaged(rows, rng):
+    """Return the rows of a manifest with one thing changed, or some in the place of others."""
+    rows = json.loads(json.dumps(rows))
+    keys, fields = sorted(rows), ["spec", "module", "content", "text"]
+    others = [keys[int(k)] for k in rng.permutation(len(keys))]
+    odd = (None, 3, "x", [], {}, "../x", "a\0b", "x" * 5000)[rng.integers(8)]
+    match rng.integers(5):
+        case 0:
+            return {key: rows[other] for key, other in zip(keys, others, strict=True)}
+        case 1:
+            swapped = rng.permutation(fields)[: rng.integers(1, 4)]
+            return {
+                key: rows[key] | {field: rows[other][field] for field in swapped}
+                for key, other in zip(keys, others, strict=True)
+            }
+        case 2:
+            rows[keys[0]][fields[rng.integers(4)]] = odd
+        case 3:
+            spec = rows[keys[rng.integers(3)]]["spec"]
+            spec[sorted(spec)[rng.integers(len(spec))]] = odd
+        case 4:
+            rows[keys[rng.integers(3)]] = odd
+    return rows
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_damaged_manifests_and_modules_are_never_believed(sound, tmp_path, monkeypatch, seed):
+    """What is found is the module of its spec, or another folder's; the command mends the rest."""
+    rng = np.random.default_rng(seed)
+    entries = read_manifest(sound)
+    monkeypatch.setenv("ELASTOLINK_GENERATED", str(tmp_path / "bad"))
+    for turn in range(12):
+        shutil.rmtree("bad", ignore_errors=True)
+        shutil.copytree(sound, "bad")
+        manifest = Path("bad", MANIFEST)
+        held = json.loads(manifest.read_bytes())
+        if turn % 4:
+            manifest.write_text(json.dumps(held | {"modules": damaged(held["modules"], rng)}))
+        else:
+            one, other = rng.permutation(sorted(Path("bad").iterdir()))[:2]
+            cut = one.read_bytes()[: rng.integers(len(one.read_bytes()))]
+            one.write_bytes(cut if turn % 8 else other.read_bytes())
+        for entry in entries.values():
+            try:
+                found = find_module(entry.spec)
+            except el.BadInput as refusal:
+                assert str(refusal).isprintable()
+                continue
+            assert found.provenance == {"module": entry.module, "module_hash": entry.content}
+            assert found.entry.spec == entry.spec
+        if main(["hill_plain", "--out", "bad"]) == 0:
+            (key,) = [key for key in entries if entries[key].module == "hill_plain"]
+            assert read_manifest(Path("bad"))[key] == entries[key]
+            assert find_module(HILL).folder == tmp_path / "bad"
 
 
 def test_a_model_that_nothing_can_derive_is_refused_at_once():

@@ -9,7 +9,15 @@ import pytest
 from elastolink.runtime.cli import main
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.plotting import new_figure
-from elastolink.runtime.gallery import Drawn, FigureEntry, Quoted, figures, records, reproduce
+from elastolink.runtime.gallery import (
+    Drawn,
+    FigureEntry,
+    Quoted,
+    figures,
+    records,
+    rendering,
+    reproduce,
+)
 from elastolink.runtime.gallery.rendering import write_together
 from elastolink.runtime.gallery.sketch import arrow, turning_arrow
 
@@ -214,10 +222,12 @@ def test_files_appear_together_or_the_folder_stays_as_it_was(tmp_path):
     }
 
 
-def test_a_place_that_cannot_be_written_is_refused(tmp_path):
-    (tmp_path / "file").write_text("")
-    with pytest.raises(BadInput, match="file"):
-        reproduce("smith", "45", tmp_path / "file" / "gallery")
+@pytest.mark.parametrize("place", ["file/gallery", "file", "a\0b", "x" * 300, "y/" * 3000])
+def test_a_place_that_cannot_be_written_is_refused_before_any_work(tmp_path, monkeypatch, place):
+    (tmp_path / "file").write_text("taken")
+    monkeypatch.setattr(rendering, "render", None)
+    with pytest.raises(BadInput, match="a folder that can be written"):
+        reproduce("smith", "45", tmp_path / place)
 
 
 def test_the_command_reports_rows_and_fails_with_them(tmp_path, monkeypatch, capsys):

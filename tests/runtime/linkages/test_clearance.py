@@ -190,7 +190,7 @@ def test_picture_has_a_curve_for_each_clearance():
         ({"clearances": {"55": 0.1}}, "one of 12"),
         ({"clearances": {"34": 0.1}, "joint": "23"}, "leave it out"),
         ({"theta": [np.inf]}, "finite"),
-        ({"theta": "x"}, "angles"),
+        ({"theta": "x"}, "theta"),
         ({"link": "rod"}, "follower, coupler"),
         ({"linkage": "linkage"}, "QuickReturn"),
         ({"linkage": FourBar(10.0, 8.0, 4.0, 10.0)}, "cannot reach"),

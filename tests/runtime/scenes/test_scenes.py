@@ -220,9 +220,9 @@ def own_module(tmp_path, monkeypatch):
     spec = ModelSpec("own_linkage", "reduced", flexible=("coupler",))
     source = Path(generated.__path__[0]) / "four_bar_coupler_reduced.py"
     text = source.read_bytes()
-    (tmp_path / "own_module.py").write_bytes(text)
+    (tmp_path / f"{spec.name()}.py").write_bytes(text)
     digest = hashlib.sha256(text).hexdigest()
-    row = {"module": "own_module", "spec": asdict(spec), "content": "0" * 32, "text": digest}
+    row = {"module": spec.name(), "spec": asdict(spec), "content": "0" * 32, "text": digest}
     (tmp_path / "manifest.json").write_text(json.dumps({"modules": {spec.key(): row}}))
     monkeypatch.setenv("ELASTOLINK_GENERATED", str(tmp_path))
     return spec
@@ -258,7 +258,7 @@ def test_an_own_scene_with_an_own_module_gives_the_same_system(own_module, monke
     assert own.size == packaged.size == 2
     for array in ("M", "B", "S", "K", "f", "g"):
         assert np.array_equal(own.array(array, theta), packaged.array(array, theta))
-    assert own.provenance["module"] == "own_module"
+    assert own.provenance["module"] == own_module.name()
     document = own_rig()
     del document["schema"]["follower"], document["follower"]
     with pytest.raises(BadInput, match="follower_inertia: found nothing"):

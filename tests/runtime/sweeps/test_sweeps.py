@@ -442,6 +442,30 @@ def test_solvers_of_many_points_go_on_beside_those_they_refuse():
         assert np.all(gap <= alone.error + found["error"][row, column])
 
 
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_chart_leaves_out_points_that_make_no_system(tmp_path, turned):
+    """A rod too short for its crank, in rows or columns; a sound row of a piece may be alone."""
+    given = {"crank_ratio": 0.4, "frame": 0.3, "length": 1.2}
+    system = el.rod_system("overhang", 2, **given, bending_stiffness=100.0, mass_per_length=1.0)
+    values = {"length": [0.35, 0.4, 0.6, 0.9, 1.2], "speed": np.linspace(30.0, 90.0, 12)}
+    if turned:
+        values = dict(reversed(values.items()))
+    told = {"chunk": 3 * len(values["speed"] if not turned else values["length"])}
+    with pytest.warns(ElastolinkWarning, match="24 of 60 points failed.*the block leaves the rod"):
+        found = el.sweep("stability_chart", system, values, store=tmp_path / "chart", **told)
+    row = (lambda name: found[name].T) if turned else (lambda name: found[name])
+    assert np.array_equal(np.isnan(row("largest")), np.isnan(row("stable")))
+    assert np.array_equal(np.isnan(row("stable")).all(axis=1), [True, True, False, False, False])
+    for length, largest in zip(values["length"][2:], row("largest")[2:], strict=True):
+        alone = el.floquet_multipliers(system, values["speed"], length=length, rtol=1e-11)
+        modulus = np.abs(alone.multipliers[:, 0])
+        assert np.all(np.abs(largest - modulus) <= 1e-7 * modulus)
+    with pytest.warns(ElastolinkWarning):
+        assert el.sweep("stability_chart", system, values, store=tmp_path / "chart", **told).resumed
+    with pytest.raises(BadInput, match="rtol"):
+        el.sweep("stability_chart", system, values, options={"rtol": 3.0})
+
+
 def test_a_store_of_a_function_without_error_figures(tmp_path):
     values = {"a": [1.0, 2.0, 3.0]}
     first = el.sweep(square_sum, 2.0, values, chunk=2, store=tmp_path / "store")

@@ -254,10 +254,10 @@ def speed_range(text: str | None, scene: Scene, where: str) -> tuple[float, floa
         if span is None:
             raise bad(where, "nothing", "a range of speeds", f"give {where} LOW:HIGH")
         return float(span[0]), float(span[1])
-    ends = [opt.quantity(part, "frequency", where) for part in text.split(":")]
-    if len(ends) != 2 or not 0.0 < ends[0] < ends[1]:
-        raise bad(where, repr(text), "two rising speeds", "write it like 300rpm:900rpm")
-    return ends[0], ends[1]
+    low, high = opt.span(text, "frequency", where, "300:900rpm")
+    if not low > 0.0:
+        raise bad(where, repr(text), "two rising speeds", "write it like 300:900rpm")
+    return low, high
 
 
 def moving_scene(options: argparse.Namespace) -> Scene:

@@ -162,6 +162,18 @@ def values(text: str, dimension: str, where: str) -> Array:
     return spaced(start, stop, count)
 
 
+def span(text: str, dimension: str, where: str, example: str) -> tuple[float, float]:
+    """Return two rising values from ``LOW:HIGH``; a unit behind both holds for both."""
+    parts = [part.strip() for part in text.split(":")]
+    unit = re.search(r"[^-+.\deE\s].*$", parts[-1])
+    if len(parts) == 2 and unit and re.fullmatch(r"[-+.\deE]+", parts[0]):
+        parts[0] = f"{parts[0]} {unit.group()}"
+    ends = [quantity(part, dimension, where) for part in parts]
+    if len(ends) != 2 or not ends[0] < ends[1]:
+        raise bad(where, repr(text), "LOW:HIGH, rising", f"write it like {example}")
+    return ends[0], ends[1]
+
+
 def spaced(start: float, stop: float, count: int) -> Array:
     """Return evenly spaced values, both ends included."""
     import numpy as np

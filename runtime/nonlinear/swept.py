@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families import Array, Nonlinear
-from ..core.inputs import is_finite, numbers_in_a_row, require_whole
+from ..core.inputs import is_finite, numbers_in_a_row, require_between, require_whole
 from ..core.plotting import Axes, axes_or_new
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
@@ -152,8 +152,7 @@ def sweep_response(
         raise bad("rate", repr(rate), "a positive acceleration [rad/s^2]", "give its size")
     if direction not in ("up", "down", "both"):
         raise bad("direction", repr(direction), "'up', 'down' or 'both'", "correct it")
-    if not (is_finite(kicks) and kicks >= 0):
-        raise bad("kicks", repr(kicks), "a number, 0 or more", "try 1e-6")
+    require_between("kicks", kicks, 0.0, 1.0, "try 1e-6")
     require_whole("seed", seed, 0, 2**32 - 1)
     ways = {"up": (1,), "down": (-1,), "both": (1, -1)}[direction]
     turns = (high**2 - low**2) / (4.0 * np.pi * rate)

@@ -601,9 +601,9 @@ def _check_arguments(
     names = ("auto", *SCIPY_METHODS)
     if not is_one_of(method, names):
         raise bad("method", repr(method), f"one of {names}", "choose 'auto'")
-    for name, value in (("revolutions", revolutions), ("bound", bound)):
-        if not 0 < _number(name, value) < np.inf:
-            raise bad(name, value, "a positive finite number", "correct it")
+    for name, value, least in (("revolutions", revolutions, 1e-12), ("bound", bound, 1e-300)):
+        if not least <= _number(name, value) < np.inf:
+            raise bad(name, value, f"a positive finite number, from {least:g}", "correct it")
     if not np.isfinite(_number("start", start)):
         raise bad("start", start, "a finite crank angle [rad]", "correct it")
     given = _number("samples", samples)

@@ -21,6 +21,7 @@ from elastolink.runtime.core.errors import BadInput, ElastolinkWarning
 from elastolink.runtime.sweeps import Sweep, WorkersLost, estimate_sweep, sweeping
 from elastolink.runtime.sweeps.pieces import grid_of
 from elastolink.runtime.sweeps.requests import digest
+from elastolink.runtime.systems import rod_system
 from fresh_process import python
 
 MU, LAM2 = np.linspace(0.0, 3.0, 23), np.linspace(-0.5, 6.0, 31)
@@ -446,7 +447,7 @@ def test_solvers_of_many_points_go_on_beside_those_they_refuse():
 def test_a_chart_leaves_out_points_that_make_no_system(tmp_path, turned):
     """A rod too short for its crank, in rows or columns; a sound row of a piece may be alone."""
     given = {"crank_ratio": 0.4, "frame": 0.3, "length": 1.2}
-    system = el.rod_system("overhang", 2, **given, bending_stiffness=100.0, mass_per_length=1.0)
+    system = rod_system("overhang", 2, **given, bending_stiffness=100.0, mass_per_length=1.0)
     values = {"length": [0.35, 0.4, 0.6, 0.9, 1.2], "speed": np.linspace(30.0, 90.0, 12)}
     if turned:
         values = dict(reversed(values.items()))

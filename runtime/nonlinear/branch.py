@@ -15,7 +15,7 @@ from .segments import Motion, NotFinite
 # first, its least and its largest length.
 _AIM = 0.02
 _LONGER, _SHORTER = 2.0, 0.3
-_FIRST, _LEAST, _LARGEST = 0.02, 1e-7, 1.0
+_FIRST, _LEAST, _LARGEST = 0.02, 1e-7, 0.5
 _WIDEST = 1.0 / 60.0  # part of the range that a step may change the parameter by
 # Relative amplitude at which a crossing branch is entered.
 _ENTERED = 0.02
@@ -106,6 +106,7 @@ def _steps(
 ) -> Iterator[tuple[Orbit | None, Measure | None, str]]:
     """Yield the motions along a branch, and at last why it ends."""
     step, first, away = _FIRST, orbit, False
+    before: tuple[Orbit, float] | None = None
     for _ in range(most):
         ahead = None
         while ahead is None:
@@ -113,8 +114,10 @@ def _steps(
                 yield None, None, "it cannot be followed"
                 return
             try:
-                value, guess = changed(orbit, orbit.tangent, step)
-                ahead, size = solver.corrected(value, guess, orbit.tangent)
+                value, guess = orbit.ahead(step, before)
+                ahead, size = solver.corrected(
+                    value, guess, orbit.tangent, orbit.swept.by_parameter
+                )
                 if ahead.tangent.dot(orbit.tangent) < 0.5:
                     raise Lost("the branch turns within a step")
                 ahead, measure = solver.refined(ahead)
@@ -134,9 +137,10 @@ def _steps(
             yield None, None, CLOSED
             return
         away = away or not passed
-        grown = float(np.clip(np.sqrt(_AIM / max(size, 1e-12)), _SHORTER, _LONGER))
+        grown = float(np.clip(np.cbrt(_AIM / max(size, 1e-12)), _SHORTER, _LONGER))
         reach = _WIDEST * solver.span / max(abs(ahead.tangent.value), 1e-12)
-        step, orbit = min(step * grown, _LARGEST, reach), ahead
+        before, orbit = (orbit, step), ahead
+        step = min(step * grown, _LARGEST, reach)
 
 
 def _passed(ahead: Orbit, orbit: Orbit, first: Orbit) -> bool:

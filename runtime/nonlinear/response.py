@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,8 +23,9 @@ from .segments import Motion, NotFinite, Problem, sweep
 
 _POINTS = 2000  # of one branch
 _BRANCHES = 24
-_SAMPLES = 256  # of a revolution, for the extremes of the deflection
-_LINEAR = 200  # values at which the linear answer is computed
+_SAMPLES = 128  # of a revolution, for the extremes of the linear deflection
+_POLISHED = 3  # parabolas about the highest sample, each a tenth as wide
+_LINEAR = 120  # values at which the linear answer is computed
 _RPM = 30.0 / np.pi
 _STYLE = {"fold": "o", "doubling": "s", "branch point": "D", "torus": "^"}
 _FAILURES = (Lost, NotFinite, np.linalg.LinAlgError)
@@ -61,8 +63,10 @@ class ResponseCurve(Result):
     special_lowest, special_highest : ndarray, shape (p,)
     ended : tuple of str
         Why each branch ends.
+    bounds : tuple of float
+        The range [SI].
     linear_value, linear_lowest, linear_highest : ndarray, shape (l,)
-        The answer of the equations linearised about no deflection.
+        The answer of the equations linearised about no deflection, computed when first read.
     unit, parameter_unit : str
         Units of the deflection and of the parameter.
 
@@ -88,9 +92,7 @@ class ResponseCurve(Result):
     special_lowest: Array
     special_highest: Array
     ended: tuple[str, ...]
-    linear_value: Array
-    linear_lowest: Array
-    linear_highest: Array
+    bounds: tuple[float, float]
     unit: str = ""
     orbits: tuple[Orbit, ...] = ()
     special_orbits: tuple[Orbit, ...] = ()
@@ -109,7 +111,29 @@ class ResponseCurve(Result):
         **dict.fromkeys(("linear_value", "linear_lowest", "linear_highest"), ("linear_point",)),
         "special": ("special_point",),
     }
-    exported: ClassVar[tuple[str, ...]] = ("stable", "peak_to_peak")
+    exported: ClassVar[tuple[str, ...]] = (
+        *("stable", "peak_to_peak"),
+        *("linear_value", "linear_lowest", "linear_highest"),
+    )
+
+    @cached_property
+    def _linear(self) -> tuple[Array, Array, Array]:
+        return _linear(self.source.problem, self.bounds)
+
+    @property
+    def linear_value(self) -> Array:
+        """Values at which the linear answer is given, shape ``(l,)``."""
+        return self._linear[0]
+
+    @property
+    def linear_lowest(self) -> Array:
+        """Lowest deflection of the linear answer, shape ``(l,)``."""
+        return self._linear[1]
+
+    @property
+    def linear_highest(self) -> Array:
+        """Highest deflection of the linear answer, shape ``(l,)``."""
+        return self._linear[2]
 
     @property
     def stable(self) -> NDArray[np.bool_]:
@@ -353,31 +377,29 @@ def same_motion(solver: Solver, one: Motion, other: Motion) -> bool:
 
 
 def extremes(problem: Problem, orbit: Orbit) -> tuple[float, float]:
-    """Return the extremes of the deflection over the period."""
-    count = _SAMPLES * orbit.motion.turns
-    step = 2.0 * np.pi * orbit.motion.turns / count
-    _, parameters = problem.at(orbit.value)
+    """Return the extremes of the deflection over the period.
 
-    def shown(angles: NDArray[Any]) -> Array:
-        span = 2.0 * np.pi * orbit.motion.turns
-        q = orbit.motion.at(np.mod(angles, span))[0]
-        return problem.system.shown(q, parameters)
-
-    values = shown(step * np.arange(count))
-    found = []
-    for sign in (-1.0, 1.0):
-        place, width = step * float(np.argmax(sign * values)), step
-        best = float(np.max(sign * values))
-        for _ in range(4):  # parabolas through three places, each a tenth as wide
-            around = np.array([place - width, place, place + width])
-            left, middle, right = (sign * shown(around)).tolist()
-            bend = left - 2.0 * middle + right
-            if not bend < 0.0:
-                break
-            place += float(np.clip(0.5 * (left - right) / bend, -1.0, 1.0)) * width
-            best, width = max(best, float(sign * shown(np.array([place]))[0])), 0.1 * width
-        found.append(sign * best)
-    return found[0], found[1]
+    The lowest and highest of the Gauss points, both polished by parabolas at once.
+    """
+    motion, (_, parameters) = orbit.motion, problem.at(orbit.value)
+    angles = motion.angles.ravel() - motion.begin
+    values = problem.system.shown(motion.stages()[0], parameters).ravel()
+    signs = np.array([-1.0, 1.0])
+    places = angles[[int(np.argmin(values)), int(np.argmax(values))]]
+    best = np.array([-np.min(values), np.max(values)])
+    width = motion.step / motion.a.shape[1]
+    for _ in range(_POLISHED):
+        around = places[:, None] + width * np.array([-1.0, 0.0, 1.0])
+        q = motion.at(np.mod(around.ravel(), motion.span))[0]
+        left, middle, right = (signs[:, None] * problem.system.shown(q, parameters).reshape(2, 3)).T
+        bend = left - 2.0 * middle + right
+        shift = np.divide(left - right, 2.0 * bend, out=np.zeros(2), where=bend < 0.0)
+        places = places + np.clip(shift, -1.0, 1.0) * width
+        # The top of the parabola.
+        top = middle - np.where(np.abs(shift) <= 1.0, 0.25 * (left - right) * shift, 0.0)
+        best = np.maximum(np.maximum(best, middle), top)
+        width *= 0.1
+    return float(-best[0]), float(best[1])
 
 
 def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float]) -> ResponseCurve:
@@ -389,7 +411,6 @@ def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float])
     at_special = np.array([extremes(problem, p.orbit) for p in special]).reshape(-1, 2)
     error = np.array([measure.error for _, measure in points])
     sizes = np.max(np.abs(shown), axis=1)
-    linear = _linear(problem, bounds)
     return ResponseCurve(
         method="Gauss collocation with 8 stages, pseudo-arclength continuation",
         error=error,
@@ -414,9 +435,7 @@ def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float])
         special_lowest=at_special[:, 0],
         special_highest=at_special[:, 1],
         ended=tuple(branch.ended for branch in branches),
-        linear_value=linear[0],
-        linear_lowest=linear[1],
-        linear_highest=linear[2],
+        bounds=bounds,
         unit=problem.system.unit,
         orbits=tuple(orbit for orbit, _ in points),
         special_orbits=tuple(point.orbit for point in special),

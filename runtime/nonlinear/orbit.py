@@ -21,6 +21,8 @@ _FAR = 0.3
 # Stages of the motion beside which errors are measured, less than those of the motion, and the
 # share of the difference that is taken for the error.
 _FEWER, SHARE = 2, 0.1
+# Errors of the multipliers that are allowed, over that of the motion.
+_MULTIPLIERS = 10.0
 STAGES, FIRST_STEPS, MOST_STEPS = 8, 8, 512
 
 
@@ -255,7 +257,9 @@ class Solver:
         """Return a motion on as many steps as its error wants, and that error."""
         while True:
             measure, steps = self.measure(orbit), len(orbit.motion.x)
-            if measure.error <= self.rtol or steps >= MOST_STEPS * orbit.motion.turns:
+            unsure = np.max(measure.multiplier_errors / np.maximum(np.abs(orbit.multipliers), 1.0))
+            sure = measure.error <= self.rtol and unsure <= _MULTIPLIERS * self.rtol
+            if sure or steps >= MOST_STEPS * orbit.motion.turns:
                 return orbit, measure
             motion = orbit.motion.resampled(int(np.ceil(1.3 * steps)), STAGES)
             direction = orbit.tangent.resampled(len(motion.x))

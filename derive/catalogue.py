@@ -208,6 +208,25 @@ CATALOGUE = (
         )
         for name in ("four_bar", "slider_crank")
     ),
+    *(
+        CatalogueEntry(
+            mechanism=name,
+            formulations=("inextensible_cubic",),
+            module=f".models.inextensible_cubic:{name.upper()}",
+            sources=(
+                f"{name}.py",
+                "beam_tangent_harmonics.py",
+                "inextensible_coupler.py",
+                "inextensible_cubic.py",
+            ),
+            specs=tuple(
+                ModelSpec(name, "inextensible_cubic", flexible=("coupler",), modes=modes)
+                for modes in (1, 2)
+            ),
+            choices=Choices(flexible=("coupler",)),
+        )
+        for name in ("four_bar", "slider_crank")
+    ),
     *(_rigid(name, "forces", "", "crank_acceleration") for name in _LINKAGES),
     *(_rigid(name, "multibody", ":MULTIBODY", "drive") for name in _LINKAGES),
     CatalogueEntry(

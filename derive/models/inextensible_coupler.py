@@ -25,18 +25,19 @@ from ..spec import Choices, ModelSpec
 from ..stations import EACH_STATION, Stations, closed_in_stations
 
 STATIONS = Stations("phi", ("end", "moment", "bow"), ("inertia", "bending", "drag"))
-_T = sp.Symbol("t", real=True)
-_THETA = sp.Function("theta")(_T)
-_CRANK, _COUPLER, _DENSITY, _STIFFNESS, _DAMPING = sp.symbols(
+T = sp.Symbol("t", real=True)
+THETA = sp.Function("theta")(T)
+CRANK, COUPLER, DENSITY, STIFFNESS, DAMPING = sp.symbols(
     "crank coupler mass_per_length bending_stiffness damping", positive=True
 )
 _FRAME, _FOLLOWER, _INERTIA = sp.symbols("frame follower follower_inertia", positive=True)
-_OFFSET, _MOMENT, *_PULL = sp.symbols("offset follower_first_moment gravity_x gravity_y", real=True)
+_OFFSET, _MOMENT, *PULL = sp.symbols("offset follower_first_moment gravity_x gravity_y", real=True)
+PIN = (CRANK * sp.cos(THETA), CRANK * sp.sin(THETA))
 _SLIDER = sp.Symbol("slider_mass", positive=True)
 
 
 @dataclass(frozen=True)
-class _Driven:
+class Driven:
     """What the end C of the coupler drives: its coordinate, energies, and the place of C."""
 
     coordinate: sp.Expr
@@ -44,24 +45,24 @@ class _Driven:
     place: tuple[sp.Expr, sp.Expr]
 
 
-def _driven(mechanism: str) -> _Driven:
+def driven(mechanism: str) -> Driven:
+    """Return what the end C of a mechanism's coupler drives."""
     if mechanism == "slider_crank":
-        position = sp.Function("x4")(_T)
-        energy = _SLIDER * (position.diff(_T) ** 2 / 2 + _PULL[0] * position)
-        return _Driven(position, energy, (position, _OFFSET))
-    psi = sp.Function("psi")(_T)
-    pull = _PULL[0] * sp.cos(psi) + _PULL[1] * sp.sin(psi)
-    energy = _INERTIA / 2 * psi.diff(_T) ** 2 + _MOMENT * pull
-    return _Driven(psi, energy, (_FRAME + _FOLLOWER * sp.cos(psi), _FOLLOWER * sp.sin(psi)))
+        position = sp.Function("x4")(T)
+        energy = _SLIDER * (position.diff(T) ** 2 / 2 + PULL[0] * position)
+        return Driven(position, energy, (position, _OFFSET))
+    psi = sp.Function("psi")(T)
+    pull = PULL[0] * sp.cos(psi) + PULL[1] * sp.sin(psi)
+    energy = _INERTIA / 2 * psi.diff(T) ** 2 + _MOMENT * pull
+    return Driven(psi, energy, (_FRAME + _FOLLOWER * sp.cos(psi), _FOLLOWER * sp.sin(psi)))
 
 
 def lagrangian(mechanism: str, stations: int = 2) -> Lagrangian:
     """Return energies, constraints and damping of the coupler with a number of stations."""
     each = range(1, stations + 1)
-    angles = [sp.Function(f"phi{i}")(_T) for i in each]
+    angles = [sp.Function(f"phi{i}")(T) for i in each]
     tangents = [(sp.cos(phi), sp.sin(phi)) for phi in angles]
-    pin = (_CRANK * sp.cos(_THETA), _CRANK * sp.sin(_THETA))
-    driven = _driven(mechanism)
+    end = driven(mechanism)
 
     def along(name: str, values: list[sp.Expr]) -> sp.Expr:
         """Return an integral along the coupler."""
@@ -78,22 +79,20 @@ def lagrangian(mechanism: str, stations: int = 2) -> Lagrangian:
     energy = sp.S.Zero
     for axis in (0, 1):
         directions = [tangent[axis] for tangent in tangents]
-        rates = [direction.diff(_T) for direction in directions]
-        energy += twice("inertia", rates) / 2 * _COUPLER**2
-        energy += _COUPLER * pin[axis].diff(_T) * along("moment", rates)
-        energy += _PULL[axis] * _COUPLER * along("moment", directions)
+        rates = [direction.diff(T) for direction in directions]
+        energy += twice("inertia", rates) / 2 * COUPLER**2
+        energy += COUPLER * PIN[axis].diff(T) * along("moment", rates)
+        energy += PULL[axis] * COUPLER * along("moment", directions)
     bent = [phi - sp.Symbol(f"bow_{i}") for i, phi in zip(each, angles, strict=True)]
-    strain = _STIFFNESS / _COUPLER * twice("bending", bent) / 2
-    dissipation = _DAMPING * _COUPLER**3 * twice("drag", [phi.diff(_T) for phi in angles]) / 2
+    strain = STIFFNESS / COUPLER * twice("bending", bent) / 2
+    dissipation = DAMPING * COUPLER**3 * twice("drag", [phi.diff(T) for phi in angles]) / 2
     ends = [along("end", [tangent[axis] for tangent in tangents]) for axis in (0, 1)]
     return Lagrangian(
-        coordinates=(driven.coordinate, *angles),
-        t=_T,
-        expression=driven.energy + _DENSITY * _COUPLER * energy - strain,
-        constraints=tuple(
-            pin[axis] + _COUPLER * ends[axis] - driven.place[axis] for axis in (0, 1)
-        ),
-        forces={phi: -dissipation.diff(phi.diff(_T)) for phi in angles},
+        coordinates=(end.coordinate, *angles),
+        t=T,
+        expression=end.energy + DENSITY * COUPLER * energy - strain,
+        constraints=tuple(PIN[axis] + COUPLER * ends[axis] - end.place[axis] for axis in (0, 1)),
+        forces={phi: -dissipation.diff(phi.diff(T)) for phi in angles},
     )
 
 
@@ -131,6 +130,24 @@ def _describe(spec: ModelSpec) -> Description:
         Argument("bending", kernel, "", "int f' g' ds"),
         Argument("drag", kernel, "", "int (int f) (int g) ds of what has no mean"),
     ]
+    name = "slider-crank" if slider else "four-bar linkage"
+    return Description(
+        title=f"Inextensible flexible coupler of a {name}, geometrically exact",
+        references=("Smith 9.6, further work 2",),
+        arguments=tuple(arguments),
+        parameters=parameters(spec.mechanism),
+        notes=(
+            "The coupler's points are r(s) = B + coupler int (cos phi, sin phi) ds.  Arrays with a "
+            "value at each of the Q stations have them on their last axis, all others one value "
+            "there.",
+            "Multipliers: force on C along x and y, up to its sign.",
+        ),
+    )
+
+
+def parameters(mechanism: str) -> tuple[Argument, ...]:
+    """Return the parameters of a mechanism's coupler."""
+    slider = mechanism == "slider_crank"
     lengths = (
         ("crank", "coupler", "offset") if slider else ("frame", "crank", "coupler", "follower")
     )
@@ -141,15 +158,15 @@ def _describe(spec: ModelSpec) -> Description:
         "follower": "Length of the follower",
         "offset": "Height of the guide over the crank's pivot",
     }
-    parameters = [Argument(name, "float", "m", words[name]) for name in lengths]
-    parameters += [
+    found = [Argument(name, "float", "m", words[name]) for name in lengths]
+    found += [
         Argument("bending_stiffness", "float", "N m^2", "EI of the coupler"),
         Argument("mass_per_length", "float", "kg/m", "mu of the coupler"),
         Argument("damping", "float", "N s/m^2", "Viscous damping of the coupler per length"),
         Argument("gravity_x", "float", "m/s^2", "Acceleration of gravity along x"),
         Argument("gravity_y", "float", "m/s^2", "Acceleration of gravity along y"),
     ]
-    parameters += (
+    found += (
         [Argument("slider_mass", "float", "kg", "Mass of the slider")]
         if slider
         else [
@@ -157,19 +174,7 @@ def _describe(spec: ModelSpec) -> Description:
             Argument("follower_first_moment", "float", "kg m", "m4 r4 of the follower about D"),
         ]
     )
-    name = "slider-crank" if slider else "four-bar linkage"
-    return Description(
-        title=f"Inextensible flexible coupler of a {name}, geometrically exact",
-        references=("Smith 9.6, further work 2",),
-        arguments=tuple(arguments),
-        parameters=tuple(parameters),
-        notes=(
-            "The coupler's points are r(s) = B + coupler int (cos phi, sin phi) ds.  Arrays with a "
-            "value at each of the Q stations have them on their last axis, all others one value "
-            "there.",
-            "Multipliers: force on C along x and y, up to its sign.",
-        ),
-    )
+    return tuple(found)
 
 
 def _model(mechanism: str) -> Model:

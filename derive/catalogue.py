@@ -61,6 +61,14 @@ def _rigid(mechanism: str, formulation: str, part: str, *drop: str) -> Catalogue
 _LINKAGES = ("four_bar", "slider_crank", "quick_return")
 _BEAMS = ("cubic", "internal_node", "curvature", "timoshenko")
 _COUPLER = ("complete", "printed", "reduced")
+_COUPLERS = ("four_bar", "slider_crank")
+_EXPANDED = (
+    "beam_tangent_harmonics.py",
+    "four_bar.py",
+    "inextensible_coupler.py",
+    "inextensible_cubic.py",
+    "slider_crank.py",
+)
 
 CATALOGUE = (
     CatalogueEntry(
@@ -206,26 +214,28 @@ CATALOGUE = (
             closed_in_modes=True,
             choices=Choices(flexible=("coupler",)),
         )
-        for name in ("four_bar", "slider_crank")
+        for name in _COUPLERS
     ),
     *(
         CatalogueEntry(
             mechanism=name,
             formulations=("inextensible_cubic",),
             module=f".models.inextensible_cubic:{name.upper()}",
-            sources=(
-                f"{name}.py",
-                "beam_tangent_harmonics.py",
-                "inextensible_coupler.py",
-                "inextensible_cubic.py",
-            ),
+            sources=_EXPANDED,
             specs=tuple(
                 ModelSpec(name, "inextensible_cubic", flexible=("coupler",), modes=modes)
                 for modes in (1, 2)
             ),
             choices=Choices(flexible=("coupler",)),
         )
-        for name in ("four_bar", "slider_crank")
+        for name in _COUPLERS
+    ),
+    CatalogueEntry(
+        mechanism="beam",
+        formulations=("amplitude_law",),
+        module=".models.amplitude_law",
+        sources=(*_EXPANDED, "amplitude_law.py"),
+        specs=(ModelSpec("beam", "amplitude_law"),),
     ),
     *(_rigid(name, "forces", "", "crank_acceleration") for name in _LINKAGES),
     *(_rigid(name, "multibody", ":MULTIBODY", "drive") for name in _LINKAGES),

@@ -30,10 +30,10 @@ THETA = sp.Function("theta")(T)
 CRANK, COUPLER, DENSITY, STIFFNESS, DAMPING = sp.symbols(
     "crank coupler mass_per_length bending_stiffness damping", positive=True
 )
-_FRAME, _FOLLOWER, _INERTIA = sp.symbols("frame follower follower_inertia", positive=True)
+_FRAME, FOLLOWER, INERTIA = sp.symbols("frame follower follower_inertia", positive=True)
 _OFFSET, _MOMENT, *PULL = sp.symbols("offset follower_first_moment gravity_x gravity_y", real=True)
 PIN = (CRANK * sp.cos(THETA), CRANK * sp.sin(THETA))
-_SLIDER = sp.Symbol("slider_mass", positive=True)
+SLIDER = sp.Symbol("slider_mass", positive=True)
 
 
 @dataclass(frozen=True)
@@ -49,12 +49,12 @@ def driven(mechanism: str) -> Driven:
     """Return what the end C of a mechanism's coupler drives."""
     if mechanism == "slider_crank":
         position = sp.Function("x4")(T)
-        energy = _SLIDER * (position.diff(T) ** 2 / 2 + PULL[0] * position)
+        energy = SLIDER * (position.diff(T) ** 2 / 2 + PULL[0] * position)
         return Driven(position, energy, (position, _OFFSET))
     psi = sp.Function("psi")(T)
     pull = PULL[0] * sp.cos(psi) + PULL[1] * sp.sin(psi)
-    energy = _INERTIA / 2 * psi.diff(T) ** 2 + _MOMENT * pull
-    return Driven(psi, energy, (_FRAME + _FOLLOWER * sp.cos(psi), _FOLLOWER * sp.sin(psi)))
+    energy = INERTIA / 2 * psi.diff(T) ** 2 + _MOMENT * pull
+    return Driven(psi, energy, (_FRAME + FOLLOWER * sp.cos(psi), FOLLOWER * sp.sin(psi)))
 
 
 def lagrangian(mechanism: str, stations: int = 2) -> Lagrangian:

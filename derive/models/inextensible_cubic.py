@@ -47,14 +47,14 @@ ALONG, ACROSS = (sp.Function(name)(T) for name in ("along", "across"))
 _BOW = sp.Symbol("bow", real=True)
 
 
-def _by_u(coordinate: sp.Expr, times: int = 1) -> sp.Expr:
+def by_u(coordinate: sp.Expr, times: int = 1) -> sp.Expr:
     """Return a coordinate's derivative by u as a function of time."""
     return sp.Function(f"{coordinate.func.__name__}_by_{'u' * times}")(T)
 
 
 def _moved(coordinate: sp.Expr, u: Expansion) -> Expansion:
     """Return by how much a coordinate of the rigid linkage changes with the chord's length."""
-    return u * _by_u(coordinate) + u * u * (_by_u(coordinate, 2) / 2)
+    return u * by_u(coordinate) + u * u * (by_u(coordinate, 2) / 2)
 
 
 def _rate(part: sp.Expr) -> sp.Expr:
@@ -131,7 +131,7 @@ def _energies(spec: ModelSpec) -> Lagrangian:
 
 
 @dataclass(frozen=True)
-class _Linkage:
+class RigidLinkage:
     """The rigid linkage: its end, solved kinematics, and rates by the crank angle.
 
     ``rates``: coordinate to its first and second derivative; ``turned``: angles to others, all
@@ -147,13 +147,14 @@ class _Linkage:
     circle: dict[sp.Expr, sp.Expr]
 
 
-def _linkage(mechanism: str) -> _Linkage:
+def rigid_linkage(mechanism: str) -> RigidLinkage:
+    """Return the solved linkage whose coupler stays straight."""
     end = driven(mechanism)
     if mechanism == "slider_crank":
         s = slider_crank.kinematics()
         rates = {TURNED: (s.w3, s.a3), end.coordinate: (s.v4, s.a4)}
         names = {sp.sin(TURNED): s.sin3, sp.cos(TURNED): s.cos3}
-        return _Linkage(end, s, rates, {}, names, {s.cos3**2: 1 - s.sin3**2})
+        return RigidLinkage(end, s, rates, {}, names, {s.cos3**2: 1 - s.sin3**2})
     k = four_bar.kinematics()
     rates, transmission = {TURNED: (k.w3, k.a3), end.coordinate: (k.w4, k.a4)}, sp.Dummy("gamma")
     names = {
@@ -164,13 +165,13 @@ def _linkage(mechanism: str) -> _Linkage:
     }
     turned = {TURNED: sp.S.Zero, end.coordinate: transmission}
     circle = {k.cosine_transmission**2: 1 - k.sine_transmission**2}
-    return _Linkage(end, k, rates, turned, names, circle)
+    return RigidLinkage(end, k, rates, turned, names, circle)
 
 
 _ORDERS = {"by_u": (1, 0), "by_u_speed": (1, 1), "by_u_bend": (1, 2), "by_uu": (2, 0)}
 
 
-def closure_by_chord(linkage: _Linkage) -> Iterator[Step]:
+def closure_by_chord(linkage: RigidLinkage) -> Iterator[Step]:
     """Yield the derivatives of chord angle and driven coordinate by u and the crank angle.
 
     The closure of the loop, its coupler ``1 + u`` times as long, is differentiated by u and the
@@ -201,7 +202,7 @@ def closure_by_chord(linkage: _Linkage) -> Iterator[Step]:
             yield symbol, sp.factor_terms(sp.cancel(sp.expand(above) / sp.expand(below)))
 
 
-def _in_time(linkage: _Linkage) -> tuple[dict[sp.Expr, sp.Expr], list[Step]]:
+def _in_time(linkage: RigidLinkage) -> tuple[dict[sp.Expr, sp.Expr], list[Step]]:
     """Return symbols for the functions of time in the equations, and the steps that define them."""
     k = linkage.solved
     steps = [*k.steps.steps, *closure_by_chord(linkage)]
@@ -211,8 +212,8 @@ def _in_time(linkage: _Linkage) -> tuple[dict[sp.Expr, sp.Expr], list[Step]]:
     for f in linkage.rates:
         name = f.func.__name__
         by_u, speed, bend, by_uu = (sp.Symbol(f"{name}_{word}", real=True) for word in _ORDERS)
-        table |= {_by_u(f): by_u, _by_u(f, 2): by_uu}
-        rates[_by_u(f)] = speed, bend
+        table |= {by_u(f): by_u, by_u(f, 2): by_uu}
+        rates[by_u(f)] = speed, bend
     for f, (speed, bend) in rates.items():
         first, second = (sp.Symbol(f"{f.func.__name__}_d{i}", real=True) for i in (1, 2))
         table |= {_rate(f): first, _rate(_rate(f)): second}
@@ -263,7 +264,7 @@ class _Coefficients:
 
 
 def _discretise(spec: ModelSpec, equations: EquationsOfMotion) -> ConstrainedSystem:
-    table, steps = _in_time(_linkage(spec.mechanism))
+    table, steps = _in_time(rigid_linkage(spec.mechanism))
     coefficients = _Coefficients(table, (*equations.coordinates, *equations.velocities))
     named = replace(
         equations,

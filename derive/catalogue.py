@@ -61,13 +61,12 @@ def _rigid(mechanism: str, formulation: str, part: str, *drop: str) -> Catalogue
 _LINKAGES = ("four_bar", "slider_crank", "quick_return")
 _BEAMS = ("cubic", "internal_node", "curvature", "timoshenko")
 _COUPLER = ("complete", "printed", "reduced")
-_COUPLERS = ("four_bar", "slider_crank")
 _EXPANDED = (
     "beam_tangent_harmonics.py",
     "four_bar.py",
+    "slider_crank.py",
     "inextensible_coupler.py",
     "inextensible_cubic.py",
-    "slider_crank.py",
 )
 
 CATALOGUE = (
@@ -207,28 +206,18 @@ CATALOGUE = (
     *(
         CatalogueEntry(
             mechanism=name,
-            formulations=("inextensible",),
-            module=f".models.inextensible_coupler:{name.upper()}",
-            sources=("inextensible_coupler.py",),
-            specs=(ModelSpec(name, "inextensible", flexible=("coupler",)),),
-            closed_in_modes=True,
+            formulations=(formulation,),
+            module=f".models.{sources[-1][:-3]}:{name.upper()}",
+            sources=sources,
+            specs=tuple(ModelSpec(name, formulation, ("coupler",), modes) for modes in numbers),
+            closed_in_modes=numbers == (None,),
             choices=Choices(flexible=("coupler",)),
         )
-        for name in _COUPLERS
-    ),
-    *(
-        CatalogueEntry(
-            mechanism=name,
-            formulations=("inextensible_cubic",),
-            module=f".models.inextensible_cubic:{name.upper()}",
-            sources=_EXPANDED,
-            specs=tuple(
-                ModelSpec(name, "inextensible_cubic", flexible=("coupler",), modes=modes)
-                for modes in (1, 2)
-            ),
-            choices=Choices(flexible=("coupler",)),
+        for name in ("four_bar", "slider_crank")
+        for formulation, sources, numbers in (
+            ("inextensible", ("inextensible_coupler.py",), (None,)),
+            ("inextensible_cubic", _EXPANDED, (1, 2)),
         )
-        for name in _COUPLERS
     ),
     CatalogueEntry(
         mechanism="beam",

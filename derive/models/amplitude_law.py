@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from ..amplitudes import Expansion
+from ..amplitudes import SMALL
 from ..ir import Argument, Description, Result
 from ..pipeline import Model
 from ..safe import UnsafeRewriting
@@ -35,6 +35,7 @@ from .inextensible_cubic import ACROSS, ALONG, by_u, closure_by_chord, energies,
 
 MODE, OTHER = sp.symbols("mode other", integer=True, positive=True)
 _GAMMA, _MASS, _OMEGA = sp.symbols("transmission_angle driven_mass omega", positive=True)
+_FIRST, _SECOND, _FOLLOWS = (sp.Function(name)(T) for name in ("first", "second", "follows"))
 _OWN, _BESIDE = sp.symbols("b0 b2", real=True), sp.symbols("c0 c2", real=True)
 _RESULTS = {
     "alone": "kappa of a coupler with this mode alone",
@@ -44,40 +45,37 @@ _RESULTS = {
 }
 
 
-def _average(part: sp.Expr) -> sp.Expr:
-    waves = sp.expand(sp.expand(part).rewrite(sp.exp))
-    return sp.Add(*(term for term in sp.Add.make_args(waves) if not term.has(T)))
-
-
-def averaged(mechanism: str) -> Expansion:
-    """Return the mean of the Lagrangian over a period, the crank held still, by order."""
+def averaged(mechanism: str) -> sp.Expr:
+    """Return the mean of the Lagrangian over a period, the crank held still."""
     linkage = rigid_linkage(mechanism)
-    (own, twice), (mean, second) = _OWN, _BESIDE
-    swing, wave = sp.cos(_OMEGA * T), sp.cos(2 * _OMEGA * T)
-    angle = {
-        MODE: Expansion((sp.S.Zero, swing, own + twice * wave)),
-        OTHER: Expansion((sp.S.Zero, sp.S.Zero, mean + second * wave)),
-    }
+    angle = {MODE: SMALL * _FIRST + SMALL**2 * _SECOND, OTHER: SMALL**2 * _FOLLOWS}
+    bending = sp.Add(*(a**2 * integral("bending", n) / 2 for n, a in angle.items()))
     slopes = {symbol.name: value for symbol, value in closure_by_chord(linkage)}
     still = dict.fromkeys((ALONG, ACROSS, *PULL), sp.S.Zero)
     for f in linkage.rates:
         still |= {f: sp.S.Zero, by_u(f, 2): sp.S.Zero, by_u(f): slopes[by_u(f).func.__name__]}
-    bending = Expansion.sum(a * a * (integral("bending", n) / 2) for n, a in angle.items())
-    unbent = energies(linkage.end, angle).each(lambda part: part.subs(still).doit())
-    return (unbent + bending * (-STIFFNESS / COUPLER)).each(_average)
+    (own, twice), (mean, second) = _OWN, _BESIDE
+    wave = sp.cos(2 * _OMEGA * T)
+    motion = {_FIRST: sp.cos(_OMEGA * T), _SECOND: own + twice * wave}
+    motion[_FOLLOWS] = mean + second * wave
+    unbent = energies(linkage.end, angle).subs(still).doit()
+    moving = (unbent - STIFFNESS / COUPLER * bending).subs(motion).doit()
+    waves = sp.expand(moving.rewrite(sp.exp))
+    return sp.Add(*(term for term in sp.Add.make_args(waves) if not term.has(T)))
 
 
 def coefficients(mechanism: str) -> tuple[sp.Expr, sp.Expr]:
     """Return kappa with one mode, and what another one adds, in the linkage's own symbols."""
     mean = averaged(mechanism)
-    (stiffness,) = sp.solve(mean.parts[2], STIFFNESS)  # that of the frequency omega
-    fourth = sp.expand(mean.parts[4].subs(STIFFNESS, stiffness))
+    square = mean.coeff(SMALL, 2)
+    (stiffness,) = sp.solve(square, STIFFNESS)  # that of the frequency omega
+    fourth = sp.expand(mean.coeff(SMALL, 4).subs(STIFFNESS, stiffness))
     unknowns = [*_OWN, *_BESIDE]
     if not sp.hessian(fourth, unknowns).is_diagonal():
         raise UnsafeRewriting("the second-order motions answer together")
     zero = dict.fromkeys(unknowns, sp.S.Zero)
-    # d(mean)/da = 0: 2 d(second)/d(omega) (omega - omega_k) + 4 fourth = 0, at a = 1.
-    scale = -2 * (sp.pi * MODE) ** 2 / (_OMEGA * mean.parts[2].diff(_OMEGA))
+    # d(mean)/da = 0: 2 d(square)/d(omega) (omega - omega_k) + 4 fourth = 0, at a = 1.
+    scale = -2 * (sp.pi * MODE) ** 2 / (_OMEGA * square.diff(_OMEGA))
 
     def answer(unknown: sp.Symbol) -> sp.Expr:
         return -(fourth.diff(unknown).subs(zero) ** 2) / (2 * fourth.diff(unknown, 2))
@@ -87,29 +85,22 @@ def coefficients(mechanism: str) -> tuple[sp.Expr, sp.Expr]:
     return sp.factor(sp.simplify(scale * alone)), sp.factor(sp.simplify(scale * beside))
 
 
-def law() -> tuple[sp.Expr, sp.Expr]:
-    """Return the coefficients in transmission angle and mass ratio, for either mechanism."""
-    found = []
-    for mechanism, names in (
-        ("four_bar", ("sine_transmission", "cosine_transmission")),
-        ("slider_crank", ("cos3", "sin3")),  # the angle there is that with the guide's normal
-    ):
-        solved = rigid_linkage(mechanism).solved
-        table = {
-            getattr(solved, names[0]): sp.sin(_GAMMA),
-            getattr(solved, names[1]): sp.cos(_GAMMA),
-        }
-        beam = _MASS * DENSITY * COUPLER
-        table |= {INERTIA: beam * FOLLOWER**2, SLIDER: beam}
-        found.append([sp.simplify(value.subs(table)) for value in coefficients(mechanism)])
-    if any(sp.simplify(one - other) != 0 for one, other in zip(*found, strict=True)):
-        raise UnsafeRewriting("four-bar and slider-crank have different laws")
-    return found[0][0], found[0][1]
+def law(mechanism: str) -> tuple[sp.Expr, sp.Expr]:
+    """Return the coefficients in transmission angle and mass ratio, the same of both mechanisms."""
+    solved = rigid_linkage(mechanism).solved
+    # The transmission angle of a slider-crank is that with the guide's normal.
+    four_bar = mechanism == "four_bar"
+    names = ("sine_transmission", "cosine_transmission") if four_bar else ("cos3", "sin3")
+    driven = _MASS * DENSITY * COUPLER
+    table = {INERTIA: driven * FOLLOWER**2, SLIDER: driven}
+    table |= {getattr(solved, n): f(_GAMMA) for n, f in zip(names, (sp.sin, sp.cos), strict=True)}
+    alone, beside = (sp.simplify(value.subs(table)) for value in coefficients(mechanism))
+    return alone, beside
 
 
 def _form(spec: ModelSpec) -> ClosedForm:
     outputs: dict[str, sp.Expr] = {}
-    for name, value in zip(("alone", "beside"), law(), strict=True):
+    for name, value in zip(("alone", "beside"), law("four_bar"), strict=True):
         outputs |= {name: value, f"{name}_by_angle": sp.factor(value.diff(_GAMMA))}
     return ClosedForm((_GAMMA, MODE, OTHER, _MASS), Steps(), tuple(outputs.items()))
 

@@ -12,7 +12,7 @@ The loop is closed by constraints, whose multipliers are the force at C.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
@@ -109,33 +109,25 @@ def _discretise(spec: ModelSpec, equations: EquationsOfMotion) -> ConstrainedSys
 
 def _describe(spec: ModelSpec) -> Description:
     shape = "float or ndarray, shape (..., 1)"
-    slider = spec.mechanism == "slider_crank"
     driven = (
         Argument("x4", shape, "m", "Place of the slider's pin C along the guide")
-        if slider
+        if spec.mechanism == "slider_crank"
         else Argument("psi", shape, "rad", "Follower angle")
     )
+    angle = Argument("phi", EACH_STATION, "rad", "Angle of the coupler's tangent at the stations")
+    found = described(spec.mechanism, "geometrically exact", [driven, angle], shape)
     vector, kernel = "ndarray, shape (Q,)", "ndarray, shape (Q, Q)"
-    arguments = [
-        driven,
-        Argument("phi", EACH_STATION, "rad", "Angle of the coupler's tangent at the stations"),
-        Argument("t", "float or ndarray, shape (..., 1)", "s", "Time"),
-        Argument("theta", shape, "rad", "Crank angle"),
-        Argument("theta_d1", shape, "rad/s", "Crank speed"),
-        Argument("theta_d2", shape, "rad/s^2", "Crank acceleration"),
+    numbers = (
         Argument("end", vector, "", "Weights of int f ds along the coupler, of unit length"),
         Argument("moment", vector, "", "Weights of int (1 - s) f ds"),
         Argument("bow", vector, "rad", "Angle of the unloaded coupler's tangent"),
         Argument("inertia", kernel, "", "int (int f) (int g) ds, integrals from the crank pin"),
         Argument("bending", kernel, "", "int f' g' ds"),
         Argument("drag", kernel, "", "int (int f) (int g) ds of what has no mean"),
-    ]
-    name = "slider-crank" if slider else "four-bar linkage"
-    return Description(
-        title=f"Inextensible flexible coupler of a {name}, geometrically exact",
-        references=("Smith 9.6, further work 2",),
-        arguments=tuple(arguments),
-        parameters=parameters(spec.mechanism),
+    )
+    return replace(
+        found,
+        arguments=(*found.arguments, *numbers),
         notes=(
             "The coupler's points are r(s) = B + coupler int (cos phi, sin phi) ds.  Arrays with a "
             "value at each of the Q stations have them on their last axis, all others one value "
@@ -145,28 +137,32 @@ def _describe(spec: ModelSpec) -> Description:
     )
 
 
-def parameters(mechanism: str) -> tuple[Argument, ...]:
-    """Return the parameters of a mechanism's coupler."""
+def described(mechanism: str, words: str, coordinates: list[Argument], shape: str) -> Description:
+    """Return the description of a mechanism's coupler: its drive and parameters, without notes.
+
+    ``words``: what is special to the equations; ``shape``: of the drive's angle and rates.
+    """
     slider = mechanism == "slider_crank"
+    name = "slider-crank" if slider else "four-bar linkage"
     lengths = (
         ("crank", "coupler", "offset") if slider else ("frame", "crank", "coupler", "follower")
     )
-    words = {
+    meanings = {
         "frame": "Length of the frame",
         "crank": "Length of the crank",
         "coupler": "Length of the coupler",
         "follower": "Length of the follower",
         "offset": "Height of the guide over the crank's pivot",
     }
-    found = [Argument(name, "float", "m", words[name]) for name in lengths]
-    found += [
+    parameters = [Argument(name, "float", "m", meanings[name]) for name in lengths]
+    parameters += [
         Argument("bending_stiffness", "float", "N m^2", "EI of the coupler"),
         Argument("mass_per_length", "float", "kg/m", "mu of the coupler"),
         Argument("damping", "float", "N s/m^2", "Viscous damping of the coupler per length"),
         Argument("gravity_x", "float", "m/s^2", "Acceleration of gravity along x"),
         Argument("gravity_y", "float", "m/s^2", "Acceleration of gravity along y"),
     ]
-    found += (
+    parameters += (
         [Argument("slider_mass", "float", "kg", "Mass of the slider")]
         if slider
         else [
@@ -174,7 +170,18 @@ def parameters(mechanism: str) -> tuple[Argument, ...]:
             Argument("follower_first_moment", "float", "kg m", "m4 r4 of the follower about D"),
         ]
     )
-    return tuple(found)
+    return Description(
+        title=f"Inextensible flexible coupler of a {name}, {words}",
+        references=("Smith 9.6, further work 2",),
+        arguments=(
+            *coordinates,
+            Argument("t", shape, "s", "Time"),
+            Argument("theta", shape, "rad", "Crank angle"),
+            Argument("theta_d1", shape, "rad/s", "Crank speed"),
+            Argument("theta_d2", shape, "rad/s^2", "Crank acceleration"),
+        ),
+        parameters=tuple(parameters),
+    )
 
 
 def _model(mechanism: str) -> Model:

@@ -14,8 +14,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import sympy as sp
+from sympy.simplify.fu import TR6
 
-from ..amplitudes import Expansion, Harmonics, added, composed, each, scaled, tangent
+from ..amplitudes import SMALL, Harmonics, composed, kept, product, tangent
 from ..entries import ConstrainedSystem
 from ..ir import Argument, Description
 from ..lagrange import variational_equations
@@ -36,8 +37,8 @@ from .inextensible_coupler import (
     THETA,
     Driven,
     T,
+    described,
     driven,
-    parameters,
 )
 
 TURNED = sp.Function("theta3")(T)
@@ -52,62 +53,63 @@ def by_u(coordinate: sp.Expr, times: int = 1) -> sp.Expr:
     return sp.Function(f"{coordinate.func.__name__}_by_{'u' * times}")(T)
 
 
-def _moved(coordinate: sp.Expr, u: Expansion) -> Expansion:
+def _moved(coordinate: sp.Expr, u: sp.Expr) -> sp.Expr:
     """Return by how much a coordinate of the rigid linkage changes with the chord's length."""
-    return u * by_u(coordinate) + u * u * (by_u(coordinate, 2) / 2)
+    return u * by_u(coordinate) + product(u, u) * by_u(coordinate, 2) / 2
 
 
-def _rate(part: sp.Expr) -> sp.Expr:
-    return part.diff(T)
+def _rate(function: sp.Expr) -> sp.Expr:
+    return function.diff(T)
 
 
-def _moment(values: Harmonics) -> Expansion:
+def _moment(values: Harmonics) -> sp.Expr:
     """Return ``int (1 - s) f ds``."""
-    return Expansion.sum(value * integral("moment", n) for n, value in values.items())
+    return sp.Add(*(value * integral("moment", n) for n, value in values.items()))
 
 
-def _inertia(values: Harmonics) -> Expansion:
+def _inertia(values: Harmonics) -> sp.Expr:
     """Return ``int (int f)^2 ds``."""
-    mean = values.get(sp.S.Zero, Expansion())
-    found = [value * value * integral("inertia", n) for n, value in values.items()]
-    found += [mean * v * (2 * integral("beside_mean", n)) for n, v in values.items() if n != 0]
-    return Expansion.sum(found)
+    mean = values.get(sp.S.Zero, sp.S.Zero)
+    alone = (product(v, v) * integral("inertia", n) for n, v in values.items())
+    beside = (2 * product(mean, v) * integral("beside_mean", n) for n, v in values.items() if n)
+    return sp.Add(*alone, *beside)
 
 
 def along_chord(angle: Harmonics) -> tuple[Harmonics, Harmonics]:
     """Return the tangent's components along the chord and across it."""
     cosine, sine = tangent(angle)
-    chi = sine.get(sp.S.Zero, Expansion())
-    along = each(added(cosine, scaled(sine, chi)), sp.expand)
-    across = each(added(sine, scaled(cosine, -chi)), sp.expand)
-    if across.pop(sp.S.Zero, Expansion()).whole() != 0:
+    chi = sine.get(sp.S.Zero, sp.S.Zero)
+    numbers = {**cosine, **sine}
+    along = {n: cosine.get(n, 0) + product(chi, sine.get(n, 0)) for n in numbers}
+    across = {n: sine.get(n, 0) - product(chi, cosine.get(n, 0)) for n in numbers}
+    if across[sp.S.Zero] != 0:
         raise UnsafeRewriting("the tangent has a mean across the chord")
     return along, across
 
 
-def energies(end: Driven, angle: Harmonics) -> Expansion:
+def energies(end: Driven, angle: Harmonics) -> sp.Expr:
     """Return the Lagrangian without bending, in functions of time, but for total derivatives.
 
     ``angle``: harmonics of the angle of the coupler's tangent, without their mean.
     """
     along, across = along_chord(angle)
-    u = along[sp.S.Zero] + Expansion((sp.S.NegativeOne,))
+    u = along[sp.S.Zero] - 1
     turned, driven_by = _moved(TURNED, u), _moved(end.coordinate, u)
-    turning = Expansion((_rate(TURNED),)) + turned.each(_rate)
-    kinetic = _inertia(added(each(along, _rate), scaled(across, -turning)))
-    kinetic += _inertia(added(each(across, _rate), scaled(along, turning)))
+    turning = _rate(TURNED + turned)
+    kinetic = _inertia({n: _rate(along[n]) - product(turning, across[n]) for n in along})
+    kinetic += _inertia({n: _rate(across[n]) + product(turning, along[n]) for n in along})
     angle3 = sp.Dummy("theta3")
-    straight = {angle3: sp.S.Zero}
-    work = Expansion()
-    for pull, values in (
-        (ALONG * sp.cos(angle3) + ACROSS * sp.sin(angle3), along),
-        (ACROSS * sp.cos(angle3) - ALONG * sp.sin(angle3), across),
-    ):
-        acting = composed(pull, {angle3: turned}).each(lambda part: part.subs(straight))
-        work += acting * _moment(values)
-    changes = {end.coordinate: driven_by, _rate(end.coordinate): driven_by.each(_rate)}
-    coupler = kinetic * (COUPLER**2 / 2) + work * COUPLER
-    return coupler * (DENSITY * COUPLER) + composed(end.energy, changes)
+    pulls = (
+        ALONG * sp.cos(angle3) + ACROSS * sp.sin(angle3),
+        ACROSS * sp.cos(angle3) - ALONG * sp.sin(angle3),
+    )
+    acting = (composed(pull, {angle3: turned}).subs(angle3, 0) for pull in pulls)
+    work = sp.Add(
+        *(product(pull, _moment(v)) for pull, v in zip(acting, (along, across), strict=True))
+    )
+    coupler = DENSITY * COUPLER * (kinetic * COUPLER**2 / 2 + work * COUPLER)
+    changes = {end.coordinate: driven_by, _rate(end.coordinate): _rate(driven_by)}
+    return kept(coupler + composed(end.energy, changes))
 
 
 def _amplitudes(spec: ModelSpec) -> dict[sp.Expr, sp.Expr]:
@@ -116,17 +118,16 @@ def _amplitudes(spec: ModelSpec) -> dict[sp.Expr, sp.Expr]:
 
 def _energies(spec: ModelSpec) -> Lagrangian:
     q = _amplitudes(spec)
-    unbent = energies(driven(spec.mechanism), {n: Expansion((sp.S.Zero, a)) for n, a in q.items()})
+    unbent = energies(driven(spec.mechanism), {n: SMALL * angle for n, angle in q.items()})
     # A bow b sin(pi s) has the slope (pi b / l3) cos(pi s).
-    bent = {n: a - (sp.pi * _BOW / COUPLER if n == 1 else 0) for n, a in q.items()}
+    bent = {n: angle - (sp.pi * _BOW / COUPLER if n == 1 else 0) for n, angle in q.items()}
     strain = sp.Add(*(integral("bending", n) * angle**2 / 2 for n, angle in bent.items()))
-    drag = {a: integral("inertia", n) * _rate(a) for n, a in q.items()}
-    moving = replace(unbent, parts=(sp.S.Zero, *unbent.parts[1:]))
+    drag = {angle: integral("inertia", n) * _rate(angle) for n, angle in q.items()}
     return Lagrangian(
         coordinates=tuple(q.values()),
         t=T,
-        expression=sp.expand(moving.whole() - STIFFNESS / COUPLER * strain),
-        forces={a: -DAMPING * COUPLER**3 * force for a, force in drag.items()},
+        expression=(unbent - unbent.subs(SMALL, 0)).subs(SMALL, 1) - STIFFNESS / COUPLER * strain,
+        forces={angle: -DAMPING * COUPLER**3 * force for angle, force in drag.items()},
     )
 
 
@@ -136,7 +137,7 @@ class RigidLinkage:
 
     ``rates``: coordinate to its first and second derivative; ``turned``: angles to others, all
     turned alike, under which the closure's derivatives by the chord read shortest; ``names``: sines
-    and cosines to symbols; ``circle``: the square of a cosine there to one less that of the sine.
+    and cosines to symbols.
     """
 
     end: Driven
@@ -144,7 +145,6 @@ class RigidLinkage:
     rates: dict[sp.Expr, tuple[sp.Expr, sp.Expr]]
     turned: dict[sp.Expr, sp.Expr]
     names: dict[sp.Expr, sp.Symbol]
-    circle: dict[sp.Expr, sp.Expr]
 
 
 def rigid_linkage(mechanism: str) -> RigidLinkage:
@@ -154,7 +154,7 @@ def rigid_linkage(mechanism: str) -> RigidLinkage:
         s = slider_crank.kinematics()
         rates = {TURNED: (s.w3, s.a3), end.coordinate: (s.v4, s.a4)}
         names = {sp.sin(TURNED): s.sin3, sp.cos(TURNED): s.cos3}
-        return RigidLinkage(end, s, rates, {}, names, {s.cos3**2: 1 - s.sin3**2})
+        return RigidLinkage(end, s, rates, {}, names)
     k = four_bar.kinematics()
     rates, transmission = {TURNED: (k.w3, k.a3), end.coordinate: (k.w4, k.a4)}, sp.Dummy("gamma")
     names = {
@@ -164,8 +164,7 @@ def rigid_linkage(mechanism: str) -> RigidLinkage:
         sp.cos(transmission): k.cosine_transmission,
     }
     turned = {TURNED: sp.S.Zero, end.coordinate: transmission}
-    circle = {k.cosine_transmission**2: 1 - k.sine_transmission**2}
-    return RigidLinkage(end, k, rates, turned, names, circle)
+    return RigidLinkage(end, k, rates, turned, names)
 
 
 _ORDERS = {"by_u": (1, 0), "by_u_speed": (1, 1), "by_u_bend": (1, 2), "by_uu": (2, 0)}
@@ -195,11 +194,12 @@ def closure_by_chord(linkage: RigidLinkage) -> Iterator[Step]:
         }
         known |= wanted
         rows = [part.diff((u, by_u), (a, by_a)).xreplace(known).xreplace(back) for part in loop]
-        rows = [row.subs(u, 0).subs(linkage.turned).xreplace(linkage.names) for row in rows]
+        rows = [row.subs(u, 0).subs(linkage.turned) for row in rows]
         matrix, right = sp.linear_eq_to_matrix(rows, list(wanted.values()))
+        below = TR6(sp.expand(matrix.det()))
         for symbol, above in zip(wanted.values(), matrix.adjugate() * right, strict=True):
-            above, below = (sp.expand(e).subs(linkage.circle) for e in (above, matrix.det()))
-            yield symbol, sp.factor_terms(sp.cancel(sp.expand(above) / sp.expand(below)))
+            solved = sp.cancel((TR6(sp.expand(above)) / below).xreplace(linkage.names))
+            yield symbol, sp.factor_terms(solved)
 
 
 def _in_time(linkage: RigidLinkage) -> tuple[dict[sp.Expr, sp.Expr], list[Step]]:
@@ -211,8 +211,8 @@ def _in_time(linkage: RigidLinkage) -> tuple[dict[sp.Expr, sp.Expr], list[Step]]
     rates = dict(linkage.rates)
     for f in linkage.rates:
         name = f.func.__name__
-        by_u, speed, bend, by_uu = (sp.Symbol(f"{name}_{word}", real=True) for word in _ORDERS)
-        table |= {by_u(f): by_u, by_u(f, 2): by_uu}
+        once, speed, bend, twice = (sp.Symbol(f"{name}_{word}", real=True) for word in _ORDERS)
+        table |= {by_u(f): once, by_u(f, 2): twice}
         rates[by_u(f)] = speed, bend
     for f, (speed, bend) in rates.items():
         first, second = (sp.Symbol(f"{f.func.__name__}_d{i}", real=True) for i in (1, 2))
@@ -233,68 +233,45 @@ def _in_time(linkage: RigidLinkage) -> tuple[dict[sp.Expr, sp.Expr], list[Step]]
     return table, steps
 
 
-class _Coefficients:
-    """Names for the coefficients of polynomials in coordinates and velocities."""
-
-    def __init__(self, table: dict[sp.Expr, sp.Expr], variables: tuple[sp.Symbol, ...]) -> None:
-        self._table, self._variables = table, variables
-        self._names: dict[sp.Expr, sp.Symbol] = {}
-
-    @property
-    def steps(self) -> list[Step]:
-        """The coefficients."""
-        return [(symbol, sp.factor_terms(value)) for value, symbol in self._names.items()]
-
-    def named(self, name: str, matrix: sp.ImmutableDenseMatrix) -> sp.ImmutableDenseMatrix:
-        """Return a matrix of polynomials with a symbol for each coefficient."""
-
-        def entry(i: int, j: int) -> sp.Expr:
-            terms = sp.Poly(sp.expand(matrix[i, j]), *self._variables).terms()
-            place = f"{name}{i + 1}{j + 1 if matrix.cols > 1 else ''}"
-            return sp.Add(*(self._term(place, powers, value) for powers, value in terms))
-
-        return sp.ImmutableDenseMatrix(*matrix.shape, entry)
-
-    def _term(self, place: str, powers: tuple[int, ...], value: sp.Expr) -> sp.Expr:
-        number, plain = sp.expand(value.xreplace(self._table)).as_content_primitive()
-        monomial = [v for v, n in zip(self._variables, powers, strict=True) for _ in range(n)]
-        called = "_".join([place, *(variable.name for variable in monomial)])
-        symbol = self._names.setdefault(plain, sp.Symbol(called))
-        return sp.Mul(number, symbol, *monomial)
-
-
 def _discretise(spec: ModelSpec, equations: EquationsOfMotion) -> ConstrainedSystem:
+    """Name the coefficients of the polynomials in amplitudes and their rates."""
     table, steps = _in_time(rigid_linkage(spec.mechanism))
-    coefficients = _Coefficients(table, (*equations.coordinates, *equations.velocities))
-    named = replace(
-        equations,
-        mass=coefficients.named("mass", equations.mass),
-        rest=coefficients.named("rest", equations.rest),
+    variables = (*equations.coordinates, *equations.velocities)
+    names: dict[sp.Expr, sp.Symbol] = {}
+
+    def named(place: str, entry: sp.Expr) -> sp.Expr:
+        total = sp.S.Zero
+        for powers, value in sp.Poly(sp.expand(entry), *variables).terms():
+            number, plain = sp.expand(value.xreplace(table)).as_content_primitive()
+            factors = [v for v, n in zip(variables, powers, strict=True) for _ in range(n)]
+            symbol = sp.Symbol("_".join([place, *(factor.name for factor in factors)]))
+            total += sp.Mul(number, names.setdefault(plain, symbol), *factors)
+        return total
+
+    size = range(len(equations.coordinates))
+    mass = [[named(f"mass{i + 1}{j + 1}", equations.mass[i, j]) for j in size] for i in size]
+    rest = [named(f"rest{i + 1}", equations.rest[i]) for i in size]
+    changed = replace(
+        equations, mass=sp.ImmutableDenseMatrix(mass), rest=sp.ImmutableDenseMatrix(rest)
     )
+    coefficients = ((symbol, sp.factor_terms(value)) for value, symbol in names.items())
     return ConstrainedSystem(
-        named, variational_equations(named), steps=Steps((*steps, *coefficients.steps))
+        changed, variational_equations(changed), steps=Steps((*steps, *coefficients))
     )
 
 
 def _describe(spec: ModelSpec) -> Description:
     shape = "float or ndarray, shape (...)"
-    arguments = [
+    amplitudes = [
         Argument(f.func.__name__, shape, "rad", f"Amplitude of cos({n} pi s)")
         for n, f in _amplitudes(spec).items()
     ]
-    arguments += [
-        Argument("theta", shape, "rad", "Crank angle"),
-        Argument("theta_d1", shape, "rad/s", "Crank speed"),
-        Argument("theta_d2", shape, "rad/s^2", "Crank acceleration"),
-    ]
-    name = "slider-crank" if spec.mechanism == "slider_crank" else "four-bar linkage"
     kinematics = slider_crank if spec.mechanism == "slider_crank" else four_bar
-    return Description(
-        title=f"Inextensible flexible coupler of a {name}, to third order in its amplitudes",
-        references=("Smith 9.6, further work 2",),
-        arguments=tuple(arguments),
+    found = described(spec.mechanism, "to third order in its amplitudes", amplitudes, shape)
+    return replace(
+        found,
         parameters=(
-            *parameters(spec.mechanism),
+            *found.parameters,
             Argument("bow", "float", "m", "Deflection of the unloaded coupler's middle"),
             *(a for a in kinematics.ARGUMENTS if a.name == "assembly"),
         ),

@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 168 operations
-Content hash 98996bca2c2be75242568ee0bb8ef3bd; derived with SymPy 1.14.0.
+Content hash c700bb083ca0ce82b71d60f57356476e; derived with SymPy 1.14.0.
 """
 
 __all__ = ["element"]
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"curvature","mechanism":"beam_element","'
     'modes":null,"outputs":[]}'
 )
-CONTENT = "98996bca2c2be75242568ee0bb8ef3bd"
+CONTENT = "c700bb083ca0ce82b71d60f57356476e"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

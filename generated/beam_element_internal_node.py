@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 202 operations
-Content hash b99f0847feb0ac8fa742db71d25b1119; derived with SymPy 1.14.0.
+Content hash c9fbce6bfa82d8f52406bbdefe51be50; derived with SymPy 1.14.0.
 """
 
 __all__ = ["element"]
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"internal_node","mechanism":"beam_elemen'
     't","modes":null,"outputs":[]}'
 )
-CONTENT = "b99f0847feb0ac8fa742db71d25b1119"
+CONTENT = "c9fbce6bfa82d8f52406bbdefe51be50"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

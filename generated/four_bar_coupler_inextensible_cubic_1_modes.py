@@ -11,7 +11,7 @@ Derivatives by_u are those by the chord's length over the coupler's.
 Cost per evaluation:
     dynamics: 405 operations
     variations: 392 operations
-Content hash c0b1d1b8ac2c9af35d0fc9a7b7ede6ea; derived with SymPy 1.14.0.
+Content hash 893053ef14b7cb9d44749e8a7f45b896; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -22,7 +22,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"inextensible_cubic","mechanism'
     '":"four_bar","modes":1,"outputs":[]}'
 )
-CONTENT = "c0b1d1b8ac2c9af35d0fc9a7b7ede6ea"
+CONTENT = "893053ef14b7cb9d44749e8a7f45b896"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {
@@ -40,7 +40,7 @@ QUANTITIES = {
     "bow": ("m", "Deflection of the unloaded coupler's middle"),
     "assembly": ("", "+1 for the open, -1 for the crossed assembly"),
     "q1": ("rad", "Amplitude of cos(1 pi s)"),
-    "t": ("", "Time"),
+    "t": ("s", "Time"),
     "theta": ("rad", "Crank angle"),
     "theta_d1": ("rad/s", "Crank speed"),
     "theta_d2": ("rad/s^2", "Crank acceleration"),
@@ -207,10 +207,10 @@ def dynamics(
     x41 = 9.869604401089358
     x42 = 1 / x41
     x43 = x39 * x42
-    mass1_q1_q1 = 24 * x33 * follower_inertia + x35 * x40 + x40 - 45 * x43
+    mass11_q1_q1 = 24 * x33 * follower_inertia + x35 * x40 + x40 - 45 * x43
     x44 = x43 * theta3_by_u
-    mass1_q1 = -x44
-    mass1 = x43
+    mass11_q1 = -x44
+    mass11 = x43
     x45 = psi_by_u * follower_inertia
     x46 = x45 * psi_d2
     x47 = 96 * psi_by_uu
@@ -256,12 +256,12 @@ def dynamics(
         bending_stiffness / x53
     )
     x68 = q1**2
-    x69 = mass1_q1_q1 / 96
+    x69 = mass11_q1_q1 / 96
     x70 = q1_dot**2
     return (
-        mass1 / 2 + mass1_q1 * q1 + x68 * x69,
+        mass11 / 2 + mass11_q1 * q1 + x68 * x69,
         (
-            mass1_q1 * x70 / 2 + rest1_q1_q1_q1 * q1**3 / 768 + q1 * q1_dot * rest1_q1_q1_dot + q1
+            mass11_q1 * x70 / 2 + rest1_q1_q1_q1 * q1**3 / 768 + q1 * q1_dot * rest1_q1_q1_dot + q1
             * rest1_q1 / 24 + q1 * x69 * x70 + q1_dot * rest1_q1_q1_q1_dot * x68 / 6 + rest1 / 2 +
             rest1_q1_q1 * x68 / 36
         ),
@@ -390,9 +390,9 @@ def variations(
     x41 = 9.869604401089358
     x42 = 1 / x41
     x43 = x39 * x42
-    mass1_q1_q1 = 24 * x33 * follower_inertia + x35 * x40 + x40 - 45 * x43
+    mass11_q1_q1 = 24 * x33 * follower_inertia + x35 * x40 + x40 - 45 * x43
     x44 = x43 * theta3_by_u
-    mass1_q1 = -x44
+    mass11_q1 = -x44
     x45 = psi_by_u * follower_inertia
     x46 = x45 * psi_d2
     x47 = 96 * psi_by_uu
@@ -431,16 +431,16 @@ def variations(
         12 * x41 * x9 * bending_stiffness - 12 * x46 + x49 * x65 - x52 * x65 + 6 * x54 + 6 * x56 -
         4 * x59 + 4 * x62 - 15 * x64
     )
-    x66 = mass1_q1_q1 * q1 / 48
+    x66 = mass11_q1_q1 * q1 / 48
     x67 = q1**2
     return (
         (
-            x38 * x42 * damping / 2 + mass1_q1 * q1_dot + q1 * rest1_q1_q1_dot + x66 * q1_dot +
+            x38 * x42 * damping / 2 + mass11_q1 * q1_dot + q1 * rest1_q1_q1_dot + x66 * q1_dot +
             rest1_q1_q1_q1_dot * x67 / 6
         ),
         (
-            mass1_q1_q1 * q1_dot**2 / 96 + q1 * rest1_q1_q1_q1_dot * q1_dot / 3 + q1 * rest1_q1_q1
-            / 18 + (mass1_q1 + x66) * q1_ddot + rest1_q1_q1_dot * q1_dot + rest1_q1 / 24 +
+            mass11_q1_q1 * q1_dot**2 / 96 + q1 * rest1_q1_q1_q1_dot * q1_dot / 3 + q1 * rest1_q1_q1
+            / 18 + (mass11_q1 + x66) * q1_ddot + rest1_q1_q1_dot * q1_dot + rest1_q1 / 24 +
             rest1_q1_q1_q1 * x67 / 256
         ),
     )

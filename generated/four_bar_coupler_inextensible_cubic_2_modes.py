@@ -11,7 +11,7 @@ Derivatives by_u are those by the chord's length over the coupler's.
 Cost per evaluation:
     dynamics: 789 operations
     variations: 831 operations
-Content hash 056f17d20c4d7922d75cf29a74d823d6; derived with SymPy 1.14.0.
+Content hash aff68615f9dcb4dcec5da0f92bd44e61; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -22,7 +22,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"inextensible_cubic","mechanism'
     '":"four_bar","modes":2,"outputs":[]}'
 )
-CONTENT = "056f17d20c4d7922d75cf29a74d823d6"
+CONTENT = "aff68615f9dcb4dcec5da0f92bd44e61"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {
@@ -41,7 +41,7 @@ QUANTITIES = {
     "assembly": ("", "+1 for the open, -1 for the crossed assembly"),
     "q1": ("rad", "Amplitude of cos(1 pi s)"),
     "q2": ("rad", "Amplitude of cos(2 pi s)"),
-    "t": ("", "Time"),
+    "t": ("s", "Time"),
     "theta": ("rad", "Crank angle"),
     "theta_d1": ("rad/s", "Crank speed"),
     "theta_d2": ("rad/s^2", "Crank acceleration"),

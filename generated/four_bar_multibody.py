@@ -11,7 +11,7 @@ torque, as couple2 is.
 Cost per evaluation:
     constraints: 30 operations
     dynamics: 76 operations
-Content hash 74416a65de86248731911d0410fef19b; derived with SymPy 1.14.0.
+Content hash f1c584cba3d1a1d5e17e87be6b90bd55; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -22,7 +22,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"multibody","mechanism":"four_bar","mode'
     's":null,"outputs":[]}'
 )
-CONTENT = "74416a65de86248731911d0410fef19b"
+CONTENT = "f1c584cba3d1a1d5e17e87be6b90bd55"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

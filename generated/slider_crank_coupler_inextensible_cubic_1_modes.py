@@ -11,7 +11,7 @@ Derivatives by_u are those by the chord's length over the coupler's.
 Cost per evaluation:
     dynamics: 298 operations
     variations: 285 operations
-Content hash 9f84b0e3cc893946471e579be60915e6; derived with SymPy 1.14.0.
+Content hash 3f947920b59c127cb920d724166bb61f; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -22,7 +22,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"inextensible_cubic","mechanism'
     '":"slider_crank","modes":1,"outputs":[]}'
 )
-CONTENT = "9f84b0e3cc893946471e579be60915e6"
+CONTENT = "3f947920b59c127cb920d724166bb61f"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {
@@ -38,7 +38,7 @@ QUANTITIES = {
     "bow": ("m", "Deflection of the unloaded coupler's middle"),
     "assembly": ("", "+1 where the slider is right of B (open), -1 left"),
     "q1": ("rad", "Amplitude of cos(1 pi s)"),
-    "t": ("", "Time"),
+    "t": ("s", "Time"),
     "theta": ("rad", "Crank angle"),
     "theta_d1": ("rad/s", "Crank speed"),
     "theta_d2": ("rad/s^2", "Crank acceleration"),
@@ -159,10 +159,10 @@ def dynamics(
     x22 = 9.869604401089358
     x23 = 1 / x22
     x24 = x20 * x23
-    mass1_q1_q1 = 24 * slider_mass * x4_by_u**2 + x17 * x21 + x21 - 45 * x24
+    mass11_q1_q1 = 24 * slider_mass * x4_by_u**2 + x17 * x21 + x21 - 45 * x24
     x25 = x24 * theta3_by_u
-    mass1_q1 = -x25
-    mass1 = x24
+    mass11_q1 = -x25
+    mass11 = x24
     x26 = gravity_x * slider_mass
     x27 = 48 * x4_by_u
     x28 = 96 * x4_by_uu
@@ -203,12 +203,12 @@ def dynamics(
         bending_stiffness / x31
     )
     x45 = q1**2
-    x46 = mass1_q1_q1 / 96
+    x46 = mass11_q1_q1 / 96
     x47 = q1_dot**2
     return (
-        mass1 / 2 + mass1_q1 * q1 + x45 * x46,
+        mass11 / 2 + mass11_q1 * q1 + x45 * x46,
         (
-            mass1_q1 * x47 / 2 + rest1_q1_q1_q1 * q1**3 / 768 + q1 * q1_dot * rest1_q1_q1_dot + q1
+            mass11_q1 * x47 / 2 + rest1_q1_q1_q1 * q1**3 / 768 + q1 * q1_dot * rest1_q1_q1_dot + q1
             * rest1_q1 / 24 + q1 * x46 * x47 + q1_dot * rest1_q1_q1_q1_dot * x45 / 6 + rest1 / 2 +
             rest1_q1_q1 * x45 / 36
         ),
@@ -291,9 +291,9 @@ def variations(
     x22 = 9.869604401089358
     x23 = 1 / x22
     x24 = x20 * x23
-    mass1_q1_q1 = 24 * slider_mass * x4_by_u**2 + x17 * x21 + x21 - 45 * x24
+    mass11_q1_q1 = 24 * slider_mass * x4_by_u**2 + x17 * x21 + x21 - 45 * x24
     x25 = x24 * theta3_by_u
-    mass1_q1 = -x25
+    mass11_q1 = -x25
     x26 = gravity_x * slider_mass
     x27 = 48 * x4_by_u
     x28 = 96 * x4_by_uu
@@ -327,16 +327,16 @@ def variations(
         12 * x22 * x7 * bending_stiffness + x26 * x42 - x30 * x42 + 6 * x32 + 6 * x34 - 4 * x36 + 4
         * x39 - 15 * x41
     )
-    x43 = mass1_q1_q1 * q1 / 48
+    x43 = mass11_q1_q1 * q1 / 48
     x44 = q1**2
     return (
         (
-            x10 * x23 * damping / 2 + mass1_q1 * q1_dot + q1 * rest1_q1_q1_dot + x43 * q1_dot +
+            x10 * x23 * damping / 2 + mass11_q1 * q1_dot + q1 * rest1_q1_q1_dot + x43 * q1_dot +
             rest1_q1_q1_q1_dot * x44 / 6
         ),
         (
-            mass1_q1_q1 * q1_dot**2 / 96 + q1 * rest1_q1_q1_q1_dot * q1_dot / 3 + q1 * rest1_q1_q1
-            / 18 + (mass1_q1 + x43) * q1_ddot + rest1_q1_q1_dot * q1_dot + rest1_q1 / 24 +
+            mass11_q1_q1 * q1_dot**2 / 96 + q1 * rest1_q1_q1_q1_dot * q1_dot / 3 + q1 * rest1_q1_q1
+            / 18 + (mass11_q1 + x43) * q1_ddot + rest1_q1_q1_dot * q1_dot + rest1_q1 / 24 +
             rest1_q1_q1_q1 * x44 / 256
         ),
     )

@@ -11,7 +11,7 @@ Derivatives by_u are those by the chord's length over the coupler's.
 Cost per evaluation:
     dynamics: 663 operations
     variations: 705 operations
-Content hash 829b6c4e7cf7959c4cd7da08e6e5f0cd; derived with SymPy 1.14.0.
+Content hash e8f169fef09f6d775fb2154887be476f; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -22,7 +22,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"inextensible_cubic","mechanism'
     '":"slider_crank","modes":2,"outputs":[]}'
 )
-CONTENT = "829b6c4e7cf7959c4cd7da08e6e5f0cd"
+CONTENT = "e8f169fef09f6d775fb2154887be476f"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {
@@ -39,7 +39,7 @@ QUANTITIES = {
     "assembly": ("", "+1 where the slider is right of B (open), -1 left"),
     "q1": ("rad", "Amplitude of cos(1 pi s)"),
     "q2": ("rad", "Amplitude of cos(2 pi s)"),
-    "t": ("", "Time"),
+    "t": ("s", "Time"),
     "theta": ("rad", "Crank angle"),
     "theta_d1": ("rad/s", "Crank speed"),
     "theta_d2": ("rad/s^2", "Crank acceleration"),

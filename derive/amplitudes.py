@@ -49,13 +49,13 @@ def composed(expression: sp.Expr, changes: Mapping[sp.Expr, sp.Expr]) -> sp.Expr
 
 def tangent(angle: Harmonics) -> tuple[Harmonics, Harmonics]:
     """Return cosine and sine of an angle of first and higher order."""
-    parts = defaultdict(lambda: sp.S.Zero), defaultdict(lambda: sp.S.Zero)
+    parts: list[dict[sp.Expr, sp.Expr]] = [defaultdict(lambda: sp.S.Zero) for _ in range(2)]
     power: Harmonics = {sp.S.Zero: sp.S.One}
     for n in range(ORDER + 1):
         for number, value in power.items():
             parts[n % 2][number] += (-1) ** (n // 2) * value / sp.factorial(n)
         power = _multiplied(power, angle)
-    return parts
+    return parts[0], parts[1]
 
 
 def _multiplied(one: Harmonics, other: Harmonics) -> Harmonics:

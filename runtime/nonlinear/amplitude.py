@@ -119,8 +119,8 @@ def amplitude_law(
         mode=mode,
         modes=count,
         method="closed form",
-        error=_ROUND_OFFS * size + np.abs(slopes) * motion.errors["transmission_angle"],
+        # Twice the first order: enough until the angle's error is a third of its sine.
+        error=_ROUND_OFFS * size + 2.0 * np.abs(slopes) * motion.errors["transmission_angle"],
         error_norm="coefficient, absolute, entrywise",
-        error_kind="bound",
         provenance=provenance({"scene": scene.name, "scene_digest": scene.digest()}),
     )

@@ -79,22 +79,34 @@ class Branch:
 LEFT, CLOSED, JOINED = "it leaves the range", "it closes", "it joins a motion of fewer turns"
 
 
-def followed(
-    solver: Solver, begun: tuple[Orbit, Measure], bounds: tuple[float, float], most: int
-) -> Branch:
+@dataclass(frozen=True)
+class Limits:
+    """Where branches end."""
+
+    low: float  # of the parameter
+    high: float
+    largest: float  # of the deflection over the length, where the system watches it
+    points: int
+
+    def hold(self, value: float) -> bool:
+        """Return True for a value within the range."""
+        return self.low <= value <= self.high
+
+
+def followed(solver: Solver, begun: tuple[Orbit, Measure], limits: Limits) -> Branch:
     """Follow a branch from a motion along its tangent, locating special points on the way.
 
     It ends where it leaves the range or cannot be followed, where it comes back to its beginning,
     and where a motion of several turns becomes one of fewer.
     """
     points, special = [begun], []
-    ended = f"{most} points"
-    for orbit, measure, reason in _steps(solver, *begun, bounds, most):
+    ended = f"it has {limits.points} points"
+    for orbit, measure, reason in _steps(solver, *begun, limits):
         if orbit is None or measure is None:
             ended = reason
             break
         for found in special_points(solver, points[-1][0], orbit):
-            if bounds[0] <= found.orbit.value <= bounds[1]:
+            if limits.hold(found.orbit.value):
                 special.append(found)
                 points.append((found.orbit, found.measure))
         points.append((orbit, measure))
@@ -102,12 +114,13 @@ def followed(
 
 
 def _steps(
-    solver: Solver, orbit: Orbit, measure: Measure, bounds: tuple[float, float], most: int
+    solver: Solver, orbit: Orbit, measure: Measure, limits: Limits
 ) -> Iterator[tuple[Orbit | None, Measure | None, str]]:
     """Yield the motions along a branch, and at last why it ends."""
     step, first, away = _FIRST, orbit, False
     before: tuple[Orbit, float] | None = None
-    for _ in range(most):
+    watch = solver.problem.system.watch
+    for _ in range(limits.points):
         ahead = None
         while ahead is None:
             if step < _LEAST:
@@ -129,8 +142,11 @@ def _steps(
             yield None, None, JOINED
             return
         yield ahead, measure, ""
-        if not bounds[0] <= ahead.value <= bounds[1]:
+        if not limits.hold(ahead.value):
             yield None, None, LEFT
+            return
+        if watch is not None and float(np.max(watch(ahead.motion.x))) > limits.largest:
+            yield None, None, f"the deflection passes {limits.largest:g} of the length"
             return
         passed = _passed(ahead, orbit, first)
         if away and passed:

@@ -12,7 +12,7 @@ from .segments import Motion, NotFinite, Problem, Ramp, chained, sweep
 
 # Newton's iteration of a revolution: the last correction, and how many.
 _LAST, _ITERATIONS, _PATIENCE = 1e-9, 12, 5
-_FIRST = 12  # steps of a revolution at first, for each coordinate
+_FIRST = 6  # steps of a revolution at first, for each coordinate
 
 
 @dataclass(frozen=True)

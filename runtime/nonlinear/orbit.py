@@ -23,7 +23,7 @@ _FAR = 0.3
 _FEWER, SHARE = 2, 0.1
 # Errors of the multipliers that are allowed, over that of the motion.
 _MULTIPLIERS = 10.0
-STAGES, FIRST_STEPS, MOST_STEPS = 8, 8, 512
+STAGES, FIRST_STEPS, MOST_STEPS = 12, 5, 384
 
 
 class Lost(ArithmeticError):  # noqa: N818 - reads as what it is

@@ -63,6 +63,7 @@ class Marcher:
         x, v = (np.repeat(part, steps, axis=0) for part in (states[:, :n], states[:, n:]))
         return Motion(1, x, 0.0 * v, np.zeros((runs * steps, STAGES, n)), runs=runs)
 
+    @np.errstate(all="ignore")  # what is not finite ends it
     def _solved(
         self, value: float, states: Array, motion: Motion, ramp: Ramp | None
     ) -> Motion | None:

@@ -153,6 +153,7 @@ class Ramp(NamedTuple):
     begin: float = 0.0
 
 
+@np.errstate(all="ignore")
 def evaluated(
     problem: Problem,
     value: float,
@@ -177,10 +178,9 @@ def evaluated(
     angle = angles.ravel()
     drive = Drive(angle, w[:, 0], np.full_like(angle, rise))
     try:
-        with np.errstate(all="ignore"):
-            found = problem.system.equations(
-                x, w * v, square * a + rise * v, drive, parameters, derivatives
-            )
+        found = problem.system.equations(
+            x, w * v, square * a + rise * v, drive, parameters, derivatives
+        )
     except (SelfCheckFailed, np.linalg.LinAlgError) as lost:
         raise NotFinite(str(lost)) from lost
     residual = (found.residual / square).reshape(*batch, n)
@@ -194,6 +194,7 @@ def evaluated(
     return Varied(residual, *(matrix.reshape(*batch, n, n) for matrix in matrices))
 
 
+@np.errstate(all="ignore")  # what is not finite is refused
 def sweep(
     problem: Problem,
     value: float,
@@ -262,6 +263,7 @@ def _by_parameter(
     return np.asarray((ahead - residual) / step)
 
 
+@np.errstate(all="ignore")
 def chained(maps: Array, loads: Array) -> tuple[Array, Array]:
     """Return the states at all ends by the first one: ``y[j] = whole[j] y[0] + added[j]``.
 

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.families import Array, Nonlinear
-from ..core.inputs import is_finite, numbers, require_kind, require_whole
+from ..core.inputs import is_finite, numbers, require_between, require_kind, require_whole
 from ..core.plotting import Axes, axes_or_new
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
-from .branch import JOINED, Branch, crossing, doubled, followed
+from .branch import JOINED, Branch, Limits, crossing, doubled, followed
 from .orbit import FIRST_STEPS, MOST_STEPS, STAGES, Lost, Measure, Orbit, Solver, closed, taken
 from .segments import Motion, NotFinite, Problem, sweep
 
@@ -203,13 +203,14 @@ def response_curve(
     *,
     speed: float | None = None,
     turns: int = 1,
+    largest: float = 0.25,
     rtol: float = 1e-8,
     starts: Iterable[tuple[float, Motion]] = (),
     progress: bool = False,
 ) -> ResponseCurve:
     """Follow the periodic motions of a nonlinear system over a parameter.
 
-    Collocation of Gauss' with 8 stages on as many steps as the error wants, continued by its
+    Collocation of Gauss' with 12 stages on as many steps as the error wants, continued by its
     pseudo-arclength.  Folds, doublings, crossings of branches and tori are located on the way;
     branches that begin at doublings and crossings are followed too.
 
@@ -226,6 +227,8 @@ def response_curve(
     turns : int
         Largest number of revolutions after which the motions repeat: doublings are followed up to
         it.
+    largest : float
+        Deflection over the length of the link at which a branch ends.
     rtol : float
         Wanted error of the motions, relative.
     starts : iterable of (float, Motion), optional
@@ -247,9 +250,10 @@ def response_curve(
     require_whole("turns", turns, 1, 64)
     if not (is_finite(rtol) and 1e-13 <= rtol <= 1e-3):
         raise bad("rtol", repr(rtol), "a number from 1e-13 to 1e-3", "try 1e-8")
-    solver = Solver(problem, high - low, rtol)
+    require_between("largest", largest, 1e-6, 10.0, "try 0.25")
+    solver, limits = Solver(problem, high - low, rtol), Limits(low, high, largest, _POINTS)
     with bar(progress, _BRANCHES, unit="branch") as tick:
-        branches = _all_branches(solver, (low, high), turns, list(starts), tick)
+        branches = _all_branches(solver, limits, turns, list(starts), tick)
     return _result(solver, branches, (low, high))
 
 
@@ -287,7 +291,7 @@ def first_motion(problem: Problem, turns: int = 1) -> Motion:
 
 def _all_branches(
     solver: Solver,
-    bounds: tuple[float, float],
+    limits: Limits,
     turns: int,
     starts: list[tuple[float, Motion]],
     tick: Callable[[int], None] | None,
@@ -296,30 +300,30 @@ def _all_branches(
     branches: list[Branch] = []
     queue: list[tuple[Orbit, Measure]] = []
     refused = ""
-    for value, sign in ((bounds[0], 1.0), (bounds[1], -1.0)):
+    for value, sign in ((limits.low, 1.0), (limits.high, -1.0)):
         try:
             motion = solver.settled(value, first_motion(solver.problem))
             begun = solver.fine(value, motion, solver.along_parameter(motion, sign))
         except _FAILURES as failure:
             refused = str(failure)
             continue
-        _follow(solver, begun, bounds, branches, queue, turns, tick)
+        _follow(solver, begun, limits, branches, queue, turns, tick)
     for value, motion in starts:
         for sign in (1.0, -1.0):
             begun = solver.fine(value, motion, solver.along_parameter(motion, sign))
-            _follow(solver, begun, bounds, branches, queue, turns, tick)
+            _follow(solver, begun, limits, branches, queue, turns, tick)
     if not branches:
         fix = "choose another range: begin where the motion is small"
         raise bad("bounds", f"no periodic motion at either end ({refused})", "one", fix)
     while queue and len(branches) < _BRANCHES:
-        _follow(solver, queue.pop(0), bounds, branches, queue, turns, tick)
+        _follow(solver, queue.pop(0), limits, branches, queue, turns, tick)
     return branches
 
 
 def _follow(
     solver: Solver,
     begun: tuple[Orbit, Measure],
-    bounds: tuple[float, float],
+    limits: Limits,
     branches: list[Branch],
     queue: list[tuple[Orbit, Measure]],
     turns: int,
@@ -328,7 +332,7 @@ def _follow(
     """Follow a branch unless it is known, and add the beginnings of those that start on it."""
     if any(_on(solver, begun[0], branch) for branch in branches):
         return
-    branch = followed(solver, begun, bounds, _POINTS)
+    branch = followed(solver, begun, limits)
     branches.append(branch)
     if tick is not None:
         tick(len(branches))
@@ -366,6 +370,8 @@ def _on(solver: Solver, orbit: Orbit, branch: Branch) -> bool:
 
 def same_motion(solver: Solver, one: Motion, other: Motion) -> bool:
     """Return True for one motion, from whatever turn it is counted."""
+    if one.turns != other.turns:
+        return False
     angles = 2.0 * np.pi * one.turns * np.arange(64) / 64
     place = float(solver.scale(one)[0])
     here = one.at(angles)[0]
@@ -386,7 +392,7 @@ def extremes(problem: Problem, orbit: Orbit) -> tuple[float, float]:
     values = problem.system.shown(motion.stages()[0], parameters).ravel()
     signs = np.array([-1.0, 1.0])
     places = angles[[int(np.argmin(values)), int(np.argmax(values))]]
-    best = np.array([-np.min(values), np.max(values)])
+    best = np.zeros(2)
     width = motion.step / motion.a.shape[1]
     for _ in range(_POLISHED):
         around = places[:, None] + width * np.array([-1.0, 0.0, 1.0])
@@ -395,9 +401,8 @@ def extremes(problem: Problem, orbit: Orbit) -> tuple[float, float]:
         bend = left - 2.0 * middle + right
         shift = np.divide(left - right, 2.0 * bend, out=np.zeros(2), where=bend < 0.0)
         places = places + np.clip(shift, -1.0, 1.0) * width
-        # The top of the parabola.
-        top = middle - np.where(np.abs(shift) <= 1.0, 0.25 * (left - right) * shift, 0.0)
-        best = np.maximum(np.maximum(best, middle), top)
+        # The top of the newest parabola, which is the narrowest.
+        best = middle - np.where(np.abs(shift) <= 1.0, 0.25 * (left - right) * shift, 0.0)
         width *= 0.1
     return float(-best[0]), float(best[1])
 
@@ -412,7 +417,7 @@ def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float])
     error = np.array([measure.error for _, measure in points])
     sizes = np.max(np.abs(shown), axis=1)
     return ResponseCurve(
-        method="Gauss collocation with 8 stages, pseudo-arclength continuation",
+        method="Gauss collocation with 12 stages, pseudo-arclength continuation",
         error=error,
         error_norm="distance from the branch, relative to the largest coordinate or rate",
         checks={"accuracy": Check(float(np.max(error)), solver.rtol)},

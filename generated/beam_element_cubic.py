@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 81 operations
-Content hash 618676e1f4adf58db8f74084e7152c71; derived with SymPy 1.14.0.
+Content hash b570787436b566f9eff1d9426165082b; derived with SymPy 1.14.0.
 """
 
 __all__ = ["element"]
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"cubic","mechanism":"beam_element","mode'
     's":null,"outputs":[]}'
 )
-CONTENT = "618676e1f4adf58db8f74084e7152c71"
+CONTENT = "b570787436b566f9eff1d9426165082b"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

@@ -13,7 +13,7 @@ to the other assembly.
 
 Cost per evaluation:
     extremes: 125 operations
-Content hash 2f796b75481699eacccf1a8674181cbf; derived with SymPy 1.14.0.
+Content hash 82b73ec645f632791df1590f345c869a; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -24,7 +24,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"clearance","mechanism":"four_bar","mode'
     's":null,"outputs":[]}'
 )
-CONTENT = "2f796b75481699eacccf1a8674181cbf"
+CONTENT = "82b73ec645f632791df1590f345c869a"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

@@ -11,7 +11,7 @@ Derivatives by_u are those by the chord's length over the coupler's.
 Cost per evaluation:
     dynamics: 298 operations
     variations: 285 operations
-Content hash 3f947920b59c127cb920d724166bb61f; derived with SymPy 1.14.0.
+Content hash 6e3d8ad25e04191b04deffc0cb9bb4bd; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -22,7 +22,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"inextensible_cubic","mechanism'
     '":"slider_crank","modes":1,"outputs":[]}'
 )
-CONTENT = "3f947920b59c127cb920d724166bb61f"
+CONTENT = "6e3d8ad25e04191b04deffc0cb9bb4bd"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

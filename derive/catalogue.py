@@ -61,6 +61,13 @@ def _rigid(mechanism: str, formulation: str, part: str, *drop: str) -> Catalogue
 _LINKAGES = ("four_bar", "slider_crank", "quick_return")
 _BEAMS = ("cubic", "internal_node", "curvature", "timoshenko")
 _COUPLER = ("complete", "printed", "reduced")
+_EXPANDED = (
+    "beam_tangent_harmonics.py",
+    "four_bar.py",
+    "slider_crank.py",
+    "inextensible_coupler.py",
+    "inextensible_cubic.py",
+)
 
 CATALOGUE = (
     CatalogueEntry(
@@ -199,14 +206,25 @@ CATALOGUE = (
     *(
         CatalogueEntry(
             mechanism=name,
-            formulations=("inextensible",),
-            module=f".models.inextensible_coupler:{name.upper()}",
-            sources=("inextensible_coupler.py",),
-            specs=(ModelSpec(name, "inextensible", flexible=("coupler",)),),
-            closed_in_modes=True,
+            formulations=(formulation,),
+            module=f".models.{sources[-1][:-3]}:{name.upper()}",
+            sources=sources,
+            specs=tuple(ModelSpec(name, formulation, ("coupler",), modes) for modes in numbers),
+            closed_in_modes=numbers == (None,),
             choices=Choices(flexible=("coupler",)),
         )
         for name in ("four_bar", "slider_crank")
+        for formulation, sources, numbers in (
+            ("inextensible", ("inextensible_coupler.py",), (None,)),
+            ("inextensible_cubic", _EXPANDED, (1, 2)),
+        )
+    ),
+    CatalogueEntry(
+        mechanism="beam",
+        formulations=("amplitude_law",),
+        module=".models.amplitude_law",
+        sources=(*_EXPANDED, "amplitude_law.py"),
+        specs=(ModelSpec("beam", "amplitude_law"),),
     ),
     *(_rigid(name, "forces", "", "crank_acceleration") for name in _LINKAGES),
     *(_rigid(name, "multibody", ":MULTIBODY", "drive") for name in _LINKAGES),

@@ -26,6 +26,8 @@ DERIVED_AS = {
 BEAM_FORMULATIONS = {
     f"{kind}_beams": kind for kind in ("cubic", "internal_node", "curvature", "timoshenko")
 }
+# Formulations of a coupler that bends without becoming longer.
+INEXTENSIBLE = ("inextensible", "inextensible_cubic")
 # Names for sets of terms left out, by mechanism and formulation of the module.
 NAMED_DROPS: Mapping[tuple[str, str], Mapping[str, tuple[str, ...]]] = {
     ("quick_return", "moving_basis"): {"as_printed": ("frame", "tension")},

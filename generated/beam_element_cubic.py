@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 81 operations
-Content hash f232c1b06dcdd80f384fe685dad78c9b; derived with SymPy 1.14.0.
+Content hash b570787436b566f9eff1d9426165082b; derived with SymPy 1.14.0.
 """
 
 __all__ = ["element"]
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"cubic","mechanism":"beam_element","mode'
     's":null,"outputs":[]}'
 )
-CONTENT = "f232c1b06dcdd80f384fe685dad78c9b"
+CONTENT = "b570787436b566f9eff1d9426165082b"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 168 operations
-Content hash abe5039ccfb6c3a9dc123778342e4f78; derived with SymPy 1.14.0.
+Content hash 70125338b217176bdf00d3ad2fed80be; derived with SymPy 1.14.0.
 """
 
 __all__ = ["element"]
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"curvature","mechanism":"beam_element","'
     'modes":null,"outputs":[]}'
 )
-CONTENT = "abe5039ccfb6c3a9dc123778342e4f78"
+CONTENT = "70125338b217176bdf00d3ad2fed80be"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

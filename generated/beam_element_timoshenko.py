@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 216 operations
-Content hash 8f73449042ce8d60be3e0acf05e2bdb1; derived with SymPy 1.14.0.
+Content hash be2602df267867e06e7ac77d4f87cadb; derived with SymPy 1.14.0.
 """
 
 __all__ = ["element"]
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"timoshenko","mechanism":"beam_element",'
     '"modes":null,"outputs":[]}'
 )
-CONTENT = "8f73449042ce8d60be3e0acf05e2bdb1"
+CONTENT = "be2602df267867e06e7ac77d4f87cadb"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

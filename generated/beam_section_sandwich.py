@@ -10,7 +10,7 @@ core_shear_modulus (1 + i core_loss), shears and carries no axial force.
 
 Cost per evaluation:
     sandwich: 58 operations
-Content hash 3cf4079e6ed86ae8844d80afc0b108d8; derived with SymPy 1.14.0.
+Content hash 201aef85fb4c9b38f37b986db0aa402a; derived with SymPy 1.14.0.
 """
 
 __all__ = ["sandwich"]
@@ -19,7 +19,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"sandwich","mechanism":"beam_section","m'
     'odes":null,"outputs":[]}'
 )
-CONTENT = "3cf4079e6ed86ae8844d80afc0b108d8"
+CONTENT = "201aef85fb4c9b38f37b986db0aa402a"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

@@ -7,6 +7,8 @@ in n, and two different harmonics meet in no integral.
 
 from __future__ import annotations
 
+from functools import cache
+
 import sympy as sp
 from sympy.simplify.fu import TR8
 
@@ -30,19 +32,31 @@ def _along(integrand: sp.Expr) -> sp.Expr:
     return sp.simplify(sp.integrate(integrand, (_S, 0, 1)))
 
 
-def _form(spec: ModelSpec) -> ClosedForm:
+@cache
+def integrals() -> dict[str, sp.Expr]:
+    """Return the integrals of the harmonic n, by name."""
     one, other = (sp.cos(n * sp.pi * _S) for n in (_N, _N + _MORE))
     place, beside = (sp.integrate(p, (_S, 0, _S)) for p in (one, other))
     for pair in (place * beside, one.diff(_S) * other.diff(_S)):
         if (met := _along(TR8(sp.expand(pair)))) != 0:
             raise UnsafeRewriting(f"two harmonics meet in an integral: {met}")
-    outputs = {
+    return {
         "moment": _along((1 - _S) * one),
         "beside_mean": _along(_S * place),
         "inertia": _along(place**2),
         "bending": _along(one.diff(_S) ** 2),
     }
-    return ClosedForm((_N,), Steps(), tuple(outputs.items()))
+
+
+def integral(name: str, n: sp.Expr) -> sp.Expr:
+    """Return an integral of a harmonic; of the mean, n = 0, ``moment`` and ``inertia``."""
+    if n == 0:
+        return {"moment": _along(1 - _S), "inertia": _along(_S**2)}[name]
+    return integrals()[name].subs(_N, n)
+
+
+def _form(spec: ModelSpec) -> ClosedForm:
+    return ClosedForm((_N,), Steps(), tuple(integrals().items()))
 
 
 def _describe(spec: ModelSpec) -> Description:

@@ -12,7 +12,7 @@ The loop is closed by constraints, whose multipliers are the force at C.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
@@ -25,18 +25,19 @@ from ..spec import Choices, ModelSpec
 from ..stations import EACH_STATION, Stations, closed_in_stations
 
 STATIONS = Stations("phi", ("end", "moment", "bow"), ("inertia", "bending", "drag"))
-_T = sp.Symbol("t", real=True)
-_THETA = sp.Function("theta")(_T)
-_CRANK, _COUPLER, _DENSITY, _STIFFNESS, _DAMPING = sp.symbols(
+T = sp.Symbol("t", real=True)
+THETA = sp.Function("theta")(T)
+CRANK, COUPLER, DENSITY, STIFFNESS, DAMPING = sp.symbols(
     "crank coupler mass_per_length bending_stiffness damping", positive=True
 )
-_FRAME, _FOLLOWER, _INERTIA = sp.symbols("frame follower follower_inertia", positive=True)
-_OFFSET, _MOMENT, *_PULL = sp.symbols("offset follower_first_moment gravity_x gravity_y", real=True)
-_SLIDER = sp.Symbol("slider_mass", positive=True)
+_FRAME, FOLLOWER, INERTIA = sp.symbols("frame follower follower_inertia", positive=True)
+_OFFSET, _MOMENT, *PULL = sp.symbols("offset follower_first_moment gravity_x gravity_y", real=True)
+PIN = (CRANK * sp.cos(THETA), CRANK * sp.sin(THETA))
+SLIDER = sp.Symbol("slider_mass", positive=True)
 
 
 @dataclass(frozen=True)
-class _Driven:
+class Driven:
     """What the end C of the coupler drives: its coordinate, energies, and the place of C."""
 
     coordinate: sp.Expr
@@ -44,24 +45,24 @@ class _Driven:
     place: tuple[sp.Expr, sp.Expr]
 
 
-def _driven(mechanism: str) -> _Driven:
+def driven(mechanism: str) -> Driven:
+    """Return what the end C of a mechanism's coupler drives."""
     if mechanism == "slider_crank":
-        position = sp.Function("x4")(_T)
-        energy = _SLIDER * (position.diff(_T) ** 2 / 2 + _PULL[0] * position)
-        return _Driven(position, energy, (position, _OFFSET))
-    psi = sp.Function("psi")(_T)
-    pull = _PULL[0] * sp.cos(psi) + _PULL[1] * sp.sin(psi)
-    energy = _INERTIA / 2 * psi.diff(_T) ** 2 + _MOMENT * pull
-    return _Driven(psi, energy, (_FRAME + _FOLLOWER * sp.cos(psi), _FOLLOWER * sp.sin(psi)))
+        position = sp.Function("x4")(T)
+        energy = SLIDER * (position.diff(T) ** 2 / 2 + PULL[0] * position)
+        return Driven(position, energy, (position, _OFFSET))
+    psi = sp.Function("psi")(T)
+    pull = PULL[0] * sp.cos(psi) + PULL[1] * sp.sin(psi)
+    energy = INERTIA / 2 * psi.diff(T) ** 2 + _MOMENT * pull
+    return Driven(psi, energy, (_FRAME + FOLLOWER * sp.cos(psi), FOLLOWER * sp.sin(psi)))
 
 
 def lagrangian(mechanism: str, stations: int = 2) -> Lagrangian:
     """Return energies, constraints and damping of the coupler with a number of stations."""
     each = range(1, stations + 1)
-    angles = [sp.Function(f"phi{i}")(_T) for i in each]
+    angles = [sp.Function(f"phi{i}")(T) for i in each]
     tangents = [(sp.cos(phi), sp.sin(phi)) for phi in angles]
-    pin = (_CRANK * sp.cos(_THETA), _CRANK * sp.sin(_THETA))
-    driven = _driven(mechanism)
+    end = driven(mechanism)
 
     def along(name: str, values: list[sp.Expr]) -> sp.Expr:
         """Return an integral along the coupler."""
@@ -78,22 +79,20 @@ def lagrangian(mechanism: str, stations: int = 2) -> Lagrangian:
     energy = sp.S.Zero
     for axis in (0, 1):
         directions = [tangent[axis] for tangent in tangents]
-        rates = [direction.diff(_T) for direction in directions]
-        energy += twice("inertia", rates) / 2 * _COUPLER**2
-        energy += _COUPLER * pin[axis].diff(_T) * along("moment", rates)
-        energy += _PULL[axis] * _COUPLER * along("moment", directions)
+        rates = [direction.diff(T) for direction in directions]
+        energy += twice("inertia", rates) / 2 * COUPLER**2
+        energy += COUPLER * PIN[axis].diff(T) * along("moment", rates)
+        energy += PULL[axis] * COUPLER * along("moment", directions)
     bent = [phi - sp.Symbol(f"bow_{i}") for i, phi in zip(each, angles, strict=True)]
-    strain = _STIFFNESS / _COUPLER * twice("bending", bent) / 2
-    dissipation = _DAMPING * _COUPLER**3 * twice("drag", [phi.diff(_T) for phi in angles]) / 2
+    strain = STIFFNESS / COUPLER * twice("bending", bent) / 2
+    dissipation = DAMPING * COUPLER**3 * twice("drag", [phi.diff(T) for phi in angles]) / 2
     ends = [along("end", [tangent[axis] for tangent in tangents]) for axis in (0, 1)]
     return Lagrangian(
-        coordinates=(driven.coordinate, *angles),
-        t=_T,
-        expression=driven.energy + _DENSITY * _COUPLER * energy - strain,
-        constraints=tuple(
-            pin[axis] + _COUPLER * ends[axis] - driven.place[axis] for axis in (0, 1)
-        ),
-        forces={phi: -dissipation.diff(phi.diff(_T)) for phi in angles},
+        coordinates=(end.coordinate, *angles),
+        t=T,
+        expression=end.energy + DENSITY * COUPLER * energy - strain,
+        constraints=tuple(PIN[axis] + COUPLER * ends[axis] - end.place[axis] for axis in (0, 1)),
+        forces={phi: -dissipation.diff(phi.diff(T)) for phi in angles},
     )
 
 
@@ -110,38 +109,52 @@ def _discretise(spec: ModelSpec, equations: EquationsOfMotion) -> ConstrainedSys
 
 def _describe(spec: ModelSpec) -> Description:
     shape = "float or ndarray, shape (..., 1)"
-    slider = spec.mechanism == "slider_crank"
     driven = (
         Argument("x4", shape, "m", "Place of the slider's pin C along the guide")
-        if slider
+        if spec.mechanism == "slider_crank"
         else Argument("psi", shape, "rad", "Follower angle")
     )
+    angle = Argument("phi", EACH_STATION, "rad", "Angle of the coupler's tangent at the stations")
+    found = described(spec.mechanism, "geometrically exact", [driven, angle], shape)
     vector, kernel = "ndarray, shape (Q,)", "ndarray, shape (Q, Q)"
-    arguments = [
-        driven,
-        Argument("phi", EACH_STATION, "rad", "Angle of the coupler's tangent at the stations"),
-        Argument("t", "float or ndarray, shape (..., 1)", "s", "Time"),
-        Argument("theta", shape, "rad", "Crank angle"),
-        Argument("theta_d1", shape, "rad/s", "Crank speed"),
-        Argument("theta_d2", shape, "rad/s^2", "Crank acceleration"),
+    numbers = (
         Argument("end", vector, "", "Weights of int f ds along the coupler, of unit length"),
         Argument("moment", vector, "", "Weights of int (1 - s) f ds"),
         Argument("bow", vector, "rad", "Angle of the unloaded coupler's tangent"),
         Argument("inertia", kernel, "", "int (int f) (int g) ds, integrals from the crank pin"),
         Argument("bending", kernel, "", "int f' g' ds"),
         Argument("drag", kernel, "", "int (int f) (int g) ds of what has no mean"),
-    ]
+    )
+    return replace(
+        found,
+        arguments=(*found.arguments, *numbers),
+        notes=(
+            "The coupler's points are r(s) = B + coupler int (cos phi, sin phi) ds.  Arrays with a "
+            "value at each of the Q stations have them on their last axis, all others one value "
+            "there.",
+            "Multipliers: force on C along x and y, up to its sign.",
+        ),
+    )
+
+
+def described(mechanism: str, words: str, coordinates: list[Argument], shape: str) -> Description:
+    """Return the description of a mechanism's coupler: its drive and parameters, without notes.
+
+    ``words``: what is special to the equations; ``shape``: of the drive's angle and rates.
+    """
+    slider = mechanism == "slider_crank"
+    name = "slider-crank" if slider else "four-bar linkage"
     lengths = (
         ("crank", "coupler", "offset") if slider else ("frame", "crank", "coupler", "follower")
     )
-    words = {
+    meanings = {
         "frame": "Length of the frame",
         "crank": "Length of the crank",
         "coupler": "Length of the coupler",
         "follower": "Length of the follower",
         "offset": "Height of the guide over the crank's pivot",
     }
-    parameters = [Argument(name, "float", "m", words[name]) for name in lengths]
+    parameters = [Argument(name, "float", "m", meanings[name]) for name in lengths]
     parameters += [
         Argument("bending_stiffness", "float", "N m^2", "EI of the coupler"),
         Argument("mass_per_length", "float", "kg/m", "mu of the coupler"),
@@ -157,18 +170,17 @@ def _describe(spec: ModelSpec) -> Description:
             Argument("follower_first_moment", "float", "kg m", "m4 r4 of the follower about D"),
         ]
     )
-    name = "slider-crank" if slider else "four-bar linkage"
     return Description(
-        title=f"Inextensible flexible coupler of a {name}, geometrically exact",
+        title=f"Inextensible flexible coupler of a {name}, {words}",
         references=("Smith 9.6, further work 2",),
-        arguments=tuple(arguments),
-        parameters=tuple(parameters),
-        notes=(
-            "The coupler's points are r(s) = B + coupler int (cos phi, sin phi) ds.  Arrays with a "
-            "value at each of the Q stations have them on their last axis, all others one value "
-            "there.",
-            "Multipliers: force on C along x and y, up to its sign.",
+        arguments=(
+            *coordinates,
+            Argument("t", shape, "s", "Time"),
+            Argument("theta", shape, "rad", "Crank angle"),
+            Argument("theta_d1", shape, "rad/s", "Crank speed"),
+            Argument("theta_d2", shape, "rad/s^2", "Crank acceleration"),
         ),
+        parameters=tuple(parameters),
     )
 
 

@@ -3,6 +3,7 @@
 ``response_curve``: branches of periodic motions over a parameter, with stability and special
 points; ``special_curve`` follows one of these in a second parameter.
 ``coexisting_motions``: what else there is at one value; ``basins``: which of them is reached.
+``amplitude_law``: how the frequency falls with the amplitude, the crank held still.
 ``sweep_response``: slow run-up and coast-down by marching, as on a test bench.
 """
 
@@ -13,6 +14,8 @@ from typing import TYPE_CHECKING
 from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
+    from .amplitude import AmplitudeLaw as AmplitudeLaw
+    from .amplitude import amplitude_law as amplitude_law
     from .loci import SpecialCurve as SpecialCurve
     from .loci import special_curve as special_curve
     from .response import ResponseCurve as ResponseCurve
@@ -27,6 +30,7 @@ if TYPE_CHECKING:
 __all__, __getattr__, __dir__ = on_first_use(
     globals(),
     {
+        "amplitude": ("AmplitudeLaw", "amplitude_law"),
         "loci": ("SpecialCurve", "special_curve"),
         "response": ("ResponseCurve", "response_curve"),
         "search": ("CoexistingMotions", "coexisting_motions"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ...derive.spec import BEAM_FORMULATIONS, DERIVED_AS, NAMED_DROPS
+from ...derive.spec import BEAM_FORMULATIONS, DERIVED_AS, INEXTENSIBLE, NAMED_DROPS
 from .beam_tables import (
     BEAM_DROPS,
     BEAM_PARAMETERS,
@@ -106,7 +106,7 @@ _BENT_PARAMETERS = {
 }
 INEXTENSIBLE_COUPLER = replace(
     FLEXIBLE_COUPLER,
-    formulations=("inextensible",),
+    formulations=INEXTENSIBLE,
     tables=(
         FOUR_BAR_LENGTHS,
         rigid_link("crank"),
@@ -119,6 +119,7 @@ INEXTENSIBLE_COUPLER = replace(
     ),
     outputs=("motion", "variations"),
     parameters=_BENT_PARAMETERS,
+    closed_in_modes=False,
 )
 INEXTENSIBLE_ROD = replace(
     INEXTENSIBLE_COUPLER,

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ...derive.spec import BEAM_FORMULATIONS, ModelSpec
+from ...derive.spec import BEAM_FORMULATIONS, INEXTENSIBLE, ModelSpec
 from ..core.errors import bad
 from .schema import Layout
 from .validation import nearest
@@ -214,7 +214,7 @@ class Scene:
         module, function = _BUILDERS.get(mechanism, _OWN_BUILDER)
         if self.layout.formulations == tuple(BEAM_FORMULATIONS):
             module, function = _BEAM_BUILDER
-        if self.layout.formulations == ("inextensible",):
+        if self.layout.formulations == INEXTENSIBLE:
             module, function = _BENT_BUILDER
         builder = getattr(importlib.import_module(module, __package__), function)
         built: LinearPeriodic | Constrained | Nonlinear = builder(self)
@@ -236,7 +236,7 @@ class Scene:
             given = f"formulation '{name}', whose equations are constrained"
             fix = f"--set model.formulation='{name}_linear', or see constrained_motion"
             fix += " and periodic_orbit"
-            if self.layout.formulations == ("inextensible",):
+            if self.layout.formulations == INEXTENSIBLE:
                 given = f"formulation '{name}', whose equations are nonlinear"
                 fix = "--set model.formulation=complete, or see response_curve"
             raise bad(f"scene {self.name}", given, "a linear formulation", fix)

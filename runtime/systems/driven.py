@@ -103,7 +103,7 @@ def driven_system(
             Driven(emitted),
             tuple(map(place, chosen)),
             tuple(map(place, held)),
-            closing or _nothing_held,
+            closing or nothing_held,
         ),
         parameters={name: float(parameters[name]) for name in names if name != "speed"},
         labels=chosen,
@@ -112,5 +112,6 @@ def driven_system(
     )
 
 
-def _nothing_held(q: Array, drive: Drive, parameters: Mapping[str, float]) -> Array:
+def nothing_held(q: Array, drive: Drive, parameters: Mapping[str, float]) -> Array:
+    """Return the other coordinates of a system without constraints."""
     return q[..., :0]

@@ -16,7 +16,7 @@ from ..core.families import Array, Constrained
 from ..core.families.nonlinear import Drive, Nonlinear, Reduced
 from ..core.families.stations import Stations
 from ..core.modules import EmittedModule, find_module
-from .driven import Given
+from .driven import Given, nothing_held
 
 if TYPE_CHECKING:
     from ..scenes import Scene
@@ -73,9 +73,9 @@ def coupler_stations(modes: int) -> Stations:
 class InextensibleCoupler:
     """What the equations of the coupler are made of; see :class:`.Reduced`.
 
-    Coordinates of the constrained system: the follower's angle (or the slider's place), the mean
+    Coordinates of the exact equations: the follower's angle (or the slider's place), the mean
     angle of the coupler's tangent, and the amplitudes ``q_k`` of ``cos(k pi s)`` in it, which are
-    the free ones.
+    the free ones.  Those to third order have ``q_k`` alone.
 
     Attributes
     ----------
@@ -95,19 +95,34 @@ class InextensibleCoupler:
     def _module(self) -> ModuleType:
         return self.emitted.module
 
+    @property
+    def exact(self) -> bool:
+        """Whether the equations hold at any amplitude."""
+        return hasattr(self._module, "STATIONS")
+
+    @property
+    def equations(self) -> Reduced:
+        """The equations in the amplitudes."""
+        if self.exact:
+            return Reduced(self.constrained, tuple(range(2, self.modes + 2)), (0, 1), self.ends)
+        return Reduced(self.constrained, tuple(range(self.modes)), (), nothing_held)
+
     @cached_property
     def _straight(self) -> Stations:
         return coupler_stations(self.modes)
 
     def constrained(self, parameters: Mapping[str, float], drive: Drive) -> Constrained:
         """Return the constrained system at numbers and a drive."""
+        given = dict(zip(self._module.EXTERNAL, map(Given, drive), strict=True))
+        numbers = {**parameters, "assembly": self.assembly}
+        values = {name: numbers[name] for name in self._module.PARAMETERS}
+        if not self.exact:
+            return Constrained.from_module(self._module, values, external=given)
         stations = self._straight
         if bow := parameters["bow"]:
             # A bow b sin(pi s) has the slope (pi b / l3) cos(pi s) at its pins.
             angle = np.pi * bow / parameters["coupler"] * stations.shapes[:, 1]
             stations = Stations(stations.shapes, {**stations.numbers, "bow": angle})
-        given = dict(zip(self._module.EXTERNAL, map(Given, drive), strict=True))
-        values = {name: parameters[name] for name in self._module.PARAMETERS}
         return Constrained.at_stations(self._module, values, stations, given)
 
     def ends(self, q: Array, drive: Drive, parameters: Mapping[str, float]) -> Array:
@@ -182,10 +197,9 @@ def inextensible_system(scene: Scene) -> Nonlinear:
             raise bad("follower.first_moment", "nothing", expected, fix)
         parameters["follower_first_moment"] = follower.get("first_moment", 0.0)
     made = InextensibleCoupler(emitted, modes, linkage.branch)
-    reduced = Reduced(made.constrained, tuple(range(2, modes + 2)), (0, 1), made.ends)
     return Nonlinear(
         size=modes,
-        equations=reduced,
+        equations=made.equations,
         parameters=parameters,
         labels=tuple(f"q{k}" for k in range(1, modes + 1)),
         deflection=made.middle,

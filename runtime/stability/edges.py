@@ -17,6 +17,7 @@ from ..core.results import Check, Result, provenance
 from ..periodic import floquet_multipliers
 from ..periodic.decoupled import SlowSystem
 from ..periodic.equation import at_geometry, equation_of
+from ..periodic.over_speed import MatricesOverSpeed
 from .boundary_speeds import SpeedBoundaries, speed_boundaries
 from .crossings import damped_regions, mended
 from .labels import (
@@ -28,7 +29,6 @@ from .labels import (
     principal_labels,
     unit_labels,
 )
-from .over_speed import MatricesOverSpeed
 from .pairs import Edges, Events, Samples, meetings, refined_edges, sampled_phases
 from .regions import Regions, edge_checks, joined
 

@@ -12,22 +12,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import BadInput, bad
-from ..core.families import DAMPING, Array, LinearPeriodic
+from ..core.errors import bad
+from ..core.families import Array, LinearPeriodic
 from ..core.results import Check
 from ..hill import Meissner, discriminant
-from ..periodic import Prepared, prepare, reduced_system
-from ..periodic.decoupled import SlowModes
-from ..periodic.decoupled.riccati import plain_equation
-from ..periodic.decoupled.slow_modes import frozen_frequencies
-from ..periodic.equation import equation_of, sampled
+from ..periodic.lowest_modes import LowestModes
+from ..periodic.moving_basis import still_modes
+from ..periodic.over_speed import MatricesOverSpeed
 
 ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
 
 _MOST_SAMPLES = 4000
-# Lowest frequency left out, over the highest wanted and over the highest kept.
-_BEYOND, _GAP = 4.0, 1.3
+# Angles at which the mechanism is looked at with its crank held.
+_ANGLES = 256
 # Error of the transition matrices: the place of a maximum is open by the root of it.
 _RTOL = 1e-9
 
@@ -53,16 +51,15 @@ def multiplier_maxima(
 
     Each mode's multiplier of the larger real part is followed over the speed; where its real part
     has a local maximum the mechanism answers most to its periodic forcing (Aannaque 7.2.3).  In an
-    unstable band with real multipliers beyond +1 it is the speed of greatest growth.  Where a few
-    modes stand apart from the rest the speeds are swept on those alone; what that costs at the
-    highest speed is in the error.  A maximum between two samples, of which the highest mode turns
-    by 0.35 rad at most, may be missed.
+    unstable band with real multipliers beyond +1 it is the speed of greatest growth.  The speeds
+    are swept on a modal truncation; what that costs at the highest speed is in the error.  A
+    maximum between two samples, of which the highest mode turns by 0.35 rad at most, may be missed.
+    Where two modes trade their names, one's real part jumps: such a maximum lies where the modes
+    that are kept put it.
     """
     low, high = speed_range
-    # With the crank held there is neither damping nor centrifugal stiffness.
-    held = sampled(system.without("B", *DAMPING))
-    frozen = frozen_frequencies(plain_equation(held, high))
-    top = float(np.max(frozen[:, wanted - 1]))
+    held = np.sqrt(still_modes(system, _ANGLES).squares[:, :wanted])
+    top = float(np.max(held))
     # The highest mode turns by 0.35 rad between two samples.
     number = int(np.ceil(top * system.period * (1 / low - 1 / high) / 0.35)) + 8
     if number > _MOST_SAMPLES:
@@ -74,9 +71,9 @@ def multiplier_maxima(
         )
     # The reciprocal of a reciprocal may lie beyond an end by rounding.
     speed = np.clip(1.0 / np.linspace(1 / high, 1 / low, number), low, high)
-    few = few_modes(system, frozen, (low, high), wanted)
-    values = _multipliers(few, speed, wanted)
-    real = _larger(values)
+    truncated, change = LowestModes(system, wanted).required(high)
+    few = MatricesOverSpeed(truncated, (low, high), {}, _RTOL)
+    real = _larger(_multipliers(few, speed, wanted))
 
     def value(at: Array, mode: Whole) -> Array:
         return np.asarray(_larger(_multipliers(few, at, wanted))[np.arange(len(at)), mode])
@@ -85,24 +82,17 @@ def multiplier_maxima(
     brackets = speed[row - 1], speed[row], speed[row + 1]
     around = real[row - 1, mode], real[row, mode], real[row + 1, mode]
     at, best, width = refined_maxima(value, mode, brackets, around)
-    # At the highest speed the modes left out matter most.
-    whole = SlowModes(system).motions(high, wanted, rtol=_RTOL)
-    known, noise = whole.multipliers()
-    distance = np.abs(known[:, None] - values[0])
-    nearest = np.argmin(distance, axis=0)
-    # A multiplier's turn is its frequency over the speed: what it is off by, the speed is.
-    turn = np.repeat(np.mean(frozen[:, :wanted], axis=0), 2) * system.period / high
-    slip = float(np.max(np.min(distance, axis=0) / np.abs(values[0]) / turn))
     span = np.abs(brackets[2] - brackets[0])
-    blur = _blur(around, span, np.max(noise[nearest]) + few.error)
+    matrices, relative = few(speed[row])
+    noise = float(np.max(relative, initial=0.0))
+    blur = _blur(around, span, noise * float(np.max(np.abs(matrices), initial=1.0)))
     method = "local maxima of the real parts of the multipliers"
-    if few.system.size < system.size:
-        method += f", on {few.system.size} natural modes"
-    checks = {
-        "decoupled": Check(whole.residual, _RTOL),
-        "converged": Check(whole.integration, max(_RTOL, 100 * whole.rounding)),
-    }
-    return Maxima(at, mode + 1, best, width + np.minimum(blur, span) + slip * at, method, checks)
+    if truncated.size < system.size:
+        method += f", on {truncated.size} natural modes"
+    checks = {"truncated": Check(change, 1e-3), "converged": Check(noise, 100 * _RTOL)}
+    # A multiplier's turn is its frequency over the speed: what it is off by, the speed is.
+    error = width + np.minimum(blur, span) + change * at
+    return Maxima(at, mode + 1, best, error, method, checks)
 
 
 def _blur(values: tuple[Array, Array, Array], across: Array, noise: float) -> Array:
@@ -218,49 +208,23 @@ def _meissner_maxima(
     return refined_maxima(half_trace, mode.astype(np.int64), brackets, around)
 
 
-def _multipliers(few: Prepared, speed: Array, count: int) -> ComplexArray:
+def _multipliers(few: MatricesOverSpeed, speed: Array, count: int) -> ComplexArray:
     """Return the multipliers of the lowest modes ``(ns, 2 count)``, two to a mode."""
     half = few.system.size
-    found = few.monodromy(speed)
-    values, vectors = np.linalg.eig(found.scaled)
+    values, vectors = np.linalg.eig(few(speed)[0])
     # In velocities of time, not of angle, a state is the same at all speeds.
-    size = np.concatenate([found.scale[:, :half], found.scale[:, half:] * speed[:, None]], 1)
-    level = _level(few, vectors * size[:, :, None])
-    order = np.argsort(level, axis=-1, kind="stable")[:, : 2 * count]
+    states: ComplexArray = vectors.astype(complex) * few.scale[:, None]
+    states[:, half:] *= speed[:, None, None]
+    order = np.argsort(_level(few.system, states), axis=-1, kind="stable")[:, : 2 * count]
     return np.take_along_axis(values.astype(complex), order, axis=-1)
 
 
-def _level(few: Prepared, states: ComplexArray) -> Array:
+def _level(system: LinearPeriodic, states: ComplexArray) -> Array:
     """Return energy over action of states (q, M qd) in columns, by the modes held at 0."""
-    equation = equation_of(few.system.without("B", *DAMPING), np.array([few.span[1]]))
-    squares, modes = (found[0, 0] for found in equation.frozen_modes(np.zeros(1)))
-    shapes = equation.scale[0][:, None] * modes
+    still = still_modes(system, 1)
+    shapes, rate = still.shapes[0], np.sqrt(still.squares[0])[:, None]
     half = len(shapes)
     rest = np.abs(np.linalg.solve(shapes, states[:, :half])) ** 2
     moved = np.abs(shapes.T @ states[:, half:]) ** 2
-    rate = np.maximum(np.sqrt(np.maximum(squares, 0.0)) * equation.speed[0], 1.0)[:, None]
     energy = rate**2 * rest + moved
     return np.asarray(np.sum(energy, axis=1) / np.sum(energy / rate, axis=1))
-
-
-def few_modes(
-    system: LinearPeriodic, frequency: Array, span: tuple[float, float], count: int
-) -> Prepared:
-    """Return the lowest modes, prepared for a range of speeds; all where no few stand apart.
-
-    The frequencies with the crank held at angles ``(nt, n)`` [rad/s] tell which do.
-    """
-    top, low = np.max(frequency, axis=0), np.min(frequency, axis=0)
-
-    def ready(few: LinearPeriodic) -> Prepared:
-        return prepare(few, span, samples=1, forcing=False, rtol=0.1 * _RTOL)
-
-    for kept in range(count, system.size):
-        apart = low[kept] >= _GAP * top[kept - 1] and low[kept] >= _BEYOND * top[count - 1]
-        if not apart:
-            continue
-        try:
-            return ready(reduced_system(system, kept))
-        except BadInput:
-            continue
-    return ready(system)

@@ -136,11 +136,13 @@ class Truncations:
     ----------
     system : LinearPeriodic
         The system.
+    least : int
+        Fewest modes that are offered.
     """
 
-    def __init__(self, system: LinearPeriodic) -> None:
+    def __init__(self, system: LinearPeriodic, least: int = 4) -> None:
         self.system = system
-        self.numbers = modes_offered(system)
+        self.numbers = modes_offered(system, least)
         self._made: dict[tuple[int, int], tuple[TruncatedSystem, SampledSystem] | None] = {}
         self._held = lru_cache(maxsize=None)(partial(still_modes, system))
         self._arrays = lru_cache(maxsize=None)(self._arrays_at)

@@ -15,14 +15,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..core.families import Array, LinearPeriodic, Term
 from ..core.trigonometric import differentiated, interpolated, resampled
 from .equation import SPEED_POWER
 from .moving_basis import MovingBasis, still_modes
 from .reduced import projections
+
+ComplexArray = NDArray[np.complex128]
 
 # Even angles at which the gaps between frequencies are looked at.
 _LOOKED_AT = 64
@@ -74,8 +78,21 @@ class TruncatedSystem(LinearPeriodic):
         rest = self.compliance @ unmet_forces(self.arrays, self.period, q, speeds)
         return np.moveaxis(q, -1, 0), np.moveaxis(rest, -1, 0)
 
+    def unmet_free(self, z: ComplexArray, exponents: ComplexArray, speed: float) -> ComplexArray:
+        """Return the forces that free motions, lifted, leave unmet of the whole equation.
 
-def modes_offered(system: LinearPeriodic, least: int = 4) -> list[int]:
+        The motions are ``z(theta) exp(exponent theta)``, z at ``theta`` in columns, ``(nt, m, k)``,
+        with exponents ``(k,)`` [1/rad] at a crank speed [rad/s]; the exponential function is left
+        out of the forces too, ``(nt, n, k)``.
+        """
+        arrays = {key: values for key, values in self.arrays.items() if values.ndim == 3}
+        q: ComplexArray = self.modes @ z
+        for _ in range(_CORRECTIONS):
+            q = q + self.flexibility @ unmet_forces(arrays, self.period, q, speed, exponents)
+        return np.asarray(unmet_forces(arrays, self.period, q, speed, exponents))
+
+
+def modes_offered(system: LinearPeriodic, least: int) -> list[int]:
     """Return the numbers of modes with a gap to the next frequency at every angle, rising."""
     squares = still_modes(system, _LOOKED_AT).squares
     ratio = np.sqrt(np.min(squares[:, 1:] / squares[:, :-1], axis=0))
@@ -145,13 +162,18 @@ def arrays_at(system: LinearPeriodic, theta: Array) -> dict[tuple[str, int], Arr
 
 
 def unmet_forces(
-    arrays: Mapping[tuple[str, int], Array], period: float, q: Array, speeds: Array
-) -> Array:
+    arrays: Mapping[tuple[str, int], Array],
+    period: float,
+    q: Any,
+    speeds: Array | float,
+    exponents: ComplexArray | float = 0.0,
+) -> Any:
     """Return forces less what motions ``(nt, n, ns)`` need, of the same shape.
 
-    The arrays are those of :func:`arrays_at`, at the even angles of the motions.
+    The arrays are those of :func:`arrays_at`, at the even angles of the motions, whose exponential
+    functions are left out: with ``exponents`` [1/rad] that are not 0 they are complex.
     """
-    slope = differentiated(q, period)
+    slope = _slope(q, period, exponents)
     momentum, total = np.zeros_like(q), np.zeros_like(q)
     for (array, power), values in arrays.items():
         factor = speeds**power
@@ -166,7 +188,15 @@ def unmet_forces(
             total -= factor * (values @ slope)
         else:
             total += (1.0 if array == "B" else -1.0) * factor * (values @ q)
-    return np.asarray(total - differentiated(momentum, period))
+    return total - _slope(momentum, period, exponents)
+
+
+def _slope(q: Any, period: float, exponents: ComplexArray | float) -> Any:
+    """Return the derivative by the angle of motions over their exponential functions."""
+    if not np.iscomplexobj(q):
+        return differentiated(q, period)
+    both = differentiated(np.stack([q.real, q.imag], axis=-1), period)
+    return both[..., 0] + 1j * both[..., 1] + exponents * q
 
 
 @dataclass

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -310,7 +310,8 @@ def _edge_curves(
     if len(values) > _ROWS:
         values = np.linspace(values[0], values[-1], _ROWS)
     span = float(speeds[0]), float(speeds[-1])
-    rows = [stability_edges(system, span, **{names[1 - which]: float(v)}) for v in values]
+    changes: list[dict[str, Any]] = [{names[1 - which]: float(v)} for v in values]
+    rows = [stability_edges(system, span, **change) for change in changes]
     keys = sorted({key for row in rows for key in row.names})
     ends = np.full((3, len(keys), len(rows)), np.nan)
     for column, row in enumerate(rows):

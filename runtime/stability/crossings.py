@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from ..core.roots import bracketed_roots
 from ..frequencies.multiplier_maxima import refined_maxima
 from ..periodic.multipliers import conditions
+from ..periodic.over_speed import MatricesOverSpeed
 from .labels import held_modes, meeting_labels, pair_shares
-from .over_speed import MatricesOverSpeed
 from .pairs import perturbation_size, phase_grid
 from .regions import Regions, joined
 

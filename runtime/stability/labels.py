@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from ..core.trigonometric import even_angles
 from ..periodic import floquet_multipliers
 from ..periodic.equation import Equation, equation_of
+from ..periodic.over_speed import MatricesOverSpeed
 from ..periodic.signatures import form_matrix
 from .boundary_speeds import SpeedBoundaries
 from .meetings import generator
-from .over_speed import MatricesOverSpeed
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]

@@ -20,8 +20,8 @@ from ..core.errors import bad
 from ..core.roots import bracketed_roots
 from ..periodic.equation import equation_of
 from ..periodic.multipliers import conditions, eigenvalues
+from ..periodic.over_speed import MatricesOverSpeed
 from ..periodic.signatures import form_matrix, signatures_of
-from .over_speed import MatricesOverSpeed
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -1,7 +1,7 @@
 """Unstable bands of the four-bar of Aannaque's Table 4.1, undamped.
 
-The bands come from five decoupled modes; the check of their ends integrates all nine, up to 30 000
-rad/s, and knows nothing of the decoupling or of the tables over the speed.
+The bands come from the five lowest modes; the check of their ends integrates all nine, up to 30 000
+rad/s, and knows nothing of the truncation or of the tables over the speed.
 """
 
 import elastolink as el
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.frequencies.multiplier_maxima import multiplier_maxima
 from elastolink.runtime.periodic import floquet_multipliers, monodromy, reduced_system
-from elastolink.runtime.periodic.decoupled import SlowModes, slow_system
+from elastolink.runtime.periodic.lowest_modes import LowestModes
 from elastolink.runtime.stability import stability_edges
 
 SPAN = (72.0, 73.0)
@@ -27,13 +27,8 @@ def four_bar(ratio=0.0, elements=1):
 
 
 @pytest.fixture(scope="module")
-def slow():
-    return slow_system(four_bar(), (SPAN[0] / 1.02, SPAN[1] * 1.02), 5)
-
-
-@pytest.fixture(scope="module")
-def bands(slow):
-    return stability_edges(slow, SPAN, margin=1.02)
+def bands():
+    return stability_edges(four_bar(), SPAN, modes=5, margin=1.02)
 
 
 def test_the_widest_band_is_found_by_reduction_too(bands):
@@ -52,9 +47,9 @@ def test_the_widest_band_is_found_by_reduction_too(bands):
 
 @pytest.mark.slow
 def test_two_percent_of_damping_close_every_band():
-    damped = slow_system(four_bar(0.02), SPAN, 5)
+    truncated, _ = LowestModes(four_bar(0.02)).required(SPAN[1], 5)
     speeds = np.append(np.linspace(*SPAN, 400), INSIDE)
-    found = monodromy(damped.system, speeds)
+    found = monodromy(truncated, speeds)
     largest = np.max(np.abs(np.linalg.eigvals(found.scaled)), axis=-1)
     assert np.max(largest) < 0.8
 
@@ -67,11 +62,8 @@ def test_maxima_swept_on_few_modes_are_those_of_the_whole_linkage():
     mode = int(np.argmax(found.value))
     centre, width = found.speed[mode], 0.05
     assert found.error[mode] < width
-    slow = SlowModes(system)
-    before, there, after = (
-        slow.motions(speed, 4).multipliers()[0].real
-        for speed in (centre - width, centre, centre + width)
-    )
+    speeds = [centre - width, centre, centre + width]
+    before, there, after = floquet_multipliers(system, speeds).multipliers.real
     assert np.min(np.abs(there - found.value[mode])) < 5e-3
     assert max(np.max(before), np.max(after)) <= np.max(there)
 
@@ -110,8 +102,7 @@ def ends_by_all_modes(system, lower, upper, rtol):
 @pytest.mark.slow
 @pytest.mark.parametrize("span", PLACES)
 def test_all_nine_freedoms_leave_the_circle_at_the_ends(span):
-    slow = slow_system(four_bar(), (span[0] / 1.02, span[1] * 1.02), 5)
-    bands = stability_edges(slow, span, margin=1.02)
+    bands = stability_edges(four_bar(), span, modes=5, margin=1.02)
     widest = int(np.nanargmax(bands.width))
     lower, upper = float(bands.lower[widest]), float(bands.upper[widest])
     width = upper - lower
@@ -129,8 +120,7 @@ def test_all_nine_freedoms_leave_the_circle_at_the_ends(span):
 
 @pytest.mark.slow
 def test_the_choice_of_modes_is_made_for_three_elements_a_link():
-    slow = slow_system(four_bar(elements=3), (20.0, 84.0))
-    assert slow.modes == 7
-    assert slow.residual < 1e-6
-    # One number of passes for all speeds: the arrays are smooth in the speed.
-    assert slow.fit < 1e-9
+    lowest = LowestModes(four_bar(elements=3))
+    modes, error = lowest.chosen(84.0)
+    assert modes == 7
+    assert error < 1e-6

@@ -8,10 +8,10 @@ from math import ceil, log
 import numpy as np
 
 from ..core.families import Array, LinearPeriodic
-from ..periodic import monodromy
-from ..periodic.equation import sampled
-from ..periodic.prepared import TableMaker
-from ..periodic.tables import Table
+from .equation import sampled
+from .multipliers import monodromy
+from .prepared import TableMaker
+from .tables import Table
 
 
 class MatricesOverSpeed:

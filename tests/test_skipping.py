@@ -169,7 +169,10 @@ LOADS = {
     "multipliers and response of a coupler": (
         f"el.floquet_multipliers(el.load_scene('{RIG}').system(), 34.0); el.simulate",
         LINKAGES | {f"generated.{FAMILY}"},
-        "stability hill beams periodic.lowest_modes recovery frequencies design".split(),
+        (
+            *("stability", "hill", "beams", "periodic.lowest_modes"),
+            *("recovery", "frequencies", "design"),
+        ),
     ),
     "beams of one kind": (
         "el.load_scene('aannaque_1996_table_4_1').system()",

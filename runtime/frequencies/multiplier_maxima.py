@@ -213,7 +213,7 @@ def _multipliers(few: MatricesOverSpeed, speed: Array, count: int) -> ComplexArr
     half = few.system.size
     values, vectors = np.linalg.eig(few(speed)[0])
     # In velocities of time, not of angle, a state is the same at all speeds.
-    states: ComplexArray = vectors.astype(complex) * few.scale[:, None]
+    states = np.asarray(vectors.astype(complex) * few.scale[:, None], dtype=np.complex128)
     states[:, half:] *= speed[:, None, None]
     order = np.argsort(_level(few.system, states), axis=-1, kind="stable")[:, : 2 * count]
     return np.take_along_axis(values.astype(complex), order, axis=-1)

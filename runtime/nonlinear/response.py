@@ -370,6 +370,8 @@ def _on(solver: Solver, orbit: Orbit, branch: Branch) -> bool:
 
 def same_motion(solver: Solver, one: Motion, other: Motion) -> bool:
     """Return True for one motion, from whatever turn it is counted."""
+    if one.turns != other.turns:
+        return False
     angles = 2.0 * np.pi * one.turns * np.arange(64) / 64
     place = float(solver.scale(one)[0])
     here = one.at(angles)[0]
@@ -390,7 +392,7 @@ def extremes(problem: Problem, orbit: Orbit) -> tuple[float, float]:
     values = problem.system.shown(motion.stages()[0], parameters).ravel()
     signs = np.array([-1.0, 1.0])
     places = angles[[int(np.argmin(values)), int(np.argmax(values))]]
-    best = np.array([-np.min(values), np.max(values)])
+    best = np.zeros(2)
     width = motion.step / motion.a.shape[1]
     for _ in range(_POLISHED):
         around = places[:, None] + width * np.array([-1.0, 0.0, 1.0])
@@ -399,9 +401,8 @@ def extremes(problem: Problem, orbit: Orbit) -> tuple[float, float]:
         bend = left - 2.0 * middle + right
         shift = np.divide(left - right, 2.0 * bend, out=np.zeros(2), where=bend < 0.0)
         places = places + np.clip(shift, -1.0, 1.0) * width
-        # The top of the parabola.
-        top = middle - np.where(np.abs(shift) <= 1.0, 0.25 * (left - right) * shift, 0.0)
-        best = np.maximum(np.maximum(best, middle), top)
+        # The top of the newest parabola, which is the narrowest.
+        best = middle - np.where(np.abs(shift) <= 1.0, 0.25 * (left - right) * shift, 0.0)
         width *= 0.1
     return float(-best[0]), float(best[1])
 

@@ -33,6 +33,7 @@ def test_the_top_of_a_resonance_is_where_its_parabola_has_it():
     assert place == pytest.approx(9.873, abs=1e-6) and height == pytest.approx(100.0, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_rising_speed_jumps_at_the_fold_that_is_read():
     rise = reading(FOLD, "rise")
     below, above = (smith_nonlinear._stable(FOLD, True, rise + gap, 1) for gap in (-0.5, 0.5))
@@ -63,7 +64,9 @@ def test_harmonics_and_doublings_are_read_where_the_branch_has_them():
 def test_stable_motions_are_drawn_solid_and_others_dotted():
     ax, curve = new_figure().add_subplot(), smith_nonlinear.branches(FOLD)
     smith_nonlinear._draw(ax, curve, curve.peak_to_peak)
-    assert [line.get_linestyle() for line in ax.lines] == ["-", ":"]
-    solid, dotted = (line.get_xydata() for line in ax.lines)
+    styles = [line.get_linestyle() for line in ax.lines]
+    # Up to the first fold, back to the second one, up to a doubling, and beyond.
+    assert styles == ["-", ":", "-", ":"]
+    solid, dotted, *_ = (line.get_xydata() for line in ax.lines)
     np.testing.assert_array_equal(solid[-1], dotted[0])
     assert np.max(solid[:, 0]) == pytest.approx(reading(FOLD, "rise"), abs=0.01)

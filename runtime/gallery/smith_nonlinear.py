@@ -21,7 +21,6 @@ from .records import Drawn, contents
 from .smith_linkages import LBF_IN_S2, RPM, OfRig, Rig
 from .smith_responses import response
 
-_DISTURBED = 1e-4  # standard deviation of what disturbs q1 and its rate in each revolution
 _MM = 1e3
 _WAYS = {True: "run up", False: "run down"}
 _FINE = 8  # places drawn between two points of a branch
@@ -48,7 +47,8 @@ class Bench(OfRig):
     """A rig on the test bench, for the nonlinear equation.
 
     Follower inertia [lbf in s^2], range of the speed [rpm], revolutions after which motions may
-    repeat; ends of the slow test and its rate [rpm/s]; the decrement where not the rig's.
+    repeat; ends of the slow test, its rate [rpm/s] and what disturbs q1 and its rate in each
+    revolution; the decrement where not the rig's.
     """
 
     inertia: float
@@ -58,6 +58,7 @@ class Bench(OfRig):
     first: float = 0.0
     last: float = 0.0
     rate: float = 0.0
+    kicks: float = 1e-3
     decrement: float = 0.0
 
     @property
@@ -80,7 +81,7 @@ def branches(one: Bench) -> ResponseCurve:
 def slow_test(one: Bench) -> SweepResponse:
     """Return the motion while the speed rises slowly and falls again."""
     bounds = (one.first * RPM, one.last * RPM)
-    return sweep_response(one.system, bounds, one.rate * RPM, kicks=_DISTURBED, rtol=1e-6)
+    return sweep_response(one.system, bounds, one.rate * RPM, kicks=one.kicks, rtol=1e-6)
 
 
 class Special(NamedTuple):

@@ -31,7 +31,7 @@ _TURN = np.linspace(0.0, 2.0 * np.pi, 129)[:-1]
 # Speeds of the comparison over the coupler's frequency; the largest deflections, by the linear
 # equation and over the length, that belong together.
 _SPEEDS = np.linspace(0.16, 0.49, 45)
-_BINS = (0.0, 0.0025, 0.005, 0.01, 0.02, 0.03, 0.05)
+_BINS = (0.0, 0.0025, 0.005, 0.01, 0.02, 0.03, 0.04)
 
 Rows = list[Sequence[Any]]
 
@@ -53,6 +53,9 @@ def quoted_speeds(axes: Panels, chart: str, cranks: Sequence[float]) -> Drawn:
     # Bins below the first in which the linear equation is off by more than 1 %.
     good = [row for row in bins if row[-1] < 1.0]
     law = max(abs(row[-1]) for row in leaning)
+    both = [BENCHES[name] for name in ("least", "two_modes")]
+    kinds = ("rise", "fall", "onset", "end")
+    moved = [abs(float(np.diff([reading(one, kind) for one in both])[0])) for kind in kinds]
     share = summary[-1][1] / len(_COMPARED)
     words: dict[str, object] = {
         "count": summary[-1][1],
@@ -61,6 +64,7 @@ def quoted_speeds(axes: Panels, chart: str, cranks: Sequence[float]) -> Drawn:
         "lost": reading(BENCHES["softening"], "onset"),
         "within": good[-1][0].split()[-2],
         "there": good[-1][-1],
+        "second": max(moved),
         "law": law,
         "leaned": 100.0 * float(np.sqrt(1e-3 / law)),
     }

@@ -26,8 +26,10 @@ _WAYS = {True: "run up", False: "run down"}
 _FINE = 8  # places drawn between two points of a branch
 
 
-def coupler(rig: Rig, inertia: float, decrement: float = 0.0, crank: float = 1.0) -> Nonlinear:
-    """Return the inextensible coupler of a rig, one mode.
+def coupler(
+    rig: Rig, inertia: float, decrement: float = 0.0, modes: int = 1, crank: float = 1.0
+) -> Nonlinear:
+    """Return the inextensible coupler of a rig.
 
     Follower inertia [lbf in s^2], logarithmic decrement or that taken for the rig, length of the
     crank over the rig's.
@@ -35,6 +37,7 @@ def coupler(rig: Rig, inertia: float, decrement: float = 0.0, crank: float = 1.0
     scene = load_scene(rig.scene)
     changes = {
         "model.formulation": "inextensible",
+        "model.modes": modes,
         "coupler.damping_ratio": (decrement or rig.decrement) / (2 * pi),
         "follower.inertia": inertia * LBF_IN_S2,
         "links.crank": crank * scene["links"]["crank"],
@@ -48,7 +51,7 @@ class Bench(OfRig):
 
     Follower inertia [lbf in s^2], range of the speed [rpm], revolutions after which motions may
     repeat; ends of the slow test, its rate [rpm/s] and what disturbs q1 and its rate in each
-    revolution; the decrement where not the rig's.
+    revolution; the decrement where not the rig's, and how many modes.
     """
 
     inertia: float
@@ -60,11 +63,12 @@ class Bench(OfRig):
     rate: float = 0.0
     kicks: float = 1e-3
     decrement: float = 0.0
+    modes: int = 1
 
     @property
     def system(self) -> Nonlinear:
         """The coupler."""
-        return coupler(self.rig, self.inertia, self.decrement)
+        return coupler(self.rig, self.inertia, self.decrement, self.modes)
 
 
 BENCHES = {name: Bench(**row) for name, row in contents("smith")["bench"].items()}

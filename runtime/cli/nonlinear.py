@@ -24,7 +24,7 @@ def add(commands: Any) -> None:
     speeds = "LOW:HIGH[UNIT], or one speed with --in; default operation.speed_range or .speed"
     opt.add(parser, {"--speed SPEED": speeds})
     over = "vary a parameter of the equations at one speed instead, e.g. follower_inertia=LOW:HIGH"
-    opt.add(parser, {"--in NAME=LOW:HIGH[UNIT]": over}, dest="parameter")
+    opt.add(parser, {"--in NAME=LOW:HIGH[UNIT]": over})
     turns = "follow doublings to motions of N revolutions; default 1"
     opt.add(parser, {"--turns N": turns}, type=int, default=1)
     rate = "march up and down at this acceleration of the crank instead, e.g. '2 rpm/s'"
@@ -48,11 +48,12 @@ def _response(options: argparse.Namespace) -> int:
         return _sweep(options, scene, system, told)
     opt.refuse_unused(options, ("kicks",), "--sweep")
     shown = opt.progress(options)
-    if options.parameter is None:
+    varied = getattr(options, "in")
+    if varied is None:
         name, bounds = "speed", speed_range(options.speed, scene, "--speed")
         speed = None
     else:
-        name, bounds = _parameter(options.parameter, scene, system)
+        name, bounds = _parameter(varied, scene, system)
         speed = speed_of(options, scene)
     starts: list[Any] = []
     lines: list[str] = [*told]
@@ -70,7 +71,7 @@ def _scene(options: argparse.Namespace) -> tuple[Scene, list[str]]:
     scene, told = opt.load(options), []
     more: dict[str, Any] = {}
     if not scene.model["formulation"].startswith(_INEXTENSIBLE):
-        if "coupler" not in scene.layout.flexible or scene.model["mechanism"] != "four_bar":
+        if scene.layout.flexible != ("coupler",) or scene.model["mechanism"] != "four_bar":
             found = f"formulation '{scene.model['formulation']}'"
             fix = "choose a scene with a flexible coupler"
             raise bad(f"scene {scene.name}", found, "a nonlinear formulation", fix)
@@ -137,7 +138,8 @@ def _lines(curve: nonlinear.ResponseCurve) -> list[str]:
     factor, head = (_RPM, "speed [rpm]") if speed else (1.0, f"{curve.parameter} [SI]")
     size, unit = (1e3, "mm") if curve.unit == "m" else (1.0, curve.unit)
     deflection = size * (curve.special_highest - curve.special_lowest)
-    lines = [f"{len(curve.value)} points on {len(curve.ended)} branches"]
+    count = len(curve.ended)
+    lines = [f"{len(curve.value)} points on {count} branch{'es' * (count > 1)}"]
     for number, ended in enumerate(curve.ended):
         at = curve.branch == number
         turns = int(curve.turns[at][0])
@@ -160,7 +162,7 @@ def _lines(curve: nonlinear.ResponseCurve) -> list[str]:
 
 def _sweep(options: argparse.Namespace, scene: Scene, system: Nonlinear, told: list[str]) -> int:
     """March up and down, and print the jumps."""
-    opt.refuse_unused(options, ("parameter", "search"), "a response curve")
+    opt.refuse_unused(options, ("in", "search"), "a response curve, without --sweep")
     rate = opt.positive(options, "sweep", "angular_acceleration") or 0.0
     bounds = speed_range(options.speed, scene, "--speed")
     kicks = 1e-6 if options.kicks is None else options.kicks

@@ -109,10 +109,16 @@ def warn_of_large_deflection(
     length: str = "the reference length",
     fix: str = "leave out resonant speeds or add damping",
     *,
+    nonlinear: str = "",
     stacklevel: int = 3,
 ) -> None:
-    """Warn whoever called the caller where a deflection over the length is beyond 5 %."""
+    """Warn whoever called the caller where a deflection over the length is beyond 5 %.
+
+    ``nonlinear``: the formulation, if any, in which the same scene has nonlinear equations.
+    """
     if largest is not None and largest > LINEAR_RANGE:
+        if nonlinear:
+            fix += f"; formulation '{nonlinear}' goes on: `elastolink response`, docs/nonlinear.md"
         warnings.warn(
             f"deflection reaches {largest:.3g} of {length}; the linear equations hold to about "
             f"{LINEAR_RANGE}: {fix}",

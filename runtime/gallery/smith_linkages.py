@@ -69,12 +69,16 @@ def series(linkage: FourBar, name: str = "f3") -> PeriodicFunction:
 
 @dataclass(frozen=True)
 class Rig:
-    """One linkage and coupler of chapter 9: scene, proportions, thickness, number of the chart."""
+    """One linkage and coupler of chapter 9: scene, proportions, thickness, number of the chart.
+
+    ``decrement`` is the logarithmic one that is taken for the nonlinear equation.
+    """
 
     scene: str
     linkage: str
     thickness: str
     figure: str
+    decrement: float
 
     @property
     def name(self) -> str:

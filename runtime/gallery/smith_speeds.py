@@ -43,7 +43,8 @@ class Observation(OfRig):
     Number of the rig's chart, follower inertia [lbf in s^2], number n of the unstable region
     2 Omega/n that it belongs to (0 for none), speed [rpm] as quoted or the middle of a range, the
     response that it is read from, what the text says of it and how it fixes the inertia, half of
-    a range [rpm].  By its kind it is set against the middle of the region (``resonance``, or a rise
+    a range [rpm]; ``nonlinear``: test and reading of the nonlinear equation that are set against
+    it.  By its kind it is set against the middle of the region (``resonance``, or a rise
     of amplitude; ``range``: unstable between two speeds), the lower end (``onset``: unstable above
     it) or the upper one (``end``: stable again above it).
     """
@@ -56,6 +57,7 @@ class Observation(OfRig):
     meaning: str
     note: str = ""
     half_width: float = 0.0
+    nonlinear: Sequence[Any] = ()
 
     @property
     def si_inertia(self) -> float:

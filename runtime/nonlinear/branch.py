@@ -78,6 +78,13 @@ class Branch:
         """Revolutions of the drive after which the motions repeat."""
         return self.points[0][0].motion.turns
 
+    def joined(self, ahead: Branch) -> Branch:
+        """Return one branch of two that begin at one point: this one backwards, then the other."""
+        back = tuple((orbit.turned(), measure) for orbit, measure in reversed(self.points))
+        special = (*reversed(self.special), *ahead.special)
+        ended = dict.fromkeys((self.ended, ahead.ended))
+        return Branch((*back, *ahead.points[1:]), special, "; ".join(ended))
+
 
 LEFT, CLOSED, JOINED = "it leaves the range", "it closes", "it joins a motion of fewer turns"
 

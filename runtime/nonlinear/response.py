@@ -17,7 +17,7 @@ from ..core.inputs import is_finite, numbers, require_between, require_kind, req
 from ..core.plotting import Axes, axes_or_new
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
-from .branch import JOINED, Branch, Limits, crossing, doubled, followed
+from .branch import CLOSED, JOINED, Branch, Limits, crossing, doubled, followed
 from .orbit import FIRST_STEPS, MOST_STEPS, STAGES, Lost, Measure, Orbit, Solver, closed, taken
 from .segments import Motion, NotFinite, Problem, sweep
 
@@ -309,9 +309,10 @@ def _all_branches(
             continue
         _follow(solver, begun, limits, branches, queue, turns, tick)
     for value, motion in starts:
-        for sign in (1.0, -1.0):
-            begun = solver.fine(value, motion, solver.along_parameter(motion, sign))
-            _follow(solver, begun, limits, branches, queue, turns, tick)
+        begun, back = (
+            solver.fine(value, motion, solver.along_parameter(motion, sign)) for sign in (1.0, -1.0)
+        )
+        _follow(solver, begun, limits, branches, queue, turns, tick, back)
     if not branches:
         fix = "choose another range: begin where the motion is small"
         raise bad("bounds", f"no periodic motion at either end ({refused})", "one", fix)
@@ -328,11 +329,17 @@ def _follow(
     queue: list[tuple[Orbit, Measure]],
     turns: int,
     tick: Callable[[int], None] | None,
+    back: tuple[Orbit, Measure] | None = None,
 ) -> None:
-    """Follow a branch unless it is known, and add the beginnings of those that start on it."""
+    """Follow a branch unless it is known, and add the beginnings of those that start on it.
+
+    ``back``: the same motion with its tangent the other way, to follow it that way, too.
+    """
     if any(_on(solver, begun[0], branch) for branch in branches):
         return
     branch = followed(solver, begun, limits)
+    if back is not None and branch.ended != CLOSED:
+        branch = followed(solver, back, limits).joined(branch)
     branches.append(branch)
     if tick is not None:
         tick(len(branches))
@@ -351,10 +358,9 @@ def _on(solver: Solver, orbit: Orbit, branch: Branch) -> bool:
     if branch.turns != orbit.motion.turns:
         return False
     values = [point.value for point, _ in branch.points]
-    if branch.ended == JOINED and abs(orbit.value - values[-1]) <= 2.0 * abs(
-        values[-1] - values[-2]
-    ):
-        return True
+    for end, before in ((values[-1], values[-2]), (values[0], values[1])):
+        if JOINED in branch.ended and abs(orbit.value - end) <= 2.0 * abs(end - before):
+            return True
     for (one, _), (other, _) in pairwise(branch.points):
         if not min(one.value, other.value) <= orbit.value <= max(one.value, other.value):
             continue

@@ -210,7 +210,7 @@ def simulate(
     theta = grid.theta[: len(run.states)]
     q, slope = _unscaled(equation, theta, run.states)
     largest = _largest(equation.system, grid, q)
-    warn_of_large_deflection(largest)
+    warn_of_large_deflection(largest, nonlinear=equation.system.provenance.get("nonlinear", ""))
     checks = partial(_checks, equation, (theta, q, slope), float(np.max(error)), allowed, largest)
     value = float(equation.speed[0])
     return Trajectory(

@@ -282,7 +282,7 @@ def steady_state(
     q[lost], slope[lost], error[lost] = np.nan, np.nan, np.inf
     theta = equation.period * np.arange(float(samples)) / samples
     largest = equation.system.largest_deflection(theta, q)
-    warn_of_large_deflection(largest)
+    warn_of_large_deflection(largest, nonlinear=equation.system.provenance.get("nonlinear", ""))
     later = DeferredGroup(partial(_stability, system, speed, dict(parameters)))
     checks = partial(_checks, equation, (theta, q, slope), error, allowed, single, largest)
     batch = equation.batch

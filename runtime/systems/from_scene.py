@@ -52,7 +52,7 @@ def coupler_system(scene: Scene) -> LinearPeriodic:
         limits=_COUPLER_LIMITS,
         reference_length=linkage.lengths["coupler"],
         shape=PinnedModes(modes),
-        provenance={**_origin(scene), **emitted.provenance},
+        provenance={**_origin(scene), **emitted.provenance, "nonlinear": "inextensible"},
     )
 
 

@@ -115,7 +115,8 @@ class LinearPeriodic:
         Where the shapes depend on the crank angle: x/length ``(nx,)`` and theta ``(nt,)`` [rad] to
         ``(nt, nx, n)``.
     provenance : mapping
-        Scene, module and options that the system was made from.
+        Scene, module and options that the system was made from; ``nonlinear``: the formulation in
+        which the scene has nonlinear equations.
     geometry : mapping
         Values of the named lengths and ratios that its functions of angle are made for, where the
         system can be made anew for others; else empty.

@@ -55,6 +55,10 @@ def test_motions_are_starts_of_branches():
     assert len(alone.ended) < len(all_of_them.ended) == 3
     assert np.all(all_of_them.value >= 1.15 - 1e-12)
     assert np.all(all_of_them.value <= 1.3 + 1e-12)
+    # Each is followed both ways, from one end of the range to the other.
+    for number in range(3):
+        values = all_of_them.value[all_of_them.branch == number]
+        assert values[[0, -1]].tolist() == pytest.approx([1.15, 1.3])
 
 
 @pytest.mark.parametrize(

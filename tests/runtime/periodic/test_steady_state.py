@@ -11,6 +11,7 @@ from elastolink.runtime.periodic import simulate, steady_state
 from elastolink.runtime.periodic.equation import equation_of
 from elastolink.runtime.periodic.ring import solve_ring
 from elastolink.runtime.periodic.transition import levels_for, method
+from elastolink.runtime.scenes import load_scene
 from periodic_systems import forced_mathieu, peak_gap, system_of
 
 METHODS = ("auto", "harmonic_balance")
@@ -107,6 +108,16 @@ def test_the_linear_range_is_watched():
     with pytest.warns(LinearRangeWarning, match="leave out resonant speeds"):
         state = steady_state(forced_mathieu(), 3.0, mu=0.0, c=0.0, k=9.001)
     assert not state.checks["linear range"].passed
+
+
+def test_beyond_the_linear_range_the_nonlinear_equation_is_named_where_there_is_one():
+    changes = {"coupler.damping_ratio": 0.03}
+    rig = load_scene("smith_1972_101104_thirtysecond_inch", overrides=changes)
+    with pytest.warns(LinearRangeWarning, match=r"'inextensible' .* docs/nonlinear\.md"):
+        steady_state(rig.system(), 385.0 * np.pi / 30.0)
+    with pytest.warns(LinearRangeWarning) as caught:
+        steady_state(forced_mathieu(), 3.0, mu=0.0, c=0.0, k=9.001)
+    assert "nonlinear" not in str(caught[0].message)
 
 
 def test_plots_are_drawn():

@@ -1,0 +1,322 @@
+"""Smith's Figs. 62 to 78 and all speeds of chapter 9 by the nonlinear equation of the coupler."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import pairwise
+from math import pi
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+from scipy.signal import find_peaks
+
+from ..core.families import Nonlinear
+from ..nonlinear import ResponseCurve, SweepResponse, response_curve, sweep_response
+from ..scenes import load_scene
+from .drawing import COLOURS, Array, Axes, Panels, mark_fractions, panel_title
+from .records import Drawn, contents
+from .smith_linkages import LBF_IN_S2, RPM, OfRig, Rig
+from .smith_responses import response
+
+_MM = 1e3
+_WAYS = {True: "run up", False: "run down"}
+_FINE = 8  # places drawn between two points of a branch
+
+
+def coupler(
+    rig: Rig, inertia: float, decrement: float = 0.0, modes: int = 1, crank: float = 1.0
+) -> Nonlinear:
+    """Return the inextensible coupler of a rig.
+
+    Follower inertia [lbf in s^2], logarithmic decrement or that taken for the rig, length of the
+    crank over the rig's.
+    """
+    scene = load_scene(rig.scene)
+    changes = {
+        "model.formulation": "inextensible",
+        "model.modes": modes,
+        "coupler.damping_ratio": (decrement or rig.decrement) / (2 * pi),
+        "follower.inertia": inertia * LBF_IN_S2,
+        "links.crank": crank * scene["links"]["crank"],
+    }
+    return cast("Nonlinear", load_scene(rig.scene, overrides=changes).system())
+
+
+@dataclass(frozen=True)
+class Bench(OfRig):
+    """A rig on the test bench, for the nonlinear equation.
+
+    Follower inertia [lbf in s^2], range of the speed [rpm], revolutions after which motions may
+    repeat; ends of the slow test, its rate [rpm/s] and what disturbs q1 and its rate in each
+    revolution; the decrement where not the rig's, and how many modes.
+    """
+
+    inertia: float
+    low: float
+    high: float
+    turns: int = 1
+    first: float = 0.0
+    last: float = 0.0
+    rate: float = 0.0
+    kicks: float = 1e-3
+    decrement: float = 0.0
+    modes: int = 1
+
+    @property
+    def system(self) -> Nonlinear:
+        """The coupler."""
+        return coupler(self.rig, self.inertia, self.decrement, self.modes)
+
+
+BENCHES = {name: Bench(**row) for name, row in contents("smith")["bench"].items()}
+
+
+@lru_cache(maxsize=32)
+def branches(one: Bench) -> ResponseCurve:
+    """Return the periodic motions over the range of the speed."""
+    bounds = (one.low * RPM, one.high * RPM)
+    return response_curve(one.system, "speed", bounds, turns=one.turns, rtol=1e-6)
+
+
+@lru_cache(maxsize=32)
+def slow_test(one: Bench) -> SweepResponse:
+    """Return the motion while the speed rises slowly and falls again."""
+    bounds = (one.first * RPM, one.last * RPM)
+    return sweep_response(one.system, bounds, one.rate * RPM, kicks=one.kicks, rtol=1e-6)
+
+
+class Special(NamedTuple):
+    """A special point: kind, branch, revolutions, speed [rpm], deflection [mm, peak to peak]."""
+
+    kind: str
+    branch: int
+    turns: int
+    speed: float
+    size: float
+
+
+def specials(one: Bench) -> list[Special]:
+    """Return the special points, in their order along the branches."""
+    curve = branches(one)
+    number = curve.special_branch
+    turns = [int(curve.turns[curve.branch == at][0]) for at in number]
+    speeds = (curve.special_value / RPM).tolist()
+    sizes = (_MM * (curve.special_highest - curve.special_lowest)).tolist()
+    rows = zip(curve.special, number.tolist(), turns, speeds, sizes, strict=True)
+    return [Special(*row) for row in rows]
+
+
+def reading(one: Bench, kind: str, order: int = 0) -> float:
+    """Return the speed [rpm] at which something happens by the branches of a test.
+
+    ``rise`` and ``fall``: the first and the second fold along the first branch, which a rising and
+    a falling speed reach; ``two turns fall``: the lowest fold of two turns; ``onset``, ``end``:
+    where the motion of one turn begins and ends to double, ``middle`` between them; ``peak``: the
+    maximum of its order-th harmonic that is nearest to Omega/order.
+    """
+    found = specials(one)
+    doublings = [p.speed for p in found if (p.kind, p.turns) == ("doubling", 1)]
+    if kind in ("rise", "fall"):
+        folds = [point.speed for point in found if (point.kind, point.branch) == ("fold", 0)]
+        return folds[("rise", "fall").index(kind)]
+    if kind == "two turns fall":
+        return min(p.speed for p in found if (p.kind, p.turns) == ("fold", 2))
+    if kind == "peak":
+        return _peak(one, order)
+    ends = {"onset": min(doublings), "end": max(doublings)}
+    return ends.get(kind, 0.5 * (ends["onset"] + ends["end"]))
+
+
+def _peak(one: Bench, order: int) -> float:
+    curve, turn = branches(one), np.linspace(0.0, 2 * pi, 65)[:-1]
+    first = np.flatnonzero(curve.branch == 0)
+    lower = first[: np.argmin(np.append(curve.stable[first], False))]
+    bent = [one.system.shown(curve.orbits[i].motion.at(turn)[0]) for i in lower]
+    sizes, speed = np.abs(np.fft.rfft(bent, axis=-1))[:, order], curve.value[lower]
+    tops = find_peaks(sizes)[0]
+    top = tops[np.argmin(np.abs(speed[tops] - one.rig.frequency / order))]
+    near = slice(top - 1, top + 2)
+    bend, slope, _ = np.polyfit(speed[near] - speed[top], sizes[near], 2)
+    return float(speed[top] - 0.5 * slope / bend) / RPM
+
+
+def _amplitudes(one: Bench, speed: float) -> list[tuple[int, bool, float]]:
+    """Return revolutions, stability and deflection [mm] of each motion at a speed [rpm]."""
+    curve, found = branches(one), []
+    value = curve.value - speed * RPM
+    for i in np.flatnonzero((value[:-1] * value[1:] <= 0.0) & (np.diff(curve.branch) == 0)):
+        share = value[i] / (value[i] - value[i + 1])
+        size = curve.peak_to_peak[i] + share * (curve.peak_to_peak[i + 1] - curve.peak_to_peak[i])
+        holds = bool(curve.stable[i] and curve.stable[i + 1])
+        found.append((int(curve.turns[i]), holds, _MM * float(size)))
+    return found
+
+
+class _Way(NamedTuple):
+    """One way of a slow test: speeds [rpm] rising, extremes of the deflection [mm]."""
+
+    speed: Array
+    lowest: Array
+    highest: Array
+
+    @property
+    def size(self) -> Array:
+        return self.highest - self.lowest
+
+    def within(self, low: float, high: float) -> _Way:
+        inside = (self.speed >= low) & (self.speed <= high)
+        return _Way(*(part[inside] for part in self))
+
+
+def _way(one: Bench, rising: bool) -> _Way:
+    test = slow_test(one)
+    at = np.flatnonzero(test.rising == rising)
+    at = at[np.argsort(test.speed[at])]
+    return _Way(test.speed[at] / RPM, _MM * test.lowest[at], _MM * test.highest[at])
+
+
+def _read(one: Bench, rising: bool, kind: str, order: int = 0) -> float:
+    return reading(one, kind, order)
+
+
+def _other(one: Bench, rising: bool, name: str, kind: str) -> float:
+    """Return a reading of another test."""
+    return reading(BENCHES[name], kind)
+
+
+def _apart(one: Bench, rising: bool, first: str, second: str) -> float:
+    """Return one reading less another [rpm]."""
+    return reading(one, first) - reading(one, second)
+
+
+def _stable(one: Bench, rising: bool, speed: float, *turns: int) -> float:
+    """Return how many stable motions of so many turns there are at a speed [rpm]."""
+    return sum(holds and count in turns for count, holds, _ in _amplitudes(one, speed))
+
+
+def _largest(one: Bench, rising: bool, low: float, high: float) -> float:
+    """Return the speed [rpm] of the largest deflection of the slow test within a range."""
+    way = _way(one, rising).within(low, high)
+    return float(way.speed[np.argmax(way.size)])
+
+
+def _greater(one: Bench, rising: bool, fall: str, rise: str) -> float:
+    """Return the largest stable deflection between two readings over that at the second."""
+    low, high = reading(one, fall), reading(one, rise)
+    curve = branches(one)
+    inside = curve.stable & (curve.value >= low * RPM) & (curve.value <= high * RPM)
+    largest = _MM * float(np.max(curve.peak_to_peak[inside]))
+    return largest / max(size for _, holds, size in _amplitudes(one, high) if holds)
+
+
+def _beats(one: Bench, rising: bool, low: float, high: float) -> float:
+    """Return how many maxima the upper edge of the trace has within a range."""
+    edge = _way(one, rising).within(low, high).highest
+    return len(find_peaks(edge, prominence=0.01 * np.ptp(edge))[0])
+
+
+def _level(one: Bench, rising: bool, below: float, above: float) -> float:
+    """Return how far the mean level moves between two speeds, over the largest deflection."""
+    way = _way(one, rising)
+    mean = np.interp([below, above], way.speed, 0.5 * (way.lowest + way.highest))
+    return float(abs(mean[1] - mean[0]) / np.max(way.within(below, above).size))
+
+
+# What section 9.5.3 says of single figures, by the names in their records.
+_CLAIMS: Mapping[str, Callable[..., float]] = {
+    "read": _read,
+    "other": _other,
+    "apart": _apart,
+    "stable": _stable,
+    "largest": _largest,
+    "greater": _greater,
+    "beats": _beats,
+    "level": _level,
+}
+
+
+def trace(
+    axes: Panels, linear: Sequence[Any], name: str, rising: bool, claims: Sequence[Sequence[Any]]
+) -> Drawn:
+    """Draw a recorded response: by the linear equation above, the slow test below.
+
+    ``linear``: what :func:`.response` takes; name of the test and which way the speed goes.
+    """
+    values = list(response(axes[:1], *linear).values)
+    one, ax, (low, high) = BENCHES[name], axes[1], linear[2:4]
+    way = _way(one, rising)
+    label = f"{_WAYS[rising]}, {one.rate:g} rpm/s"
+    ax.fill_between(way.speed, way.lowest, way.highest, color="#cfdce8", lw=0, label=label)
+    curve = branches(one)
+    _draw(ax, curve, curve.lowest, curve.highest)
+    seen = way.within(low, high)
+    ax.set(xlim=(low, high), ylim=(1.2 * np.min(seen.lowest), 1.2 * np.max(seen.highest)))
+    marks = one.rig.frequency / RPM, range(1, 13), "Ω/{}", (low, high)
+    mark_fractions(ax, *marks, low=False)
+    panel_title(axes[0], "complete linear equation")
+    panel_title(ax, f"nonlinear equation, decrement {one.rig.decrement:g}")
+    return Drawn([*values, *(_CLAIMS[claim[0]](one, rising, *claim[1:]) for claim in claims)])
+
+
+def _draw(ax: Axes, curve: ResponseCurve, *sizes: Array) -> None:
+    """Draw sizes [m] of periodic motions over the speed: stable solid, unstable dotted."""
+    for number in range(len(curve.ended)):
+        at = np.flatnonzero(curve.branch == number)
+        if len(at) < 2:
+            continue
+        turns, points = int(curve.turns[at[0]]), np.arange(len(at))
+        fine = np.linspace(0, points[-1], _FINE * int(points[-1]) + 1)
+        speed = PchipInterpolator(points, curve.value[at] / RPM)(fine)
+        holds = curve.stable[at[:-1]] & curve.stable[at[1:]]
+        ends = [0, *(np.flatnonzero(np.diff(holds)) + 1).tolist(), len(holds)]
+        for size in sizes:
+            shown = PchipInterpolator(points, _MM * size[at])(fine)
+            for first, last in pairwise(ends):
+                part = slice(_FINE * first, _FINE * last + 1)
+                style, word = ("-", "stable") if holds[first] else (":", "unstable")
+                label = f"{turns} turn{'s' * (turns > 1)}, {word}"
+                colour = COLOURS[0 if turns == 1 else 3]
+                ax.plot(speed[part], shown[part], style, color=colour, label=label)
+
+
+def figure_64(axes: Panels, name: str, speed: float) -> Drawn:
+    """Draw the vibration of two turns at a speed [rpm]."""
+    one, ax = BENCHES[name], axes[0]
+    curve = branches(one)
+    at = np.flatnonzero((curve.turns == 2) & curve.stable)
+    near = curve.orbits[at[np.argmin(np.abs(curve.value[at] - speed * RPM))]]
+    solver = curve.source
+    motion = solver.settled(speed * RPM, near.motion)
+    orbit, _ = solver.fine(speed * RPM, motion, solver.along_parameter(motion))
+    theta = np.linspace(0.0, 4 * pi, 721)
+    bent = _MM * one.system.shown(orbit.motion.at(np.mod(theta, 4 * pi))[0])
+    ax.plot(np.degrees(theta), bent)
+    turns = np.max(np.abs(bent[:361] - bent[360:])) / np.ptp(bent)
+    return Drawn([orbit.motion.turns, turns, abs(orbit.multipliers[0])])
+
+
+def figure_69(axes: Panels, name: str, speeds: Sequence[float]) -> Drawn:
+    """Draw the peak-to-peak deflection, both ways; count the amplitudes at speeds [rpm]."""
+    one, ax = BENCHES[name], axes[0]
+    curve = branches(one)
+    for rising, mark, colour in ((True, "o", COLOURS[2]), (False, "s", COLOURS[1])):
+        way = _way(one, rising)
+        # Every eighth revolution, and the larger of two: a motion of two turns alternates.
+        size = np.maximum(way.size[:-1], way.size[1:])
+        ax.plot(way.speed[:-1:8], size[::8], mark, ms=2.5, color=colour, label=_WAYS[rising])
+    _draw(ax, curve, curve.peak_to_peak)
+    linear = _MM * (curve.linear_highest - curve.linear_lowest)
+    ax.plot(curve.linear_value / RPM, linear, color="0.6", lw=0.8, label="linear")
+    ax.set(
+        xlim=(one.first, one.last),
+        ylim=(0.0, 1.1 * max(np.max(_way(one, way).size) for way in _WAYS)),
+    )
+    half = 0.55 * one.rig.frequency
+    values = curve.linear_value, curve.value[curve.stable & (curve.turns == 1)]
+    heights = linear, curve.peak_to_peak[curve.stable & (curve.turns == 1)]
+    tops = [v[np.argmax(np.where(v < half, h, 0.0))] for v, h in zip(values, heights, strict=True)]
+    counts = [_stable(one, True, speed, 1, 2) for speed in speeds]
+    return Drawn([*counts, float(tops[1] - tops[0]) / RPM])

@@ -9,10 +9,14 @@ from __future__ import annotations
 import tomllib
 from dataclasses import dataclass
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 
 import elastolink as el
 import numpy as np
+from elastolink.runtime.nonlinear.orbit import Solver
+from elastolink.runtime.nonlinear.response import first_motion
+from elastolink.runtime.nonlinear.segments import Problem
 from numpy.polynomial import legendre
 
 REFERENCE = tomllib.loads((Path(__file__).parent / "bent_rigs.toml").read_text())
@@ -140,3 +144,24 @@ def _integration(count: int) -> np.ndarray:
 def _running(nodes: np.ndarray) -> np.ndarray:
     """Return the matrix that integrates values at Gauss points from the beginning to each."""
     return _integration(len(nodes))
+
+
+def motions_at(curve, value: float, turns: int):
+    """Return the motions of a response curve at a value of the parameter, with their errors."""
+    solver, found = curve.source, []
+    points = list(zip(curve.orbits, curve.branch, strict=True))
+    for (one, branch), (other, same) in pairwise(points):
+        within = min(one.value, other.value) <= value <= max(one.value, other.value)
+        if within and branch == same and one.motion.turns == turns:
+            near = min(one, other, key=lambda orbit: abs(orbit.value - value))
+            motion = solver.settled(value, near.motion)
+            found.append(solver.fine(value, motion, solver.along_parameter(motion)))
+    return found
+
+
+def smallest_motion(system, speed: float, rtol: float = 1e-8):
+    """Return the motion that Newton reaches from none, with its error, and the solver."""
+    problem = Problem(system, "speed", 0.0)
+    solver = Solver(problem, 0.1 * speed, rtol)
+    motion = solver.settled(speed, first_motion(problem))
+    return solver.fine(speed, motion, solver.along_parameter(motion)), solver

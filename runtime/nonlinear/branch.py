@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,11 +16,13 @@ from .segments import Motion, NotFinite
 # first, its least and its largest length.
 _AIM = 0.02
 _LONGER, _SHORTER = 2.0, 0.3
-_FIRST, _LEAST, _LARGEST = 0.02, 1e-7, 1.0
+_FIRST, _LEAST, _LARGEST = 0.02, 1e-7, 0.5
 _WIDEST = 1.0 / 60.0  # part of the range that a step may change the parameter by
 # Relative amplitude at which a crossing branch is entered.
 _ENTERED = 0.02
 _LOCATED = 1e-12  # part of a step to which a special point is located
+# Part of a test's value to which the parabola through three has to fall for a pair to be sought.
+_DIP = 0.3
 _FAILURES = (Lost, NotFinite, np.linalg.LinAlgError)
 
 
@@ -79,42 +82,73 @@ class Branch:
 LEFT, CLOSED, JOINED = "it leaves the range", "it closes", "it joins a motion of fewer turns"
 
 
-def followed(
-    solver: Solver, begun: tuple[Orbit, Measure], bounds: tuple[float, float], most: int
-) -> Branch:
+@dataclass(frozen=True)
+class Limits:
+    """Where branches end."""
+
+    low: float  # of the parameter
+    high: float
+    largest: float  # of the deflection over the length, where the system watches it
+    points: int
+
+    def hold(self, value: float) -> bool:
+        """Return True for a value within the range."""
+        return self.low <= value <= self.high
+
+
+def followed(solver: Solver, begun: tuple[Orbit, Measure], limits: Limits) -> Branch:
     """Follow a branch from a motion along its tangent, locating special points on the way.
 
     It ends where it leaves the range or cannot be followed, where it comes back to its beginning,
     and where a motion of several turns becomes one of fewer.
     """
-    points, special = [begun], []
-    ended = f"{most} points"
-    for orbit, measure, reason in _steps(solver, *begun, bounds, most):
+    points: list[tuple[Orbit, Measure]] = [begun]
+    special: list[Special] = []
+    ended, before = f"it has {limits.points} points", None
+    for orbit, measure, reason in _steps(solver, *begun, limits):
         if orbit is None or measure is None:
             ended = reason
             break
-        for found in special_points(solver, points[-1][0], orbit):
-            if bounds[0] <= found.orbit.value <= bounds[1]:
-                special.append(found)
-                points.append((found.orbit, found.measure))
+        last = points[-1][0]
+        found = [*special_points(solver, last, orbit)]
+        if before is not None and not found:
+            found = [*hidden_pairs(solver, before, last, orbit)]
+        special += found
+        rows = [*points[len(points) - 1 :], *((point.orbit, point.measure) for point in found)]
+        if found:
+            # A hidden pair may lie before the last motion: all stand in the order of the branch.
+            along = [orbit.tangent.dot(_change(orbit, row[0])) for row in rows]
+            points[-1:] = [rows[i] for i in np.argsort(along, kind="stable")]
         points.append((orbit, measure))
+        before = last
     return Branch(tuple(points), tuple(special), ended)
 
 
+def _change(orbit: Orbit, other: Orbit) -> Direction:
+    """Return what leads from a motion to another."""
+    x, v, _ = other.motion.at(orbit.motion.step * np.arange(len(orbit.motion.x)))
+    states = np.concatenate([x, v], axis=1) - orbit.motion.states
+    return replace(orbit.tangent, states=states, value=other.value - orbit.value)
+
+
 def _steps(
-    solver: Solver, orbit: Orbit, measure: Measure, bounds: tuple[float, float], most: int
+    solver: Solver, orbit: Orbit, measure: Measure, limits: Limits
 ) -> Iterator[tuple[Orbit | None, Measure | None, str]]:
     """Yield the motions along a branch, and at last why it ends."""
     step, first, away = _FIRST, orbit, False
-    for _ in range(most):
+    before: tuple[Orbit, float] | None = None
+    watch = solver.problem.system.watch
+    for _ in range(limits.points):
         ahead = None
         while ahead is None:
             if step < _LEAST:
                 yield None, None, "it cannot be followed"
                 return
             try:
-                value, guess = changed(orbit, orbit.tangent, step)
-                ahead, size = solver.corrected(value, guess, orbit.tangent)
+                value, guess = orbit.ahead(step, before)
+                ahead, size = solver.corrected(
+                    value, guess, orbit.tangent, orbit.swept.by_parameter
+                )
                 if ahead.tangent.dot(orbit.tangent) < 0.5:
                     raise Lost("the branch turns within a step")
                 ahead, measure = solver.refined(ahead)
@@ -125,31 +159,33 @@ def _steps(
         if _fewer_turns(orbit.motion, ahead.motion):
             yield None, None, JOINED
             return
-        yield ahead, measure, ""
-        if not bounds[0] <= ahead.value <= bounds[1]:
+        if not limits.hold(ahead.value):
+            with suppress(*_FAILURES):
+                # The last motion is that at the end of the range.
+                value = limits.low if ahead.value < limits.low else limits.high
+                across = solver.along_parameter(ahead.motion, ahead.value - orbit.value)
+                ahead, measure = solver.fine(value, ahead.motion, across)
+            yield ahead if ahead.tangent.dot(orbit.tangent) > 0 else ahead.turned(), measure, ""
             yield None, None, LEFT
+            return
+        yield ahead, measure, ""
+        if watch is not None and float(np.max(watch(ahead.motion.x))) > limits.largest:
+            yield None, None, f"the deflection passes {limits.largest:g} of the length"
             return
         passed = _passed(ahead, orbit, first)
         if away and passed:
             yield None, None, CLOSED
             return
         away = away or not passed
-        grown = float(np.clip(np.sqrt(_AIM / max(size, 1e-12)), _SHORTER, _LONGER))
+        grown = float(np.clip(np.cbrt(_AIM / max(size, 1e-12)), _SHORTER, _LONGER))
         reach = _WIDEST * solver.span / max(abs(ahead.tangent.value), 1e-12)
-        step, orbit = min(step * grown, _LARGEST, reach), ahead
+        before, orbit = (orbit, step), ahead
+        step = min(step * grown, _LARGEST, reach)
 
 
 def _passed(ahead: Orbit, orbit: Orbit, first: Orbit) -> bool:
     """Return True where the first motion of a branch lies on the step between two motions."""
-    angles = ahead.motion.step * np.arange(len(ahead.motion.x))
-    states = ahead.motion.states
-
-    def back(motion: Orbit) -> Direction:
-        x, v, _ = motion.motion.at(angles)
-        change = np.concatenate([x, v], axis=1) - states
-        return replace(ahead.tangent, states=change, value=motion.value - ahead.value)
-
-    change, step = back(first), ahead.tangent.dot(back(orbit))
+    change, step = _change(ahead, first), ahead.tangent.dot(_change(ahead, orbit))
     along, square = ahead.tangent.dot(change), change.dot(change)
     same_way = ahead.tangent.dot(first.tangent) > 0.0
     return step <= along <= 0.0 and square - along * along <= (0.1 * step) ** 2 and same_way
@@ -172,49 +208,81 @@ def _fewer_turns(before: Motion, after: Motion) -> bool:
 def special_points(solver: Solver, before: Orbit, after: Orbit) -> Iterator[Special]:
     """Yield the special points between two motions, located."""
     for kind, test in TESTS.items():
-        one, other = test(before), test(after)
-        if not one * other < 0.0:
+        if not test(before) * test(after) < 0.0:
             continue
-        if kind == "torus" and np.sum(before.multipliers.imag > 0) != np.sum(
-            after.multipliers.imag > 0
-        ):
+        pairs = [int(np.sum(orbit.multipliers.imag > 0)) for orbit in (before, after)]
+        if kind == "torus" and pairs[0] != pairs[1]:
             continue
-        try:
-            found = _located(solver, before, after, test)
-        except _FAILURES:
-            continue
-        measure = solver.measure(found)
-        yield Special(kind, found, measure, value_error(solver, found, kind, measure))
+        with suppress(*_FAILURES):
+            yield _located(solver, kind, _Between(solver, before, after))
 
 
-def _located(solver: Solver, before: Orbit, after: Orbit, test: Callable[[Orbit], float]) -> Orbit:
-    """Return the motion between two at which a test vanishes."""
+def hidden_pairs(solver: Solver, before: Orbit, here: Orbit, after: Orbit) -> Iterator[Special]:
+    """Yield two special points between three motions whose test has the same sign at each.
+
+    That is sought where the parabola through the three values all but comes to zero.
+    """
+    from scipy.optimize import minimize_scalar
+
+    for kind in ("doubling", "branch point"):
+        test = TESTS[kind]
+        values = np.array([test(orbit) for orbit in (before, here, after)])
+        sign = np.sign(values[1])
+        first, middle, last = sign * values
+        bend = first - 2.0 * middle + last
+        if not (min(first, middle, last) > 0.0 and middle <= min(first, last) and bend > 0.0):
+            continue
+        if middle - (last - first) ** 2 / (8.0 * bend) > _DIP * middle:
+            continue
+        between = _Between(solver, *((before, here) if first < last else (here, after)))
+        with suppress(*_FAILURES):
+            lowest = minimize_scalar(
+                lambda part, between=between, test=test, sign=sign: sign * test(between(part)),
+                bounds=(0.0, 1.0),
+                method="bounded",
+                options={"maxiter": 16},
+            )
+            if lowest.fun < 0.0:
+                inside = between(lowest.x)
+                yield _located(solver, kind, _Between(solver, between.before, inside))
+                yield _located(solver, kind, _Between(solver, inside, between.after))
+
+
+@dataclass(frozen=True)
+class _Between:
+    """The motions of a branch between two of them."""
+
+    solver: Solver
+    before: Orbit
+    after: Orbit
+
+    def __call__(self, part: float) -> Orbit:
+        """Return the motion nearest to a part of the way on the line between both."""
+        if part in (0.0, 1.0):
+            return self.after if part else self.before
+        end = self.after.motion
+        start = self.before.motion.resampled(len(end.x), end.a.shape[1])
+        states = end.states - start.states
+        chord = replace(
+            self.after.tangent, states=states, value=self.after.value - self.before.value
+        )
+        guess = start.moved(part * states, part * (end.a - start.a))
+        orbit, _ = self.solver.corrected(
+            self.before.value + part * chord.value, guess, chord.unit()
+        )
+        return orbit if orbit.tangent.dot(self.before.tangent) >= 0 else orbit.turned()
+
+
+def _located(solver: Solver, kind: str, between: _Between) -> Special:
+    """Return the special point between two motions at which a test has different signs."""
     from scipy.optimize import brentq
 
-    steps, stages = len(after.motion.x), after.motion.a.shape[1]
-    start = (
-        before.motion.resampled(steps, stages) if len(before.motion.x) != steps else before.motion
-    )
-    states = [start.states, after.motion.states]
-    chord = replace(
-        after.tangent, states=states[1] - states[0], value=after.value - before.value
-    ).unit()
-    last = [after]
-
-    def value(part: float) -> float:
-        if part in (0.0, 1.0):
-            return test(after if part else before)
-        n = start.x.shape[1]
-        between = states[0] + part * (states[1] - states[0])
-        a = start.a + part * (after.motion.a - start.a)
-        guess = Motion(start.turns, between[:, :n], between[:, n:], a)
-        at = before.value + part * (after.value - before.value)
-        orbit, _ = solver.corrected(at, guess, chord)
-        last[0] = orbit if orbit.tangent.dot(before.tangent) >= 0 else orbit.turned()
-        return test(last[0])
-
-    brentq(value, 0.0, 1.0, xtol=_LOCATED, rtol=4 * np.finfo(float).eps, maxiter=60)
-    return last[0]
+    test = TESTS[kind]
+    rounding = 4 * np.finfo(float).eps
+    part = brentq(lambda p: test(between(p)), 0.0, 1.0, xtol=_LOCATED, rtol=rounding, maxiter=60)
+    orbit = between(part)
+    measure = solver.measure(orbit)
+    return Special(kind, orbit, measure, value_error(solver, orbit, kind, measure))
 
 
 def value_error(solver: Solver, orbit: Orbit, kind: str, measure: Measure | None = None) -> float:

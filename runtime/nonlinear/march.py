@@ -12,7 +12,7 @@ from .segments import Motion, NotFinite, Problem, Ramp, chained, sweep
 
 # Newton's iteration of a revolution: the last correction, and how many.
 _LAST, _ITERATIONS, _PATIENCE = 1e-9, 12, 5
-_FIRST = 12  # steps of a revolution at first, for each coordinate
+_FIRST = 6  # steps of a revolution at first, for each coordinate
 
 
 @dataclass(frozen=True)
@@ -63,6 +63,7 @@ class Marcher:
         x, v = (np.repeat(part, steps, axis=0) for part in (states[:, :n], states[:, n:]))
         return Motion(1, x, 0.0 * v, np.zeros((runs * steps, STAGES, n)), runs=runs)
 
+    @np.errstate(all="ignore")  # what is not finite ends it
     def _solved(
         self, value: float, states: Array, motion: Motion, ramp: Ramp | None
     ) -> Motion | None:

@@ -21,7 +21,9 @@ _FAR = 0.3
 # Stages of the motion beside which errors are measured, less than those of the motion, and the
 # share of the difference that is taken for the error.
 _FEWER, SHARE = 2, 0.1
-STAGES, FIRST_STEPS, MOST_STEPS = 8, 12, 512
+# Errors of the multipliers that are allowed, over that of the motion.
+_MULTIPLIERS = 10.0
+STAGES, FIRST_STEPS, MOST_STEPS = 12, 5, 384
 
 
 class Lost(ArithmeticError):  # noqa: N818 - reads as what it is
@@ -79,6 +81,7 @@ class Orbit:
     whole: Array
     added: Array
     tangent: Direction  # along the branch, of unit length
+    slope: Array  # (m, s, n): change of the accelerations along it
     # Determinant of the equations bordered by the tangent, rows of unit length: its sign changes
     # at a branch point.
     border: float
@@ -96,7 +99,23 @@ class Orbit:
 
     def turned(self) -> Orbit:
         """Return the motion with its tangent the other way."""
-        return replace(self, tangent=self.tangent.times(-1.0), border=-self.border)
+        return replace(
+            self, tangent=self.tangent.times(-1.0), slope=-self.slope, border=-self.border
+        )
+
+    def ahead(self, step: float, before: tuple[Orbit, float] | None) -> tuple[float, Motion]:
+        """Return value and motion a step along the branch, on a parabola where it can.
+
+        ``before``: the motion before, and the step from there.
+        """
+        states, value, a = step * self.tangent.states, step * self.tangent.value, step * self.slope
+        if before is not None and before[0].motion.a.shape == self.motion.a.shape:
+            other, last = before
+            bend = 0.5 * step * step / last
+            states = states + bend * (self.tangent.states - other.tangent.states)
+            value += bend * (self.tangent.value - other.tangent.value)
+            a = a + bend * (self.slope - other.slope)
+        return self.value + value, self.motion.moved(states, a)
 
 
 @dataclass(frozen=True)
@@ -152,14 +171,21 @@ class Solver:
             before = size
         raise Lost("no periodic motion was found near the guess")
 
-    def corrected(self, value: float, motion: Motion, direction: Direction) -> tuple[Orbit, float]:
+    def corrected(
+        self,
+        value: float,
+        motion: Motion,
+        direction: Direction,
+        by_parameter: bool | Array = True,
+    ) -> tuple[Orbit, float]:
         """Return the motion nearest to a guess across a direction, and the first correction.
 
+        ``by_parameter``: the derivative by the parameter at a motion nearby, where it is known.
         Raises `Lost` where there is none near.
         """
         direction = direction.resampled(len(motion.x))
         before, first = np.inf, 0.0
-        by_parameter: bool | Array = True
+        renewed = False
         for _ in range(_ITERATIONS):
             swept = sweep(self.problem, value, motion, by_parameter=by_parameter)
             whole, added = chained(swept.maps, swept.loads)
@@ -169,8 +195,9 @@ class Solver:
             if not size < _FAR:
                 raise Lost("a correction is too large")
             motion, value = taken(motion, swept, change, moved), value + moved
-            # The derivative by the parameter is renewed where the motion has all but settled.
-            by_parameter = swept.by_parameter if size > _NEAR else True
+            # The derivative by the parameter is renewed once, where the motion has all but settled.
+            renew = size <= _NEAR and not renewed
+            by_parameter, renewed = (True if renew else swept.by_parameter), renewed or renew
             if size <= _LAST or (size <= _SMALL and size >= 0.5 * before):
                 return self._orbit(value, motion, swept, whole, added, direction), first
             before = size
@@ -192,9 +219,11 @@ class Solver:
         measured = replace(direction, scale=self.scale(motion), span=self.span)
         change, moved = _bordered(whole, added, measured, along=1.0)
         tangent = replace(measured, states=change, value=moved).unit()
+        slope = (swept.response @ tangent.states[:, None, :, None])[..., 0]
+        slope += tangent.value * swept.stage_loads[..., 1]
         rows = _bordered_matrix(whole, added, tangent)
         border = float(np.linalg.det(rows / np.linalg.norm(rows, axis=1, keepdims=True)))
-        return Orbit(value, motion, swept, whole, added, tangent, border)
+        return Orbit(value, motion, swept, whole, added, tangent, slope, border)
 
     def measure(self, orbit: Orbit) -> Measure:
         """Return how far a motion is from the true one."""
@@ -228,7 +257,9 @@ class Solver:
         """Return a motion on as many steps as its error wants, and that error."""
         while True:
             measure, steps = self.measure(orbit), len(orbit.motion.x)
-            if measure.error <= self.rtol or steps >= MOST_STEPS * orbit.motion.turns:
+            unsure = np.max(measure.multiplier_errors / np.maximum(np.abs(orbit.multipliers), 1.0))
+            sure = measure.error <= self.rtol and unsure <= _MULTIPLIERS * self.rtol
+            if sure or steps >= MOST_STEPS * orbit.motion.turns:
                 return orbit, measure
             motion = orbit.motion.resampled(int(np.ceil(1.3 * steps)), STAGES)
             direction = orbit.tangent.resampled(len(motion.x))

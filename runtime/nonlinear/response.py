@@ -4,26 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.families import Array, Nonlinear
-from ..core.inputs import is_finite, numbers, require_kind, require_whole
+from ..core.inputs import is_finite, numbers, require_between, require_kind, require_whole
 from ..core.plotting import Axes, axes_or_new
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
-from .branch import JOINED, Branch, crossing, doubled, followed
+from .branch import JOINED, Branch, Limits, crossing, doubled, followed
 from .orbit import FIRST_STEPS, MOST_STEPS, STAGES, Lost, Measure, Orbit, Solver, closed, taken
 from .segments import Motion, NotFinite, Problem, sweep
 
 _POINTS = 2000  # of one branch
 _BRANCHES = 24
-_SAMPLES = 256  # of a revolution, for the extremes of the deflection
-_LINEAR = 200  # values at which the linear answer is computed
+_SAMPLES = 128  # of a revolution, for the extremes of the linear deflection
+_POLISHED = 3  # parabolas about the highest sample, each a tenth as wide
+_LINEAR = 120  # values at which the linear answer is computed
 _RPM = 30.0 / np.pi
 _STYLE = {"fold": "o", "doubling": "s", "branch point": "D", "torus": "^"}
 _FAILURES = (Lost, NotFinite, np.linalg.LinAlgError)
@@ -61,8 +63,10 @@ class ResponseCurve(Result):
     special_lowest, special_highest : ndarray, shape (p,)
     ended : tuple of str
         Why each branch ends.
+    bounds : tuple of float
+        The range [SI].
     linear_value, linear_lowest, linear_highest : ndarray, shape (l,)
-        The answer of the equations linearised about no deflection.
+        The answer of the equations linearised about no deflection, computed when first read.
     unit, parameter_unit : str
         Units of the deflection and of the parameter.
 
@@ -88,9 +92,7 @@ class ResponseCurve(Result):
     special_lowest: Array
     special_highest: Array
     ended: tuple[str, ...]
-    linear_value: Array
-    linear_lowest: Array
-    linear_highest: Array
+    bounds: tuple[float, float]
     unit: str = ""
     orbits: tuple[Orbit, ...] = ()
     special_orbits: tuple[Orbit, ...] = ()
@@ -109,7 +111,29 @@ class ResponseCurve(Result):
         **dict.fromkeys(("linear_value", "linear_lowest", "linear_highest"), ("linear_point",)),
         "special": ("special_point",),
     }
-    exported: ClassVar[tuple[str, ...]] = ("stable", "peak_to_peak")
+    exported: ClassVar[tuple[str, ...]] = (
+        *("stable", "peak_to_peak"),
+        *("linear_value", "linear_lowest", "linear_highest"),
+    )
+
+    @cached_property
+    def _linear(self) -> tuple[Array, Array, Array]:
+        return _linear(self.source.problem, self.bounds)
+
+    @property
+    def linear_value(self) -> Array:
+        """Values at which the linear answer is given, shape ``(l,)``."""
+        return self._linear[0]
+
+    @property
+    def linear_lowest(self) -> Array:
+        """Lowest deflection of the linear answer, shape ``(l,)``."""
+        return self._linear[1]
+
+    @property
+    def linear_highest(self) -> Array:
+        """Highest deflection of the linear answer, shape ``(l,)``."""
+        return self._linear[2]
 
     @property
     def stable(self) -> NDArray[np.bool_]:
@@ -179,13 +203,14 @@ def response_curve(
     *,
     speed: float | None = None,
     turns: int = 1,
+    largest: float = 0.25,
     rtol: float = 1e-8,
     starts: Iterable[tuple[float, Motion]] = (),
     progress: bool = False,
 ) -> ResponseCurve:
     """Follow the periodic motions of a nonlinear system over a parameter.
 
-    Collocation of Gauss' with 8 stages on as many steps as the error wants, continued by its
+    Collocation of Gauss' with 12 stages on as many steps as the error wants, continued by its
     pseudo-arclength.  Folds, doublings, crossings of branches and tori are located on the way;
     branches that begin at doublings and crossings are followed too.
 
@@ -202,6 +227,8 @@ def response_curve(
     turns : int
         Largest number of revolutions after which the motions repeat: doublings are followed up to
         it.
+    largest : float
+        Deflection over the length of the link at which a branch ends.
     rtol : float
         Wanted error of the motions, relative.
     starts : iterable of (float, Motion), optional
@@ -223,9 +250,10 @@ def response_curve(
     require_whole("turns", turns, 1, 64)
     if not (is_finite(rtol) and 1e-13 <= rtol <= 1e-3):
         raise bad("rtol", repr(rtol), "a number from 1e-13 to 1e-3", "try 1e-8")
-    solver = Solver(problem, high - low, rtol)
+    require_between("largest", largest, 1e-6, 10.0, "try 0.25")
+    solver, limits = Solver(problem, high - low, rtol), Limits(low, high, largest, _POINTS)
     with bar(progress, _BRANCHES, unit="branch") as tick:
-        branches = _all_branches(solver, (low, high), turns, list(starts), tick)
+        branches = _all_branches(solver, limits, turns, list(starts), tick)
     return _result(solver, branches, (low, high))
 
 
@@ -263,7 +291,7 @@ def first_motion(problem: Problem, turns: int = 1) -> Motion:
 
 def _all_branches(
     solver: Solver,
-    bounds: tuple[float, float],
+    limits: Limits,
     turns: int,
     starts: list[tuple[float, Motion]],
     tick: Callable[[int], None] | None,
@@ -272,30 +300,30 @@ def _all_branches(
     branches: list[Branch] = []
     queue: list[tuple[Orbit, Measure]] = []
     refused = ""
-    for value, sign in ((bounds[0], 1.0), (bounds[1], -1.0)):
+    for value, sign in ((limits.low, 1.0), (limits.high, -1.0)):
         try:
             motion = solver.settled(value, first_motion(solver.problem))
             begun = solver.fine(value, motion, solver.along_parameter(motion, sign))
         except _FAILURES as failure:
             refused = str(failure)
             continue
-        _follow(solver, begun, bounds, branches, queue, turns, tick)
+        _follow(solver, begun, limits, branches, queue, turns, tick)
     for value, motion in starts:
         for sign in (1.0, -1.0):
             begun = solver.fine(value, motion, solver.along_parameter(motion, sign))
-            _follow(solver, begun, bounds, branches, queue, turns, tick)
+            _follow(solver, begun, limits, branches, queue, turns, tick)
     if not branches:
         fix = "choose another range: begin where the motion is small"
         raise bad("bounds", f"no periodic motion at either end ({refused})", "one", fix)
     while queue and len(branches) < _BRANCHES:
-        _follow(solver, queue.pop(0), bounds, branches, queue, turns, tick)
+        _follow(solver, queue.pop(0), limits, branches, queue, turns, tick)
     return branches
 
 
 def _follow(
     solver: Solver,
     begun: tuple[Orbit, Measure],
-    bounds: tuple[float, float],
+    limits: Limits,
     branches: list[Branch],
     queue: list[tuple[Orbit, Measure]],
     turns: int,
@@ -304,7 +332,7 @@ def _follow(
     """Follow a branch unless it is known, and add the beginnings of those that start on it."""
     if any(_on(solver, begun[0], branch) for branch in branches):
         return
-    branch = followed(solver, begun, bounds, _POINTS)
+    branch = followed(solver, begun, limits)
     branches.append(branch)
     if tick is not None:
         tick(len(branches))
@@ -353,31 +381,29 @@ def same_motion(solver: Solver, one: Motion, other: Motion) -> bool:
 
 
 def extremes(problem: Problem, orbit: Orbit) -> tuple[float, float]:
-    """Return the extremes of the deflection over the period."""
-    count = _SAMPLES * orbit.motion.turns
-    step = 2.0 * np.pi * orbit.motion.turns / count
-    _, parameters = problem.at(orbit.value)
+    """Return the extremes of the deflection over the period.
 
-    def shown(angles: NDArray[Any]) -> Array:
-        span = 2.0 * np.pi * orbit.motion.turns
-        q = orbit.motion.at(np.mod(angles, span))[0]
-        return problem.system.shown(q, parameters)
-
-    values = shown(step * np.arange(count))
-    found = []
-    for sign in (-1.0, 1.0):
-        place, width = step * float(np.argmax(sign * values)), step
-        best = float(np.max(sign * values))
-        for _ in range(4):  # parabolas through three places, each a tenth as wide
-            around = np.array([place - width, place, place + width])
-            left, middle, right = (sign * shown(around)).tolist()
-            bend = left - 2.0 * middle + right
-            if not bend < 0.0:
-                break
-            place += float(np.clip(0.5 * (left - right) / bend, -1.0, 1.0)) * width
-            best, width = max(best, float(sign * shown(np.array([place]))[0])), 0.1 * width
-        found.append(sign * best)
-    return found[0], found[1]
+    The lowest and highest of the Gauss points, both polished by parabolas at once.
+    """
+    motion, (_, parameters) = orbit.motion, problem.at(orbit.value)
+    angles = motion.angles.ravel() - motion.begin
+    values = problem.system.shown(motion.stages()[0], parameters).ravel()
+    signs = np.array([-1.0, 1.0])
+    places = angles[[int(np.argmin(values)), int(np.argmax(values))]]
+    best = np.array([-np.min(values), np.max(values)])
+    width = motion.step / motion.a.shape[1]
+    for _ in range(_POLISHED):
+        around = places[:, None] + width * np.array([-1.0, 0.0, 1.0])
+        q = motion.at(np.mod(around.ravel(), motion.span))[0]
+        left, middle, right = (signs[:, None] * problem.system.shown(q, parameters).reshape(2, 3)).T
+        bend = left - 2.0 * middle + right
+        shift = np.divide(left - right, 2.0 * bend, out=np.zeros(2), where=bend < 0.0)
+        places = places + np.clip(shift, -1.0, 1.0) * width
+        # The top of the parabola.
+        top = middle - np.where(np.abs(shift) <= 1.0, 0.25 * (left - right) * shift, 0.0)
+        best = np.maximum(np.maximum(best, middle), top)
+        width *= 0.1
+    return float(-best[0]), float(best[1])
 
 
 def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float]) -> ResponseCurve:
@@ -389,9 +415,8 @@ def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float])
     at_special = np.array([extremes(problem, p.orbit) for p in special]).reshape(-1, 2)
     error = np.array([measure.error for _, measure in points])
     sizes = np.max(np.abs(shown), axis=1)
-    linear = _linear(problem, bounds)
     return ResponseCurve(
-        method="Gauss collocation with 8 stages, pseudo-arclength continuation",
+        method="Gauss collocation with 12 stages, pseudo-arclength continuation",
         error=error,
         error_norm="distance from the branch, relative to the largest coordinate or rate",
         checks={"accuracy": Check(float(np.max(error)), solver.rtol)},
@@ -414,9 +439,7 @@ def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float])
         special_lowest=at_special[:, 0],
         special_highest=at_special[:, 1],
         ended=tuple(branch.ended for branch in branches),
-        linear_value=linear[0],
-        linear_lowest=linear[1],
-        linear_highest=linear[2],
+        bounds=bounds,
         unit=problem.system.unit,
         orbits=tuple(orbit for orbit, _ in points),
         special_orbits=tuple(point.orbit for point in special),

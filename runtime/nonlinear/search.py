@@ -22,7 +22,8 @@ from .segments import Motion, NotFinite, Problem, sweep
 _FAILURES = (Lost, NotFinite, np.linalg.LinAlgError)
 # Amplitudes of the starts in the first coordinate that suits, over its largest trial; phases.
 _AMPLITUDES, _PHASES = (0.1, 0.2, 0.35, 0.5), 6
-_MARCHED, _SETTLING = 12, 120  # marched starts, and revolutions of each at the most
+# Marched starts, revolutions of each at the most, and how near a state has to come back.
+_MARCHED, _SETTLING, _NEAR = 12, 120, 1e-2
 _ITERATIONS = 40
 _LARGEST = 50.0  # size of a motion over that of the largest start beyond which a search is given up
 
@@ -194,20 +195,36 @@ def _wave(
 
 
 def _marched(marcher: Marcher, speed: float, state: Array, turns: int) -> Motion | None:
-    """Return some last revolutions of a motion from a state, or None where it is lost."""
-    before: Motion | None = None
+    """Return the last revolutions of a motion from a state, or None where it is lost.
+
+    It ends where a state all but comes back after some turns.
+    """
     last: list[Motion] = []
+    states = [state]
     try:
         for _ in range(_SETTLING):
-            before = marcher.revolution(speed, state, before)
-            last = [*last[1 - turns :], before] if turns > 1 else [before]
-            state = end(before)
+            last = [*last, marcher.revolution(speed, states[-1], _newest(last))][-turns:]
+            states.append(end(last[-1]))
+            size = np.abs(states[-1]) + marcher.problem.system.small
+            near = [k for k in range(1, min(turns, len(states) - 1) + 1) if _back(states, k, size)]
+            if near and len(last) >= near[0]:
+                last = last[-near[0] :]
+                break
     except _FAILURES:
         return None
     steps = max(len(motion.x) for motion in last)
     parts = [motion.resampled(steps, STAGES) for motion in last]
     x, v, a = (np.concatenate([getattr(p, name) for p in parts]) for name in ("x", "v", "a"))
     return Motion(len(parts), x, v, a)
+
+
+def _newest(motions: Sequence[Motion]) -> Motion | None:
+    return motions[-1] if motions else None
+
+
+def _back(states: Sequence[Array], turns: int, size: Array) -> bool:
+    """Return True where the last state is all but that of some turns before."""
+    return bool(np.max(np.abs(states[-1] - states[-1 - turns]) / size) < _NEAR)
 
 
 def _deflated(
@@ -218,7 +235,7 @@ def _deflated(
     Newton's step of the deflated equations is that of the equations, times a number: with m the
     product of ``1 + 1 / |y - y_i|^2`` over the known motions it is ``1 / (1 - m' . step / m)``.
     """
-    motion, before = start, np.inf
+    motion = start
     for _ in range(_ITERATIONS):
         swept = sweep(solver.problem, value, motion)
         change = closed(swept)
@@ -238,7 +255,6 @@ def _deflated(
             return motion
         part = factor * min(1.0, 0.5 / size)
         motion = taken(motion, swept, change, 0.0, part)
-        before = min(before, size)
     raise Lost("no periodic motion was found from the start")
 
 

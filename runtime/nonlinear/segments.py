@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,8 +19,9 @@ from ..core.errors import SelfCheckFailed
 from ..core.families import Array
 from ..core.families.nonlinear import Drive, Nonlinear, Varied
 
-# Relative steps of the differences by a parameter: rounding and third derivatives leave 1e-10.
-_DIFFERENCE = 2.0**-17
+# Relative step of the differences by a parameter: rounding and second derivatives leave 1e-8, which
+# slows Newton's iteration by as much and turns the tangent by as much.
+_DIFFERENCE = 2.0**-26
 # Numbers of a batch of matrices that stay in a cache while they are solved.
 _CACHED = 1 << 18
 
@@ -33,7 +34,7 @@ class Problem:
     name: str
     speed: float  # [rad/s], where it is not what is varied
 
-    def at(self, value: Any) -> tuple[Any, Mapping[str, float]]:
+    def at(self, value: float) -> tuple[float, Mapping[str, float]]:
         """Return speed and parameters at a value of what is varied."""
         if self.name == "speed":
             return value, self.system.parameters
@@ -152,9 +153,10 @@ class Ramp(NamedTuple):
     begin: float = 0.0
 
 
+@np.errstate(all="ignore")
 def evaluated(
     problem: Problem,
-    value: float | Array,
+    value: float,
     angles: Array,
     states: tuple[Array, Array, Array],
     *,
@@ -163,35 +165,36 @@ def evaluated(
 ) -> Varied:
     """Return residual and derivatives at drive angles, over the speed squared, by the angle.
 
-    ``states``: x, v and a at the angles, ``(*batch, n)`` each.  Where the speed is varied there may
-    be several values, which broadcast with the angles.
+    ``states``: x, v and a at the angles, ``(*batch, n)`` each.
     """
-    x, v, a = states
     speed, parameters = problem.at(value)
     rise = ramp.acceleration if ramp else 0.0
     since = angles - ramp.begin if ramp else np.zeros_like(angles)
-    square = np.maximum(speed**2 + 2.0 * rise * since, 0.0)[..., None]
+    batch, n = angles.shape, problem.system.size
+    # One row of states, which arrays are quickest with.
+    x, v, a = (part.reshape(-1, n) for part in states)
+    square = np.maximum(speed**2 + 2.0 * rise * since, 0.0).reshape(-1, 1)
     w: Array = np.sqrt(square)
-    drive = Drive(angles, w[..., 0], np.full_like(angles, rise))
-    # Several speeds: the states are those of each.
-    x, v, a = (np.broadcast_to(part, (*w.shape[:-1], part.shape[-1])) for part in (x, v, a))
+    angle = angles.ravel()
+    drive = Drive(angle, w[:, 0], np.full_like(angle, rise))
     try:
-        with np.errstate(all="ignore"):
-            found = problem.system.equations(
-                x, w * v, square * a + rise * v, drive, parameters, derivatives
-            )
+        found = problem.system.equations(
+            x, w * v, square * a + rise * v, drive, parameters, derivatives
+        )
     except (SelfCheckFailed, np.linalg.LinAlgError) as lost:
         raise NotFinite(str(lost)) from lost
-    residual = found.residual / square
+    residual = (found.residual / square).reshape(*batch, n)
     if not np.all(np.isfinite(residual)):
         raise NotFinite("the equations are not finite along the motion")
     if not derivatives:
         return Varied(residual)
     w, square = w[..., None], square[..., None]
     damping = found.damping / w + found.mass * (rise / square)
-    return Varied(residual, found.mass, damping, found.stiffness / square)
+    matrices = (found.mass, damping, found.stiffness / square)
+    return Varied(residual, *(matrix.reshape(*batch, n, n) for matrix in matrices))
 
 
+@np.errstate(all="ignore")  # what is not finite is refused
 def sweep(
     problem: Problem,
     value: float,
@@ -211,7 +214,8 @@ def sweep(
     found = evaluated(problem, value, angles, states, ramp=ramp)
     columns = [found.residual[..., None]]
     if by_parameter is True:
-        columns.append(_by_parameter(problem, value, angles, states)[..., None])
+        moved = _by_parameter(problem, value, angles, states, found.residual)
+        columns.append(moved[..., None])
     elif by_parameter is not False:
         columns.append(by_parameter)
     m, s, n = motion.a.shape
@@ -247,21 +251,19 @@ def sweep(
 
 
 def _by_parameter(
-    problem: Problem, value: float, angles: Array, states: tuple[Array, Array, Array]
+    problem: Problem,
+    value: float,
+    angles: Array,
+    states: tuple[Array, Array, Array],
+    residual: Array,
 ) -> Array:
     """Return the derivative of what :func:`evaluated` calls residual by the parameter."""
     step = _DIFFERENCE * (abs(value) or 1.0)
-    if problem.name == "speed":
-        both = np.array([value + step, value - step]).reshape(2, *(1,) * angles.ndim)
-        above, below = evaluated(problem, both, angles, states, derivatives=False).residual
-    else:
-        above, below = (
-            evaluated(problem, at, angles, states, derivatives=False).residual
-            for at in (value + step, value - step)
-        )
-    return np.asarray((above - below) / (2.0 * step))
+    ahead = evaluated(problem, value + step, angles, states, derivatives=False).residual
+    return np.asarray((ahead - residual) / step)
 
 
+@np.errstate(all="ignore")
 def chained(maps: Array, loads: Array) -> tuple[Array, Array]:
     """Return the states at all ends by the first one: ``y[j] = whole[j] y[0] + added[j]``.
 

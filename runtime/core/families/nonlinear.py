@@ -167,6 +167,8 @@ class Reduced:
         system, time = self.make(parameters, drive), _time(q, drive)
         x, at = self._closed(system, q, drive, parameters, time)
         basis, inverse = self._basis(at["jacobian"])
+        if "velocity_rhs" not in at:  # which depends on the place alone
+            at = system.dynamics(x, np.zeros_like(x), time)
         xd = (basis @ qd[..., None])[..., 0]
         xd[..., list(self.held)] += (inverse @ at["velocity_rhs"])[..., 0]
         terms = system.dynamics(x, xd, time)

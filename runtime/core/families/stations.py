@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from types import ModuleType
 from typing import Any
 
@@ -56,14 +56,13 @@ class AtStations:
     def __call__(self, *arguments: ArrayLike) -> Mapping[str, Array]:
         """Evaluate at coordinates, more vectors, and time last."""
         *vectors, time = (np.asarray(argument, dtype=float) for argument in arguments)
-        first = len(self.module.COORDINATES) - 1
-        shapes = self.stations.shapes
+        first, shapes = len(self.module.COORDINATES) - 1, self.stations.shapes
         taken: list[Any] = []
         for number, vector in enumerate(vectors):
             if number == 3:  # multipliers follow coordinates, rates and accelerations
-                taken += [vector[..., i, None] for i in range(vector.shape[-1])]
+                taken += [vector[..., i : i + 1] for i in range(vector.shape[-1])]
                 continue
-            taken += [vector[..., i, None] for i in range(first)]
+            taken += [vector[..., i : i + 1] for i in range(first)]
             taken.append(vector[..., first:] @ shapes.T)
         taken.append(time[..., None])
         for name in self.module.EXTERNAL:
@@ -71,48 +70,76 @@ class AtStations:
         batch = np.broadcast_shapes(time.shape, *(vector.shape[:-1] for vector in vectors))
         numbers = (self.stations.numbers[name] for name in self.module.STATIONS[1])
         returned = getattr(self.module, self.name)(*taken, *self.values.values(), *numbers)
-        places = self.module.ARRAYS[self.name]
         across: dict[tuple[int, str], Array] = {}  # products that several arrays share
-        return {
-            name: self._array(name, shape, filled, returned, batch, across)
-            for name, (shape, filled) in places.items()
-        }
+        arrays = {}
+        for name, shape, entries in _plan(self.module, self.name, shapes.shape[1] - 1):
+            array = arrays[name] = np.zeros((*batch, *shape))
+            for kind, i, j, at, *product in entries:
+                value = returned[at]
+                if kind == "entry":
+                    array[..., i, j] = value[..., 0] if isinstance(value, np.ndarray) else value
+                elif kind == "row":
+                    array[..., first:, j] += _times(value, shapes)
+                elif kind == "column":
+                    array[..., i, first:] += _times(value, shapes)
+                elif kind == "diagonal":
+                    weighted = value[..., None, :] * shapes.T
+                    array[..., first:, first:] += _times(weighted, shapes)
+                else:
+                    self._add(array[..., first:, first:], (at, value), product, returned, across)
+        return arrays
 
-    def _array(
+    def _add(
         self,
-        name: str,
-        shape: tuple[int, int],
-        filled: tuple[tuple[Any, ...], ...],
+        block: Array,
+        left: tuple[int, Any],
+        product: list[Any],
         returned: tuple[Any, ...],
-        batch: tuple[int, ...],
         across: dict[tuple[int, str], Array],
-    ) -> Array:
-        """Return an array ``(*batch, rows, columns)`` by coordinates."""
-        first = len(self.module.COORDINATES) - 1
-        shapes = self.stations.shapes
-        more = shapes.shape[1] - 1
+    ) -> None:
+        """Add ``(left shapes)^T kernel (right shapes)`` to a block of an array."""
+        (at, value), (kernel, place) = left, product
+        right, shapes = returned[place], self.stations.shapes
+        if np.size(value) == 1 and np.shape(right)[-1:] in ((), (1,)):
+            block += np.asarray(value * right)[..., None] * self.stations.projected[kernel]
+            return
+        if (at, kernel) not in across:
+            before = np.asarray(value)[..., None, :] * shapes.T
+            across[at, kernel] = _times(before, self.stations.numbers[kernel])
+        block += _times(across[at, kernel] * np.asarray(right)[..., None, :], shapes)
+
+
+def _times(many: Array, matrix: Array) -> Array:
+    """Return ``many @ matrix`` of rows ``(*batch, Q)`` as one product."""
+    flat = many.reshape(-1, many.shape[-1]) @ matrix
+    return np.asarray(flat.reshape(*many.shape[:-1], matrix.shape[1]))
+
+
+@lru_cache(maxsize=64)
+def _plan(
+    module: ModuleType, function: str, more: int
+) -> list[tuple[str, tuple[int, ...], list[tuple[Any, ...]]]]:
+    """Return by array its shape by coordinates, and where what a function returns goes.
+
+    The last of the module's coordinates stands for ``more`` besides.
+    """
+    first = len(module.COORDINATES) - 1
+    plan = []
+    for name, (shape, filled) in module.ARRAYS[function].items():
         # Rows and columns that stand for coordinates, the others for constraints or alone.
         by = name in _BY_ROW, name in _SQUARE or name.startswith("jacobian")
-        array = np.zeros((*batch, *(n + more * own for n, own in zip(shape, by, strict=True))))
-        for i, j, at, *product in filled:
-            value, rows, columns = returned[at], i == first and by[0], j == first and by[1]
-            if product:
-                kernel, right = product[0], returned[product[1]]
-                if np.size(value) == 1 and np.shape(right)[-1:] in ((), (1,)):
-                    constant = self.stations.projected[kernel]
-                    array[..., first:, first:] += np.asarray(value * right)[..., None] * constant
-                    continue
-                if (at, kernel) not in across:
-                    before = np.asarray(value)[..., None] * shapes
-                    across[at, kernel] = np.swapaxes(self.stations.numbers[kernel] @ before, -1, -2)
-                after = np.asarray(right)[..., None] * shapes
-                array[..., first:, first:] += across[at, kernel] @ after
-            elif rows and columns:
-                array[..., first:, first:] += shapes.T @ (value[..., None] * shapes)
-            elif rows:
-                array[..., first:, j] += value @ shapes
-            elif columns:
-                array[..., i, first:] += value @ shapes
-            else:
-                array[..., i, j] = value[..., 0] if np.ndim(value) else value
-        return array
+        entries: list[tuple[Any, ...]] = []
+        for i, j, *rest in filled:
+            place = (i == first and by[0], j == first and by[1])
+            entries.append(("product" if len(rest) > 1 else _KINDS[place], i, j, *rest))
+        full = tuple(n + more * own for n, own in zip(shape, by, strict=True))
+        plan.append((name, full, entries))
+    return plan
+
+
+_KINDS = {
+    (True, True): "diagonal",
+    (True, False): "row",
+    (False, True): "column",
+    (False, False): "entry",
+}

@@ -47,12 +47,15 @@ class FreeFreeRod(Constrained):
         Crank speed [rad/s].
     bending_stiffness : float
         EI [N m^2].
+    mass_per_length : float
+        m [kg/m].
     """
 
     linkage: QuickReturn = field(kw_only=True)
     modes: FreeFreeModes = field(kw_only=True)
     speed: float = field(kw_only=True)
     bending_stiffness: float = field(kw_only=True)
+    mass_per_length: float = field(kw_only=True)
 
     def undeformed(self, t: ArrayLike) -> tuple[Array, Array]:
         """Return coordinates and velocities of the undeformed rod, ``(*batch, n)`` each.
@@ -223,14 +226,14 @@ def free_free_rod(
     shapes = FreeFreeModes(modes)
     linkage = QuickReturn(frame=frame, crank=crank_ratio * frame, rod=length)
     linkage.require_full_turn()
-    parameters = {**numbers, "crank": linkage.crank}
-    system = _equations(shapes, linkage, parameters, dropped, provenance or {})
+    system = rod_equations(shapes, linkage, float(speed), numbers, dropped, provenance)
     rod = FreeFreeRod(
         **{f.name: getattr(system, f.name) for f in fields(Constrained)},
         linkage=linkage,
         modes=shapes,
         speed=float(speed),
         bending_stiffness=float(bending_stiffness),
+        mass_per_length=float(mass_per_length),
     )
     return replace(
         rod,
@@ -246,16 +249,18 @@ def free_free_rod(
     )
 
 
-def _equations(
+def rod_equations(
     modes: FreeFreeModes,
     linkage: QuickReturn,
+    speed: float,
     parameters: Mapping[str, float],
     dropped: tuple[str, ...],
-    origin: Mapping[str, str],
+    origin: Mapping[str, str] | None = None,
 ) -> Constrained:
-    """Return the equations of the emitted module for so many modes."""
+    """Return the equations of the emitted module for so many modes at a crank speed."""
     emitted = find_module(ModelSpec("quick_return", "free_free", ("rod",), modes.size, dropped))
-    at_block = _AtBlock(modes, linkage, float(parameters["speed"]))
+    at_block = _AtBlock(modes, linkage, speed)
+    parameters = {**parameters, "crank": linkage.crank, "speed": speed}
     return Constrained.from_module(
         emitted.module,
         parameters,
@@ -267,7 +272,7 @@ def _equations(
             "retreat": modes.slope_integrals["retreat"],
         },
         drop=emitted.dropped,
-        provenance={**origin, **emitted.provenance},
+        provenance={**(origin or {}), **emitted.provenance},
     )
 
 

@@ -383,27 +383,35 @@ def same_motion(solver: Solver, one: Motion, other: Motion) -> bool:
 def extremes(problem: Problem, orbit: Orbit) -> tuple[float, float]:
     """Return the extremes of the deflection over the period.
 
-    The lowest and highest of the Gauss points, both polished by parabolas at once.
+    Every lowest and highest of the Gauss points among its neighbours is polished by parabolas, for
+    the largest of these points need not be next to the highest top.
     """
     motion, (_, parameters) = orbit.motion, problem.at(orbit.value)
     angles = motion.angles.ravel() - motion.begin
     values = problem.system.shown(motion.stages()[0], parameters).ravel()
-    signs = np.array([-1.0, 1.0])
-    places = angles[[int(np.argmin(values)), int(np.argmax(values))]]
-    best = np.array([-np.min(values), np.max(values)])
+    lowest, highest = (
+        np.flatnonzero(
+            (sign * values >= sign * np.roll(values, 1))
+            & (sign * values >= sign * np.roll(values, -1))
+        )
+        for sign in (-1.0, 1.0)
+    )
+    places = angles[np.concatenate([lowest, highest])]
+    signs = np.repeat([-1.0, 1.0], [len(lowest), len(highest)])
     width = motion.step / motion.a.shape[1]
     for _ in range(_POLISHED):
         around = places[:, None] + width * np.array([-1.0, 0.0, 1.0])
         q = motion.at(np.mod(around.ravel(), motion.span))[0]
-        left, middle, right = (signs[:, None] * problem.system.shown(q, parameters).reshape(2, 3)).T
+        left, middle, right = (
+            signs[:, None] * problem.system.shown(q, parameters).reshape(-1, 3)
+        ).T
         bend = left - 2.0 * middle + right
-        shift = np.divide(left - right, 2.0 * bend, out=np.zeros(2), where=bend < 0.0)
-        places = places + np.clip(shift, -1.0, 1.0) * width
-        # The top of the parabola.
-        top = middle - np.where(np.abs(shift) <= 1.0, 0.25 * (left - right) * shift, 0.0)
-        best = np.maximum(np.maximum(best, middle), top)
+        shift = np.divide(left - right, 2.0 * bend, out=np.zeros_like(bend), where=bend < 0.0)
+        shift = np.clip(shift, -1.0, 1.0)
+        places = places + shift * width
         width *= 0.1
-    return float(-best[0]), float(best[1])
+    tops = signs * (middle - 0.25 * (left - right) * shift)  # of the last parabolas
+    return float(np.min(tops[: len(lowest)])), float(np.max(tops[len(lowest) :]))
 
 
 def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float]) -> ResponseCurve:

@@ -126,11 +126,4 @@ def _tail(motion: Motion) -> float:
 
 def _finer(motion: Motion, steps: int) -> Motion:
     """Return the motion on more steps."""
-    m, n, runs = len(motion.x) // motion.runs, motion.x.shape[1], motion.runs
-    parts = []
-    for run in range(runs):
-        at = slice(run * m, (run + 1) * m)
-        one = replace(motion, x=motion.x[at], v=motion.v[at], a=motion.a[at], runs=1)
-        parts.append(one.resampled(steps, STAGES))
-    x, v, a = (np.concatenate([getattr(p, name) for p in parts]) for name in ("x", "v", "a"))
-    return Motion(motion.turns, x, v, a.reshape(-1, STAGES, n), motion.begin, runs)
+    return Motion.together([motion.run(i).resampled(steps, STAGES) for i in range(motion.runs)])

@@ -251,10 +251,14 @@ class Solver:
     def fine(self, value: float, motion: Motion, direction: Direction) -> tuple[Orbit, Measure]:
         """Return the motion across a direction, on as many steps as its error wants."""
         orbit, _ = self.corrected(value, motion, direction)
-        return self.refined(orbit)
+        return self.refined(orbit, direction)
 
-    def refined(self, orbit: Orbit) -> tuple[Orbit, Measure]:
-        """Return a motion on as many steps as its error wants, and that error."""
+    def refined(self, orbit: Orbit, direction: Direction | None = None) -> tuple[Orbit, Measure]:
+        """Return a motion on as many steps as its error wants, and that error.
+
+        Across a direction, by default that of the branch.
+        """
+        across = direction or orbit.tangent
         while True:
             measure, steps = self.measure(orbit), len(orbit.motion.x)
             unsure = np.max(measure.multiplier_errors / np.maximum(np.abs(orbit.multipliers), 1.0))
@@ -262,8 +266,7 @@ class Solver:
             if sure or steps >= MOST_STEPS * orbit.motion.turns:
                 return orbit, measure
             motion = orbit.motion.resampled(int(np.ceil(1.3 * steps)), STAGES)
-            direction = orbit.tangent.resampled(len(motion.x))
-            orbit, _ = self.corrected(orbit.value, motion, direction)
+            orbit, _ = self.corrected(orbit.value, motion, across)
 
     def along_parameter(self, motion: Motion, sign: float = 1.0) -> Direction:
         """Return the direction in which the parameter alone changes."""

@@ -370,6 +370,8 @@ def _on(solver: Solver, orbit: Orbit, branch: Branch) -> bool:
 
 def same_motion(solver: Solver, one: Motion, other: Motion) -> bool:
     """Return True for one motion, from whatever turn it is counted."""
+    if one.turns != other.turns:
+        return False
     angles = 2.0 * np.pi * one.turns * np.arange(64) / 64
     place = float(solver.scale(one)[0])
     here = one.at(angles)[0]

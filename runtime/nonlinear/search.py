@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -17,7 +18,7 @@ from ..core.results import Result, provenance
 from .march import Marcher, end
 from .orbit import FIRST_STEPS, STAGES, Lost, Solver, closed, taken
 from .response import checked_problem, extremes, first_motion, same_motion
-from .segments import Motion, NotFinite, Problem, sweep
+from .segments import Motion, NotFinite, Problem, chained, sweep
 
 _FAILURES = (Lost, NotFinite, np.linalg.LinAlgError)
 # Amplitudes of the starts in the first coordinate that suits, over its largest trial; phases.
@@ -25,6 +26,8 @@ _AMPLITUDES, _PHASES = (0.1, 0.2, 0.35, 0.5), 6
 # Marched starts, revolutions of each at the most, and how near a state has to come back.
 _MARCHED, _SETTLING, _NEAR = 12, 120, 1e-2
 _ITERATIONS = 40
+_ARRIVED = 1e-6  # correction, relative, of what is worth to be settled
+_AT_ONCE = 24  # starts that are iterated together
 _LARGEST = 50.0  # size of a motion over that of the largest start beyond which a search is given up
 
 
@@ -122,31 +125,105 @@ def coexisting_motions(
     if not (is_finite(largest) and largest > 0):
         raise bad("largest", repr(largest), "a positive amplitude", "try 0.5")
     solver = Solver(problem, max(abs(value), 1e-6), rtol)
-    found: list[Motion] = []
     starts = _starts(solver, value, turns, largest, np.random.default_rng(seed))
-    counts: dict[str, int] = {}
-    with bar(progress, len(starts), unit="start") as tick:
-        for number, (kind, start) in enumerate(starts):
-            counts[kind] = counts.get(kind, 0) + 1
+    counts = {kind: len(motions) for kind, motions in starts.items()}
+    bound = _LARGEST * largest
+    found: list[Motion] = []
+    with bar(progress, len(starts) + 1, unit="kind of start") as tick:
+        for number, motions in enumerate(starts.values()):
+            for motion in _together(solver, value, motions, bound):
+                _keep(solver, found, motion)
             if tick is not None:
                 tick(number + 1)
-            try:
-                motion = _deflated(solver, value, start, found, _LARGEST * largest)
-                motion = solver.settled(value, motion)
-            except _FAILURES:
-                continue
-            motion = _shortest(motion)
-            if not any(same_motion(solver, known, motion) for known in found):
-                found.append(motion)
+        counts["known ones, deflated"] = len(found) + 1
+        for start in [first_motion(problem), *found]:
+            with suppress(*_FAILURES):
+                near = start.moved(0.1 * largest * np.ones_like(start.states), 0.0 * start.a)
+                motion = _deflated(solver, value, near, found, bound)
+                _keep(solver, found, solver.settled(value, motion))
     return _result(solver, value, found, counts)
+
+
+def _keep(solver: Solver, found: list[Motion], motion: Motion) -> None:
+    """Add a motion to the known ones unless it is one of them."""
+    short = _shortest(motion)
+    if not any(same_motion(solver, known, short) for known in found):
+        found.append(short)
+
+
+@np.errstate(all="ignore")
+def _together(solver: Solver, value: float, starts: Sequence[Motion], bound: float) -> list[Motion]:
+    """Return the periodic motions that starts of as many turns come to, all of them at once."""
+    arrived: list[Motion] = []
+    queues: dict[tuple[int, ...], list[Motion]] = {}
+    for start in starts:
+        queues.setdefault((start.turns, *start.a.shape), []).append(start)
+    for queue in queues.values():
+        for first in range(0, len(queue), _AT_ONCE):
+            arrived += _newton(solver, value, queue[first : first + _AT_ONCE], bound)
+    settled = []
+    for motion in arrived:
+        with suppress(*_FAILURES):
+            settled.append(solver.settled(value, motion))
+    return settled
+
+
+def _newton(solver: Solver, value: float, starts: list[Motion], bound: float) -> list[Motion]:
+    """Return what Newton's iteration makes of starts of one shape, damped each by itself."""
+    arrived: list[Motion] = []
+    size = 2 * solver.problem.system.size
+    for _ in range(_ITERATIONS):
+        if not starts:
+            break
+        motion = Motion.together(starts)
+        runs, m = motion.runs, len(motion.x) // motion.runs
+        try:
+            swept = sweep(solver.problem, value, motion)
+        except _FAILURES:
+            if len(starts) == 1:
+                break
+            # One that cannot be evaluated must not stop the others.
+            half = len(starts) // 2
+            return arrived + [
+                found
+                for part in (starts[:half], starts[half:])
+                for found in _newton(solver, value, part, bound)
+            ]
+        maps, loads = (
+            part.reshape(runs, m, size, -1).swapaxes(0, 1) for part in (swept.maps, swept.loads)
+        )
+        whole, added = chained(maps, loads)
+        first = _solved(np.eye(size) - whole[-1], added[-1])
+        change = (whole[:-1] @ first + added[:-1])[..., 0].swapaxes(0, 1)
+        going: list[Motion] = []
+        for run in range(runs):
+            here, scale = starts[run], solver.scale(starts[run])
+            large = float(np.max(np.abs(change[run]) / scale))
+            if not np.isfinite(large) or float(np.max(np.abs(here.x))) > bound:
+                continue
+            part, at = min(1.0, 0.5 / max(large, 1e-300)), slice(run * m, (run + 1) * m)
+            moved = (swept.response[at] @ change[run][:, None, :, None])[..., 0]
+            ahead = here.moved(part * change[run], part * (swept.stage_loads[at, ..., 0] + moved))
+            (arrived if large <= _ARRIVED else going).append(ahead)
+        starts = going
+    return arrived
+
+
+def _solved(matrices: Array, right: Array) -> Array:
+    """Return the solutions of equations, NaN where they have none."""
+    try:
+        return np.asarray(np.linalg.solve(matrices, right))
+    except np.linalg.LinAlgError:
+        shaken = matrices + 1e-13 * np.eye(matrices.shape[-1])
+        return np.asarray(np.linalg.solve(shaken, right))
 
 
 def _starts(
     solver: Solver, value: float, turns: int, largest: float, random: np.random.Generator
-) -> list[tuple[str, Motion]]:
-    """Return kind and motion of each start."""
+) -> dict[str, list[Motion]]:
+    """Return the starts by kind."""
     problem = solver.problem
-    starts = [("rest", first_motion(problem))]
+    starts = {"rest": [first_motion(problem)]}
     for mode, frequency in enumerate(_frequencies(problem, value)):
         for k in range(1, turns + 1):
             # A softened mode answers below its frequency, a hardened one above.
@@ -157,7 +234,7 @@ def _starts(
                 for amplitude in _AMPLITUDES:
                     for phase in 2.0 * np.pi * np.arange(_PHASES) / _PHASES:
                         wave = _wave(problem, mode, order, k, amplitude * largest, phase)
-                        starts.append((f"mode {mode + 1}", wave))
+                        starts.setdefault(f"mode {mode + 1}", []).append(wave)
     marcher = Marcher(problem, 1e-6)
     speed, _ = problem.at(value)
     if problem.name == "speed":
@@ -165,7 +242,7 @@ def _starts(
             state = largest * random.normal(size=(1, 2 * problem.system.size))
             marched = _marched(marcher, speed, state, turns)
             if marched is not None:
-                starts.append(("marched", marched))
+                starts.setdefault("marched", []).append(marched)
     return starts
 
 
@@ -213,9 +290,8 @@ def _marched(marcher: Marcher, speed: float, state: Array, turns: int) -> Motion
     except _FAILURES:
         return None
     steps = max(len(motion.x) for motion in last)
-    parts = [motion.resampled(steps, STAGES) for motion in last]
-    x, v, a = (np.concatenate([getattr(p, name) for p in parts]) for name in ("x", "v", "a"))
-    return Motion(len(parts), x, v, a)
+    whole = Motion.together([motion.resampled(steps, STAGES) for motion in last])
+    return replace(whole, turns=len(last), runs=1)
 
 
 def _newest(motions: Sequence[Motion]) -> Motion | None:
@@ -251,7 +327,7 @@ def _deflated(
         size = abs(factor) * float(np.max(np.abs(change) / scale))
         if not np.isfinite(size) or float(np.max(np.abs(motion.x))) > bound:
             break
-        if size <= 1e-6:
+        if size <= _ARRIVED:
             return motion
         part = factor * min(1.0, 0.5 / size)
         motion = taken(motion, swept, change, 0.0, part)
@@ -282,11 +358,14 @@ def _shortest(motion: Motion) -> Motion:
 def _result(
     solver: Solver, value: float, found: list[Motion], counts: dict[str, int]
 ) -> CoexistingMotions:
-    rows, kept = [], []
+    rows: list[tuple[float, ...]] = []
+    kept: list[Motion] = []
     for motion in found:
         try:
             orbit, measure = solver.fine(value, motion, solver.along_parameter(motion))
         except _FAILURES:
+            continue
+        if any(same_motion(solver, known, orbit.motion) for known in kept):
             continue
         rows.append(
             (

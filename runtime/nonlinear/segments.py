@@ -7,7 +7,7 @@ at the points and the gaps between the steps are to vanish.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -120,6 +120,18 @@ class Motion:
         n = self.x.shape[1]
         x, v = self.x + states[:, :n], self.v + states[:, n:]
         return replace(self, x=x, v=v, a=self.a + a)
+
+    def run(self, number: int) -> Motion:
+        """Return one of several runs."""
+        m = len(self.x) // self.runs
+        at = slice(number * m, (number + 1) * m)
+        return replace(self, x=self.x[at], v=self.v[at], a=self.a[at], runs=1)
+
+    @staticmethod
+    def together(motions: Sequence[Motion]) -> Motion:
+        """Return motions over the same angles and as many steps as runs of one."""
+        x, v, a = (np.concatenate([getattr(m, name) for m in motions]) for name in ("x", "v", "a"))
+        return Motion(motions[0].turns, x, v, a, motions[0].begin, len(motions))
 
     @classmethod
     def rest(cls, system: Nonlinear, turns: int, steps: int, stages: int) -> Motion:
@@ -242,10 +254,12 @@ def sweep(
     effect = np.concatenate([move.reshape(m, n, -1), rise.reshape(m, n, -1)], axis=1)
     maps = effect[..., k:] + np.eye(2 * n) + h * np.eye(2 * n, k=n)
     loads = effect[..., :k]
-    gaps = motion.ends() - np.roll(motion.states, -1, axis=0)
+    by_run = (motion.runs, -1, 2 * n)
+    begins = motion.states.reshape(by_run)
+    gaps = motion.ends().reshape(by_run) - np.roll(begins, -1, axis=1)
     if not periodic:
-        gaps.reshape(motion.runs, -1, 2 * n)[:, -1] = 0.0
-    loads[..., 0] += gaps
+        gaps[:, -1] = 0.0
+    loads[..., 0] += gaps.reshape(m, 2 * n)
     by_value = columns[1] if k > 1 else np.empty((m, s, n, 0))
     return Sweep(maps, loads, stages[..., :k], stages[..., k:], by_value)
 

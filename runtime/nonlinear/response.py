@@ -25,6 +25,8 @@ _POINTS = 2000  # of one branch
 _BRANCHES = 24
 _SAMPLES = 128  # of a revolution, for the extremes of the linear deflection
 _POLISHED = 3  # parabolas about the highest sample, each a tenth as wide
+# Relative distance within which motions are one: within its steps a motion is right to 1e-5 or so.
+_SAME = 1e-4
 _LINEAR = 120  # values at which the linear answer is computed
 _RPM = 30.0 / np.pi
 _STYLE = {"fold": "o", "doubling": "s", "branch point": "D", "torus": "^"}
@@ -355,8 +357,10 @@ def _on(solver: Solver, orbit: Orbit, branch: Branch) -> bool:
         values[-1] - values[-2]
     ):
         return True
+    slack = 1e-9 * solver.span  # ends of the range are met but for rounding
     for (one, _), (other, _) in pairwise(branch.points):
-        if not min(one.value, other.value) <= orbit.value <= max(one.value, other.value):
+        low, high = sorted((one.value, other.value))
+        if not low - slack <= orbit.value <= high + slack:
             continue
         near = min(one, other, key=lambda point: abs(point.value - orbit.value))
         try:
@@ -377,7 +381,7 @@ def same_motion(solver: Solver, one: Motion, other: Motion) -> bool:
     here = one.at(angles)[0]
     for turn in range(one.turns):
         shifted = (angles + 2.0 * np.pi * turn) % (2.0 * np.pi * one.turns)
-        if float(np.max(np.abs(other.at(shifted)[0] - here))) < 1e-5 * place:
+        if float(np.max(np.abs(other.at(shifted)[0] - here))) < _SAME * place:
             return True
     return False
 

@@ -20,7 +20,7 @@ _NEAR = 1e-3
 _FAR = 0.3
 # Stages of the motion beside which errors are measured, less than those of the motion, and the
 # share of the difference that is taken for the error.
-_FEWER, SHARE = 2, 0.1
+_FEWER, SHARE, _INNER_SHARE = 2, 0.1, 0.25
 # Errors of the multipliers that are allowed, over that of the motion.
 _MULTIPLIERS = 10.0
 STAGES, FIRST_STEPS, MOST_STEPS = 12, 5, 384
@@ -122,7 +122,8 @@ class Orbit:
 class Measure:
     """How far a motion is from the true one, by a motion on fewer stages."""
 
-    error: float  # distance from the branch, relative to the motion
+    error: float  # distance from the branch where the steps meet, relative to the motion
+    inner: float  # the same of the coordinates anywhere within the steps
     value_error: float  # the parameter's part of it
     multiplier_errors: Array  # (2n,)
     rough: Array  # (2n, 2n): monodromy matrix of the other motion
@@ -241,8 +242,12 @@ class Solver:
             errors.append(abs(rough[nearest] - multiplier))
             rough = np.delete(rough, nearest)
         size = float(np.linalg.norm(orbit.matrix))
+        away = self._size(change, moved, motion)
+        within = taken(fewer, swept, change, 0.0).at(motion.angles.ravel() - motion.begin)[0]
+        off = float(np.max(np.abs(within - motion.stages()[0].reshape(within.shape))))
         return Measure(
-            SHARE * self._size(change, moved, motion) + rounding,
+            SHARE * away + rounding,
+            _INNER_SHARE * off / float(self.scale(motion)[0]) + SHARE * away + rounding,
             SHARE * abs(moved) + rounding * abs(orbit.value),
             SHARE * np.asarray(errors) + rounding * size,
             np.asarray(whole[-1]),

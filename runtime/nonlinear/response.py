@@ -420,6 +420,15 @@ def extremes(problem: Problem, orbit: Orbit) -> tuple[float, float]:
     return float(np.min(tops[: len(lowest)])), float(np.max(tops[len(lowest) :]))
 
 
+def leverage(solver: Solver, orbit: Orbit) -> float:
+    """Return how far the deflection moves where all coordinates move by their size."""
+    q, (_, parameters) = orbit.motion.x, solver.problem.at(orbit.value)
+    step = 1e-4 * solver.scale(orbit.motion)[0] * np.eye(q.shape[1])[:, None]
+    moved = solver.problem.system.shown(q + step, parameters)
+    moved = moved - solver.problem.system.shown(q - step, parameters)
+    return float(np.max(np.sum(np.abs(moved), axis=0)) / 2e-4)
+
+
 def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float]) -> ResponseCurve:
     problem = solver.problem
     points = [point for branch in branches for point in branch.points]
@@ -428,7 +437,7 @@ def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float])
     shown = np.array([extremes(problem, orbit) for orbit, _ in points])
     at_special = np.array([extremes(problem, p.orbit) for p in special]).reshape(-1, 2)
     error = np.array([measure.error for _, measure in points])
-    sizes = np.max(np.abs(shown), axis=1)
+    peak_error = [measure.inner * leverage(solver, orbit) for orbit, measure in points]
     return ResponseCurve(
         method="Gauss collocation with 12 stages, pseudo-arclength continuation",
         error=error,
@@ -443,7 +452,7 @@ def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float])
         highest=shown[:, 1],
         multipliers=np.array([orbit.multipliers for orbit, _ in points]),
         multiplier_error=np.array([measure.multiplier_errors for _, measure in points]),
-        peak_error=2.0 * error * sizes,
+        peak_error=np.array(peak_error),
         special=tuple(point.kind for point in special),
         special_value=np.array([point.orbit.value for point in special]),
         special_error=np.array([point.value_error for point in special]),

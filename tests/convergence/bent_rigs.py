@@ -155,6 +155,10 @@ def motions_at(curve, value: float, turns: int):
         if within and branch == same and one.motion.turns == turns:
             near = min(one, other, key=lambda orbit: abs(orbit.value - value))
             motion = solver.settled(value, near.motion)
+            orbit, _ = solver.fine(value, motion, solver.along_parameter(motion))
+            # As many steps a turn: then every turn begins with a step.
+            steps = turns * -(-len(orbit.motion.x) // turns)
+            motion = solver.settled(value, orbit.motion.resampled(steps, orbit.motion.a.shape[1]))
             found.append(solver.fine(value, motion, solver.along_parameter(motion)))
     return found
 

@@ -11,6 +11,8 @@ from bent_rigs import BENT, REFERENCE, SLIDER_CRANK, Shape, rig
 from elastolink.runtime.core.errors import BadInput, SelfCheckFailed
 from elastolink.runtime.core.families import LinearPeriodic
 from elastolink.runtime.core.families.nonlinear import Drive
+from elastolink.runtime.systems import inextensible
+from elastolink.runtime.systems.inextensible import coupler_stations
 from straight_rod import projected
 
 RIGS = ("smith_1972_5152_sixteenth_inch", "smith_1972_101104_thirtysecond_inch")
@@ -35,23 +37,32 @@ def slider_crank(tmp_path_factory):
     return made
 
 
+@pytest.fixture
+def many_stations(monkeypatch):
+    """Return a function from modes to rig A58 with as many stations as leave no error."""
+    monkeypatch.setattr(inextensible, "_PER_MODE", 10)
+    coupler_stations.cache_clear()
+    yield rig.__wrapped__
+    coupler_stations.cache_clear()
+
+
 # ---------------------------------------------------------------- another derivation
 
 
-def test_accelerations_are_those_of_another_lagrangian():
+def test_accelerations_are_those_of_another_lagrangian(many_stations):
     """In minimal coordinates and 40 digits, amplitudes of the tangent's angle to 0.4."""
     for state in REFERENCE["states"]:
         q, qd = np.array(state["q"]), np.array(state["rates"])
-        system = rig("A58", len(q))
+        system = many_stations("A58", len(q))
         expected = np.array(state["accelerations"])
         found = accelerations(system, q, qd, Drive(*state["theta"]))
         assert found == pytest.approx(expected, rel=0, abs=1e-13 * np.max(np.abs(expected)))
 
 
-def test_multipliers_and_followers_are_those_of_another_lagrangian():
+def test_forces_and_followers_are_those_of_another_lagrangian(many_stations):
     for state in REFERENCE["states"]:
         q, qd = np.array(state["q"]), np.array(state["rates"])
-        system, drive = rig("A58", len(q)), Drive(*state["theta"])
+        system, drive = many_stations("A58", len(q)), Drive(*state["theta"])
         made = system.equations
         shape, constrained = placed(system, q, qd, np.array(state["accelerations"]), drive)
         assert shape.driven == pytest.approx(np.array(state["follower"]), rel=1e-11)
@@ -68,6 +79,24 @@ def placed(system, q, qd, qdd, drive):
     whole = system.equations.whole(q, drive, system.parameters)
     shape = Shape.of(system.parameters, whole, q, qd, qdd, *map(np.asarray, drive))
     return shape, system.equations.make(system.parameters, drive)
+
+
+@pytest.mark.parametrize("modes", [1, 3, 5])
+def test_stations_are_as_many_as_large_motions_need(modes):
+    """What is left of the equations is right to 5e-12 with amplitudes up to 0.7 / k^1.5."""
+    random, k = np.random.default_rng(9), np.arange(1, modes + 1)
+    state = random.uniform(-0.7, 0.7, (3, 50, modes)) / k**1.5
+    state *= np.array([1.0, 60.0, 3600.0])[:, None, None]
+    drive = Drive(random.uniform(-7.0, 7.0, 50), np.full(50, 60.0), np.zeros(50))
+    system = rig.__wrapped__("B58", modes)
+    found = system.equations(*state, drive, system.parameters, False).residual
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(inextensible, "_PER_MODE", 12)
+        coupler_stations.cache_clear()
+        more = rig.__wrapped__("B58", modes)
+        exact = more.equations(*state, drive, more.parameters, False).residual
+    coupler_stations.cache_clear()
+    assert np.max(np.abs(found - exact)) <= 5e-12 * np.max(np.abs(exact))
 
 
 # ---------------------------------------------------------------- no deflection
@@ -188,7 +217,7 @@ def test_the_power_of_the_crank_balances(slider_crank, modes):
     random = np.random.default_rng(modes)
     for system in (four_bar, slider_crank(modes, **more)):
         for _ in range(4):
-            q, qd = 0.2 * random.normal(size=(2, modes))
+            q, qd = random.uniform(-0.5, 0.5, (2, modes)) / np.arange(1, modes + 1) ** 1.5
             drive = Drive(random.uniform(-7, 7), 60.0, random.choice([0.0, 900.0]))
             qd = 40.0 * qd
             assert_balanced(system, q, qd, accelerations(system, q, qd, drive), drive)

@@ -1,0 +1,73 @@
+"""Periodic motions beside the known ones: planted ones are found, and what was tried is told."""
+
+from __future__ import annotations
+
+import elastolink as el
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.nonlinear import coexisting_motions
+from planted import duffing, planted_system
+
+ANGLES = 2.0 * np.pi * np.arange(32) / 32
+
+
+def found(seed: int, count: int) -> float:
+    """Return the share of planted motions that were found."""
+    rng, hits = np.random.default_rng(seed), 0
+    for _ in range(count):
+        system, speed, motion = planted_system(rng)
+        others = coexisting_motions(system, "speed", speed)
+        wanted = motion(ANGLES)[0]
+        gaps = [np.max(np.abs(m.at(ANGLES)[0] - wanted)) for m in others.motions if m.turns == 1]
+        hits += min(gaps, default=np.inf) < 1e-6
+    return hits / count
+
+
+def test_planted_motions_are_found():
+    assert found(0, 1) == 1.0
+
+
+@pytest.mark.slow
+def test_nearly_all_planted_motions_are_found():
+    assert found(1, 40) >= 0.95
+
+
+def test_the_three_motions_of_a_hardened_resonance():
+    # Between its folds, 1.1292 and 1.3315, Duffing's equation has three motions, the middle one
+    # unstable; their multipliers multiply to exp(-2 pi damping / speed).
+    motions = coexisting_motions(duffing(), "speed", 1.2, largest=5.0)
+    assert motions.turns.tolist() == [1, 1, 1]
+    assert motions.stable.tolist() == [True, False, True]
+    assert np.all(np.diff(motions.highest) > 0.1)
+    assert motions.error.max() < 1e-8
+    assert set(motions.searched) >= {"rest", "mode 1", "marched"}
+
+
+def test_motions_are_starts_of_branches():
+    # Above the folds nothing leads from the small motion to the large one within the range.
+    system, bounds = duffing(), (1.15, 1.3)
+    motions = coexisting_motions(system, "speed", 1.2, largest=5.0)
+    starts = [(1.2, motion) for motion in motions.motions]
+    alone, all_of_them = (
+        el.response_curve(system, "speed", bounds, starts=given) for given in ((), starts)
+    )
+    assert len(alone.ended) < len(all_of_them.ended) == 3
+    assert np.all(all_of_them.value >= 1.15 - 1e-12)
+    assert np.all(all_of_them.value <= 1.3 + 1e-12)
+
+
+@pytest.mark.parametrize(
+    ("changes", "word"),
+    [
+        ({"value": np.nan}, "value"),
+        ({"parameter": "mass"}, "parameter"),
+        ({"turns": 0}, "turns"),
+        ({"largest": -1.0}, "largest"),
+        ({"parameter": "force"}, "speed"),
+    ],
+)
+def test_refusals(changes, word):
+    arguments = {"parameter": "speed", "value": 1.2, **changes}
+    with pytest.raises(BadInput, match=word):
+        coexisting_motions(duffing(), **arguments)

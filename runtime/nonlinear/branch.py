@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..core.families import Array
-from .orbit import SHARE, STAGES, Direction, Lost, Measure, Orbit, Solver, changed
+from .orbit import STAGES, Direction, Lost, Measure, Orbit, Solver, changed
 from .segments import Motion, NotFinite
 
 # First correction that a step aims at, relative; factors by which a step changes at once; its
@@ -296,7 +296,8 @@ def value_error(solver: Solver, orbit: Orbit, kind: str, measure: Measure | None
     beside, _ = solver.corrected(value, guess, orbit.tangent)
     slope = (test(beside) - test(orbit)) / step
     rough = replace(orbit, whole=np.concatenate([orbit.whole[:-1], measure.rough[None]]))
-    along = SHARE * abs(test(rough) - test(orbit)) / abs(slope) if slope else np.inf
+    # Not a share of it: the linearisation before the last correction is in the difference, too.
+    along = abs(test(rough) - test(orbit)) / abs(slope) if slope else np.inf
     return measure.value_error + along * abs(orbit.tangent.value)
 
 

@@ -420,15 +420,6 @@ def extremes(problem: Problem, orbit: Orbit) -> tuple[float, float]:
     return float(np.min(tops[: len(lowest)])), float(np.max(tops[len(lowest) :]))
 
 
-def leverage(solver: Solver, orbit: Orbit) -> float:
-    """Return how far the deflection moves where all coordinates move by their size."""
-    q, (_, parameters) = orbit.motion.x, solver.problem.at(orbit.value)
-    step = 1e-4 * solver.scale(orbit.motion)[0] * np.eye(q.shape[1])[:, None]
-    moved = solver.problem.system.shown(q + step, parameters)
-    moved = moved - solver.problem.system.shown(q - step, parameters)
-    return float(np.max(np.sum(np.abs(moved), axis=0)) / 2e-4)
-
-
 def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float]) -> ResponseCurve:
     problem = solver.problem
     points = [point for branch in branches for point in branch.points]
@@ -437,7 +428,7 @@ def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float])
     shown = np.array([extremes(problem, orbit) for orbit, _ in points])
     at_special = np.array([extremes(problem, p.orbit) for p in special]).reshape(-1, 2)
     error = np.array([measure.error for _, measure in points])
-    peak_error = [measure.inner * leverage(solver, orbit) for orbit, measure in points]
+    peak_error = [measure.peak_error for _, measure in points]
     return ResponseCurve(
         method="Gauss collocation with 12 stages, pseudo-arclength continuation",
         error=error,

@@ -15,13 +15,11 @@ import elastolink as el
 import numpy as np
 import pytest
 from elastolink.derive.regenerate import main
-from numpy.polynomial.legendre import leggauss
+from straight_rod import DAMPING, EI, MU, ROD, projected
 
 DOCS = Path(__file__).parents[1] / "docs"
 EXAMPLE = DOCS / "examples"
 FILES = ("slider_crank_rod.py", "slider_crank_rod.toml")
-# As in slider_crank_rod.toml, in SI units.
-CRANK, ROD, OFFSET, EI, MU, DAMPING = 0.06, 0.3, 0.01, 4.2, 0.471, 0.6
 
 
 @pytest.fixture(scope="module")
@@ -34,47 +32,13 @@ def folder(tmp_path_factory):
     return place
 
 
-def _rod_angle(theta):
-    """Angle of the rod and its two derivatives by the crank angle, from crank sin + rod sin = e."""
-    sine = (OFFSET - CRANK * np.sin(theta)) / ROD
-    angle = np.arcsin(sine)
-    slope = -CRANK * np.cos(theta) / (ROD * np.cos(angle))
-    bend = (CRANK * np.sin(theta) / ROD + sine * slope**2) / np.cos(angle)
-    return angle, slope, bend
-
-
-def _end_load(theta, slider):
-    """Force on the rod's end C along the rod over omega2^2: slider, guide, moments about B."""
-    angle, slope, bend = _rod_angle(theta)
-    pin = -CRANK * np.sin(theta - angle)  # acceleration of B across the rod
-    slide = -CRANK * np.cos(theta) - ROD * (np.cos(angle) * slope**2 + np.sin(angle) * bend)
-    across = MU * ROD**2 / 3.0 * bend + MU * ROD / 2.0 * pin
-    return -slider * slide / np.cos(angle) + across * np.tan(angle)
-
-
-def _projected(theta, modes, slider):
-    """Arrays H and f over omega2^2 at one angle, by quadrature, divided by the modal mass."""
-    nodes, weights = leggauss(60)
-    x, weights = ROD * (nodes + 1.0) / 2.0, ROD * weights / 2.0
-    angle, slope, bend = _rod_angle(theta)
-    m = np.arange(1, modes + 1)[:, None]
-    shape = ROD * np.sin(m * np.pi * x / ROD)
-    rise = m * np.pi * np.cos(m * np.pi * x / ROD)
-    carried = CRANK * np.cos(theta - angle) * (ROD - x)
-    tension = _end_load(theta, slider) + MU * (carried + slope**2 * (ROD**2 - x**2) / 2.0)
-    modal_mass = MU * ROD**3 / 2.0
-    stiffness = (weights * tension * rise) @ rise.T - MU * slope**2 * (weights * shape) @ shape.T
-    load = MU * (CRANK * np.sin(theta - angle) - x * bend)
-    return stiffness / modal_mass, shape @ (weights * load) / modal_mass
-
-
 @pytest.mark.parametrize(("modes", "slider"), [(1, 0.0), (3, 0.2), (6, 3.0)])
 def test_the_emitted_arrays_are_those_of_the_hand_derivation(folder, monkeypatch, modes, slider):
     monkeypatch.setenv("ELASTOLINK_GENERATED", str(folder / "modules"))
     changes = {"model.modes": modes, "slider.slider_mass": slider}
     system = el.load_scene(folder / FILES[1], overrides=changes).system()
     theta = np.random.default_rng(5).uniform(-7.0, 7.0, 20)
-    hand = [_projected(angle, modes, slider) for angle in theta]
+    hand = [projected(angle, modes, slider) for angle in theta]
     assert not system.has("A")
     softening, load = np.array([h for h, _ in hand]), np.array([f for _, f in hand])
     size = np.abs(softening).max()  # quadrature rounds relative to the largest entry

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..core.families import Array
-from .orbit import SHARE, Direction, Lost, Measure, Orbit, Solver, changed
+from .orbit import STAGES, Direction, Lost, Measure, Orbit, Solver, changed
 from .segments import Motion, NotFinite
 
 # First correction that a step aims at, relative; factors by which a step changes at once; its
@@ -20,6 +20,7 @@ _FIRST, _LEAST, _LARGEST = 0.02, 1e-7, 0.5
 _WIDEST = 1.0 / 60.0  # part of the range that a step may change the parameter by
 # Relative amplitude at which a crossing branch is entered.
 _ENTERED = 0.02
+_FINER = 1.4  # steps of a special point over those of the motions about it
 _LOCATED = 1e-12  # part of a step to which a special point is located
 # Part of a test's value to which the parabola through three has to fall for a pair to be sought.
 _DIP = 0.3
@@ -267,8 +268,8 @@ class _Between:
         """Return the motion nearest to a part of the way on the line between both."""
         if part in (0.0, 1.0):
             return self.after if part else self.before
-        end = self.after.motion
-        start = self.before.motion.resampled(len(end.x), end.a.shape[1])
+        steps = int(np.ceil(_FINER * len(self.after.motion.x)))
+        start, end = (o.motion.resampled(steps, STAGES) for o in (self.before, self.after))
         states = end.states - start.states
         chord = replace(
             self.after.tangent, states=states, value=self.after.value - self.before.value
@@ -302,7 +303,8 @@ def value_error(solver: Solver, orbit: Orbit, kind: str, measure: Measure | None
     beside, _ = solver.corrected(value, guess, orbit.tangent)
     slope = (test(beside) - test(orbit)) / step
     rough = replace(orbit, whole=np.concatenate([orbit.whole[:-1], measure.rough[None]]))
-    along = SHARE * abs(test(rough) - test(orbit)) / abs(slope) if slope else np.inf
+    # Not a share of it: the linearisation before the last correction is in the difference, too.
+    along = abs(test(rough) - test(orbit)) / abs(slope) if slope else np.inf
     return measure.value_error + along * abs(orbit.tangent.value)
 
 

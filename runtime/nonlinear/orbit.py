@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -19,8 +20,15 @@ _NEAR = 1e-3
 # First correction beyond which a guess is refused, relative.
 _FAR = 0.3
 # Stages of the motion beside which errors are measured, less than those of the motion, and the
-# share of the difference that is taken for the error.
-_FEWER, SHARE = 2, 0.1
+# share of the difference that is taken for the error, where steps meet and within them: of 3500
+# multipliers, 800 motions and 1700 peaks of 150 random systems 99.4 % and more are covered, half of
+# them by no more than 7 to 100 times the error.
+_FEWER, SHARE, _INNER_SHARE = 2, 0.2, 0.25
+_NEAR_TOP = 0.4  # distance from the middle of all deflections over their range: near an extreme
+# Least part of what the difference of two matrices may amount to that counts for a multiplier.
+_LEAST_PART = 0.02
+# Steps are linearised before the last correction: multipliers are off by at most 4 times that.
+_STALE = 10.0
 # Errors of the multipliers that are allowed, over that of the motion.
 _MULTIPLIERS = 10.0
 STAGES, FIRST_STEPS, MOST_STEPS = 12, 5, 384
@@ -85,6 +93,7 @@ class Orbit:
     # Determinant of the equations bordered by the tangent, rows of unit length: its sign changes
     # at a branch point.
     border: float
+    last: float = 0.0  # the last correction, before which the steps were linearised, relative
 
     @property
     def matrix(self) -> Array:
@@ -122,10 +131,20 @@ class Orbit:
 class Measure:
     """How far a motion is from the true one, by a motion on fewer stages."""
 
-    error: float  # distance from the branch, relative to the motion
+    error: float  # distance from the branch where the steps meet, relative to the motion
+    peak_error: float  # of the extremes of what is shown, absolute
     value_error: float  # the parameter's part of it
     multiplier_errors: Array  # (2n,)
     rough: Array  # (2n, 2n): monodromy matrix of the other motion
+
+
+def share(difference: Any, level: float) -> Any:
+    """Return the error of what differs so much from what fewer stages give.
+
+    A difference within a level of rounding, or of a linearisation before the last correction, is
+    no larger than the error.
+    """
+    return SHARE * difference + np.minimum(5.0 * difference, level)
 
 
 @dataclass(frozen=True)
@@ -199,7 +218,8 @@ class Solver:
             renew = size <= _NEAR and not renewed
             by_parameter, renewed = (True if renew else swept.by_parameter), renewed or renew
             if size <= _LAST or (size <= _SMALL and size >= 0.5 * before):
-                return self._orbit(value, motion, swept, whole, added, direction), first
+                orbit = self._orbit(value, motion, swept, whole, added, direction)
+                return replace(orbit, last=size), first
             before = size
         raise Lost(f"not there after {_ITERATIONS} corrections")
 
@@ -234,19 +254,47 @@ class Solver:
         # What the parameter does differs but little by fewer stages.
         added = np.concatenate([added, orbit.added[..., 1:]], axis=-1)
         change, moved = _bordered(whole, added, orbit.tangent)
-        rounding = 16 * EPS * len(motion.x)
-        rough, errors = np.linalg.eigvals(whole[-1]).astype(complex), []
-        for multiplier in orbit.multipliers:
-            nearest = int(np.argmin(np.abs(rough - multiplier)))
-            errors.append(abs(rough[nearest] - multiplier))
-            rough = np.delete(rough, nearest)
-        size = float(np.linalg.norm(orbit.matrix))
+        rounding, noise = self._rounding(orbit)
+        size = max(float(np.linalg.norm(orbit.matrix)), 1.0)
+        away = share(self._size(change, moved, motion), noise) + rounding
+        within = taken(fewer, swept, change, 0.0).at(motion.angles.ravel() - motion.begin)[0]
+        moved_most, off = self._shown(orbit, within)
+        differences = _differences(orbit, np.asarray(whole[-1]))
         return Measure(
-            SHARE * self._size(change, moved, motion) + rounding,
-            SHARE * abs(moved) + rounding * abs(orbit.value),
-            SHARE * np.asarray(errors) + rounding * size,
+            away,
+            _INNER_SHARE * off + (away + 256 * EPS) * moved_most,
+            share(abs(moved), noise * self.span) + rounding * abs(orbit.value),
+            share(differences, (noise + _STALE * orbit.last) * size) + rounding * size,
             np.asarray(whole[-1]),
         )
+
+    def _shown(self, orbit: Orbit, other: Array) -> tuple[float, float]:
+        """Return how far the deflection moves if all coordinates move by their size, and does.
+
+        ``other``: the coordinates at the Gauss points of another motion; the deflections of both
+        are compared near the extremes.
+        """
+        shown, (_, parameters) = self.problem.system.shown, self.problem.at(orbit.value)
+        q = orbit.motion.stages()[0].reshape(other.shape)
+        step = 1e-4 * float(self.scale(orbit.motion)[0]) * np.eye(q.shape[1])[:, None]
+        both = shown(orbit.motion.x + step, parameters) - shown(orbit.motion.x - step, parameters)
+        most = float(np.max(np.sum(np.abs(both), axis=0))) / 2e-4
+        values = shown(q, parameters)
+        near = np.abs(values - 0.5 * (np.min(values) + np.max(values))) >= _NEAR_TOP * np.ptp(
+            values
+        )
+        off = np.abs(shown(other, parameters) - values)
+        return most, float(np.max(off[near]))
+
+    def _rounding(self, orbit: Orbit) -> tuple[float, float]:
+        """Return the error of a sum over the steps, and of coordinates by rounded accelerations.
+
+        A link's angle is of the order of 1 while it bends by less.
+        """
+        n = self.problem.system.size
+        stiffness = float(np.max(np.abs(orbit.swept.response[:, :, :, :n])))
+        scale = float(self.scale(orbit.motion)[0])
+        return 16 * EPS * len(orbit.motion.x), 32 * EPS * (1.0 + stiffness / min(scale, 1.0))
 
     def fine(self, value: float, motion: Motion, direction: Direction) -> tuple[Orbit, Measure]:
         """Return the motion across a direction, on as many steps as its error wants."""
@@ -273,6 +321,27 @@ class Solver:
         n = motion.x.shape[1]
         zero = np.zeros((len(motion.x), 2 * n))
         return Direction(zero, sign * self.span, self.scale(motion), self.span)
+
+
+def _differences(orbit: Orbit, rough: Array) -> Array:
+    """Return by how much multipliers differ from those of another matrix, ``(2n,)``.
+
+    At least a part of what the difference of the matrices may amount to: that of a multiplier
+    passes zero where its signs change.
+    """
+    values, vectors = np.linalg.eig(orbit.matrix)
+    order = np.argsort(-np.abs(values), kind="stable")
+    rows, columns = np.abs(np.linalg.pinv(vectors)[order]), np.abs(vectors[:, order])
+    gaps = np.abs(rough - orbit.matrix)
+    # Two that have all but met part by a root.
+    root = np.sqrt(np.linalg.norm(gaps) * np.linalg.norm(orbit.matrix))
+    most = np.minimum(np.einsum("ij,jk,ki->i", rows, gaps, columns), root)
+    others, found = np.linalg.eigvals(rough).astype(complex), []
+    for multiplier in orbit.multipliers:
+        nearest = int(np.argmin(np.abs(others - multiplier)))
+        found.append(abs(others[nearest] - multiplier))
+        others = np.delete(others, nearest)
+    return np.asarray(np.maximum(found, _LEAST_PART * most))
 
 
 def changed(orbit: Orbit, direction: Direction, length: float) -> tuple[float, Motion]:

@@ -25,6 +25,8 @@ _POINTS = 2000  # of one branch
 _BRANCHES = 24
 _SAMPLES = 128  # of a revolution, for the extremes of the linear deflection
 _POLISHED = 3  # parabolas about the highest sample, each a tenth as wide
+# Relative distance within which motions are one: within its steps a motion is right to 1e-5 or so.
+_SAME = 1e-4
 _LINEAR = 120  # values at which the linear answer is computed
 _RPM = 30.0 / np.pi
 _STYLE = {"fold": "o", "doubling": "s", "branch point": "D", "torus": "^"}
@@ -361,8 +363,10 @@ def _on(solver: Solver, orbit: Orbit, branch: Branch) -> bool:
     for end, before in ((values[-1], values[-2]), (values[0], values[1])):
         if JOINED in branch.ended and abs(orbit.value - end) <= 2.0 * abs(end - before):
             return True
+    slack = 1e-9 * solver.span  # ends of the range are met but for rounding
     for (one, _), (other, _) in pairwise(branch.points):
-        if not min(one.value, other.value) <= orbit.value <= max(one.value, other.value):
+        low, high = sorted((one.value, other.value))
+        if not low - slack <= orbit.value <= high + slack:
             continue
         near = min(one, other, key=lambda point: abs(point.value - orbit.value))
         try:
@@ -383,7 +387,7 @@ def same_motion(solver: Solver, one: Motion, other: Motion) -> bool:
     here = one.at(angles)[0]
     for turn in range(one.turns):
         shifted = (angles + 2.0 * np.pi * turn) % (2.0 * np.pi * one.turns)
-        if float(np.max(np.abs(other.at(shifted)[0] - here))) < 1e-5 * place:
+        if float(np.max(np.abs(other.at(shifted)[0] - here))) < _SAME * place:
             return True
     return False
 
@@ -391,26 +395,35 @@ def same_motion(solver: Solver, one: Motion, other: Motion) -> bool:
 def extremes(problem: Problem, orbit: Orbit) -> tuple[float, float]:
     """Return the extremes of the deflection over the period.
 
-    The lowest and highest of the Gauss points, both polished by parabolas at once.
+    Every lowest and highest of the Gauss points among its neighbours is polished by parabolas, for
+    the largest of these points need not be next to the highest top.
     """
     motion, (_, parameters) = orbit.motion, problem.at(orbit.value)
     angles = motion.angles.ravel() - motion.begin
     values = problem.system.shown(motion.stages()[0], parameters).ravel()
-    signs = np.array([-1.0, 1.0])
-    places = angles[[int(np.argmin(values)), int(np.argmax(values))]]
-    best = np.zeros(2)
+    lowest, highest = (
+        np.flatnonzero(
+            (sign * values >= sign * np.roll(values, 1))
+            & (sign * values >= sign * np.roll(values, -1))
+        )
+        for sign in (-1.0, 1.0)
+    )
+    places = angles[np.concatenate([lowest, highest])]
+    signs = np.repeat([-1.0, 1.0], [len(lowest), len(highest)])
     width = motion.step / motion.a.shape[1]
     for _ in range(_POLISHED):
         around = places[:, None] + width * np.array([-1.0, 0.0, 1.0])
         q = motion.at(np.mod(around.ravel(), motion.span))[0]
-        left, middle, right = (signs[:, None] * problem.system.shown(q, parameters).reshape(2, 3)).T
+        left, middle, right = (
+            signs[:, None] * problem.system.shown(q, parameters).reshape(-1, 3)
+        ).T
         bend = left - 2.0 * middle + right
-        shift = np.divide(left - right, 2.0 * bend, out=np.zeros(2), where=bend < 0.0)
-        places = places + np.clip(shift, -1.0, 1.0) * width
-        # The top of the newest parabola, which is the narrowest.
-        best = middle - np.where(np.abs(shift) <= 1.0, 0.25 * (left - right) * shift, 0.0)
+        shift = np.divide(left - right, 2.0 * bend, out=np.zeros_like(bend), where=bend < 0.0)
+        shift = np.clip(shift, -1.0, 1.0)
+        places = places + shift * width
         width *= 0.1
-    return float(-best[0]), float(best[1])
+    tops = signs * (middle - 0.25 * (left - right) * shift)  # of the last parabolas
+    return float(np.min(tops[: len(lowest)])), float(np.max(tops[len(lowest) :]))
 
 
 def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float]) -> ResponseCurve:
@@ -421,7 +434,7 @@ def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float])
     shown = np.array([extremes(problem, orbit) for orbit, _ in points])
     at_special = np.array([extremes(problem, p.orbit) for p in special]).reshape(-1, 2)
     error = np.array([measure.error for _, measure in points])
-    sizes = np.max(np.abs(shown), axis=1)
+    peak_error = [measure.peak_error for _, measure in points]
     return ResponseCurve(
         method="Gauss collocation with 12 stages, pseudo-arclength continuation",
         error=error,
@@ -436,7 +449,7 @@ def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float])
         highest=shown[:, 1],
         multipliers=np.array([orbit.multipliers for orbit, _ in points]),
         multiplier_error=np.array([measure.multiplier_errors for _, measure in points]),
-        peak_error=2.0 * error * sizes,
+        peak_error=np.array(peak_error),
         special=tuple(point.kind for point in special),
         special_value=np.array([point.orbit.value for point in special]),
         special_error=np.array([point.value_error for point in special]),

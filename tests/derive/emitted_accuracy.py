@@ -23,6 +23,7 @@ from frequency_truth import exact_frequency_functions
 from judging import Exact, Judgement, judge, worst
 from linkage_truth import exact_points
 from sliding_truth import EXACT as SLIDING
+from stations_truth import STATION_MODULES, AtEachStation, exact_stations
 from unlowered import exact_unlowered, judged_unlowered
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "accuracy.md"
@@ -38,6 +39,8 @@ EXCEPTIONS: dict[tuple[str, str, str], str] = {
     for function in ("forces", "pin_forces")
 }
 COUNTS = (1, 3)  # numbers of modes that a module for any number is judged with
+# Modules for any number of modes or stations, judged entry by entry.
+INDEXED = frozenset({ROD_MODULE, *STATION_MODULES})
 
 
 @dataclass(frozen=True)
@@ -87,9 +90,13 @@ def rows(module: str, most: int | None = None) -> tuple[Row, ...]:
     """Judge the functions of a module, each at most at so many of its points, evenly chosen."""
     found = []
     for function, names in emitted_functions()[module].items():
+        cases: list[tuple[Callable, tuple[str, ...], tuple[Exact, ...]]]
         if module == ROD_MODULE:
             called = [WithModes(function, count) for count in COUNTS]
             cases = [(c, c.names, exact_rod(c)) for c in called]
+        elif module in STATION_MODULES:
+            case = AtEachStation(module, function)
+            cases = [(case, case.names, exact_stations(module))]
         else:
             cases = [(_function(module, function), names, _exact(module, function))]
         judged: dict[str, Judgement] = {}

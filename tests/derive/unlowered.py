@@ -33,7 +33,8 @@ MODES = (*range(1, 13), 30, 59, 60)
 OVERHANG, MEISSNER = "quick_return_overhang_modes", "hill_meissner"
 PREFIXES = ("beam_element_", "beam_shapes_", SANDWICH, ROD_POLYNOMIALS, MOVING_ROD)
 SENSITIVITIES, CLEARANCE = "four_bar_sensitivities", "four_bar_clearance"
-PREFIXES += (OVERHANG, MEISSNER, MODES_MODULE, SENSITIVITIES, CLEARANCE)
+HARMONICS = "beam_tangent_harmonics"
+PREFIXES += (OVERHANG, MEISSNER, MODES_MODULE, SENSITIVITIES, CLEARANCE, HARMONICS)
 
 
 def judged_unlowered(module: str, function: str) -> bool:
@@ -96,6 +97,8 @@ def _points(module: str, function: str) -> Iterator[Point]:
         return (p for p in points if not 0 < abs(p.inputs["theta2"]) < 1e-100)
     if module == CLEARANCE:
         return _clearance_points()
+    if module == HARMONICS:
+        return (Point(f"harmonic {n}", {}, {"n": float(n)}) for n in MODES)
     if module.startswith("beam_element_"):
         return _element_points(names)
     if module.startswith("beam_shapes_"):

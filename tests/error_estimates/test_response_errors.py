@@ -1,0 +1,181 @@
+"""Error estimates of response curves: motions, multipliers, special points and peaks.
+
+The reference are the same motions on twice the steps, and on more where these do not agree; that
+twice the steps suffice is told by DOP853 (tests/runtime/nonlinear/test_known_answers.py).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import elastolink as el
+import numpy as np
+from bent_rigs import rig
+from elastolink.runtime.nonlinear import response_curve
+from elastolink.runtime.nonlinear.branch import TESTS
+from elastolink.runtime.nonlinear.orbit import STAGES, changed
+from elastolink.runtime.nonlinear.response import extremes
+from honesty import over_scenes
+from oscillators import oscillators
+
+# Below these the reference is not known: rounding of the state, and of its matrix.
+FLOOR = 5e-15
+WATCHED = 6  # motions of a curve
+
+
+def finer(solver, orbit):
+    """Return the motion opposite to one on the branch, on twice the steps."""
+    motion = orbit.motion.resampled(2 * len(orbit.motion.x), STAGES)
+    exact, _ = solver.corrected(orbit.value, motion, orbit.tangent)
+    for _ in range(2):
+        along = orbit.tangent.dot(difference(orbit, exact))
+        exact, _ = solver.corrected(*changed(exact, exact.tangent, -along), exact.tangent)
+    return exact
+
+
+def difference(orbit, exact):
+    """Return what leads from a motion to the exact one, where its steps meet."""
+    states = exact.motion.states[::2] - orbit.motion.states
+    return replace(orbit.tangent, states=states, value=exact.value - orbit.value)
+
+
+def distance(solver, orbit, exact) -> float:
+    """Return how far a motion is from the exact one, as its error estimate counts."""
+    change = difference(orbit, exact)
+    away = float(np.max(np.abs(change.states) / solver.scale(orbit.motion)))
+    return max(away, abs(change.value) / solver.span)
+
+
+def matched(values, exact):
+    """Return the distances of values from the nearest exact ones, each taken once."""
+    left, found = list(exact), []
+    for value in values:
+        nearest = min(left, key=lambda other, value=value: abs(other - value))
+        left.remove(nearest)
+        found.append(abs(value - nearest))
+    return found
+
+
+def special_value(solver, kind, orbit) -> float:
+    """Return the parameter at a special point on more steps, by the secant rule."""
+    exact = finer(solver, orbit)
+    test, step = TESTS[kind], 1e-4
+    for _ in range(3):
+        beside, _ = solver.corrected(*changed(exact, exact.tangent, step), exact.tangent)
+        slope = (test(beside) - test(exact)) / step
+        length = float(np.clip(-test(exact) / slope, -1e-3, 1e-3))
+        exact, _ = solver.corrected(*changed(exact, exact.tangent, length), exact.tangent)
+    return exact.value
+
+
+def ratios(rng, curve):
+    """Return estimates and errors of some motions of a curve, by what is estimated."""
+    solver, found = curve.source, {}
+    chosen = rng.choice(len(curve.orbits), min(WATCHED, len(curve.orbits)), replace=False)
+
+    def add(name, estimates, errors, floor=FLOOR):
+        pair = found.setdefault(name, ([], []))
+        pair[0].extend(np.ravel(estimates).tolist())
+        pair[1].extend(np.maximum(np.ravel(errors), floor).tolist())
+
+    for i in chosen.tolist():
+        orbit = curve.orbits[i]
+        exact = finer(solver, orbit)
+        add("motions", curve.error[i], distance(solver, orbit, exact))
+        size = float(np.linalg.norm(exact.matrix))
+        gaps = matched(orbit.multipliers, exact.multipliers)
+        add("multipliers", curve.multiplier_error[i], gaps, FLOOR * max(size, 1.0))
+        low, high = extremes(solver.problem, exact)
+        off = [abs(curve.lowest[i] - low), abs(curve.highest[i] - high)]
+        if max(abs(low), abs(high)) > 1e-6:
+            add("peaks", [curve.peak_error[i]] * 2, off, 4 * FLOOR * max(abs(low), abs(high)))
+    return found
+
+
+def special_ratios(curve):
+    """Return estimates and errors of all special points of a curve."""
+    rows = zip(curve.special, curve.special_orbits, curve.special_error, strict=True)
+    pairs = []
+    for kind, orbit, error in rows:
+        value = special_value(curve.source, kind, orbit)
+        pairs.append((error, max(abs(value - orbit.value), FLOOR * abs(value))))
+    return list(zip(*pairs, strict=True))
+
+
+# ---------------------------------------------------------------- random systems
+
+
+def random_rig(rng):
+    """Return a crank-rocker with an inextensible coupler, and a range about a resonance."""
+    modes = int(rng.choice([1, 1, 2, 3]))
+    system = rig("A58", modes)
+    coupler = system.parameters["coupler"]
+    lengths = {
+        "crank": coupler * rng.uniform(0.05, 0.2),
+        "follower": coupler * rng.uniform(0.35, 0.7),
+        "frame": coupler * rng.uniform(0.85, 1.1),
+    }
+    shortest, *_, longest = sorted([coupler, *lengths.values()])
+    if shortest + longest >= 0.48 * 2 * (sum(lengths.values()) + coupler) / 2:
+        return None
+    mass, own = rng.uniform(0.02, 0.2), 2 * np.pi * rng.uniform(8.0, 40.0)
+    stiffness = own**2 * mass * (coupler / np.pi) ** 4
+    inertia = rng.uniform(0.2, 1.0) * mass * coupler * lengths["follower"] ** 2
+    decrement = 10.0 ** rng.uniform(-1.3, -0.5)
+    system = system.with_parameters(
+        **lengths,
+        mass_per_length=mass,
+        bending_stiffness=stiffness,
+        follower_inertia=inertia,
+        damping=decrement * mass * own / np.pi,
+    )
+    part = rng.choice([0.5, 1.0 / 3.0])
+    centre = own * part * rng.uniform(0.85, 1.0)
+    return system, (0.97 * centre, 1.03 * centre)
+
+
+def random_oscillators(rng):
+    """Return one or two oscillators under a force or a periodic stiffness, and a range."""
+    n = int(rng.choice([1, 1, 2]))
+    stiffness = np.diag([1.0, rng.uniform(1.5, 5.0)][:n])
+    parametric = rng.normal(size=(n, n))
+    system = oscillators(
+        stiffness,
+        parametric + parametric.T,
+        rng.normal(size=n),
+        damping=10.0 ** rng.uniform(-2.0, -1.0),
+        cubic=rng.choice([-0.1, 0.3, 1.0]),
+        quadratic=rng.choice([0.0, 0.2]),
+        force=rng.uniform(0.02, 0.15),
+        excitation=rng.choice([0.0, 0.2]),
+    )
+    centre = rng.choice([0.5, 1.0, 1.2, 2.0])
+    return system, (0.85 * centre, 1.15 * centre)
+
+
+def curve_of(rng, drawn, turns):
+    """Return the response curve of a draw; None where there is no motion to begin with."""
+    system, bounds = drawn
+    try:
+        return response_curve(system, "speed", bounds, turns=turns)
+    except el.BadInput:
+        return None
+
+
+@over_scenes(181, few=2, many=100, median=100.0)
+def test_estimates_of_rigs_hold_and_are_not_idle(rng):
+    drawn = random_rig(rng)
+    curve = drawn and curve_of(rng, drawn, turns=int(rng.choice([1, 2])))
+    return curve and ratios(rng, curve)
+
+
+@over_scenes(182, few=4, many=100, median=100.0)
+def test_estimates_of_oscillators_hold_and_are_not_idle(rng):
+    curve = curve_of(rng, random_oscillators(rng), turns=2)
+    return curve and ratios(rng, curve)
+
+
+@over_scenes(183, few=3, many=60, median=100.0)
+def test_estimates_of_special_points_hold_and_are_not_idle(rng):
+    curve = curve_of(rng, random_oscillators(rng), turns=2)
+    return special_ratios(curve) if curve and curve.special else None

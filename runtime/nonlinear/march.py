@@ -45,7 +45,7 @@ class Marcher:
         while True:
             found = self._solved(value, states, motion, ramp)
             steps = len(motion.x) // runs
-            if found is not None and _tail(found) <= self.rtol:
+            if found is not None and unresolved(found) <= self.rtol:
                 return found
             if 2 * steps > self.most:
                 raise Lost("a revolution cannot be computed from its beginning")
@@ -113,7 +113,7 @@ def _sizes_of(states: Array) -> Array:
     return np.repeat(list(largest), n)
 
 
-def _tail(motion: Motion) -> float:
+def unresolved(motion: Motion) -> float:
     """Return what the series of the accelerations lack, as a share of the motion."""
     h, s = motion.step, motion.a.shape[1]
     terms = np.abs(motion.points.series @ motion.a)

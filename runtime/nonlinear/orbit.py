@@ -262,7 +262,7 @@ class Solver:
         differences = _differences(orbit, np.asarray(whole[-1]))
         return Measure(
             away,
-            _INNER_SHARE * off + (away + 256 * EPS) * moved_most,
+            _INNER_SHARE * off + (away + 1024 * EPS) * moved_most,
             share(abs(moved), noise * self.span) + rounding * abs(orbit.value),
             share(differences, (noise + _STALE * orbit.last) * size) + rounding * size,
             np.asarray(whole[-1]),
@@ -276,7 +276,7 @@ class Solver:
         """
         shown, (_, parameters) = self.problem.system.shown, self.problem.at(orbit.value)
         q = orbit.motion.stages()[0].reshape(other.shape)
-        step = 1e-4 * float(self.scale(orbit.motion)[0]) * np.eye(q.shape[1])[:, None]
+        step = 1e-4 * float(self.scale(orbit.motion)[0]) * np.eye(self.problem.system.size)[:, None]
         both = shown(orbit.motion.x + step, parameters) - shown(orbit.motion.x - step, parameters)
         most = float(np.max(np.sum(np.abs(both), axis=0))) / 2e-4
         values = shown(q, parameters)
@@ -294,7 +294,7 @@ class Solver:
         n = self.problem.system.size
         stiffness = float(np.max(np.abs(orbit.swept.response[:, :, :, :n])))
         scale = float(self.scale(orbit.motion)[0])
-        return 16 * EPS * len(orbit.motion.x), 32 * EPS * (1.0 + stiffness / min(scale, 1.0))
+        return 24 * EPS * len(orbit.motion.x), 32 * EPS * (1.0 + stiffness / min(scale, 1.0))
 
     def fine(self, value: float, motion: Motion, direction: Direction) -> tuple[Orbit, Measure]:
         """Return the motion across a direction, on as many steps as its error wants."""

@@ -24,7 +24,7 @@ from .segments import Motion, NotFinite, Problem, sweep
 _POINTS = 2000  # of one branch
 _BRANCHES = 24
 _SAMPLES = 128  # of a revolution, for the extremes of the linear deflection
-_POLISHED = 3  # parabolas about the highest sample, each a tenth as wide
+_POLISHED = 4  # parabolas about the highest sample, each a tenth as wide
 # Relative distance within which motions are one: within its steps a motion is right to 1e-5 or so.
 _SAME = 1e-4
 _LINEAR = 120  # values at which the linear answer is computed
@@ -408,22 +408,26 @@ def extremes(problem: Problem, orbit: Orbit) -> tuple[float, float]:
         )
         for sign in (-1.0, 1.0)
     )
-    places = angles[np.concatenate([lowest, highest])]
-    signs = np.repeat([-1.0, 1.0], [len(lowest), len(highest)])
-    width = motion.step / motion.a.shape[1]
+    found = tops(
+        lambda angle: problem.system.shown(motion.at(np.mod(angle, motion.span))[0], parameters),
+        angles[np.concatenate([lowest, highest])],
+        np.repeat([-1.0, 1.0], [len(lowest), len(highest)]),
+        motion.step / motion.a.shape[1],
+    )
+    return float(np.min(found[: len(lowest)])), float(np.max(found[len(lowest) :]))
+
+
+def tops(deflection: Callable[[Array], Array], places: Array, signs: Array, width: float) -> Array:
+    """Return the highest values (sign 1) or lowest (-1) near places, by ever narrower parabolas."""
     for _ in range(_POLISHED):
         around = places[:, None] + width * np.array([-1.0, 0.0, 1.0])
-        q = motion.at(np.mod(around.ravel(), motion.span))[0]
-        left, middle, right = (
-            signs[:, None] * problem.system.shown(q, parameters).reshape(-1, 3)
-        ).T
+        left, middle, right = (signs[:, None] * deflection(around.ravel()).reshape(-1, 3)).T
         bend = left - 2.0 * middle + right
         shift = np.divide(left - right, 2.0 * bend, out=np.zeros_like(bend), where=bend < 0.0)
         shift = np.clip(shift, -1.0, 1.0)
         places = places + shift * width
         width *= 0.1
-    tops = signs * (middle - 0.25 * (left - right) * shift)  # of the last parabolas
-    return float(np.min(tops[: len(lowest)])), float(np.max(tops[len(lowest) :]))
+    return np.asarray(signs * (middle - 0.25 * (left - right) * shift))  # of the last parabolas
 
 
 def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float]) -> ResponseCurve:

@@ -17,9 +17,9 @@ from ..core.inputs import is_finite, numbers_in_a_row, require_between, require_
 from ..core.plotting import Axes, axes_or_new
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
-from .march import Marcher, end
-from .orbit import Lost, Solver
-from .response import checked_problem, first_motion
+from .march import Marcher, end, unresolved
+from .orbit import EPS, Lost, Solver
+from .response import checked_problem, first_motion, tops
 from .segments import Motion, NotFinite, Problem, Ramp
 
 _RPM = 30.0 / np.pi
@@ -160,7 +160,7 @@ def sweep_response(
         fix = "sweep faster, or over less"
         raise bad("rate", f"{turns:.3g} revolutions", f"at most {_MOST_TURNS}", fix)
     marcher = Marcher(problem, rtol)
-    rows: list[tuple[float, bool, float, float]] = []
+    rows: list[tuple[float, bool, float, float, float]] = []
     stopped = ""
     random = np.random.default_rng(seed)
     with bar(progress, int(turns * len(ways)) + 1, unit="turn") as tick:
@@ -168,15 +168,17 @@ def sweep_response(
         for way in ways:
             try:
                 steps = _swept(marcher, (low, high), way * rate, state, kicks, random)
-                for speed, lowest, highest, reached in steps:
-                    rows.append((speed, way > 0, lowest, highest))
+                for speed, extremes, unsure, reached in steps:
+                    rows.append((speed, way > 0, *extremes, unsure))
                     state = reached
                     if tick is not None:
                         tick(len(rows))
             except (Lost, NotFinite) as failure:
                 stopped = f"at {rows[-1][0] if rows else low:.6g} rad/s: {failure}"
                 break
-    speeds, rising, lowest_, highest_ = (np.array(column) for column in zip(*rows, strict=True))
+    speeds, rising, lowest_, highest_, error = (
+        np.array(column) for column in zip(*rows, strict=True)
+    )
     jumps = [
         (speed, bool(way), ratio)
         for way in (True, False)
@@ -184,8 +186,8 @@ def sweep_response(
     ]
     return SweepResponse(
         method=f"marching by revolutions, Gauss collocation, seed {seed}",
-        error=rtol,
-        error_norm="of a revolution, relative to its largest coordinate and rate",
+        error=error,
+        error_norm="of each revolution by itself, relative to its largest coordinate and rate",
         checks={"whole": Check(0.0 if not stopped else 1.0, 0.0)},
         provenance=provenance(system.provenance),
         speed=speeds,
@@ -228,22 +230,35 @@ def _swept(
     state: Array,
     kicks: float,
     random: np.random.Generator,
-) -> Iterator[tuple[float, float, float, Array]]:
-    """Yield speed, extremes and the state at the end of each revolution."""
+) -> Iterator[tuple[float, Array, float, Array]]:
+    """Yield speed, extremes, error and the state at the end of each revolution."""
     low, high = bounds
     speed = low if rise > 0 else high
     system, before = marcher.problem.system, None
-    angles = 2.0 * np.pi * np.arange(_SAMPLES) / _SAMPLES
+    angles = np.linspace(0.0, 2.0 * np.pi, _SAMPLES + 1)
     while True:
         after = speed**2 + 4.0 * np.pi * rise
         if not low**2 <= after <= high**2:
             return
         state = state + kicks * random.normal(size=state.shape)
         before = marcher.revolution(speed, state, before, Ramp(rise))
-        shown = system.shown(before.at(angles)[0])
         # Rates by the angle stay what they are when the speed changes.
-        yield speed + np.pi * rise / speed, float(np.min(shown)), float(np.max(shown)), end(before)
+        error = unresolved(before) + 256 * EPS
+        yield speed + np.pi * rise / speed, _extremes(system, before, angles), error, end(before)
         state, speed = end(before), float(np.sqrt(after))
+
+
+def _extremes(system: Nonlinear, motion: Motion, angles: Array) -> Array:
+    """Return lowest and highest deflection of a revolution: of samples and the tops near them."""
+    samples = system.shown(motion.at(angles)[0])
+    places, signs = angles[[np.argmin(samples), np.argmax(samples)]], np.array([-1.0, 1.0])
+    near = tops(
+        lambda angle: system.shown(motion.at(np.clip(angle, 0.0, 2.0 * np.pi))[0]),
+        places,
+        signs,
+        angles[1],
+    )
+    return np.array([min(near[0], np.min(samples)), max(near[1], np.max(samples))])
 
 
 def _jumps(speed: Array, size: Array) -> list[tuple[float, float]]:

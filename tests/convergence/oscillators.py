@@ -52,18 +52,27 @@ def oscillators(stiffness=1.0, parametric=None, load=None, **numbers: float) -> 
     return Nonlinear(size=n, equations=equations, parameters={**NUMBERS, **numbers})
 
 
-def marched(system, speed: float, state, turns: int, samples: int = 0, rtol: float = 1e-12):
+def marched(
+    system,
+    speed: float,
+    state,
+    turns: int,
+    samples: int = 0,
+    rtol: float = 1e-12,
+    rise: float = 0.0,
+):
     """Return states ``(q, dq/dtheta)`` after each turn by DOP853, the first one included.
 
-    With ``samples`` at as many even angles of each turn.
+    With ``samples`` at as many even angles of each turn; ``rise``: acceleration of the drive.
     """
     n = system.size
 
     def rates(theta, y):
         q, v = y[:n], y[n:]
-        drive = Drive(theta, speed)
-        found = system.equations(q, speed * v, np.zeros(n), drive, system.parameters)
-        return np.concatenate([v, -np.linalg.solve(found.mass, found.residual) / speed**2])
+        now = np.sqrt(speed**2 + 2.0 * rise * theta)
+        drive = Drive(theta, now, rise)
+        found = system.equations(q, now * v, rise * v, drive, system.parameters)
+        return np.concatenate([v, -np.linalg.solve(found.mass, found.residual) / now**2])
 
     end = 2.0 * np.pi * turns
     solved = solve_ivp(

@@ -202,10 +202,10 @@ def agree(first, second, one, other) -> None:
 def test_a_mass_added_at_the_end_is_inertia_and_weight_of_what_it_drives(mechanism):
     """A mass at C, on the follower's end or the slider, given to the Lagrangian alone."""
     mass, length = 0.37, 0.62
-    driven = coupler._driven(mechanism)
+    driven = coupler.driven(mechanism)
     x, y = driven.place
     kinetic = (sp.diff(x, T) ** 2 + sp.diff(y, T) ** 2) / 2
-    weight = sum(g * place for g, place in zip(coupler._PULL, driven.place, strict=True))
+    weight = sum(g * place for g, place in zip(coupler.PULL, driven.place, strict=True))
     extra = (kinetic + weight).subs(sp.Symbol("follower", positive=True), length) * mass
     module = changed(mechanism, extra)
     packaged = emitted_module(f"{mechanism}_coupler_inextensible")

@@ -34,7 +34,9 @@ OVERHANG, MEISSNER = "quick_return_overhang_modes", "hill_meissner"
 PREFIXES = ("beam_element_", "beam_shapes_", SANDWICH, ROD_POLYNOMIALS, MOVING_ROD)
 SENSITIVITIES, CLEARANCE = "four_bar_sensitivities", "four_bar_clearance"
 HARMONICS = "beam_tangent_harmonics"
-PREFIXES += (OVERHANG, MEISSNER, MODES_MODULE, SENSITIVITIES, CLEARANCE, HARMONICS)
+LAW, CUBIC = "beam_amplitude_law", "_coupler_inextensible_cubic_"
+PREFIXES += (OVERHANG, MEISSNER, MODES_MODULE, SENSITIVITIES, CLEARANCE, HARMONICS, LAW)
+PREFIXES += tuple(f"{mechanism}{CUBIC}" for mechanism in ("four_bar", "slider_crank"))
 
 
 def judged_unlowered(module: str, function: str) -> bool:
@@ -99,6 +101,10 @@ def _points(module: str, function: str) -> Iterator[Point]:
         return _clearance_points()
     if module == HARMONICS:
         return (Point(f"harmonic {n}", {}, {"n": float(n)}) for n in MODES)
+    if module == LAW:
+        return _law_points()
+    if CUBIC in module:
+        return _bent_points(names)
     if module.startswith("beam_element_"):
         return _element_points(names)
     if module.startswith("beam_shapes_"):
@@ -135,6 +141,41 @@ def _clearance_points() -> Iterator[Point]:
         links = {"turning": point.inputs["follower"], "opposite": point.inputs["coupler"]}
         play = {"play": share * min(links.values())}
         yield Point(f"{point.name}, play {share:g}", {**inputs, **links, **play})
+
+
+def _law_points() -> Iterator[Point]:
+    """Yield transmission angles down to a hundredth, modes up to the tenth."""
+    random = np.random.default_rng(611)
+    for i in range(40):
+        mode, other = random.choice(np.arange(1, 11), 2, replace=False)
+        angle = random.choice([0.01, 0.1, 1.0, 0.5 * np.pi, 2.5]) * random.uniform(0.9, 1.1)
+        inputs = {"transmission_angle": float(angle), "driven_mass": 10.0 ** random.uniform(-4, 4)}
+        yield Point(f"random {i}", inputs, {"mode": float(mode), "other": float(other)})
+
+
+def _bent_points(names) -> Iterator[Point]:
+    """Yield couplers of linkages that close, bent by up to half a radian."""
+    random = np.random.default_rng(612)
+    size = {"theta_d1": 50.0, "theta_d2": 1e3, "gravity_x": 9.8, "gravity_y": 9.8, "bow": 0.1}
+    positive = {"bending_stiffness", "mass_per_length", "damping", "follower_inertia"}
+    lengths = ("frame", "crank", "coupler", "follower") if "frame" in names else ()
+    for i in range(12):
+        crank = 10.0 ** random.uniform(-2, 0)
+        inputs = {"theta": random.uniform(-3.0, 3.0), "crank": crank}
+        inputs |= {"coupler": crank * random.uniform(3.0, 6.0)}
+        inputs |= {name: crank * random.uniform(3.0, 6.0) for name in lengths if name != "crank"}
+        if "frame" in names:  # the shortest link turns by Grashof's rule
+            inputs["follower"] = inputs["coupler"] * random.uniform(0.6, 0.9)
+            inputs["frame"] = inputs["coupler"] * random.uniform(0.95, 1.05)
+        else:
+            inputs["offset"] = crank * random.uniform(-0.5, 0.5)
+        for name in names:
+            if name in inputs or name in ("t", "assembly"):
+                continue
+            scale = size.get(name, 50.0 if name.endswith("dot") else 0.5)
+            sign = 1.0 if name in positive or name.endswith("mass") else random.choice((-1.0, 1.0))
+            inputs[name] = float(sign * scale * 10.0 ** random.uniform(-1, 0))
+        yield Point(f"random {i}", inputs, {"t": 0.0, "assembly": float(random.choice((-1, 1)))})
 
 
 def _element_points(names) -> Iterator[Point]:

@@ -11,12 +11,13 @@ from dataclasses import replace
 import elastolink as el
 import numpy as np
 from bent_rigs import rig
-from elastolink.runtime.nonlinear import response_curve
+from elastolink.runtime.nonlinear import response_curve, sweep_response
 from elastolink.runtime.nonlinear.branch import TESTS
 from elastolink.runtime.nonlinear.orbit import STAGES, changed
 from elastolink.runtime.nonlinear.response import extremes
 from honesty import over_scenes
-from oscillators import oscillators
+from oscillators import marched, oscillators, shot
+from scipy.interpolate import CubicHermiteSpline
 
 # Below these the reference is not known: rounding of the state, and of its matrix.
 FLOOR = 5e-15
@@ -179,3 +180,29 @@ def test_estimates_of_oscillators_hold_and_are_not_idle(rng):
 def test_estimates_of_special_points_hold_and_are_not_idle(rng):
     curve = curve_of(rng, random_oscillators(rng), turns=2)
     return special_ratios(curve) if curve and curve.special else None
+
+
+@over_scenes(184, few=2, many=40, floor=1e-13)
+def test_estimates_of_sweeps_hold_and_are_not_idle(rng):
+    system, (low, high) = random_oscillators(rng)
+    speed, n = rng.uniform(low, high) / rng.choice([1.0, 3.0]), system.size
+    rise = speed**2 * rng.uniform(1e-5, 1e-3)
+    reached = np.sqrt(speed**2 + 4.0 * np.pi * rise * 1.5)  # after one revolution and a half
+    try:
+        found = sweep_response(system, (speed, reached), rise, "up", kicks=0.0, rtol=1e-5)
+    except el.BadInput:
+        return None
+    # The motion that it begins with is the one near rest, as DOP853 finds it.
+    state, multipliers = shot(system, speed, np.zeros(2 * n))
+    if max(abs(multipliers)) > 0.99 or len(found.speed) != 1:
+        return None
+    path = marched(system, speed, state, 1, samples=2048, rise=rise)
+    # The deflection is the first coordinate; its extremes, by an interpolation of fourth order.
+    curve = CubicHermiteSpline(np.linspace(0.0, 2.0 * np.pi, len(path)), path[:, 0], path[:, n])
+    tops = curve(curve.derivative().roots(extrapolate=False))
+    tops = np.append(tops, path[[0, -1], 0])
+    exact = [np.min(tops), np.max(tops)]
+    off = np.abs([found.lowest[0] - exact[0], found.highest[0] - exact[1]])
+    size = np.max(np.abs(path[:, :n]))
+    reference = 1e-11 * size + 1e-13  # what is wrong with it
+    return [found.error[0] * size + reference] * 2, off

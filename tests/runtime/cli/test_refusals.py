@@ -22,7 +22,7 @@ kinematics mathieu |
 kinematics smith_1972_2122 --angles 0:360 |
 kinematics smith_1972_2122 --angles 0:360:13kg |
 kinematics smith_1972_2122 --angles 360:0:13 |
-critical-speeds aannaque_1996_table_4_1 --range 70:20 | two rising speeds
+critical-speeds aannaque_1996_table_4_1 --range 70:20 | LOW:HIGH, rising
 critical-speeds aannaque_1996_portal_frame --range 3:4 | no crank
 campbell aannaque_1996_portal_frame --range 3:4 | no crank
 steady-state aannaque_1996_portal_frame --speed '3 rad/s' | no crank

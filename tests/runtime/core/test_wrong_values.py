@@ -50,7 +50,6 @@ RIGHT = {
     "recover": {"system": BEAMS, "motion": 20.0, "stations": 3, "method": "equilibrium"},
     "resonance_curve": {"system": SYSTEM, "speed": [20.0, 25.0, 30.0]},
     "rigid_forces": {"machine": MACHINE, **AT, "outputs": ("pins",)},
-    "rod_system": {"basis": "overhang", "modes": 2, **ROD},
     "run_through": {"system": BEAMS, "profile": el.SpeedProfile.ramp(5.0, 6.0, 0.1)},
     "run_up": {"machine": MACHINE, "torque": 1.0, "duration": 0.01},
     "shaking_force": {"machine": MACHINE, **AT},

@@ -156,9 +156,9 @@ def sweep_response(
     require_whole("seed", seed, 0, 2**32 - 1)
     ways = {"up": (1,), "down": (-1,), "both": (1, -1)}[direction]
     turns = (high**2 - low**2) / (4.0 * np.pi * rate)
-    if not turns * len(ways) <= _MOST_TURNS:
-        fix = "sweep faster, or over less"
-        raise bad("rate", f"{turns:.3g} revolutions", f"at most {_MOST_TURNS}", fix)
+    if not 1.0 <= turns <= _MOST_TURNS / len(ways):
+        fix = "sweep faster, or over less" if turns > 1.0 else "sweep slower, or over more"
+        raise bad("rate", f"{turns:.3g} revolutions", f"1 to {_MOST_TURNS // len(ways)}", fix)
     marcher = Marcher(problem, rtol)
     rows: list[tuple[float, bool, float, float, float]] = []
     stopped = ""

@@ -106,6 +106,7 @@ def test_basins_are_those_of_marched_states():
     [
         ({"rate": 0.0}, "rate"),
         ({"rate": 1e-12}, "revolutions"),
+        ({"rate": 1.0}, "revolutions"),
         ({"direction": "sideways"}, "direction"),
         ({"kicks": -1.0}, "kicks"),
         ({"bounds": (2.0, 1.0)}, "bounds"),

@@ -262,7 +262,7 @@ class Solver:
         differences = _differences(orbit, np.asarray(whole[-1]))
         return Measure(
             away,
-            _INNER_SHARE * off + (away + 1024 * EPS) * moved_most,
+            _INNER_SHARE * off + (away + 256 * EPS) * moved_most,
             share(abs(moved), noise * self.span) + rounding * abs(orbit.value),
             share(differences, (noise + _STALE * orbit.last) * size) + rounding * size,
             np.asarray(whole[-1]),

@@ -393,41 +393,46 @@ def same_motion(solver: Solver, one: Motion, other: Motion) -> bool:
 
 
 def extremes(problem: Problem, orbit: Orbit) -> tuple[float, float]:
-    """Return the extremes of the deflection over the period.
-
-    Every lowest and highest of the Gauss points among its neighbours is polished by parabolas, for
-    the largest of these points need not be next to the highest top.
-    """
+    """Return the extremes of the deflection over the period."""
     motion, (_, parameters) = orbit.motion, problem.at(orbit.value)
     angles = motion.angles.ravel() - motion.begin
+    width = motion.step / motion.a.shape[1]
+
+    def deflection(angle: Array) -> Array:
+        return problem.system.shown(motion.at(np.mod(angle, motion.span))[0], parameters)
+
     values = problem.system.shown(motion.stages()[0], parameters).ravel()
-    lowest, highest = (
-        np.flatnonzero(
-            (sign * values >= sign * np.roll(values, 1))
-            & (sign * values >= sign * np.roll(values, -1))
-        )
-        for sign in (-1.0, 1.0)
-    )
-    found = tops(
-        lambda angle: problem.system.shown(motion.at(np.mod(angle, motion.span))[0], parameters),
-        angles[np.concatenate([lowest, highest])],
-        np.repeat([-1.0, 1.0], [len(lowest), len(highest)]),
-        motion.step / motion.a.shape[1],
-    )
-    return float(np.min(found[: len(lowest)])), float(np.max(found[len(lowest) :]))
+    return tops(deflection, angles, np.concatenate([values[-1:], values, values[:1]]), width)
 
 
-def tops(deflection: Callable[[Array], Array], places: Array, signs: Array, width: float) -> Array:
-    """Return the highest values (sign 1) or lowest (-1) near places, by ever narrower parabolas."""
+def tops(
+    deflection: Callable[[Array], Array],
+    angles: Array,
+    values: Array,
+    width: float,
+    ends: tuple[float, float] = (-np.inf, np.inf),
+) -> tuple[float, float]:
+    """Return the extremes of a deflection between ends, from samples and one more at either side.
+
+    Every lowest and highest of the samples among its neighbours is polished by ever narrower
+    parabolas, for the largest sample need not be next to the highest top.
+    """
+    signed = np.array([[-1.0], [1.0]]) * values
+    inner = signed[:, 1:-1]
+    which, samples = np.nonzero((inner >= signed[:, :-2]) & (inner >= signed[:, 2:]))
+    places, signs = angles[samples], 2.0 * which - 1.0
     for _ in range(_POLISHED):
         around = places[:, None] + width * np.array([-1.0, 0.0, 1.0])
         left, middle, right = (signs[:, None] * deflection(around.ravel()).reshape(-1, 3)).T
         bend = left - 2.0 * middle + right
         shift = np.divide(left - right, 2.0 * bend, out=np.zeros_like(bend), where=bend < 0.0)
-        shift = np.clip(shift, -1.0, 1.0)
+        least, most = ((end - places) / width for end in ends)
+        shift = np.clip(shift, np.maximum(least, -1.0), np.minimum(most, 1.0))
         places = places + shift * width
         width *= 0.1
-    return np.asarray(signs * (middle - 0.25 * (left - right) * shift))  # of the last parabolas
+    # Of the last parabolas.
+    found = signs * (middle - 0.5 * (left - right) * shift + 0.5 * bend * shift**2)
+    return float(np.min(found[which == 0])), float(np.max(found[which == 1]))
 
 
 def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float]) -> ResponseCurve:

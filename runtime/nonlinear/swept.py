@@ -208,8 +208,9 @@ def _begun(marcher: Marcher, speed: float) -> Array:
     """Return a state to begin with: of the periodic motion near rest, or after a while from it."""
     problem = marcher.problem
     try:
-        motion = Solver(problem, speed).settled(speed, first_motion(problem))
-        return motion.states[:1]
+        solver = Solver(problem, speed, min(marcher.rtol, 1e-10))
+        motion = solver.settled(speed, first_motion(problem))
+        return solver.fine(speed, motion, solver.along_parameter(motion))[0].motion.states[:1]
     except (Lost, NotFinite):
         pass
     state, before = np.zeros((1, 2 * problem.system.size)), None
@@ -230,7 +231,7 @@ def _swept(
     state: Array,
     kicks: float,
     random: np.random.Generator,
-) -> Iterator[tuple[float, Array, float, Array]]:
+) -> Iterator[tuple[float, tuple[float, float], float, Array]]:
     """Yield speed, extremes, error and the state at the end of each revolution."""
     low, high = bounds
     speed = low if rise > 0 else high
@@ -248,17 +249,14 @@ def _swept(
         state, speed = end(before), float(np.sqrt(after))
 
 
-def _extremes(system: Nonlinear, motion: Motion, angles: Array) -> Array:
-    """Return lowest and highest deflection of a revolution: of samples and the tops near them."""
-    samples = system.shown(motion.at(angles)[0])
-    places, signs = angles[[np.argmin(samples), np.argmax(samples)]], np.array([-1.0, 1.0])
-    near = tops(
-        lambda angle: system.shown(motion.at(np.clip(angle, 0.0, 2.0 * np.pi))[0]),
-        places,
-        signs,
-        angles[1],
-    )
-    return np.array([min(near[0], np.min(samples)), max(near[1], np.max(samples))])
+def _extremes(system: Nonlinear, motion: Motion, angles: Array) -> tuple[float, float]:
+    """Return lowest and highest deflection of a revolution, that need not close."""
+
+    def deflection(angle: Array) -> Array:
+        return system.shown(motion.at(angle)[0])
+
+    values = np.pad(deflection(angles), 1, mode="edge")
+    return tops(deflection, angles, values, angles[1], (0.0, motion.span))
 
 
 def _jumps(speed: Array, size: Array) -> list[tuple[float, float]]:

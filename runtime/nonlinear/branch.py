@@ -14,8 +14,9 @@ from .segments import Motion, NotFinite
 
 # First correction that a step aims at, relative; factors by which a step changes at once; its
 # first, its least and its largest length.
-_AIM = 0.02
+_AIM = 1e-4
 _LONGER, _SHORTER = 2.0, 0.3
+_PAST = 2  # motions before the last one that a step is extrapolated from
 _FIRST, _LEAST, _LARGEST = 0.02, 1e-7, 0.5
 _WIDEST = 1.0 / 60.0  # part of the range that a step may change the parameter by
 # Relative amplitude at which a crossing branch is entered.
@@ -144,7 +145,7 @@ def _steps(
 ) -> Iterator[tuple[Orbit | None, Measure | None, str]]:
     """Yield the motions along a branch, and at last why it ends."""
     step, first, away = _FIRST, orbit, False
-    before: tuple[Orbit, float] | None = None
+    past: list[Orbit] = []
     watch = solver.problem.system.watch
     for _ in range(limits.points):
         ahead = None
@@ -153,10 +154,8 @@ def _steps(
                 yield None, None, "it cannot be followed"
                 return
             try:
-                value, guess = orbit.ahead(step, before)
-                ahead, size = solver.corrected(
-                    value, guess, orbit.tangent, orbit.swept.by_parameter
-                )
+                value, guess = orbit.ahead(step, past)
+                ahead, size = solver.corrected(value, guess, orbit.tangent)
                 if ahead.tangent.dot(orbit.tangent) < 0.5:
                     raise Lost("the branch turns within a step")
                 ahead, measure = solver.refined(ahead)
@@ -180,14 +179,17 @@ def _steps(
         if watch is not None and float(np.max(watch(ahead.motion.x))) > limits.largest:
             yield None, None, f"the deflection passes {limits.largest:g} of the length"
             return
-        passed = _passed(ahead, orbit, first)
+        passed = abs(first.value - ahead.value) <= 2.0 * step * solver.span and _passed(
+            ahead, orbit, first
+        )
         if away and passed:
             yield None, None, CLOSED
             return
         away = away or not passed
-        grown = float(np.clip(np.cbrt(_AIM / max(size, 1e-12)), _SHORTER, _LONGER))
+        order = 2 * (1 + len(past))
+        grown = float(np.clip((_AIM / max(size, 1e-12)) ** (1 / order), _SHORTER, _LONGER))
         reach = _WIDEST * solver.span / max(abs(ahead.tangent.value), 1e-12)
-        before, orbit = (orbit, step), ahead
+        past, orbit = [orbit, *past][:_PAST], ahead
         step = min(step * grown, _LARGEST, reach)
 
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise, takewhile
 from typing import Any
 
 import numpy as np
@@ -16,14 +19,14 @@ EPS = float(np.finfo(float).eps)
 # is round-off; or where it no longer falls below the second.
 _LAST, _SMALL = 3e-10, 1e-8
 _ITERATIONS, _MOST_ITERATIONS = 10, 40
-_NEAR = 1e-3
+_NEAR = 1e-5
 # First correction beyond which a guess is refused, relative.
 _FAR = 0.3
 # Stages of the motion beside which errors are measured, less than those of the motion, and the
 # share of the difference that is taken for the error, where steps meet and within them: of 3500
 # multipliers, 800 motions and 1700 peaks of 150 random systems 99.4 % and more are covered, half of
 # them by no more than 7 to 100 times the error.
-_FEWER, SHARE, _INNER_SHARE = 2, 0.2, 0.25
+_FEWER, SHARE, _INNER_SHARE = 1, 0.8, 1.0
 _NEAR_TOP = 0.4  # distance from the middle of all deflections over their range: near an extreme
 # Least part of what the difference of two matrices may amount to that counts for a multiplier.
 _LEAST_PART = 0.02
@@ -112,19 +115,43 @@ class Orbit:
             self, tangent=self.tangent.times(-1.0), slope=-self.slope, border=-self.border
         )
 
-    def ahead(self, step: float, before: tuple[Orbit, float] | None) -> tuple[float, Motion]:
-        """Return value and motion a step along the branch, on a parabola where it can.
+    def ahead(self, step: float, past: Sequence[Orbit] = ()) -> tuple[float, Motion]:
+        """Return value and motion a step along the branch, by Hermite's interpolation.
 
-        ``before``: the motion before, and the step from there.
+        ``past``: the motions before, the last one first, as far as they are of the same steps.
         """
-        states, value, a = step * self.tangent.states, step * self.tangent.value, step * self.slope
-        if before is not None and before[0].motion.a.shape == self.motion.a.shape:
-            other, last = before
-            bend = 0.5 * step * step / last
-            states = states + bend * (self.tangent.states - other.tangent.states)
-            value += bend * (self.tangent.value - other.tangent.value)
-            a = a + bend * (self.slope - other.slope)
+        here, places, factors = self.tangent, [0.0], [1.0]
+        orbits = [self, *takewhile(lambda o: o.motion.a.shape == self.motion.a.shape, past)]
+        ways = [replace(o.tangent, scale=here.scale, span=here.span) for o in orbits]
+        for k, (orbit, other) in enumerate(pairwise(orbits)):
+            states = orbit.motion.states - other.motion.states
+            chord = replace(here, states=states, value=orbit.value - other.value)
+            factors.append(1.0 / float(np.sqrt(ways[k + 1].dot(ways[k + 1]))))
+            cosine = ways[k].dot(ways[k + 1]) * factors[k] * factors[k + 1]
+            # As long as an arc of a circle between the tangents.
+            half = 0.5 * float(np.arccos(np.clip(cosine, -1.0, 1.0)))
+            arc = float(np.sqrt(chord.dot(chord))) / float(np.sinc(half / np.pi))
+            places.append(places[-1] - arc)
+        states, value, a = 0.0 * here.states, 0.0, 0.0 * self.slope
+        weights = zip(orbits, factors, *_hermite(places, step), strict=True)
+        for orbit, factor, by_place, by_tangent in weights:
+            slope, motion = by_tangent * factor, orbit.motion
+            states += by_place * (motion.states - self.motion.states) + slope * orbit.tangent.states
+            value += by_place * (orbit.value - self.value) + slope * orbit.tangent.value
+            a += by_place * (motion.a - self.motion.a) + slope * orbit.slope
         return self.value + value, self.motion.moved(states, a)
+
+
+def _hermite(places: Sequence[float], at: float) -> tuple[list[float], list[float]]:
+    """Return the weights of values and of derivatives at places, in the polynomial through them."""
+    by_place, by_slope = [], []
+    for i, place in enumerate(places):
+        others = [other for j, other in enumerate(places) if j != i]
+        square = math.prod((at - other) / (place - other) for other in others) ** 2
+        inverse = sum(1.0 / (place - other) for other in others)
+        by_place.append((1.0 - 2.0 * (at - place) * inverse) * square)
+        by_slope.append((at - place) * square)
+    return by_place, by_slope
 
 
 @dataclass(frozen=True)
@@ -195,16 +222,14 @@ class Solver:
         value: float,
         motion: Motion,
         direction: Direction,
-        by_parameter: bool | Array = True,
     ) -> tuple[Orbit, float]:
         """Return the motion nearest to a guess across a direction, and the first correction.
 
-        ``by_parameter``: the derivative by the parameter at a motion nearby, where it is known.
         Raises `Lost` where there is none near.
         """
         direction = direction.resampled(len(motion.x))
         before, first = np.inf, 0.0
-        renewed = False
+        by_parameter: bool | Array = True
         for _ in range(_ITERATIONS):
             swept = sweep(self.problem, value, motion, by_parameter=by_parameter)
             whole, added = chained(swept.maps, swept.loads)
@@ -214,9 +239,8 @@ class Solver:
             if not size < _FAR:
                 raise Lost("a correction is too large")
             motion, value = taken(motion, swept, change, moved), value + moved
-            # The derivative by the parameter is renewed once, where the motion has all but settled.
-            renew = size <= _NEAR and not renewed
-            by_parameter, renewed = (True if renew else swept.by_parameter), renewed or renew
+            # The derivative by the parameter is kept where the motion has all but settled.
+            by_parameter = swept.by_parameter if size <= _NEAR else True
             if size <= _LAST or (size <= _SMALL and size >= 0.5 * before):
                 orbit = self._orbit(value, motion, swept, whole, added, direction)
                 return replace(orbit, last=size), first
@@ -259,10 +283,13 @@ class Solver:
         away = share(self._size(change, moved, motion), noise) + rounding
         within = taken(fewer, swept, change, 0.0).at(motion.angles.ravel() - motion.begin)[0]
         moved_most, off = self._shown(orbit, within)
+        n = motion.x.shape[1]
+        moved_by = float(np.max(np.abs(change[:, :n]) / self.scale(motion)[:n]))
+        moved_by = share(moved_by, noise) + rounding
         differences = _differences(orbit, np.asarray(whole[-1]))
         return Measure(
             away,
-            _INNER_SHARE * off + (away + 256 * EPS) * moved_most,
+            _INNER_SHARE * off + (moved_by + 256 * EPS) * moved_most,
             share(abs(moved), noise * self.span) + rounding * abs(orbit.value),
             share(differences, (noise + _STALE * orbit.last) * size) + rounding * size,
             np.asarray(whole[-1]),

@@ -253,43 +253,58 @@ def hidden_pairs(solver: Solver, before: Orbit, here: Orbit, after: Orbit) -> It
                 options={"maxiter": 16},
             )
             if lowest.fun < 0.0:
-                inside = between(lowest.x)
-                yield _located(solver, kind, _Between(solver, between.before, inside))
-                yield _located(solver, kind, _Between(solver, inside, between.after))
+                yield _located(solver, kind, between, 0.0, lowest.x)
+                yield _located(solver, kind, between, lowest.x, 1.0)
 
 
-@dataclass(frozen=True)
 class _Between:
-    """The motions of a branch between two of them."""
+    """The motions of a branch between two of them, on more steps than these."""
 
-    solver: Solver
-    before: Orbit
-    after: Orbit
+    def __init__(self, solver: Solver, before: Orbit, after: Orbit) -> None:
+        self.solver = solver
+        steps = int(np.ceil(_FINER * len(after.motion.x)))
+        ends = [
+            solver.corrected(o.value, o.motion.resampled(steps, STAGES), o.tangent)[0]
+            for o in (before, after)
+        ]
+        self._found = list(zip((0.0, 1.0), ends, strict=True))
+        states = ends[1].motion.states - ends[0].motion.states
+        chord = replace(ends[1].tangent, states=states, value=ends[1].value - ends[0].value)
+        self._length = float(np.sqrt(chord.dot(chord)))
+        self._chord = chord.unit()
 
     def __call__(self, part: float) -> Orbit:
-        """Return the motion nearest to a part of the way on the line between both."""
-        if part in (0.0, 1.0):
-            return self.after if part else self.before
-        steps = int(np.ceil(_FINER * len(self.after.motion.x)))
-        start, end = (o.motion.resampled(steps, STAGES) for o in (self.before, self.after))
-        states = end.states - start.states
-        chord = replace(
-            self.after.tangent, states=states, value=self.after.value - self.before.value
+        """Return the motion at a part of the way on the line between both."""
+        places = [place for place, _ in self._found]
+        k = int(np.searchsorted(places, part))
+        if k < len(places) and places[k] == part:
+            return self._found[k][1]
+        (_, before), (end, after) = self._found[k - 1 : k + 1]
+        value, guess = after.ahead((part - end) * self._length, (before,))
+        # Across the line at its own part of it, whatever the guess is.
+        first = self._found[0][1]
+        off = replace(
+            self._chord, states=guess.states - first.motion.states, value=value - first.value
         )
-        guess = start.moved(part * states, part * (end.a - start.a))
+        along = part * self._length - self._chord.dot(off)
+        chord = self._chord.times(along)
         orbit, _ = self.solver.corrected(
-            self.before.value + part * chord.value, guess, chord.unit()
+            value + chord.value, guess.moved(chord.states, 0.0 * guess.a), self._chord
         )
-        return orbit if orbit.tangent.dot(self.before.tangent) >= 0 else orbit.turned()
+        orbit = orbit if orbit.tangent.dot(self._chord) >= 0 else orbit.turned()
+        self._found.insert(k, (part, orbit))
+        return orbit
 
 
-def _located(solver: Solver, kind: str, between: _Between) -> Special:
+def _located(
+    solver: Solver, kind: str, between: _Between, low: float = 0.0, high: float = 1.0
+) -> Special:
     """Return the special point between two motions at which a test has different signs."""
     from scipy.optimize import brentq
 
     test = TESTS[kind]
     rounding = 4 * np.finfo(float).eps
-    part = brentq(lambda p: test(between(p)), 0.0, 1.0, xtol=_LOCATED, rtol=rounding, maxiter=60)
+    part = brentq(lambda p: test(between(p)), low, high, xtol=_LOCATED, rtol=rounding, maxiter=60)
     orbit = between(part)
     measure = solver.measure(orbit)
     return Special(kind, orbit, measure, value_error(solver, orbit, kind, measure))

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..core.families import Array
-from .orbit import STAGES, Direction, Lost, Measure, Orbit, Solver, changed
+from .orbit import EPS, STAGES, Direction, Lost, Measure, Orbit, Solver, changed
 from .segments import Motion, NotFinite
 
 # First correction that a step aims at, relative; factors by which a step changes at once; its
@@ -22,7 +22,10 @@ _WIDEST = 1.0 / 60.0  # part of the range that a step may change the parameter b
 # Relative amplitude at which a crossing branch is entered.
 _ENTERED = 0.02
 _FINER = 1.4  # steps of a special point over those of the motions about it
-_LOCATED = 1e-12  # part of a step to which a special point is located
+_BEYOND = 1e-3  # part of a step that it may lie beyond it by
+_FRESH = 1e-13  # last correction after which a test is what it is
+_ROUNDING = 64 * EPS  # of a test, over the size of the matrix
+_LOCATED = 1e-14  # part of a step to which a special point is located
 # Part of a test's value to which the parabola through three has to fall for a pair to be sought.
 _DIP = 0.3
 _FAILURES = (Lost, NotFinite, np.linalg.LinAlgError)
@@ -279,7 +282,8 @@ class _Between:
         k = int(np.searchsorted(places, part))
         if k < len(places) and places[k] == part:
             return self._found[k][1]
-        (_, before), (end, after) = self._found[k - 1 : k + 1]
+        upper = min(max(k, 1), len(places) - 1)
+        (_, before), (end, after) = self._found[upper - 1 : upper + 1]
         value, guess = after.ahead((part - end) * self._length, (before,))
         # Across the line at its own part of it, whatever the guess is.
         first = self._found[0][1]
@@ -291,6 +295,8 @@ class _Between:
         orbit, _ = self.solver.corrected(
             value + chord.value, guess.moved(chord.states, 0.0 * guess.a), self._chord
         )
+        if orbit.last > _FRESH:
+            orbit, _ = self.solver.corrected(orbit.value, orbit.motion, self._chord)
         orbit = orbit if orbit.tangent.dot(self._chord) >= 0 else orbit.turned()
         self._found.insert(k, (part, orbit))
         return orbit
@@ -303,7 +309,12 @@ def _located(
     from scipy.optimize import brentq
 
     test = TESTS[kind]
-    rounding = 4 * np.finfo(float).eps
+    rounding = 4 * EPS
+    if test(between(low)) * test(between(high)) > 0.0:
+        # On more steps it lies just beyond.
+        low, high = low - _BEYOND, high + _BEYOND
+        if test(between(low)) * test(between(high)) > 0.0:
+            raise Lost("a test keeps its sign on more steps")
     part = brentq(lambda p: test(between(p)), low, high, xtol=_LOCATED, rtol=rounding, maxiter=60)
     orbit = between(part)
     measure = solver.measure(orbit)
@@ -321,7 +332,8 @@ def value_error(solver: Solver, orbit: Orbit, kind: str, measure: Measure | None
     slope = (test(beside) - test(orbit)) / step
     rough = replace(orbit, whole=np.concatenate([orbit.whole[:-1], measure.rough[None]]))
     # Not a share of it: the linearisation before the last correction is in the difference, too.
-    along = abs(test(rough) - test(orbit)) / abs(slope) if slope else np.inf
+    off = abs(test(rough) - test(orbit)) + _ROUNDING * max(float(np.linalg.norm(orbit.matrix)), 1.0)
+    along = off / abs(slope) if slope else np.inf
     return measure.value_error + along * abs(orbit.tangent.value)
 
 

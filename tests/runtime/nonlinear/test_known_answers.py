@@ -10,7 +10,12 @@ from __future__ import annotations
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.core.families import Nonlinear, Varied
+from elastolink.runtime.core.families import Drive, Nonlinear, Varied
+from elastolink.runtime.systems import free_free_rod
+from elastolink.runtime.systems.rod import FreeFreeBasis, rod_system
+from elastolink.runtime.systems.rod.driven import driven_rod
+from free_free_loads import ROD
+from orders import slope
 from oscillators import extremes, marched, oscillators, shot, shot_fold, shot_where
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk, mathieu_a, mathieu_b
@@ -269,3 +274,33 @@ def test_a_column_buckles_at_eulers_load_into_the_elastica(counts):
         left_out.append([np.max(np.abs(gap)) for gap in gaps])
     ratios = np.array(left_out)[1:] / np.array(left_out)[:-1]
     assert np.all(ratios < nome)
+
+
+# ---------------------------------------------------------------- the rod of a quick return
+
+
+@pytest.mark.parametrize("modes", [1, pytest.param(3, marks=pytest.mark.slow)])
+def test_a_rod_that_is_driven_little_moves_as_its_linear_equations_say(modes):
+    """Deflections are of the order of the crank ratio, what they lack is of its third power."""
+    speed, ratios = 150.0, (0.004, 0.02)
+    bare = free_free_rod(modes, crank_ratio=0.1, speed=speed, **ROD)
+    driven = driven_rod(bare)
+    curve = el.response_curve(driven, "crank_ratio", ratios, speed=speed, rtol=1e-11)
+    assert curve.special == ()
+    off, sizes, known = [], [], []
+    for i in (0, len(curve.value) - 1):
+        ratio = curve.value[i]
+        linear = rod_system(FreeFreeBasis(modes), crank_ratio=ratio, **ROD)
+        steady = el.steady_state(linear, speed, rtol=1e-12)
+        q = curve.orbits[i].motion.at(steady.theta)[0]
+        numbers = {**driven.parameters, "crank_ratio": ratio}
+        whole = driven.equations.whole(q, Drive(steady.theta, speed), numbers)
+        # The tip's deflection from the line through pin and block, of both.
+        rod = free_free_rod(modes, crank_ratio=ratio, speed=speed, **ROD)
+        tip = rod.deflection(whole, steady.theta / speed, [1.0])[:, 0]
+        sizes.append(np.max(np.abs(tip)))
+        off.append(np.max(np.abs(tip - steady.deflection(1.0))) / sizes[-1])
+        known.append(curve.error[i] + np.max(steady.error))
+    assert np.all(np.array(off) > 100.0 * np.array(known))
+    assert slope(ratios, sizes) == pytest.approx(1.0, abs=0.05)
+    assert slope(ratios, off) == pytest.approx(2.0, abs=0.1)

@@ -204,7 +204,6 @@ print(*(name.removeprefix("elastolink.") for name in sys.modules))
 """
 PLAIN = (
     f"kinematics {RIG}",
-    f"frequencies {RIG}",
     f"stability {RIG} --speed 200rpm",
     f"steady-state {RIG} --speed 200rpm",
     f"simulate {RIG} --speed 200rpm --revolutions 2",

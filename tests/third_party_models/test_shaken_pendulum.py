@@ -17,6 +17,7 @@ from pathlib import Path
 import elastolink as el
 import numpy as np
 import pytest
+from command_runs import told
 from elastolink.derive.spec import ModelSpec
 from elastolink.runtime.core.families import Drive, Nonlinear, Varied
 from oscillators import extremes, marched, shot
@@ -51,13 +52,19 @@ stroke = "30 mm"
 
 
 @pytest.fixture(scope="module")
-def system(emit, tmp_path_factory):
+def scene(emit, tmp_path_factory):
+    """Return the path of the scene, its module emitted where it is looked for."""
     emitted = emit("shaken_pendulum", ModelSpec("shaken_pendulum", "minimal"))
-    scene = tmp_path_factory.mktemp("scene") / "shaken_pendulum.toml"
-    scene.write_text(SCENE)
+    path = tmp_path_factory.mktemp("scene") / "shaken_pendulum.toml"
+    path.write_text(SCENE)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("ELASTOLINK_GENERATED", str(Path(emitted.module.__file__).parent))
-        made = el.load_scene(scene).system()
+        yield path
+
+
+@pytest.fixture(scope="module")
+def system(scene):
+    made = el.load_scene(scene).system()
     assert isinstance(made, Nonlinear)
     assert made.labels == ("angle",)
     return made
@@ -86,13 +93,16 @@ def test_the_emitted_equation_is_that_by_hand(system):
             np.testing.assert_allclose(one, other, rtol=1e-13, atol=1e-13)
 
 
-def test_its_response_curve(system):
+def tongue(system):
+    """Return the edges of the main tongue [rad/s]."""
     numbers = system.parameters
-    own, ratio = (
-        np.sqrt(numbers["gravity"] / numbers["rod"]),
-        2.0 * numbers["stroke"] / numbers["rod"],
-    )
-    edges = 2.0 * own / np.sqrt([mathieu_a(1, ratio), mathieu_b(1, ratio)])
+    own = np.sqrt(numbers["gravity"] / numbers["rod"])
+    ratio = 2.0 * numbers["stroke"] / numbers["rod"]
+    return 2.0 * own / np.sqrt([mathieu_a(1, ratio), mathieu_b(1, ratio)])
+
+
+def test_its_response_curve(system):
+    edges = tongue(system)
     curve = el.response_curve(system, "speed", (0.85 * edges[0], 1.1 * edges[1]), turns=2)
     assert curve.special == ("doubling", "doubling")
     assert np.all(np.abs(curve.special_value - edges) <= curve.special_error + 1e-12 * edges)
@@ -103,3 +113,10 @@ def test_its_response_curve(system):
         path = marched(hand, curve.value[i], state, 2, samples=2048)
         off = np.abs(extremes(path, 2) - [curve.lowest[i], curve.highest[i]])
         assert np.max(off) <= curve.peak_error[i] + 1e-11
+
+
+def test_its_response_by_the_command(scene, system, capsys):
+    edge = tongue(system)[0]
+    found = told(capsys, "response", scene, "--speed", f"{0.99 * edge}:{1.01 * edge}")
+    assert found["special"] == ["doubling"]
+    assert found["special_value"] == pytest.approx([edge], rel=1e-11)

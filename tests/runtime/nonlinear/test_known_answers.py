@@ -1,6 +1,6 @@
 """Response curves of problems with known answers, each by a route that shares no solver with them.
 
-The references are closed forms, or motions shot by DOP853 (rtol 1e-13, derivatives by differences;
+The references are closed forms, or motions shot by DOP853 (rtol 3e-14, derivatives by differences;
 tests/convergence/oscillators.py): known to 1e-12 in the speed and in the extremes, where nothing
 else is said.  What is allowed is that and the error estimate that the curve tells.
 """
@@ -39,11 +39,10 @@ def assert_shot(system, curve, numbers):
         gap = np.max(np.abs(motion.states[0] - state))
         amplified = 1.0 / np.min(np.abs(multipliers - 1.0))  # of what marching leaves of a period
         assert gap <= size * (curve.error[i] + KNOWN * amplified)
-        order = np.argsort(-np.abs(multipliers), kind="stable")
         apart = np.abs(np.sort_complex(multipliers) - np.sort_complex(curve.multipliers[i]))
         known = KNOWN * max(1.0, np.max(np.abs(multipliers)), amplified)
         assert np.max(apart) <= np.max(curve.multiplier_error[i]) + known
-        assert curve.stable[i] == (abs(multipliers[order[0]]) < 1.0)
+        assert curve.stable[i] == (np.max(np.abs(multipliers)) <= 1.0 + known)
         low, high = extremes(marched(system, speed, state, turns, samples=2048), turns)
         allowed = curve.peak_error[i] + size * KNOWN * amplified
         assert abs(curve.lowest[i] - low) <= allowed

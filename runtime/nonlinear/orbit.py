@@ -290,7 +290,7 @@ class Solver:
         return Measure(
             away,
             _INNER_SHARE * off + (moved_by + 256 * EPS) * moved_most,
-            share(abs(moved), noise * self.span) + rounding * abs(orbit.value),
+            share(abs(moved), noise * self.span) + rounding * max(abs(orbit.value), self.span),
             share(differences, (noise + _STALE * orbit.last) * size) + rounding * size,
             np.asarray(whole[-1]),
         )

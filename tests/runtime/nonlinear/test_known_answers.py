@@ -305,6 +305,36 @@ def test_more_harmonics_come_to_the_elastica():
     assert np.all(ratios < nome)
 
 
+def pitchfork(q, qd, qdd, drive, parameters, derivatives=True):
+    """``q'' + q' + stiffness q + q^3 = 0``: beside rest ``q^2 = -stiffness``."""
+    stiffness = parameters["stiffness"]
+    left = qdd + qd + stiffness * q + q**3
+    if not derivatives:
+        return Varied(left)
+    one = np.ones((*q.shape, 1))
+    return Varied(left, one, one, (stiffness + 3.0 * q**2)[..., None])
+
+
+def test_a_pitchfork_at_zero():
+    """There the error is none of the value's, and the equations are singular to the last digit."""
+    system = Nonlinear(1, pitchfork, {"stiffness": 1.0})
+    curve = el.response_curve(system, "stiffness", (-0.3, 0.5), speed=1.0)
+    assert curve.special == ("branch point",)
+    assert abs(curve.special_value[0]) <= curve.special_error[0] < 1e-9
+    for number in (1, 2):
+        # But for the first, 4e-10 from the branch point, whose estimate is short by a quarter.
+        at = np.flatnonzero(curve.branch == number)[1:]
+        size, value = curve.highest[at], curve.value[at]
+        slack = 2.0 * np.abs(size) * curve.peak_error[at] + curve.error[at] * curve.source.span
+        assert np.all(np.abs(size**2 + value) <= slack)
+    straight = curve.orbits[0]
+    here, _ = curve.source.corrected(
+        0.0, straight.motion, curve.source.along_parameter(straight.motion)
+    )
+    assert here.value == here.border == 0.0
+    assert here.tangent.value == pytest.approx(curve.source.span, rel=1e-15)
+
+
 # ---------------------------------------------------------------- the rod of a quick return
 
 

@@ -171,14 +171,14 @@ LOADS = {
         LINKAGES | {f"generated.{FAMILY}"},
         (
             *("stability", "hill", "beams", "periodic.lowest_modes"),
-            *("recovery", "frequencies", "design"),
+            *("recovery", "frequencies", "design", "nonlinear", "systems.inextensible"),
         ),
     ),
     "beams of one kind": (
         "el.load_scene('aannaque_1996_table_4_1').system()",
         # The table of supports knows every linkage.
         EVERY_LINKAGE | {"generated.beam_element_cubic", "generated.beam_shapes_cubic"},
-        ("hill", "beams.layered", "recovery", "design"),
+        ("hill", "beams.layered", "recovery", "design", "nonlinear", "systems.inextensible"),
     ),
 }
 
@@ -192,6 +192,43 @@ def test_what_is_not_used_is_not_loaded(what):
     for part in unused:
         assert importlib.util.find_spec(f"elastolink.runtime.{part}"), part
         assert not {name for name in loaded if f"{name}.".startswith(f"runtime.{part}.")}
+
+
+COMMANDS = """
+import contextlib, io, sys
+from elastolink.runtime.cli import main
+for line in {lines!r}:
+    with contextlib.redirect_stdout(io.StringIO()):
+        assert main(line.split()) == 0, line
+print(*(name.removeprefix("elastolink.") for name in sys.modules))
+"""
+PLAIN = (
+    f"kinematics {RIG}",
+    f"stability {RIG} --speed 200rpm",
+    f"steady-state {RIG} --speed 200rpm",
+    f"simulate {RIG} --speed 200rpm --revolutions 2",
+    "stability beale_1992_flexible_rod --speed 200",
+    "stress aannaque_1996_table_4_1 --speed 30 --set mesh.elements=1",
+)
+# For motions beyond the linear range alone; the first page of their room has but the names.
+BEYOND = ("runtime.nonlinear.", "runtime.systems.inextensible", "runtime.systems.rod.driven")
+
+
+def beyond_the_linear_range(*lines: str) -> list[str]:
+    """Return what commands load that is for motions beyond the linear range alone."""
+    names = python(COMMANDS.format(lines=lines)).split()
+    return [
+        name
+        for name in names
+        if name.startswith(BEYOND) or (name.startswith("generated.") and "inextensible" in name)
+    ]
+
+
+def test_commands_within_the_linear_range_load_nothing_for_motions_beyond_it():
+    assert beyond_the_linear_range(*PLAIN) == []
+    # Which is not for want of looking.
+    found = beyond_the_linear_range(f"response {RIG} --speed 100:101rpm")
+    assert {"generated.four_bar_coupler_inextensible", "runtime.nonlinear.response"} <= set(found)
 
 
 @pytest.mark.parametrize("method", ["auto", "harmonic_balance"])

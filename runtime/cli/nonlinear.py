@@ -68,7 +68,10 @@ def _response(options: argparse.Namespace) -> int:
 
 def _scene(options: argparse.Namespace) -> tuple[Scene, list[str]]:
     """Return the scene in a nonlinear formulation, and what was assumed."""
-    scene, told = opt.load(options), []
+    scene = opt.load(options)
+    told: list[str] = []
+    if not scene.layout.formulations:  # a model of the user's: as it is
+        return scene, told
     more: dict[str, Any] = {}
     if not scene.model["formulation"].startswith(_INEXTENSIBLE):
         if scene.layout.flexible != ("coupler",) or scene.model["mechanism"] != "four_bar":

@@ -223,11 +223,21 @@ def special_points(solver: Solver, before: Orbit, after: Orbit) -> Iterator[Spec
     for kind, test in TESTS.items():
         if not test(before) * test(after) < 0.0:
             continue
-        pairs = [int(np.sum(orbit.multipliers.imag > 0)) for orbit in (before, after)]
-        if kind == "torus" and pairs[0] != pairs[1]:
+        if kind == "torus" and not _leaves(solver, before, after):
             continue
         with suppress(*_FAILURES):
             yield _located(solver, kind, _Between(solver, before, after))
+
+
+def _leaves(solver: Solver, *orbits: Orbit) -> bool:
+    """Return False where pairs become real, or lie on the unit circle by their errors.
+
+    So they do along the whole branch of a system without damping.
+    """
+    pairs = {int(np.sum(orbit.multipliers.imag > 0)) for orbit in orbits}
+    return len(pairs) == 1 and any(
+        abs(torus(orbit)) > np.max(solver.measure(orbit).multiplier_errors) for orbit in orbits
+    )
 
 
 def hidden_pairs(solver: Solver, before: Orbit, here: Orbit, after: Orbit) -> Iterator[Special]:

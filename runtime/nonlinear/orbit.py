@@ -290,7 +290,7 @@ class Solver:
         return Measure(
             away,
             _INNER_SHARE * off + (moved_by + 256 * EPS) * moved_most,
-            share(abs(moved), noise * self.span) + rounding * abs(orbit.value),
+            share(abs(moved), noise * self.span) + rounding * max(abs(orbit.value), self.span),
             share(differences, (noise + _STALE * orbit.last) * size) + rounding * size,
             np.asarray(whole[-1]),
         )
@@ -422,10 +422,12 @@ def _bordered(
     wrong = 0.0 if along else 1.0
     row, _ = direction.weights
     right = np.append(-wrong * added[-1, :, 0], along - wrong * np.sum(row * added[:-1, :, 0]))
+    matrix = _bordered_matrix(whole, added, direction)
     try:
-        solution = np.linalg.solve(_bordered_matrix(whole, added, direction), right)
-    except np.linalg.LinAlgError as singular:
-        raise Lost("the branch has no single direction here") from singular
+        solution = np.linalg.solve(matrix, right)
+    except np.linalg.LinAlgError:
+        # At a branch point, to the last digit: the shortest of all solutions.
+        solution = np.linalg.lstsq(matrix, right)[0]
     first, moved = solution[:-1], float(solution[-1])
     change = whole[:-1] @ first + wrong * added[:-1, :, 0] + moved * added[:-1, :, 1]
     return change, moved

@@ -123,7 +123,7 @@ def refined_maxima(
     brackets: tuple[Array, Array, Array],
     values: tuple[Array, Array, Array],
     *,
-    steps: int = 12,
+    steps: int = 24,
     rtol: float = 1e-7,
 ) -> tuple[Array, Array, Array]:
     """Refine maxima of many functions by parabolas; return places, values and errors ``(k,)``.

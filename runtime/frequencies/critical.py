@@ -241,7 +241,7 @@ def by_running_mean(request: Request) -> CriticalSpeeds:
     for mode in range(1, request.count + 1):
         values = np.array([mean[mode - 1] for mean, _ in runs])
         curve = np.polynomial.Chebyshev.fit(place, values, _NODES - 1, domain=[-1, 1])
-        # The mean is smooth in the square of the speed: twice its last terms cover what is left out.
+        # The mean is smooth in the square of the speed: twice its last terms tell what is left out.
         doubt = 2.0 * float(np.sum(np.abs(curve.coef[-2:])))
         doubt += max(float(error[mode - 1]) for _, error in runs)
         for n in range(1, int(np.floor(np.max(values) / low)) + 1):

@@ -241,14 +241,18 @@ def by_running_mean(request: Request) -> CriticalSpeeds:
     for mode in range(1, request.count + 1):
         values = np.array([mean[mode - 1] for mean, _ in runs])
         curve = np.polynomial.Chebyshev.fit(place, values, _NODES - 1, domain=[-1, 1])
-        # The mean is smooth in the square of the speed: its last terms tell what is left out.
-        doubt = float(np.sum(np.abs(curve.coef[-2:])))
+        # The mean is smooth in the square of the speed: twice its last terms tell what is left out.
+        doubt = 2.0 * float(np.sum(np.abs(curve.coef[-2:])))
         doubt += max(float(error[mode - 1]) for _, error in runs)
         for n in range(1, int(np.floor(np.max(values) / low)) + 1):
             line = np.polynomial.Chebyshev([n * middle, n * half], domain=[-1, 1])
             roots = (curve - line).roots()
             real = roots[(np.abs(roots.imag) < 1e-9) & (np.abs(roots.real) <= 1.0)].real
-            rows += [(float(middle + half * x), mode, n, doubt / n) for x in real]
+            steep = np.abs((curve - line).deriv()(real)) / half
+            rows += [
+                (float(middle + half * x), mode, n, doubt / rate)
+                for x, rate in zip(real, np.maximum(steep, 1e-9 * n).tolist(), strict=True)
+            ]
     return request.listed("mean natural frequencies at the speed over n", rows)
 
 

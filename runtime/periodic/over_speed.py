@@ -10,7 +10,7 @@ import numpy as np
 from ..core.families import Array, LinearPeriodic
 from .equation import sampled
 from .multipliers import monodromy
-from .prepared import TableMaker
+from .prepared import TableErrors, TableMaker
 from .tables import Table
 
 
@@ -35,7 +35,7 @@ class MatricesOverSpeed:
         self._edges[[0, -1]] = low, high
         self.known = sampled(system, forcing=False)
         self._maker = TableMaker(self.known, (low * high) ** 0.5, parameters)
-        self._tables: dict[int, tuple[Table, float]] = {}
+        self._tables: dict[int, tuple[Table, TableErrors]] = {}
 
     @property
     def scale(self) -> Array:
@@ -55,13 +55,11 @@ class MatricesOverSpeed:
         for number in np.unique(place).tolist():
             rows = np.flatnonzero(place == number)
             if 0 <= number < inner:
-                table, size = self._table(number)
+                table, errors = self._table(number)
                 plain, power = table.products(1.0 / speed[rows])
                 with np.errstate(over="ignore"):
                     matrices[rows] = np.ldexp(plain, power[:, None, None])
-                # What decays keeps the error of what it came from.
-                top = np.max(np.abs(matrices[rows]), axis=(-2, -1))
-                error[rows] = size * np.maximum(1.0, 1.0 / top)
+                error[rows] = errors.of_matrices(speed[rows])
                 continue
             single = monodromy(self.system, speed[rows], rtol=self.rtol, **self.parameters)
             with np.errstate(over="ignore"):
@@ -69,13 +67,11 @@ class MatricesOverSpeed:
             error[rows] = single.error
         return matrices, error
 
-    def _table(self, number: int) -> tuple[Table, float]:
+    def _table(self, number: int) -> tuple[Table, TableErrors]:
         if number not in self._tables:
             low, high = self._edges[number], self._edges[number + 1]
             # In a range as narrow as 1.05 twelve nodes are enough for eight modes.
             nodes = 12 if high <= 1.05 * low else None
-            table, error, _, _ = self._maker.table(
-                float(1.0 / high), float(1.0 / low), 1, self.rtol, nodes
-            )
-            self._tables[number] = table, error
+            made = self._maker.table(float(1.0 / high), float(1.0 / low), 1, self.rtol, nodes)
+            self._tables[number] = made[:2]
         return self._tables[number]

@@ -31,6 +31,7 @@ _RATIO = 1.5
 _TRANSIENT = 1e-6
 # Places of each table at which other segments tell its error, and the margin.
 _TRIED, _MARGIN = (0.0, 0.382, 1.0), 4.0
+_TINY = float(np.finfo(float).tiny)
 # Largest state for which compiled loops win over NumPy's products.
 _COMPILED = 12
 # Error of a coordinate over its peak with which an answer still passes.
@@ -52,11 +53,11 @@ class Prepared:
         Angles of a period at which motions are given [rad], ``(samples,)``.
     tables : tuple of Table
         By rising speed.
-    error : float
-        Error of a monodromy matrix in scaled variables, over its largest entry or over 1, whichever
-        is larger: four times the difference to other segments, and round-off.
-    flow_error : ndarray
-        Error of the entries of a transition matrix that give coordinates, shape ``(n, m)``.
+    wanted : float
+        The ``rtol`` that was asked for, or what round-off allows.
+    errors : TableErrors
+        Errors of monodromy and transition matrices at speeds that rise: four times the difference
+        to other segments, and round-off.
     motion_error : ndarray
         Error of each coordinate of a periodic motion, over the size of its start and over what the
         closing of the ring magnifies, shape ``(n,)``.
@@ -76,14 +77,19 @@ class Prepared:
     span: tuple[float, float]
     theta: Array
     tables: tuple[Table, ...]
-    error: float
-    flow_error: Array
+    wanted: float
+    errors: TableErrors
     motion_error: Array
     forced: bool
     scale: Array
     readout: Array
     provenance: Mapping[str, str]
     compiled: tuple[CompiledTable, ...] = ()
+
+    @property
+    def error(self) -> float:
+        """Largest error of a monodromy matrix in scaled variables, over its largest entry."""
+        return float(np.max(self.errors.matrix))
 
     def monodromy(self, speed: ArrayLike) -> Monodromy:
         """Return the monodromy matrices of the canonical variables at speeds.
@@ -107,15 +113,16 @@ class Prepared:
         m = 2 * self.system.size
         scale = self.scale[:m]
         scaled = self._whole(speeds.reshape(-1))[:, :m, :m]
-        # What decays keeps the error of what it came from.
-        error = self.error * np.maximum(1.0, 1.0 / np.abs(scaled).max(axis=(1, 2)))
+        error = self.errors.of_matrices(speeds.reshape(-1))
+        # Of what has decayed the absolute error is wanted, not its last digits.
+        absolute = error * np.minimum(1.0, np.max(np.abs(scaled), axis=(1, 2)))
         matrix = scaled * scale[:, None] / scale
         return Monodromy(
             method=_METHOD,
             error=error.reshape(speeds.shape),
             error_norm="largest entry of the error, relative to the largest entry of the matrix, "
             "both in scaled variables",
-            checks={"converged": Check(self.error, 1e-9)},
+            checks={"converged": Check(float(np.max(absolute, initial=0.0)), self.wanted)},
             provenance=self.provenance,
             speed=speeds,
             matrix=matrix.reshape(*speeds.shape, m, m),
@@ -162,7 +169,8 @@ class Prepared:
         slope[-1] = self.readout[0] @ states[-1]
         theta = (self.system.period * np.arange(count)[:, None] + self.theta).reshape(-1)
         theta = np.append(theta, self.system.period * count)
-        error = (count + 2) * (self.flow_error @ sizes) * self.scale[:n] / peaks(q[None])[0]
+        flow = self.errors.of_flow(given)
+        error = (count + 1) * np.sqrt(flow**2 @ sizes**2) * self.scale[:n] / peaks(q[None])[0]
         if not np.max(error) <= _TRANSIENT:
             turn = 2 * np.pi / self.system.period
             return simulate(
@@ -225,7 +233,7 @@ class Prepared:
         if lost.any():
             q[lost], slope[lost], error[lost] = np.nan, np.nan, np.inf
         single = Check(float(wrong.max()), 1.0)
-        later = DeferredGroup(partial(self._stability, whole, batch))
+        later = DeferredGroup(partial(self._stability, flat, whole, batch))
         return SteadyState(
             method=_METHOD,
             error=error.reshape(*batch, n),
@@ -246,12 +254,14 @@ class Prepared:
             shapes=self.system.shapes,
         )
 
-    def _stability(self, whole: Array, batch: tuple[int, ...]) -> Mapping[str, NDArray[Any]]:
+    def _stability(
+        self, speeds: Array, whole: Array, batch: tuple[int, ...]
+    ) -> Mapping[str, NDArray[Any]]:
         """Return multipliers, whether all are inside the unit circle, and their distance from 1."""
         m = 2 * self.system.size
         values, vectors = np.linalg.eig(whole[:, :m, :m])
         values = values.astype(complex)
-        size = self.error * np.maximum(1.0, np.max(np.abs(whole), axis=(1, 2)))
+        size = self.errors.of_matrices(speeds) * np.max(np.abs(whole[:, :m, :m]), axis=(1, 2))
         error = conditions(vectors) * size[:, None]
         # An error that says nothing leaves stability unproved.
         slack = np.where(error < 0.1, error, -error)
@@ -363,7 +373,9 @@ def prepare(
     forcing : bool
         Whether f, h and p act.
     rtol : float
-        Wanted error of the transition matrices, over their largest entry, 1e-13 to 1e-4.
+        Wanted error of the transition matrices, over their largest entry or over 1, whichever is
+        larger, 1e-13 to 1e-4.  Long periods with many oscillations may not reach it, because of
+        round-off.
     compiled : bool
         Whether numba compiles what is left for one speed (extra ``fast``): the same answers to
         round-off, several times sooner, after some seconds of compilation in a process.
@@ -405,8 +417,8 @@ def prepare(
         (low, high),
         theta,
         tuple(table for table, *_ in tables),
-        max(error for _, error, *_ in tables),
-        np.max([flow for *_, flow, _ in tables], axis=0),
+        max([rtol, *(100.0 * errors.rounding for _, errors, _ in tables)]),
+        TableErrors.joined([errors for _, errors, _ in tables]),
         np.max([motion for *_, motion in tables], axis=0),
         middle.forced,
         maker.scale,
@@ -414,6 +426,64 @@ def prepare(
         provenance(made.changed_provenance(**inside)),
         tuple(CompiledTable.of(t) for t, *_ in tables) if compiled and m <= _COMPILED else (),
     )
+
+
+@dataclass(frozen=True)
+class TableErrors:
+    """Errors of tables at a few speeds, by rising speed; the ends of each table are among them.
+
+    Attributes
+    ----------
+    speed : ndarray
+        The speeds [rad/s], ``(k,)``.
+    matrix : ndarray
+        Error of the monodromy matrix in scaled variables, over its largest entry, ``(k,)``.
+    size : ndarray
+        Its largest entry, ``(k,)``.
+    flow : ndarray
+        Error of the entries of the transition matrices that give coordinates, ``(k, n, m)``.
+    rounding : float
+        What round-off adds to a matrix, over its largest entry.
+    """
+
+    speed: Array
+    matrix: Array
+    size: Array
+    flow: Array
+    rounding: float
+
+    @classmethod
+    def joined(cls, parts: list[TableErrors]) -> TableErrors:
+        """Return the errors of tables by rising speed."""
+        return cls(
+            speed=np.concatenate([part.speed for part in parts]),
+            matrix=np.concatenate([part.matrix for part in parts]),
+            size=np.concatenate([part.size for part in parts]),
+            flow=np.concatenate([part.flow for part in parts]),
+            rounding=max(part.rounding for part in parts),
+        )
+
+    @property
+    def largest(self) -> float:
+        """Largest error of a monodromy matrix, over its largest entry or over 1, the larger."""
+        return float(np.max(self.matrix * np.minimum(self.size, 1.0)))
+
+    def of_matrices(self, speeds: Array) -> Array:
+        """Return the errors of monodromy matrices at speeds ``(ns,)``, over their largest entries.
+
+        The larger of those at the two speeds beside each.
+        """
+        before, after = self._beside(speeds)
+        return np.maximum(self.matrix[before], self.matrix[after])
+
+    def of_flow(self, speed: float) -> Array:
+        """Return the errors of the entries that give coordinates at a speed, ``(n, m)``."""
+        before, after = self._beside(np.array(speed))
+        return np.maximum(self.flow[before], self.flow[after])
+
+    def _beside(self, speeds: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        after = np.clip(np.searchsorted(self.speed, speeds), 0, len(self.speed) - 1)
+        return np.maximum(after - 1, 0), after
 
 
 class TableMaker:
@@ -446,10 +516,10 @@ class TableMaker:
 
     def table(
         self, low: float, high: float, samples: int, rtol: float, nodes: int | None = None
-    ) -> tuple[Table, float, Array, Array]:
-        """Return the table of a range of inverse speeds, and its errors.
+    ) -> tuple[Table, TableErrors, Array]:
+        """Return the table of a range of inverse speeds, and its errors by other segments.
 
-        Those of :class:`Prepared`, by other segments at a few speeds.
+        The last are those of periodic motions, as :class:`Prepared` has them.
         """
         slowest = self.equation(np.array([high]))
         n = slowest.size
@@ -459,24 +529,26 @@ class TableMaker:
             self.equation, span, segments, way, 0.1 * rtol, samples=samples, nodes=nodes
         )
         rounding = float(np.max(rounding_error(slowest, segments)))
-        whole = rounding + table.tail
-        flow, motion = np.full((n, len(self.scale)), rounding), np.full(n, rounding)
-        tried = low + np.array(_TRIED if high > low else _TRIED[:1]) * (high - low)
-        count = next_rung(segments)
+        # By rising speed.
+        tried = (low + np.array(_TRIED if high > low else _TRIED[:1]) * (high - low))[::-1]
         ours = table.flows(tried)
-        theirs = flows_at(self.equation(tried), count, way, samples)
+        theirs = flows_at(self.equation(tried), next_rung(segments), way, samples)
+        size = np.max(np.abs(theirs[1][:, : 2 * n, : 2 * n]), axis=(1, 2))
         gap = np.max(np.abs(ours[1] - theirs[1])[:, : 2 * n, : 2 * n], axis=(1, 2))
-        size = np.maximum(np.max(np.abs(theirs[1][:, : 2 * n, : 2 * n]), axis=(1, 2)), 1.0)
-        whole = max(whole, _MARGIN * float(np.max(gap / size)))
-        gaps = np.max(np.abs(ours[0] - theirs[0])[:, :, :n], axis=(0, 1))
-        flow = np.maximum(flow, _MARGIN * gaps)
+        # Round-off of what has decayed is that of what is left, as each segment keeps its digits.
+        whole = rounding + table.tail + _MARGIN * gap / np.maximum(size, _TINY)
+        gaps = np.max(np.abs(ours[0] - theirs[0])[..., :n, :], axis=1)
+        errors = TableErrors(
+            1.0 / tried, whole, size, np.maximum(rounding, _MARGIN * gaps), rounding
+        )
+        motion = np.full(n, rounding)
         if slowest.forced:
             states, reach = closed(*ours, 1.0 / self.scale[-1])
             wanted, _ = closed(*theirs, 1.0 / self.scale[-1])
             size = (reach + 1.0) * np.max(np.abs(wanted[:, 0]), axis=1)
             gaps = np.max(np.abs(states - wanted)[:, :, :n], axis=1) / size[:, None]
             motion = np.maximum(motion, _MARGIN * np.max(gaps, axis=0))
-        return table, whole, flow, motion
+        return table, errors, motion
 
     def readout(self, theta: Array) -> Array:
         """Return the matrices from the scaled state to dq/dtheta at angles, ``(nt, n, m)``."""

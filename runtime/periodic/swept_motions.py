@@ -184,8 +184,9 @@ class Truncations:
         truncated, known = self._required(modes, angles)
         low, high = span
         maker = TableMaker(known, (low * high) ** 0.5, {}, stiff=False)
-        table, whole, _, motion = maker.table(1.0 / high, 1.0 / low, angles, rtol, _NODES)
-        return SweptMotions(truncated, table, maker.scale, whole, float(np.max(motion)))
+        table, errors, motion = maker.table(1.0 / high, 1.0 / low, angles, rtol, _NODES)
+        worst = float(np.max(motion))
+        return SweptMotions(truncated, table, maker.scale, errors.largest, worst)
 
     def trial(self, modes: int, angles: int, speeds: Array, rtol: float) -> Trial:
         """Return motions and growth at a few speeds, rising."""

@@ -2,6 +2,8 @@
 
 import numpy as np
 from balancing_machines import nine_equations, random_machine, with_crank_counterweight
+from elastolink.runtime.linkages import FourBar
+from elastolink.runtime.rigid import Bounds, Machine, MassDistribution, balance
 from honesty import over_scenes
 
 SPEED = 10.0
@@ -26,3 +28,43 @@ def test_error_bounds_the_distance_from_the_optimum_and_is_not_idle(rng):
     machine = random_machine(rng)
     found = with_crank_counterweight(machine, SPEED)
     return found.error, found.value - exact(machine)
+
+
+def near_change_point(rng):
+    """Return a crank-rocker that all but stretches at pi, as a function of the unit of length."""
+    crank, coupler, follower = 0.1, *map(float, rng.uniform(0.3, 0.6, 2))
+    frame = coupler + follower - crank - 10.0 ** float(rng.uniform(-9.0, -2.0))
+    bodies = rng.uniform([0.1, -0.5, -0.5, 0.0], [2.0, 0.5, 0.5, 0.2], (3, 4))
+
+    def made(unit):
+        linkage = FourBar(*(float(unit * size) for size in (frame, crank, coupler, follower)))
+        masses = {}
+        for link, (mass, along, across, inertia) in zip(linkage.links, bodies, strict=True):
+            about = mass, unit * along, unit * across, unit**2 * inertia
+            masses[link] = MassDistribution.about_centre(*about)
+        return Machine(linkage, masses)
+
+    return made if made(1.0).linkage.crank_turns else None
+
+
+@over_scenes(1, few=10, many=100, floor=np.finfo(float).eps / 2.0)
+def test_values_do_not_hang_on_the_unit_of_length_beyond_the_error(rng):
+    """Where the last digits of the lengths change forces by much more than their own."""
+    made = near_change_point(rng)
+    if made is None:
+        return None
+    offsets = 10.0 ** rng.uniform(-5.0, 0.0, 12)
+    angles = np.pi + np.concatenate([offsets, -offsets])
+    units = 1.0, float(rng.uniform(0.3, 3.0))
+    given = {"weights": {"shaking_force": 1.0, "torque": 1.0}, "links": ("crank",)}
+    one, other = (
+        balance(
+            made(unit),
+            SPEED,
+            angles=angles,
+            bounds=Bounds(mass=2.0, offset=0.1 * unit),
+            **given,
+        )
+        for unit in units
+    )
+    return one.error + other.error, one.value - other.value

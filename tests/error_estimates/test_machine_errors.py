@@ -76,7 +76,7 @@ def test_energy_fluctuations(rng):
     return found.error, found.energy_fluctuation - truth
 
 
-@over_scenes(52, few=6, many=40)
+@over_scenes(52, few=20, many=100, median=100.0)
 def test_flywheels(rng):
     """Without motor and load the energy stays: the inertias' ratio is that of squared speeds."""
     scene, speed = Slider(rng), float(rng.uniform(1.0, 50.0))
@@ -86,6 +86,8 @@ def test_flywheels(rng):
     square = ((1 + half) / (1 - half)) ** 2
     truth = max((high - square * low) / (square - 1), np.longdouble(0))
     found = flywheel_inertia(scene.machine, speed, wanted)
+    if not truth:
+        return None  # none is needed: nothing is rounded
     return found.error, found.inertia - truth
 
 

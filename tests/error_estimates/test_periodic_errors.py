@@ -97,6 +97,40 @@ def test_the_estimates_cover_the_errors_and_are_not_idle(scenes):
         assert np.median(estimate / np.maximum(actual, 4 * EPS)) <= 1e3, name
 
 
+@over_scenes(6, few=15, many=150, median=100.0)
+def test_prepared_for_any_tolerance(rng):
+    """From growth to a decay by 1e-12 in a period, at some place of the range."""
+    n = int(rng.integers(1, 4))
+    mixed = np.eye(n) + 0.2 * rng.standard_normal((n, n))
+    squares = rng.uniform(1.0, 20.0, n) ** 2
+    mass, stiffness = mixed.T @ mixed, mixed.T @ np.diag(squares) @ mixed
+    speed = float(np.sqrt(np.max(squares)) * 10.0 ** rng.uniform(-1.0, 0.5))
+    drag = speed * float(rng.choice([0.0, 0.01, 2.0, 8.0]))
+    system = system_of(
+        M=mass,
+        C=drag * mass,
+        K=stiffness,
+        Kg=wave(0.1 * np.min(squares) * mass, int(rng.integers(1, 3))),
+        f=wave(rng.standard_normal(n)),
+    )
+    span = speed * rng.uniform(0.6, 1.0), speed * rng.uniform(1.0, 1.6)
+    rtol = float(10.0 ** rng.uniform(-13.0, -4.0))
+    ready = prepare(system, span, samples=SAMPLES, rtol=rtol)
+    truth = taylor_truth.Equation.of(system, speed, forced=True)
+    flows = taylor_truth.flows(truth, 1.0, SAMPLES)
+    matrix = ready.monodromy(speed)
+    assert matrix.checks["converged"].limit >= rtol
+    estimate, actual = _of_matrix(matrix, truth.unscaled(flows[-1])[: 2 * n, : 2 * n])
+    assert estimate <= 1e4 * max(actual, EPS)
+    start, turns = (rng.standard_normal(n), speed * rng.standard_normal(n)), int(rng.integers(1, 9))
+    states = [truth.start(start[0], start[1] / speed).astype(np.longdouble)]
+    for _ in range(turns):
+        states += list(flows[1:] @ states[-1])
+    run = ready.simulate(speed, turns, start)
+    moved = _of_motion(run, truth.coordinates(np.array(states)))
+    return {"matrix": (estimate, np.maximum(actual, EPS / 4)), "motion": moved}
+
+
 @over_scenes(4, few=15, many=150, median=100.0)
 def test_motions_of_fast_modes_that_live(rng):
     """From a state in which all of them ring, up to a thousand radians between given angles."""

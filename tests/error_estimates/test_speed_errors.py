@@ -10,7 +10,9 @@ from elastolink import resonance_curve
 from elastolink.runtime.frequencies import campbell, critical_speeds, natural_frequencies
 from honesty import over_scenes
 from manufactured import manufactured
-from periodic_systems import system_of
+from periodic_systems import system_of, wave
+from scipy.optimize import brentq
+from scipy.special import ellipe
 from wavy_springs import WavyCoordinates
 
 
@@ -50,6 +52,28 @@ def test_fractions_of_mean_frequencies(rng):
     found = critical_speeds(scene.system, (6.0, 30.0))
     exact = scene.natural[found.mode - 1] / found.order
     return to_a_digit(found.error, found.speed - exact, exact)
+
+
+@over_scenes(76, few=30, many=200)
+def test_running_means(rng):
+    """The mean of sqrt(k + c w^2 cos theta) is a complete elliptic integral."""
+    k, share = float(rng.uniform(5.0, 50.0)) ** 2, float(rng.uniform(0.6, 0.98))
+    n = int(rng.integers(1, 4))
+    top = np.sqrt(k) / n
+    # The cosine takes that share of the stiffness at the highest speed.
+    c = share * k / (1.1 * top) ** 2
+    system = system_of(M=np.eye(1), K=k * np.eye(1), Kg=(None, wave(c * np.eye(1)), 2))
+
+    def excess(speed):
+        depth = c * speed**2
+        mean = 2.0 / np.pi * np.sqrt(k + depth) * ellipe(2.0 * depth / (k + depth))
+        return mean - n * speed
+
+    found = critical_speeds(system, (0.5 * top, 1.1 * top), method="running_mean")
+    place = int(np.flatnonzero(found.order == n)[0])
+    exact = brentq(excess, 0.5 * top, 1.1 * top, xtol=1e-15 * top)
+    gap = found.speed[place] - exact
+    return found.error[place], np.maximum(np.abs(gap), 4e-16 * exact)
 
 
 @over_scenes(73, few=None, many=100)

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from .link_study import link_frequencies as link_frequencies
     from .link_study import pinned_frequency as pinned_frequency
     from .members import member_matrices as member_matrices
-    from .mode_pictures import draw_mode as draw_mode
-    from .mode_pictures import draw_modes as draw_modes
     from .natural import NaturalFrequencies as NaturalFrequencies
+    from .natural import draw_mode as draw_mode
+    from .natural import draw_modes as draw_modes
     from .natural import natural_frequencies as natural_frequencies
     from .resonance_curves import ResonanceCurve as ResonanceCurve
     from .resonance_curves import resonance_curve as resonance_curve
@@ -44,8 +44,7 @@ __all__, __getattr__, __dir__ = on_first_use(
             "pinned_frequency",
         ),
         "members": ("member_matrices",),
-        "mode_pictures": ("draw_mode", "draw_modes"),
-        "natural": ("NaturalFrequencies", "natural_frequencies"),
+        "natural": ("NaturalFrequencies", "draw_mode", "draw_modes", "natural_frequencies"),
         "resonance_curves": ("ResonanceCurve", "resonance_curve"),
     },
 )

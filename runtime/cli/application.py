@@ -25,8 +25,8 @@ from .options import HelpFormatter, add, picture
 
 # Files of subcommands, in the order of the help.
 _GROUPS = (
-    *("scenes", "linkages", "curves", "tolerances", "forces", "balancing"),
-    *("response", "nonlinear", "beams", "stability", "boundaries", "proofs"),
+    *("scenes", "linkages", "tolerances", "forces", "response", "nonlinear"),
+    *("beams", "stability", "boundaries", "proofs"),
 )
 _BAD_INPUT = 2
 # Characters of a complaint; the longest list of choices has half as many.

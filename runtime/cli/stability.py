@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ..constrained.orbits import PeriodicOrbit
     from ..core.families import Array, LinearPeriodic
     from ..scenes import Scene
-    from ..sweeps.result import AnyArray
+    from ..sweeps.tasks import AnyArray
 
     Axis = tuple[str, Array]
 

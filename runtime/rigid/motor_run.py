@@ -23,8 +23,7 @@ from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ..linkages.linkage import EPS, TURN, Array
 from .forces import RigidForces, rigid_forces
-from .inputs import finite_number
-from .machine import Machine, require_machine
+from .machine import Machine, finite_number, require_machine
 from .one_freedom import OneFreedom
 
 Status = Literal["finished", "stalled", "fold", "step limit"]

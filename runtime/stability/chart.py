@@ -19,8 +19,7 @@ from ..hill.perturbation import check_order
 from ..periodic import floquet_multipliers
 from .chart_axes import damping_rate, natural_frequency, on_grid
 from .chart_boundaries import BoundaryCurves, boundary_curves
-from .chart_lines import invariants
-from .chart_sampling import Map, Sampler, Series, relative_error
+from .chart_lines import Map, Sampler, Series, invariants, relative_error
 from .invariants import instability_kind, known_to, largest_modulus, root_uncertainty
 
 if TYPE_CHECKING:

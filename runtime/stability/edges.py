@@ -19,7 +19,7 @@ from ..periodic.equation import at_geometry, equation_of
 from ..periodic.lowest_modes import LowestModes
 from ..periodic.over_speed import MatricesOverSpeed
 from .boundary_speeds import SpeedBoundaries, speed_boundaries
-from .crossings import damped_regions, mended
+from .crossings import Regions, damped_regions, edge_checks, joined, mended
 from .labels import (
     averaged_modes,
     boundary_units,
@@ -30,7 +30,6 @@ from .labels import (
     unit_labels,
 )
 from .pairs import Edges, Events, Samples, meetings, refined_edges, sampled_phases
-from .regions import Regions, edge_checks, joined
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -141,7 +141,8 @@ def _chart(options: argparse.Namespace) -> int:
     x, y = (_axis(getattr(options, axis), axis, scene) for axis in ("x", "y"))
     if x[0] == y[0]:
         raise bad("--y", repr(y[0]), "another parameter than along x", "choose one")
-    speed = _fixed_speed(options, scene, (x[0], y[0]))
+    unset = "speed" in (x[0], y[0]) or scene.get("operation.speed", None) is None
+    speed = None if options.speed is None and unset else speed_of(options, scene)
     if options.store is not None:
         return _stored(options, system, (x, y), speed, count)
     from ..core.workers import in_order
@@ -160,12 +161,6 @@ def _chart(options: argparse.Namespace) -> int:
             frequency_name=name or "natural frequency",
         )
     return opt.finish(options, chart, _chart_lines(chart, scene))
-
-
-def _fixed_speed(options: argparse.Namespace, scene: Scene, names: tuple[str, str]) -> float | None:
-    """Return the crank speed [rad/s] of a chart without one among its axes; None for 1."""
-    without = "speed" in names or scene.get("operation.speed", None) is None
-    return None if options.speed is None and without else speed_of(options, scene)
 
 
 def _marks(scene: Scene, y: Axis) -> dict[str, tuple[float, ...]]:

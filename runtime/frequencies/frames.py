@@ -15,7 +15,7 @@ from ..beams.structure import Freedoms, PlacedElement, Structure, number_freedom
 from ..core.errors import bad
 from ..core.families import Array, Transcendental
 from ..core.inputs import is_finite, names_problems, numbers, require_kind, require_mapping
-from .members import functions, member_inertias, member_matrices, phases
+from .members import functions, member_matrices, phases
 
 Pieces = Mapping[str, tuple[float, ...]]
 
@@ -54,10 +54,6 @@ class Assembly:
     def local_matrices(self, omega: ArrayLike) -> tuple[Array, Array]:
         """Return D and M of the pieces in their own axes, ``(..., n, 6, 6)``."""
         return member_matrices(omega, *self.data)
-
-    def local_inertias(self, omega: float) -> Array:
-        """Return ``(D(0) - D(omega)) / omega^2`` of the pieces, ``(n, 6, 6)``."""
-        return np.asarray(member_inertias(omega, *self.data))
 
     def assembled(self, matrices: Array, diagonal: Array) -> Array:
         """Return ``(..., size, size)`` from local matrices and values on the free coordinates."""

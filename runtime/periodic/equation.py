@@ -374,7 +374,11 @@ class SampledSystem:
 
 def sampled(system: LinearPeriodic, *, forcing: bool = False) -> SampledSystem:
     """Return a system with its terms sampled; a term of wrong shape or not finite is refused."""
-    varying = [place for place, term in enumerate(system.terms) if _varies(term, forcing)]
+    varying = [
+        place
+        for place, term in enumerate(system.terms)
+        if _acts(term, forcing) and not term.constant
+    ]
     return _sampled(system, forcing, varying)
 
 
@@ -389,10 +393,6 @@ def _sampled(system: LinearPeriodic, forcing: bool, varying: Sequence[int]) -> S
 
 def _acts(term: Term, forcing: bool) -> bool:
     return term.array in SPEED_POWER and (forcing or term.array not in "fhp")
-
-
-def _varies(term: Term, forcing: bool) -> bool:
-    return _acts(term, forcing) and not term.constant
 
 
 def equation_of(

@@ -172,7 +172,9 @@ def carried_basis(period: float, modes: int, still: StillModes) -> MovingBasis:
     for k in range(1, len(theta) + 1):
         here = k % len(theta)
         overlap = np.swapaxes(values[here], 0, 1) @ carried[k - 1]
-        turn = _orthogonal(overlap @ turn)
+        # The orthogonal factor of the polar decomposition.
+        left, _, right = np.linalg.svd(overlap @ turn)
+        turn = left @ right
         turns.append(turn)
     back = _evenly(turns[-1], len(theta))
     if back is None:
@@ -241,12 +243,6 @@ def _border(squares: Array, modes: int) -> tuple[Array, Array]:
     kept = np.sqrt(squares[:, modes - 1])
     beyond = squares.shape[1] > modes
     return kept, np.sqrt(squares[:, modes]) if beyond else np.full_like(kept, np.inf)
-
-
-def _orthogonal(matrix: Array) -> Array:
-    """Return the orthogonal factor of the polar decomposition."""
-    left, _, right = np.linalg.svd(matrix)
-    return np.asarray(left @ right)
 
 
 def _evenly(turn: Array, count: int) -> Array | None:

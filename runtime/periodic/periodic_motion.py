@@ -174,7 +174,8 @@ class SteadyState(Result):
         from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
-        if self.speed.ndim == 1 and self.speed.size > 1 and self._deflects:
+        deflects = self.shapes is not None and self.shapes(_ENDS, self.theta[:1]) is not None
+        if self.speed.ndim == 1 and self.speed.size > 1 and deflects:
             return self._plot_peaks(ax)
         first = self.q.reshape(-1, *self.q.shape[-2:])[0]
         angles = np.degrees(np.append(self.theta, self.period))
@@ -185,10 +186,6 @@ class SteadyState(Result):
         if len(self.labels) > 1:
             ax.legend()
         return ax
-
-    @property
-    def _deflects(self) -> bool:
-        return self.shapes is not None and self.shapes(_ENDS, self.theta[:1]) is not None
 
     def _plot_peaks(self, ax: Axes) -> Axes:
         peaks = np.max(self.peak(np.linspace(0.0, 1.0, 41)), axis=1)

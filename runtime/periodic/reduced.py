@@ -109,7 +109,10 @@ def reduced_system(
         If ``modes`` is no number from 1 to n, or the modes span no smooth periodic subspace.
     """
     phi = moving_basis(system, modes) if basis is None else basis
-    terms = _fixed_terms(system, phi) if phi.fixed else _moving_terms(system, phi)
+    if phi.fixed:
+        terms = tuple(replace(term, function=_on_fixed(term, phi.values)) for term in system.terms)
+    else:
+        terms = _moving_terms(system, phi)
     rebuild = None
     if system.rebuild is not None:
         rebuild = partial(_reduced_anew, system.rebuild, dict(system.parameters), modes)
@@ -161,10 +164,6 @@ def projections(array: str, values: Array, phi: Array, slope: Array) -> Iterator
         yield "B", both + np.swapaxes(both, -1, -2)
     elif array == "C":
         yield "D", across @ (values @ slope)
-
-
-def _fixed_terms(system: LinearPeriodic, phi: MovingBasis) -> tuple[Term, ...]:
-    return tuple(replace(term, function=_on_fixed(term, phi.values)) for term in system.terms)
 
 
 def _on_fixed(term: Term, values: Array) -> Callable[[Array], Array] | Array:

@@ -462,7 +462,11 @@ def edge_checks(
     regions = regions._replace(begin=begin, end=end)
     speeds = np.linspace(*span, 64)
     found = floquet_multipliers(system, speeds, **parameters)
-    missed = speeds[~_covered(regions, speeds) & _grows(found)]
+    low, high = regions.begin - 2 * regions.error, regions.end + 2 * regions.error
+    covered = np.any((speeds[:, None] >= low) & (speeds[:, None] <= high), axis=1)
+    # Outside the circle by more than its error explains.
+    grows = np.any(np.abs(found.multipliers) > 1.0 + 4 * found.error, axis=-1)
+    missed = speeds[~covered & grows]
     # Deep inside a region something grows.
     calm = speeds[_within(regions, speeds) & found.stable]
     narrow = _narrow(system, regions, parameters)
@@ -535,16 +539,11 @@ def _counts(
             rate = _expected_growth(regions, wide) * 2 * np.sqrt(np.maximum(part * (1 - part), 0.0))
         least = np.min(np.where(covers, rate, np.inf), axis=1, initial=np.inf)
         most = np.where(least > _TELLING * blur, fewest, np.maximum(fewest, expected))
-    if np.any(_ragged(regions, span)):
+    no_begin = np.isnan(regions.lower) & (regions.begin > span[0])
+    if np.any(no_begin | (np.isnan(regions.upper) & (regions.end < span[1]))):
         # Kinds that go over into each other are seen from sample to sample only.
         fewest, most, expected = (np.minimum(n, 1) for n in (fewest, most, expected))
     return np.asarray(speeds[(fewest > expected) | (most < expected)])
-
-
-def _ragged(regions: Regions, span: tuple[float, float]) -> NDArray[np.bool_]:
-    """Return which regions lack an end within the range."""
-    value: NDArray[np.bool_] = np.isnan(regions.lower) & (regions.begin > span[0])
-    return value | (np.isnan(regions.upper) & (regions.end < span[1]))
 
 
 def _within(regions: Regions, speed: Array) -> NDArray[np.bool_]:
@@ -560,14 +559,3 @@ def _damped(found: FloquetMultipliers) -> bool:
     """Return True where the multipliers do not multiply to 1."""
     total = np.sum(found.exponents.real, axis=-1)
     return bool(np.any(np.abs(total) > 1e-6))
-
-
-def _grows(found: FloquetMultipliers) -> NDArray[np.bool_]:
-    """Return where a multiplier is outside the circle by more than its error explains."""
-    return np.asarray(np.any(np.abs(found.multipliers) > 1.0 + 4 * found.error, axis=-1))
-
-
-def _covered(regions: Regions, speed: Array) -> NDArray[np.bool_]:
-    """Return which speeds lie in some region, or within the error of its ends."""
-    low, high = regions.begin - 2 * regions.error, regions.end + 2 * regions.error
-    return np.asarray(np.any((speed[:, None] >= low) & (speed[:, None] <= high), axis=1))

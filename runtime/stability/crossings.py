@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.families import Array, LinearPeriodic
+from ..core.maxima import bracketed_roots
 from ..core.results import Check
-from ..core.roots import bracketed_roots
 from ..frequencies.multiplier_maxima import refined_maxima
 from ..periodic import FloquetMultipliers, floquet_multipliers
 from ..periodic.multipliers import conditions

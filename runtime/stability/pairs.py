@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
-from ..core.roots import bracketed_roots
+from ..core.maxima import bracketed_roots
 from ..periodic.equation import equation_of
 from ..periodic.multipliers import conditions, eigenvalues
 from ..periodic.over_speed import MatricesOverSpeed

@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 
     Axis = tuple[str, Array]
 
-_POINTS = 201
-
 
 def add(commands: Any) -> None:
     """Add the two subcommands."""
@@ -251,7 +249,7 @@ def _default_axis(axis: str, scene: Scene) -> Axis:
     """Return the axis of ``[chart]``, or of the speed range and the measured inertias."""
     name = scene.get(f"chart.{axis}", None)
     ends = scene.get(f"chart.{axis}_range", None)
-    points = scene.get(f"chart.{axis}_points", _POINTS)
+    points = scene.get(f"chart.{axis}_points", 201)
     if name is not None and ends is not None:
         return name, opt.spaced(ends[0], ends[1], max(points, 2))
     speeds = scene.get("operation.speed_range", None)

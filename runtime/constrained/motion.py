@@ -17,7 +17,7 @@ from ..core.families import Constrained, Guard
 from ..core.families.multipliers import check_rank, scaling
 from ..core.inputs import numbers, require_kind
 from ..core.plotting import Axes, axes_or_new
-from ..core.results import Check, Result, provenance
+from ..core.results import FAIR, Check, Result, provenance
 from .collocation import collocation
 from .equations import (
     EPS,
@@ -228,8 +228,6 @@ def _checked_mass(system: Constrained, q: Array, t: Array) -> Array:
 
 
 _MOST_SAMPLES = 2_000_000
-# Error, over the largest size of a coordinate, with which a motion is still told.
-_FAIR = 0.01
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -469,7 +467,7 @@ def _accuracy(span: float, x: Array, v: Array, steps: int, error: Array) -> tupl
     # Estimates are enlarged: from 5 on they cover 99 of 100 pendulums, rods and forces that jump.
     error = 5.0 * error + rounding
     size = np.maximum(reach, max(SMALL * float(np.max(reach)), 1e-300))
-    return error, Check(float(np.max(error / size)), _FAIR)
+    return error, Check(float(np.max(error / size)), FAIR)
 
 
 def _on_constraints(

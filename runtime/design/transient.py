@@ -206,8 +206,6 @@ _CHUNK = 512
 # Modes that are added to see what the others would change.
 _MORE = 3
 _MOST_STEPS = 200_000
-# From five even values the next one, if their fourth difference stays.
-_QUARTIC = np.array([5.0, -10.0, 10.0, -5.0, 1.0])
 # Coordinates that are followed without a reduction; their steps leave the axial modes unresolved.
 _FOLLOWED = 5
 
@@ -553,7 +551,9 @@ def _between(stress: Array) -> Array:
     """
     wide = stress
     for _ in range(2):
-        beyond = [np.tensordot(_QUARTIC, part, 1)[None] for part in (wide[:5], wide[:-6:-1])]
+        # The next value from five, if their fourth difference stays.
+        quartic = np.array([5.0, -10.0, 10.0, -5.0, 1.0])
+        beyond = [np.tensordot(quartic, part, 1)[None] for part in (wide[:5], wide[:-6:-1])]
         wide = np.concatenate([beyond[0], wide, beyond[1]])
     first, low, top, high, last = (wide[k : len(wide) - 4 + k] for k in range(5))
     bend = 2.0 * top - low - high

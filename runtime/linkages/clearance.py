@@ -18,11 +18,10 @@ from ..core.plotting import Axes, axes_or_new
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .four_bar import FourBar
 from .joint_play import OUTPUTS, CrankPosition, Outputs, Play, Route
-from .linkage import EPS, Array, finite_array, require_linkage
+from .linkage import EPS, JOINTS, Array, finite_array, require_linkage
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
 
-_JOINTS = ("12", "23", "34", "41")
 # Fields that are computed when they are first looked at.
 _LATER = {name: DeferredField() for name in ("error", "nominal_error")}
 # Of the play at which the linkage folds: the terms beyond the first order are of its square.
@@ -322,14 +321,14 @@ def _checked(
     problems = []
     for name, value in given.items():
         where = f"clearances[{name!r}]"
-        if name not in _JOINTS:
+        if name not in JOINTS:
             fix = "name the joint by its two links"
-            problems.append(Problem(where, shown(name), f"one of {', '.join(_JOINTS)}", fix))
+            problems.append(Problem(where, shown(name), f"one of {', '.join(JOINTS)}", fix))
         if not (is_finite(value) and 0.0 <= value <= longest):
             expected = f"a clearance from 0 to the longest length, {longest:g}"
             problems.append(Problem(where, shown(value), expected, "correct it"))
     refuse(problems)
-    return {name: float(given[name]) for name in _JOINTS if name in given}
+    return {name: float(given[name]) for name in JOINTS if name in given}
 
 
 def _extremes(task: _Task) -> tuple[WidthExtreme, WidthExtreme]:

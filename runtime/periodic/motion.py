@@ -16,7 +16,7 @@ from ..core.errors import LINEAR_RANGE, bad, warn_of_large_deflection
 from ..core.families import Array, LinearPeriodic
 from ..core.inputs import is_one_of, numbers
 from ..core.progress import bar
-from ..core.results import Check, DeferredChecks, Result, provenance
+from ..core.results import FAIR, Check, DeferredChecks, Result, provenance
 from .equation import Equation, equation_of
 from .periodic_motion import peaks
 from .transition import Method, method, predicted_error, product, segments_from
@@ -46,8 +46,6 @@ _STIFF = 7
 _DEAD, _MOST_DIVISIONS = 20.0, 4096
 # Decay between two given angles that Gauss's methods follow without effort.
 _LIVELY = 0.5
-# Error, over the peak, that a motion may have and still be told.
-_FAIR = 0.01
 # The finer of two levels is taken to be in error by this times the predicted share of their
 # difference, but at least by a share: a larger one where modes that are dead follow their load
 # unresolved.  Of 160 random motions of four scenes, on every level, 99 of 100 errors above
@@ -204,7 +202,7 @@ def simulate(
         else:
             run = _by_scipy(equation, grid, state, method, rtol, bound, tick)
             other, remaining, _ = _converged(equation, grid, state, 1e-10, bound, None)
-            error, allowed = _gap(equation, other, run) + remaining, _FAIR
+            error, allowed = _gap(equation, other, run) + remaining, FAIR
     theta = grid.theta[: len(run.states)]
     q, slope = _unscaled(equation, theta, run.states)
     largest = _largest(equation.system, grid, q)

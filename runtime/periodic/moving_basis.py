@@ -27,7 +27,7 @@ from ..core.trigonometric import (
 
 _FEWEST, _MOST = 64, 2048
 # Upper harmonics, over the largest, at which the samples are taken to fix the basis.
-_RESOLVED = 1e-13
+RESOLVED = 1e-13
 _USABLE = 1e-6
 
 
@@ -127,7 +127,7 @@ def moving_basis(system: LinearPeriodic, modes: int) -> MovingBasis:
     if system.is_constant("M") and system.is_constant("K"):
         return _fixed_basis(system, modes)
     held = partial(still_modes, system)
-    found = smooth_basis(system.period, modes, held, (_FEWEST, _MOST), _RESOLVED)
+    found = smooth_basis(system.period, modes, held, (_FEWEST, _MOST), RESOLVED)
     if not found.tail <= _USABLE:
         gap = float(np.min(found.left_out / found.kept))
         raise _rough(modes, f"a ratio of {gap:.6g} between the next frequency and its highest")

@@ -41,7 +41,6 @@ ComplexArray = NDArray[np.complex128]
 METHODS = ("auto", "harmonic_balance")
 _EPS = float(np.finfo(float).eps)
 _SAMPLES, _MOST_SAMPLES = 256, 2**20
-_ENDS = np.array([0.0, 1.0])
 # Numbers in q of a batch, half a GiB.
 _MOST_FLOATS = 2**26
 # Harmonics that the motion is likely to have: where the first rung of the ladder lies.
@@ -182,7 +181,8 @@ class SteadyState(Result):
         from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
-        deflects = self.shapes is not None and self.shapes(_ENDS, self.theta[:1]) is not None
+        ends = np.array([0.0, 1.0])
+        deflects = self.shapes is not None and self.shapes(ends, self.theta[:1]) is not None
         if self.speed.ndim == 1 and self.speed.size > 1 and deflects:
             return self._plot_peaks(ax)
         first = self.q.reshape(-1, *self.q.shape[-2:])[0]
@@ -508,7 +508,6 @@ def quiet_state(
         return steady_state(system, speeds, rtol=rtol, **changes)
 
 
-_FIRST = 12
 # Unknowns up to which harmonics are added: a matrix of 400 MiB.
 _MOST_UNKNOWNS = 5000
 
@@ -523,7 +522,7 @@ def balanced_motion(
     third is expected to leave of it, and round-off; the condition number is that of the equations
     in scaled coordinates, infinite where they are singular.
     """
-    harmonics = _FIRST
+    harmonics = 12
     before = _series(equation, 2 * harmonics // 3)[0]
     while True:
         waves, condition = _series(equation, harmonics)

@@ -34,7 +34,6 @@ _NAMES = {
     "shaking_force": FRAME_FORCE,
     "shaking_moment": ("shaking_moment",),
 }
-_MOMENTS = ("torque", "shaking_moment", "couple34", "couple41")
 
 
 @cache
@@ -92,8 +91,9 @@ class Evaluation:
             if self.machine.loaded:
                 total += self._loads(out, rows)
         if self.exponent:
-            for name in (name for name in _MOMENTS if name in rows):
-                out[rows[name]] = np.ldexp(out[rows[name]], self.exponent)
+            for name in ("torque", "shaking_moment", "couple34", "couple41"):
+                if name in rows:
+                    out[rows[name]] = np.ldexp(out[rows[name]], self.exponent)
         if not math.isfinite(total):
             self.machine.linkage.motion(self.theta)  # says which angle is out of reach
             where = "forces beyond the largest float, or a fold of the linkage"

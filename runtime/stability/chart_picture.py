@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core.families import Array
-from ..core.plotting import axes_or_new
+from ..core.plotting import RPM, axes_or_new
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from .chart import EdgeCurves, StabilityChart
     from .chart_boundaries import BoundaryCurves
 
-_RPM = 60.0 / (2.0 * np.pi)
 _LABELS = {
     "speed": "crank speed [rpm]",
     "follower_inertia": r"follower inertia $I_4$ [kg m$^2$]",
@@ -105,26 +104,26 @@ def _draw_edges(ax: Axes, chart: StabilityChart, edges: EdgeCurves) -> None:
     horizontal = chart.x_name == "speed"
     at = _shown(chart.y_name if horizontal else chart.x_name, edges.at)
     seen: set[str] = set()
-    low, high = (_RPM * v for v in ((chart.x if horizontal else chart.y)[[0, -1]]))
+    low, high = (RPM * v for v in ((chart.x if horizontal else chart.y)[[0, -1]]))
     for i, kind in enumerate(edges.kind):
         with np.errstate(invalid="ignore"):
             narrow = not np.any(edges.upper[i] - edges.lower[i] > _NARROW * edges.lower[i])
         for ends in (edges.lower[i], edges.upper[i]):
-            pair = (ends * _RPM, at) if horizontal else (at, ends * _RPM)
+            pair = (ends * RPM, at) if horizontal else (at, ends * RPM)
             label = None if kind in seen else f"{kind} regions, traced"
             ax.plot(*pair, color=_EDGES[kind], lw=0.35 if narrow else 0.8, label=label)
             seen.add(kind)
         if kind == "principal":
             continue
         # Labels stand at the row nearest to the end of the axis where the region is in the chart.
-        known = np.flatnonzero((edges.lower[i] * _RPM > low) & (edges.lower[i] * _RPM < high))
+        known = np.flatnonzero((edges.lower[i] * RPM > low) & (edges.lower[i] * RPM < high))
         if len(known):
             text = (
                 "+".join(map(str, edges.modes[i]))
                 if kind == "sum"
                 else "-".join(map(str, edges.modes[i][::-1]))
             )
-            place = (edges.lower[i, known[-1]] * _RPM, at[known[-1]])
+            place = (edges.lower[i, known[-1]] * RPM, at[known[-1]])
             ax.annotate(
                 f"{text}, {edges.harmonic[i]}",
                 place if horizontal else place[::-1],
@@ -137,7 +136,7 @@ def _draw_edges(ax: Axes, chart: StabilityChart, edges: EdgeCurves) -> None:
 
 
 def _shown(name: str, values: Array) -> Array:
-    return values * _RPM if name == "speed" else values
+    return values * RPM if name == "speed" else values
 
 
 def _reach_in(chart: StabilityChart, curves: BoundaryCurves) -> bool:
@@ -174,7 +173,7 @@ def _draw_fractions(ax: Axes, chart: StabilityChart) -> None:
     ticks: list[float] = []
     labels: list[str] = []
     for n in range(1, 41):
-        speed = 2.0 * chart.natural_frequency / n * _RPM
+        speed = 2.0 * chart.natural_frequency / n * RPM
         if low <= speed <= high and (not ticks or ticks[-1] - speed > 0.045 * (high - low)):
             ticks.append(speed)
             labels.append(_fraction(n))

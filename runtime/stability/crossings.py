@@ -22,13 +22,12 @@ from ..periodic import FloquetMultipliers, floquet_multipliers
 from ..periodic.multipliers import conditions
 from ..periodic.over_speed import MatricesOverSpeed
 from .labels import held_modes, meeting_labels, pair_shares
-from .pairs import perturbation_size, phase_grid
+from .pairs import TOGETHER, perturbation_size, phase_grid
 
 ComplexArray = NDArray[np.complex128]
 Index = NDArray[np.intp]
 
 _EPS = float(np.finfo(float).eps)
-_TOGETHER = 256
 # Places at which growth is looked for, in half widths from the middle of the undamped region.
 _PLACES = np.linspace(-1.5, 1.5, 13)
 
@@ -88,8 +87,8 @@ class Crossings:
         m = 2 * self._matrices.system.size
         none = np.zeros((0, m))
         parts: list[tuple[Array, ...]] = [(none, none, none.astype(complex), np.zeros(0))]
-        for start in range(0, len(speed), _TOGETHER):
-            matrices, error = self._matrices(speed[start : start + _TOGETHER])
+        for start in range(0, len(speed), TOGETHER):
+            matrices, error = self._matrices(speed[start : start + TOGETHER])
             values, vectors = (part.astype(complex) for part in np.linalg.eig(matrices))
             size = np.maximum(np.abs(values), 1e-300)
             shift = perturbation_size(matrices, error)

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
 from ..inputs import as_numpy, require_kind, require_whole
+from ..trigonometric import BETWEEN
 
 if TYPE_CHECKING:
     from ...beams.structure import Structure
@@ -566,8 +567,6 @@ _FIRST, _MOST = 256, 4096
 _NOISE = 1e-13
 # What the series may differ by from the term, over its size, at angles between.
 _ALIKE = 1e-10
-# Angles by the golden section, which no wave shares.
-_BETWEEN = np.arange(1, 14) * ((np.sqrt(5.0) - 1.0) / 2.0) % 1.0
 
 
 def term_spectrum(term: Term, expected: tuple[int, ...], period: float) -> Array:
@@ -597,8 +596,8 @@ def _meets(
     term: Term, expected: tuple[int, ...], period: float, table: NDArray[np.complex128]
 ) -> bool:
     """Return whether the series gives the term between the samples: no wave was mistaken."""
-    values = _checked(term, expected, period * _BETWEEN)
-    waves = np.exp(2j * np.pi * _BETWEEN[:, None] * np.arange(len(table)))
+    values = _checked(term, expected, period * BETWEEN)
+    waves = np.exp(2j * np.pi * BETWEEN[:, None] * np.arange(len(table)))
     series = 2.0 * (waves @ table).real - table[0].real
     return bool(np.max(np.abs(series - values)) <= _ALIKE * np.max(np.abs(values)))
 

@@ -21,8 +21,15 @@ from ..core.families import Array, Transcendental
 from ..core.inputs import is_finite, is_whole, numbers_in_a_row, require_kind
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
-from .frames import Assembly, DynamicStiffness, divided_for, narrow_enough
-from .members import functions, member_inertias, phases
+from .frames import (
+    Assembly,
+    DynamicStiffness,
+    divided_for,
+    functions,
+    member_inertias,
+    narrow_enough,
+    phases,
+)
 
 UNIT = 2.0**-53
 

@@ -22,8 +22,6 @@ Array = NDArray[np.float64]
 # The products of 1, c = cos(phi) and s = sin(phi), two at a time.
 PRODUCTS = ("1", "c", "s", "cc", "cs", "ss")
 _PLACE = {"11": 0, "1c": 1, "1s": 2, "cc": 3, "cs": 4, "ss": 5}
-# Coordinates of an element at its two ends; further ones are its own and do not turn.
-_ENDS = 6
 
 
 def products(angle: Array) -> Array:
@@ -44,7 +42,8 @@ def rotation(size: int) -> dict[str, Array]:
         cosine[u, u] = cosine[v, v] = 1.0
         sine[u, v], sine[v, u] = 1.0, -1.0
         fixed[turn, turn] = 1.0
-    own = np.arange(_ENDS, size)
+    # Beyond the six of its two ends the coordinates of an element are its own and do not turn.
+    own = np.arange(6, size)
     fixed[own, own] = 1.0
     return {"1": fixed, "c": cosine, "s": sine}
 

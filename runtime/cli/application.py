@@ -25,13 +25,12 @@ from .options import HelpFormatter, add, picture
 
 # Files of subcommands, in the order of the help.
 _GROUPS = (
-    *("scenes", "linkages", "curves", "tolerances", "forces", "balancing"),
-    *("response", "nonlinear", "beams", "stability", "boundaries", "proofs"),
+    *("scenes", "linkages", "tolerances", "forces", "response", "nonlinear"),
+    *("beams", "stability", "boundaries", "proofs"),
 )
 _BAD_INPUT = 2
 # Characters of a complaint; the longest list of choices has half as many.
 _LONGEST = 1200
-_INTERRUPTED = 130
 
 
 class _Parser(argparse.ArgumentParser):
@@ -98,7 +97,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _complain(prefix, "out of memory; ask for fewer points, modes or steps")
     except KeyboardInterrupt:
         _complain(prefix, "interrupted; no file is left half written")
-        return _INTERRUPTED
+        return 130  # as a shell says of an interrupt
     return _BAD_INPUT
 
 

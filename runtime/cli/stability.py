@@ -22,11 +22,9 @@ if TYPE_CHECKING:
     from ..constrained.orbits import PeriodicOrbit
     from ..core.families import Array, LinearPeriodic
     from ..scenes import Scene
-    from ..sweeps.result import AnyArray
+    from ..sweeps.tasks import AnyArray
 
     Axis = tuple[str, Array]
-
-_POINTS = 201
 
 
 def add(commands: Any) -> None:
@@ -141,7 +139,8 @@ def _chart(options: argparse.Namespace) -> int:
     x, y = (_axis(getattr(options, axis), axis, scene) for axis in ("x", "y"))
     if x[0] == y[0]:
         raise bad("--y", repr(y[0]), "another parameter than along x", "choose one")
-    speed = _fixed_speed(options, scene, (x[0], y[0]))
+    unset = "speed" in (x[0], y[0]) or scene.get("operation.speed", None) is None
+    speed = None if options.speed is None and unset else speed_of(options, scene)
     if options.store is not None:
         return _stored(options, system, (x, y), speed, count)
     from ..core.workers import in_order
@@ -160,12 +159,6 @@ def _chart(options: argparse.Namespace) -> int:
             frequency_name=name or "natural frequency",
         )
     return opt.finish(options, chart, _chart_lines(chart, scene))
-
-
-def _fixed_speed(options: argparse.Namespace, scene: Scene, names: tuple[str, str]) -> float | None:
-    """Return the crank speed [rad/s] of a chart without one among its axes; None for 1."""
-    without = "speed" in names or scene.get("operation.speed", None) is None
-    return None if options.speed is None and without else speed_of(options, scene)
 
 
 def _marks(scene: Scene, y: Axis) -> dict[str, tuple[float, ...]]:
@@ -256,7 +249,7 @@ def _default_axis(axis: str, scene: Scene) -> Axis:
     """Return the axis of ``[chart]``, or of the speed range and the measured inertias."""
     name = scene.get(f"chart.{axis}", None)
     ends = scene.get(f"chart.{axis}_range", None)
-    points = scene.get(f"chart.{axis}_points", _POINTS)
+    points = scene.get(f"chart.{axis}_points", 201)
     if name is not None and ends is not None:
         return name, opt.spaced(ends[0], ends[1], max(points, 2))
     speeds = scene.get("operation.speed_range", None)

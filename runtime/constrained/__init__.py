@@ -9,8 +9,7 @@ All take a :class:`~elastolink.runtime.core.families.Constrained`, such as ``fre
 
 from __future__ import annotations
 
-from .consistent import consistent_state
-from .motion import constrained_motion
+from .motion import consistent_state, constrained_motion
 from .multipliers import orbit_multipliers
 from .orbits import periodic_orbit
 

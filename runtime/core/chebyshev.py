@@ -62,12 +62,6 @@ def basis(x: Array, count: int) -> Array:
     return np.asarray(np.polynomial.chebyshev.chebvander(x, count - 1).T)
 
 
-def coefficients2(values: Array) -> Array:
-    """Return the coefficients of values ``(n, m)`` on the product of two node sets."""
-    n, m = values.shape
-    return np.asarray(analysis(n) @ values @ analysis(m).T)
-
-
 def tensor_values(coefficients: Array, x: Array, y: Array) -> Array:
     """Evaluate a double series at all pairs: x ``(nx,)``, y ``(ny,)`` to ``(nx, ny)``.
 

@@ -34,15 +34,14 @@ _SIGNS = {
     "not negative": ("a finite number, 0 or more", 0.0),
     "positive": ("a positive number", math.ulp(0.0)),
 }
-# The kind of device, in DLPack's numbering, whose memory NumPy sees.
-_HOST = 1
 
 
 def as_numpy(value: Any) -> Any:
     """Return an array of another namespace as NumPy's, from any device; anything else as it is."""
     if not hasattr(value, "__array_namespace__") or isinstance(value, (np.ndarray, np.generic)):
         return value
-    if value.__dlpack_device__()[0] == _HOST:
+    # In DLPack's numbering the kind of device whose memory NumPy sees is 1.
+    if value.__dlpack_device__()[0] == 1:
         return np.array(np.from_dlpack(value))
     return np.array(np.from_dlpack(value, device="cpu"))
 

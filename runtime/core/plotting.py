@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 else:  # what annotations name; matplotlib loads with the first picture
     Axes = "matplotlib.axes.Axes"
 
+# Revolutions per minute of one radian per second.
+RPM = 30.0 / np.pi
 FORMATS = (".png", ".svg", ".pdf")
 _METADATA: dict[str, dict[str, Any]] = {
     ".png": {"Software": None},

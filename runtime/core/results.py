@@ -24,6 +24,8 @@ ErrorKind = Literal["bound", "estimate"]
 
 # The dimensions of arrays that broadcast with each other, whatever their shapes.
 BROADCAST = ("...",)
+# Error of a motion, over its size, with which it is still given.
+FAIR = 0.01
 
 
 @dataclass(frozen=True)

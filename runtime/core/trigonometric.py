@@ -11,6 +11,9 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 _EPS = float(np.finfo(float).eps)
+GOLDEN = (float(np.sqrt(5.0)) - 1.0) / 2.0
+# Angles over the period by the golden section, which no wave shares.
+BETWEEN = np.arange(1.0, 14.0) * GOLDEN % 1.0
 # Angles evaluated at a time.
 _TOGETHER = 4096
 

@@ -14,8 +14,6 @@ from numpy.typing import NDArray
 
 Array: TypeAlias = NDArray[np.float64]
 
-# Splits a float into halves of 26 bits.
-_SPLIT = 134217729.0
 # pi/2 as a sum of three floats, exact to 2^-160.
 _QUARTER = (1.5707963267948966, 6.123233995736766e-17, -1.4973849048591833e-33)
 # Terms of the sine and cosine up to pi/4: the next one is below 1e-34.
@@ -37,7 +35,8 @@ def _product(a: Any, b: Any) -> tuple[Any, Any]:
 
 
 def _halves(a: Any) -> tuple[Any, Any]:
-    high = _SPLIT * a
+    # Halves of 26 bits.
+    high = (2.0**27 + 1.0) * a
     high = high - (high - a)
     return high, a - high
 

@@ -22,9 +22,6 @@ from .errors import ElastolinkError, bad
 from .inputs import require_whole
 from .threads import THREADS, environment
 
-# Pieces handed over for each worker: one being done and one waiting.
-_EACH = 2
-
 
 class WorkersLost(ElastolinkError):  # noqa: N818 - reads as what it is
     """The workers of an executor ended before their work did."""
@@ -54,7 +51,8 @@ def run_on(
     waiting: dict[Future[Any], int] = {}
     try:
         while True:
-            for number, item in islice(queue, _EACH * int(count) - len(waiting)):
+            # Two pieces for each worker: one being done and one waiting.
+            for number, item in islice(queue, 2 * int(count) - len(waiting)):
                 with _refusals(of=RuntimeError):
                     waiting[submit(*given, item)] = number
             if not waiting:

@@ -9,22 +9,21 @@ from ..core.lazy import on_first_use
 if TYPE_CHECKING:
     from .effects import damping_effect as damping_effect
     from .effects import length_effect as length_effect
+    from .effects import screen as screen
     from .fatigue_life import Material as Material
     from .fatigue_life import fatigue as fatigue
     from .procedure import running_speed as running_speed
     from .quiet import quiet_speeds as quiet_speeds
-    from .screening import screen as screen
     from .speed_profile import SpeedProfile as SpeedProfile
     from .transient import run_through as run_through
 
 __all__, __getattr__, __dir__ = on_first_use(
     globals(),
     {
-        "effects": ("damping_effect", "length_effect"),
+        "effects": ("damping_effect", "length_effect", "screen"),
         "fatigue_life": ("Material", "fatigue"),
         "procedure": ("running_speed",),
         "quiet": ("quiet_speeds",),
-        "screening": ("screen",),
         "speed_profile": ("SpeedProfile",),
         "transient": ("run_through",),
     },

@@ -1,20 +1,28 @@
-"""A linkage of beams that is run up, or down, through its critical speeds (Aannaque 7.5)."""
+"""A linkage of beams that is run up, or down, through its critical speeds (Aannaque 7.5).
+
+While a length of the ground changes in time, the arrays are cubic polynomials of it between the
+levels at which the structure is made.  Straight lines would not do: halfway between two directions
+of a link the mean of its stiffness matrices holds it across as a spring of a part of its axial
+stiffness would.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from numbers import Real
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..beams.assembly import in_own_axes, products
 from ..beams.element_forms import required_structure
 from ..beams.elements import placed_rotation, placed_shapes
+from ..core.collocation import gauss_maps
 from ..core.errors import LINEAR_RANGE, Problem, bad, refuse, warn_of_large_deflection
-from ..core.families import LinearPeriodic, require_system
+from ..core.families import DAMPING, MATRICES, VECTORS, LinearPeriodic, require_system
 from ..core.inputs import is_one_of, is_whole, require_whole
 from ..core.maxima import missed_by_parabolas
 from ..core.plotting import Axes, axes_or_new
@@ -22,9 +30,175 @@ from ..core.results import Check, Result, provenance
 from ..frequencies.held import held_frequencies
 from ..periodic import steady_state
 from ..periodic.reduced import ReducedSystem, reduced_system
-from .changing_length import ChangingLength
 from .speed_profile import Array, SpeedProfile
-from .unsteady import FORCES, Drive, arrays_of, generator_of, march
+
+# Forces of inertia and loads, with the power of the speed.
+FORCES = {"f": 2, "h": 1, "p": 0}
+
+
+@dataclass(frozen=True)
+class Drive:
+    """Crank angle, speed and acceleration at points of time, ``(nt,)`` each."""
+
+    angle: Array
+    speed: Array
+    acceleration: Array
+
+    @classmethod
+    def of(cls, profile: SpeedProfile, time: Array) -> Drive:
+        """Return those of a profile."""
+        return cls(profile.angle(time), profile.speed(time), profile.acceleration(time))
+
+    def force(self, arrays: Mapping[str, Array]) -> Array:
+        """Return the generalised forces ``td^2 f + td h + p + tdd g``, ``(nt, n)``."""
+        total = np.zeros(arrays["K"].shape[:2])
+        for name, power in FORCES.items():
+            if name in arrays:
+                total += self.speed[:, None] ** power * arrays[name]
+        if "g" in arrays:
+            total += self.acceleration[:, None] * arrays["g"]
+        return total
+
+
+def arrays_of(
+    system: LinearPeriodic, drive: Drive, only: Collection[str] | None = None
+) -> dict[str, Array]:
+    """Return the arrays of a system, or some, along a drive, their powers of the speed included.
+
+    By name, ``(nt, n, n)`` or ``(nt, n)``; those without a term are left out.
+    """
+    names = [name for name in only or MATRICES + VECTORS if system.has(name)]
+    return {name: system.array(name, drive.angle, drive.speed) for name in names}
+
+
+def generator_of(arrays: Mapping[str, Array], drive: Drive) -> Array:
+    """Return L of ``y' = L y`` in time, y = (q, p = M qd + td A q, 1): ``(nt, 2n + 1, 2n + 1)``."""
+    count, size, _ = arrays["M"].shape
+    speed, acceleration = drive.speed[:, None, None], drive.acceleration[:, None, None]
+    none = np.zeros((count, size, size))
+    inverse = np.linalg.inv(arrays["M"])
+    drift = speed * arrays.get("A", none)
+    back = inverse @ drift
+    restoring = arrays.get("K", none) + arrays.get("Kg", none)
+    restoring = restoring - speed**2 * arrays.get("B", none)
+    restoring = restoring - acceleration * arrays.get("S", none)
+    if any(name in arrays for name in DAMPING):
+        restoring = restoring + speed * arrays.get("D", none)
+    push = np.swapaxes(drift, -1, -2) - arrays.get("C", none)
+    found = np.zeros((count, 2 * size + 1, 2 * size + 1))
+    found[:, :size, :size] = -back
+    found[:, :size, size:-1] = inverse
+    found[:, size:-1, :size] = -push @ back - restoring
+    found[:, size:-1, size:-1] = push @ inverse
+    found[:, size:-1, -1] = drive.force(arrays)
+    return found
+
+
+def march(generator: Callable[[Array], Array], edges: Array, start: Array, stages: int) -> Array:
+    """Return the states at even times, ``(nt, m)``, by Gauss-Legendre collocation.
+
+    The generator maps times to L of ``y' = L y``.  A-stable: modes far faster than the steps are
+    damped or kept, never amplified, and not resolved.
+    """
+    step = edges[1] - edges[0]
+    # Steps whose stage equations, two million numbers, are solved together.
+    block = max(1, 2_000_000 // (stages * len(start)) ** 2)
+    states = np.empty((len(edges), len(start)))
+    states[0] = start
+    for first in range(0, len(edges) - 1, block):
+        maps = gauss_maps(stages, generator, edges[first:-1][:block], step)
+        for k, matrix in enumerate(maps, first):
+            states[k + 1] = matrix @ states[k]
+    return states
+
+
+# Levels whose cubic holds between the middle two, or beside the ends.
+_STENCIL = 4
+
+ByName = Mapping[str, Array]
+Places = NDArray[np.intp]
+
+
+class ChangingLength:
+    """A structure at even levels of a length that changes, four or more, and what is between.
+
+    The length is one of the ground, so that no beam's own changes; the crank turns at every level.
+    """
+
+    def __init__(
+        self, system: LinearPeriodic, profile: SpeedProfile, name: str, count: int
+    ) -> None:
+        values = profile.geometry[name]
+        self.profile, self.name = profile, name
+        self.places = np.linspace(min(values), max(values), count)
+        self.made = [system.with_geometry(**{name: float(place)}) for place in self.places]
+        own = [placed.length for placed in required_structure(system).elements]
+        for one in (self.made[0], self.made[-1]):
+            lengths = [placed.length for placed in required_structure(one).elements]
+            if not np.allclose(lengths, own, rtol=1e-12, atol=0.0):
+                fix = "change one of the ground, such as frame"
+                found = f"{name}, the length of a beam"
+                raise bad("profile.geometry", found, "a length that no beam has", fix)
+
+    def arrays(self, drive: Drive, time: Array) -> dict[str, Array]:
+        """Return the arrays of the system at points of time, by name."""
+
+        def find(system: LinearPeriodic, own: Places) -> ByName:
+            return arrays_of(
+                system, Drive(drive.angle[own], drive.speed[own], drive.acceleration[own])
+            )
+
+        return self._between(time, find)
+
+    def directions(self, angle: Array, time: Array) -> dict[str, Array]:
+        """Return cosine and sine of each link's angle, ``(nt, 2)`` by link."""
+
+        def find(system: LinearPeriodic, own: Places) -> ByName:
+            motion = required_structure(system).configuration(angle[own])
+            return {link: products(each.angle)[:, 1:3] for link, each in motion.items()}
+
+        return self._between(time, find)
+
+    def deflections(self, angle: Array, time: Array) -> Array:
+        """Return the rows of the deflections over the links' lengths, ``(nt, k, n)``."""
+
+        def find(system: LinearPeriodic, own: Places) -> ByName:
+            return {"rows": np.asarray(system.deflection_rows(angle[own]))}
+
+        return self._between(time, find)["rows"]
+
+    def _between(
+        self, time: Array, find: Callable[[LinearPeriodic, Places], ByName]
+    ) -> dict[str, Array]:
+        """Return what is found at the levels about each point of time, by Lagrange's cubic."""
+        places = self.places
+        at = np.clip(self.profile.lengths(self.name, time), places[0], places[-1])
+        position = (at - places[0]) / (places[1] - places[0])
+        first = np.clip(position.astype(int) - 1, 0, len(places) - _STENCIL)
+        weights = _cubic(position - first)
+        total: dict[str, Array] = {}
+        for k in range(int(np.min(first)), int(np.max(first)) + _STENCIL):
+            own = np.flatnonzero((first <= k) & (k < first + _STENCIL))
+            if not own.size:
+                continue
+            weight = weights[own, k - first[own]]
+            for name, value in find(self.made[k], own).items():
+                if name not in total:
+                    total[name] = np.zeros((len(time), *value.shape[1:]))
+                total[name][own] += value * weight.reshape(-1, *(1,) * (value.ndim - 1))
+        return total
+
+
+def _cubic(place: Array) -> Array:
+    """Return the weights of values at 0, 1, 2, 3 for a place between, ``(nt, 4)``."""
+    nodes = np.arange(_STENCIL, dtype=float)
+    weights = np.ones((len(place), _STENCIL))
+    for i in range(_STENCIL):
+        for j in range(_STENCIL):
+            if i != j:
+                weights[:, i] *= (place - nodes[j]) / (nodes[i] - nodes[j])
+    return weights
+
 
 _STAGES = 3
 # Steps whose motion and stresses are recovered together.
@@ -32,8 +206,6 @@ _CHUNK = 512
 # Modes that are added to see what the others would change.
 _MORE = 3
 _MOST_STEPS = 200_000
-# From five even values the next one, if their fourth difference stays.
-_QUARTIC = np.array([5.0, -10.0, 10.0, -5.0, 1.0])
 # Coordinates that are followed without a reduction; their steps leave the axial modes unresolved.
 _FOLLOWED = 5
 
@@ -379,7 +551,9 @@ def _between(stress: Array) -> Array:
     """
     wide = stress
     for _ in range(2):
-        beyond = [np.tensordot(_QUARTIC, part, 1)[None] for part in (wide[:5], wide[:-6:-1])]
+        # The next value from five, if their fourth difference stays.
+        quartic = np.array([5.0, -10.0, 10.0, -5.0, 1.0])
+        beyond = [np.tensordot(quartic, part, 1)[None] for part in (wide[:5], wide[:-6:-1])]
         wide = np.concatenate([beyond[0], wide, beyond[1]])
     first, low, top, high, last = (wide[k : len(wide) - 4 + k] for k in range(5))
     bend = 2.0 * top - low - high

@@ -16,15 +16,15 @@ if TYPE_CHECKING:
     from .frames import dynamic_stiffness as dynamic_stiffness
     from .frames import element_matrices as element_matrices
     from .frames import log_determinant as log_determinant
+    from .frames import member_matrices as member_matrices
     from .held import buckling_speed as buckling_speed
     from .link_study import LinkFrequencies as LinkFrequencies
     from .link_study import frequency_exponents as frequency_exponents
     from .link_study import link_frequencies as link_frequencies
     from .link_study import pinned_frequency as pinned_frequency
-    from .members import member_matrices as member_matrices
-    from .mode_pictures import draw_mode as draw_mode
-    from .mode_pictures import draw_modes as draw_modes
     from .natural import NaturalFrequencies as NaturalFrequencies
+    from .natural import draw_mode as draw_mode
+    from .natural import draw_modes as draw_modes
     from .natural import natural_frequencies as natural_frequencies
     from .resonance_curves import ResonanceCurve as ResonanceCurve
     from .resonance_curves import resonance_curve as resonance_curve
@@ -35,7 +35,7 @@ __all__, __getattr__, __dir__ = on_first_use(
         "campbell_diagram": ("campbell",),
         "counting": ("wittrick_williams",),
         "critical": ("critical_speeds",),
-        "frames": ("dynamic_stiffness", "element_matrices", "log_determinant"),
+        "frames": ("dynamic_stiffness", "element_matrices", "log_determinant", "member_matrices"),
         "held": ("buckling_speed",),
         "link_study": (
             "LinkFrequencies",
@@ -43,9 +43,7 @@ __all__, __getattr__, __dir__ = on_first_use(
             "link_frequencies",
             "pinned_frequency",
         ),
-        "members": ("member_matrices",),
-        "mode_pictures": ("draw_mode", "draw_modes"),
-        "natural": ("NaturalFrequencies", "natural_frequencies"),
+        "natural": ("NaturalFrequencies", "draw_mode", "draw_modes", "natural_frequencies"),
         "resonance_curves": ("ResonanceCurve", "resonance_curve"),
     },
 )

@@ -274,7 +274,8 @@ def _crossings(speeds: Array, values: Array, mode: int) -> list[tuple[float, int
         return []
     ratio = f / w
     # The frequency changes little with the speed; its ratio to the speed does.
-    curves = [PchipInterpolator(w[rows], f[rows]) for rows in (slice(None), _every_other(len(w)))]
+    every_other = np.unique(np.append(np.arange(0, len(w), 2), len(w) - 1))
+    curves = [PchipInterpolator(w[rows], f[rows]) for rows in (slice(None), every_other)]
     out = []
     for n in range(max(1, int(np.ceil(ratio.min()))), int(np.floor(ratio.max())) + 1):
         # A frequency this close to a multiple of the speed, over the speed, is locked to it.
@@ -302,11 +303,6 @@ def _unevenness(speeds: Array, values: Array, first: int) -> float:
     near = slice(max(0, first - 2), first + 4)
     chord = f[0] + (f[1] - f[0]) / (w[1] - w[0]) * (speeds[near] - w[0])
     return float(np.max(np.abs(values[near] - chord)))
-
-
-def _every_other(count: int) -> Indices:
-    """Return every other row, the last one among them."""
-    return np.unique(np.append(np.arange(0, count, 2), count - 1))
 
 
 def _root(curve: Any, order: int, low: float, high: float) -> float:

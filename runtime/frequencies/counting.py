@@ -21,8 +21,15 @@ from ..core.families import Array, Transcendental
 from ..core.inputs import is_finite, is_whole, numbers_in_a_row, require_kind
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
-from .frames import Assembly, DynamicStiffness, divided_for, narrow_enough
-from .members import functions, phases
+from .frames import (
+    Assembly,
+    DynamicStiffness,
+    divided_for,
+    functions,
+    member_inertias,
+    narrow_enough,
+    phases,
+)
 
 UNIT = 2.0**-53
 
@@ -37,7 +44,8 @@ def quadratic_forms(
     """
     if mass is None:
         _, mass = assembly.local_matrices(omega)
-    inertia = assembly.local_inertias(omega)
+    # (D(0) - D(omega)) / omega^2 of the pieces.
+    inertia = np.asarray(member_inertias(omega, *assembly.data))
     ends = assembly.local @ vectors
     felt = np.abs(assembly.local) @ np.abs(vectors)  # what rounding sees
     nodes = assembly.reduction @ vectors

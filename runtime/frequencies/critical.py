@@ -494,7 +494,9 @@ def critical_speeds(
         deflections are not known.
     """
     require_system(system)
-    _require_moving(system)
+    if all(term.constant for term in system.terms):
+        found, fix = "a frame: no crank moves it", "take natural_frequencies of it"
+        raise bad("system", found, "a system that depends on a crank angle", fix)
     low, high = speed_span(speed_range)
     if not isinstance(method, str) or method not in METHODS:
         raise bad("method", repr(method), f"one of {tuple(METHODS)}", "choose one")
@@ -504,10 +506,3 @@ def critical_speeds(
         raise bad("speeds", repr(speeds), "a whole number, 3 or more", "choose 240")
     means = mean_frequencies(system, count, _ENOUGH)
     return METHODS[method](Request(system, low, high, *means, speeds, progress))
-
-
-def _require_moving(system: LinearPeriodic) -> None:
-    """Refuse a frame: nothing of it depends on the angle of a crank, so that no speed matters."""
-    if all(term.constant for term in system.terms):
-        found, fix = "a frame: no crank moves it", "take natural_frequencies of it"
-        raise bad("system", found, "a system that depends on a crank angle", fix)

@@ -29,9 +29,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.chebyshev import analysis, nodes
 from ..core.errors import BadInput, bad
+from ..core.maxima import bracketed_roots
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, DeferredChecks, Result, provenance
-from ..core.roots import bracketed_roots
 from .checks import EPS, Array, Index, Mask, axes_over, check_function, check_regions, points
 from .fourier_matrix import banded, by_parity, chunks, stacked, truncation
 from .half_trace import discriminant, growth_rate

@@ -325,7 +325,8 @@ def _series(polynomials: Transfer, limits: Box) -> _Series | int:
         )
         x, y = _nodes((x0, x1), rows), _nodes((y0, y1), columns)
         values = polynomials.half_trace(np.repeat(x, columns), np.tile(y, rows))
-        c = chebyshev.coefficients2(values.reshape(rows, columns))
+        over_x, over_y = (chebyshev.analysis(count) for count in (rows, columns))
+        c = over_x @ values.reshape(rows, columns) @ over_y.T
         above = max(1.0, float(np.abs(values).max()) / largest)
         sizes = np.abs(c)
         tails = [

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from ...generated import hill_meissner
 from ..core.errors import bad
-from ..core.roots import bracketed_roots
+from ..core.maxima import bracketed_roots
 from .checks import EPS, Array, Index, finite
 from .transfer import Exponents, HalfTraces, in_parts, normalised, product
 

@@ -16,10 +16,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, bad
-from ..core.maxima import local_maxima, narrowed
+from ..core.maxima import bracketed_roots, local_maxima, narrowed
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
-from ..core.roots import bracketed_roots
 from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
 from .boundaries import ends_at, hill_boundaries, largest_exponent, sample_of
 from .checks import EPS, Array, Index, Mask, axes_over, check_function, check_regions, points

@@ -106,7 +106,10 @@ def base_plane(lam: float, points: int = 201) -> BasePlane:
         raise bad("lam", repr(lam), f"a finite number above {least:.6g}", "no linkage lies there")
     require_whole("points", points, 2, 5000)
     total = float(lam) * 3.0**0.5
-    outline = _outline(total)
+    # The triangle of positive ratios, less what the zero-mobility planes cut off.
+    outline = total * np.eye(3)
+    for i in range(3):
+        outline = _clipped(outline, i, (1.0 + total) / 2.0, -1.0)
     flat = outline @ _AXES.T
     x, y = (np.linspace(flat[:, i].min(), flat[:, i].max(), points) for i in range(2))
     ratios = total / 3.0 + x[None, :, None] * _AXES[0] + y[:, None, None] * _AXES[1]
@@ -128,14 +131,6 @@ def base_plane(lam: float, points: int = 201) -> BasePlane:
         error_kind="bound",
         provenance=provenance({"lam": repr(float(lam))}),
     )
-
-
-def _outline(total: float) -> Array:
-    """Return the triangle of positive ratios, less what the zero-mobility planes cut off."""
-    corners = total * np.eye(3)
-    for i in range(3):
-        corners = _clipped(corners, i, (1.0 + total) / 2.0, -1.0)
-    return corners
 
 
 def _regions(outline: Array, total: float, error: float) -> dict[str, Array]:

@@ -15,12 +15,12 @@ from ..core.periodic_function import PeriodicFunction
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..core.sampling import irregular_angles, values_at
+from ..core.trigonometric import GOLDEN
 from .linkage import EPS, TURN, Array
 
 Function = Callable[[Array], ArrayLike]
 Source: TypeAlias = Function | tuple[Any, ...]
 
-_GOLDEN = 0.6180339887498949
 _PROBES = 257
 
 
@@ -239,7 +239,7 @@ def _coefficients(
     f: Callable[[Array], Array], count: int, name: str
 ) -> tuple[Array, Array, np.ndarray[Any, Any]]:
     """Return angles, from an irrational place on, samples, and the coefficients a - i b."""
-    start = (_GOLDEN * np.log2(count)) % 1.0
+    start = (GOLDEN * np.log2(count)) % 1.0
     theta = np.asarray(TURN * (np.arange(count) + start) / count, dtype=np.float64)
     values = values_at(f, theta, name)
     spectrum = np.fft.rfft(values) / count

@@ -28,8 +28,6 @@ Limits: TypeAlias = tuple[float, float]
 Box: TypeAlias = Mapping[str, Limits]
 
 _SCALE_FREE = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")
-_PREFERRED = ("theta4", "position", "theta3")
-_NAMES = {"theta2": "crank angle"}
 _SYMBOLS = {"theta3": r"$\theta_3$", "theta4": r"$\theta_4$"}
 
 # Standard deviations over the tolerance.
@@ -247,7 +245,8 @@ class Tolerances(Result):
         if self.theta2.ndim != 1:
             shape = f"crank angles of shape {self.theta2.shape}"
             raise bad("plot", shape, "a one-dimensional array", "choose one speed, a row of angles")
-        name = output or next(name for name in _PREFERRED if name in self.outputs)
+        drawn = ("theta4", "position", "theta3")
+        name = output or next(name for name in drawn if name in self.outputs)
         row, unit = self.place(name), self.unit(name)
         factor = 1.0
         if unit == "rad":
@@ -266,7 +265,8 @@ class Tolerances(Result):
         for place, parameter in enumerate(self.parameters):
             if self.tolerance[place] > 0.0:
                 line = factor * self.deviations[row, place][order]
-                ax.plot(degrees, line, lw=1.2, label=f"{_NAMES.get(parameter, parameter)} alone")
+                moved = "crank angle" if parameter == "theta2" else parameter
+                ax.plot(degrees, line, lw=1.2, label=f"{moved} alone")
         ax.axhline(0.0, color="0.4", lw=0.8)
         ax.set_xlabel("crank angle [deg]")
         ax.set_ylabel(f"deviation of {_SYMBOLS.get(name, name)} [{unit}]")

@@ -26,6 +26,7 @@ Assembly: TypeAlias = Literal["open", "crossed"]
 Terms: TypeAlias = tuple[list[Any], list[Any], list[Any]]
 
 TURN = 2.0 * np.pi
+JOINTS = ("12", "23", "34", "41")
 EPS = float(np.finfo(float).eps)
 TINY = float(np.finfo(float).tiny)
 # A round-off of each of the numbers that an expression comes from, three times.

@@ -23,6 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import BadInput, bad
 from ..core.families import Array, LinearPeriodic, Term, require_system
 from ..core.inputs import numbers
+from ..core.trigonometric import BETWEEN
 
 # Power of the speed that an array carries once d/dt = speed * d/dtheta and the equation has been
 # divided by speed^2; S and g act only when the crank accelerates.
@@ -44,8 +45,6 @@ _FEWEST = 64
 _ENDED, _ROUNDING = 16.0 * float(np.finfo(float).eps), 1e-12
 # Amplitude over the largest from which the nodes of a method have to see a harmonic.
 _SEEN = 1e-6
-# Angles over the period by the golden section, which no wave shares.
-_BETWEEN = np.arange(1.0, 14.0) * ((np.sqrt(5.0) - 1.0) / 2.0) % 1.0
 # Places of the period at which frozen modes are computed, and the most members times modes cubed
 # for which each member has its own.
 _PLACES, _EACH = 8, 2_000_000
@@ -374,7 +373,11 @@ class SampledSystem:
 
 def sampled(system: LinearPeriodic, *, forcing: bool = False) -> SampledSystem:
     """Return a system with its terms sampled; a term of wrong shape or not finite is refused."""
-    varying = [place for place, term in enumerate(system.terms) if _varies(term, forcing)]
+    varying = [
+        place
+        for place, term in enumerate(system.terms)
+        if _acts(term, forcing) and not term.constant
+    ]
     return _sampled(system, forcing, varying)
 
 
@@ -389,10 +392,6 @@ def _sampled(system: LinearPeriodic, forcing: bool, varying: Sequence[int]) -> S
 
 def _acts(term: Term, forcing: bool) -> bool:
     return term.array in SPEED_POWER and (forcing or term.array not in "fhp")
-
-
-def _varies(term: Term, forcing: bool) -> bool:
-    return _acts(term, forcing) and not term.constant
 
 
 def equation_of(
@@ -501,9 +500,9 @@ def fourier_series(system: LinearPeriodic, terms: Sequence[Term]) -> tuple[list[
     if not terms:
         return [], 0, 0
     first = next((count for size, count in _FIRST.items() if system.size <= size), _FEWEST)
-    angles = np.concatenate([_BETWEEN, np.arange(float(first)) / first])
+    angles = np.concatenate([BETWEEN, np.arange(float(first)) / first])
     values = _rows(system, terms, system.period * angles)
-    between, table = values[: len(_BETWEEN)], values[len(_BETWEEN) :]
+    between, table = values[: len(BETWEEN)], values[len(BETWEEN) :]
     shapes = [(system.size,) * (1 if term.array in "fhp" else 2) for term in terms]
     widths = np.array([int(np.prod(shape)) for shape in shapes])
     done: dict[int, Array] = {}
@@ -525,7 +524,7 @@ def fourier_series(system: LinearPeriodic, terms: Sequence[Term]) -> tuple[list[
             harmonics = int(np.max(np.nonzero(seen)[0], initial=0))
             waved = spectrum[1 : harmonics + 1]
             series = np.concatenate([spectrum[:1].real, 2.0 * waved.real, -2.0 * waved.imag])
-            gaps = np.abs(waves(harmonics, 2 * np.pi * _BETWEEN) @ series - between)
+            gaps = np.abs(waves(harmonics, 2 * np.pi * BETWEEN) @ series - between)
             ended &= np.maximum.reduceat(np.max(gaps, axis=0), firsts) <= 1e-10 * tops
             far = np.nonzero(amplitude[:, ended] > _SEEN * tops[ended])[0]
             reach = max(reach, int(np.max(far, initial=0)))

@@ -27,7 +27,7 @@ from ..core.trigonometric import (
 
 _FEWEST, _MOST = 64, 2048
 # Upper harmonics, over the largest, at which the samples are taken to fix the basis.
-_RESOLVED = 1e-13
+RESOLVED = 1e-13
 _USABLE = 1e-6
 
 
@@ -127,7 +127,7 @@ def moving_basis(system: LinearPeriodic, modes: int) -> MovingBasis:
     if system.is_constant("M") and system.is_constant("K"):
         return _fixed_basis(system, modes)
     held = partial(still_modes, system)
-    found = smooth_basis(system.period, modes, held, (_FEWEST, _MOST), _RESOLVED)
+    found = smooth_basis(system.period, modes, held, (_FEWEST, _MOST), RESOLVED)
     if not found.tail <= _USABLE:
         gap = float(np.min(found.left_out / found.kept))
         raise _rough(modes, f"a ratio of {gap:.6g} between the next frequency and its highest")
@@ -172,7 +172,9 @@ def carried_basis(period: float, modes: int, still: StillModes) -> MovingBasis:
     for k in range(1, len(theta) + 1):
         here = k % len(theta)
         overlap = np.swapaxes(values[here], 0, 1) @ carried[k - 1]
-        turn = _orthogonal(overlap @ turn)
+        # The orthogonal factor of the polar decomposition.
+        left, _, right = np.linalg.svd(overlap @ turn)
+        turn = left @ right
         turns.append(turn)
     back = _evenly(turns[-1], len(theta))
     if back is None:
@@ -241,12 +243,6 @@ def _border(squares: Array, modes: int) -> tuple[Array, Array]:
     kept = np.sqrt(squares[:, modes - 1])
     beyond = squares.shape[1] > modes
     return kept, np.sqrt(squares[:, modes]) if beyond else np.full_like(kept, np.inf)
-
-
-def _orthogonal(matrix: Array) -> Array:
-    """Return the orthogonal factor of the polar decomposition."""
-    left, _, right = np.linalg.svd(matrix)
-    return np.asarray(left @ right)
 
 
 def _evenly(turn: Array, count: int) -> Array | None:

@@ -10,12 +10,11 @@ import numpy as np
 
 from ..core.families import LinearPeriodic, Term
 from ..core.trigonometric import Array, even_angles, interpolated, tail
-from .moving_basis import MovingBasis, moving_basis
+from .moving_basis import RESOLVED, MovingBasis, moving_basis
 
 # Even angles from which the reduced arrays are interpolated.
 _FEWEST, _MOST = 128, 2048
-# Their upper harmonics, over the largest, at which they are taken to be resolved.
-_RESOLVED = 1e-13
+# Part of what it was that an error has to fall to, for more angles to be worth it.
 _STALLED = 0.1
 # Angles at which the arrays are compared with their definition, and how much worse they may be
 # elsewhere.
@@ -109,7 +108,10 @@ def reduced_system(
         If ``modes`` is no number from 1 to n, or the modes span no smooth periodic subspace.
     """
     phi = moving_basis(system, modes) if basis is None else basis
-    terms = _fixed_terms(system, phi) if phi.fixed else _moving_terms(system, phi)
+    if phi.fixed:
+        terms = tuple(replace(term, function=_on_fixed(term, phi.values)) for term in system.terms)
+    else:
+        terms = _moving_terms(system, phi)
     rebuild = None
     if system.rebuild is not None:
         rebuild = partial(_reduced_anew, system.rebuild, dict(system.parameters), modes)
@@ -163,10 +165,6 @@ def projections(array: str, values: Array, phi: Array, slope: Array) -> Iterator
         yield "D", across @ (values @ slope)
 
 
-def _fixed_terms(system: LinearPeriodic, phi: MovingBasis) -> tuple[Term, ...]:
-    return tuple(replace(term, function=_on_fixed(term, phi.values)) for term in system.terms)
-
-
 def _on_fixed(term: Term, values: Array) -> Callable[[Array], Array] | Array:
     if term.constant:
         return np.asarray(_projected(term.array, values, term(np.zeros(1)))[0])
@@ -189,7 +187,7 @@ def _moving_terms(system: LinearPeriodic, phi: MovingBasis) -> tuple[Term, ...]:
         found = _sampled_terms(system, phi, even_angles(system.period, count))
         worst = max(map(tail, found.values()), default=0.0)
         # What stays as it is by twice as many angles is the round-off of a stiff system.
-        if worst <= _RESOLVED or worst > _STALLED * before or 2 * count > _MOST:
+        if worst <= RESOLVED or worst > _STALLED * before or 2 * count > _MOST:
             break
         count, before = 2 * count, worst
     return tuple(

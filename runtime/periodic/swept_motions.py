@@ -145,10 +145,9 @@ class Truncations:
         self.numbers = modes_offered(system, least)
         self._made: dict[tuple[int, int], tuple[TruncatedSystem, SampledSystem] | None] = {}
         self._held = lru_cache(maxsize=None)(partial(still_modes, system))
-        self._arrays = lru_cache(maxsize=None)(self._arrays_at)
-
-    def _arrays_at(self, angles: int) -> dict[tuple[str, int], Array]:
-        return arrays_at(self.system, even_angles(self.system.period, angles))
+        self._arrays = lru_cache(maxsize=None)(
+            lambda angles: arrays_at(system, even_angles(system.period, angles))
+        )
 
     def at(self, modes: int, angles: int) -> tuple[TruncatedSystem, SampledSystem] | None:
         """Return the truncation to a number of modes; None where these do not stay smooth."""

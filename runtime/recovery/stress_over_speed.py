@@ -208,7 +208,10 @@ def stress_curve(
     """
     given = _checked(system, speeds, rtol)
     require_method(method)
-    _require_damped(system)
+    # Nothing else bounds the resonances.
+    if not any(name in DAMPING for name, _ in arrays_at(system, even_angles(system.period, 16))):
+        found, fix = "a system without damping", "add some, with_modal_damping for example"
+        raise bad("system", found, "damping, which bounds the resonances", fix)
     rising, back = np.unique(given, return_inverse=True)
     # Stations per link by default: with three elements their ends and middles.
     places = 7 if stations is None else stations
@@ -414,14 +417,6 @@ def _growth(system: LinearPeriodic, parts: list[_Range], speeds: Array) -> tuple
     gap = abs(float(np.max(np.abs(whole.multipliers))) - modulus[-1]) / condition[-1]
     defect = max(ELSEWHERE * max(part.defect for part in parts), 2.0 * gap)
     return modulus, error + defect * condition
-
-
-def _require_damped(system: LinearPeriodic) -> None:
-    """Refuse a system whose resonances nothing bounds."""
-    arrays = arrays_at(system, even_angles(system.period, 16))
-    if not any(name in DAMPING for name, _ in arrays):
-        found, fix = "a system without damping", "add some, with_modal_damping for example"
-        raise bad("system", found, "damping, which bounds the resonances", fix)
 
 
 def _checked(system: LinearPeriodic, speeds: ArrayLike, rtol: float) -> Array:

@@ -23,8 +23,7 @@ from .counterweights import (
     case_counterweights,
     with_counterweights,
 )
-from .inputs import finite_number, require_link
-from .machine import Machine, require_machine
+from .machine import Machine, finite_number, require_link, require_machine
 from .optimum import Candidate, Design, ForceBasis, Measure, Search, best_counterweights
 from .peaks import TERMS
 

@@ -9,8 +9,7 @@ from typing import Any, Literal, TypeAlias
 
 from ..core.errors import Problem, bad, refuse
 from ..core.inputs import number_problems
-from .inputs import finite_number, require_link
-from .machine import Machine, require_machine
+from .machine import Machine, finite_number, require_link, require_machine
 from .masses import MassDistribution
 
 

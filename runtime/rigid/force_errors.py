@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 from ..core.results import Check
 from ..linkages.linkage import EPS, Array, Linkage, Motion
 from ..linkages.parametric import ANGLE
-from .evaluation import BLOCK
+from .evaluation import BLOCK, ParametricMachine
 from .loads import Load, Spring, Wrench, at_first_joint, frozen
 from .machine import Machine, power_of, wrenches
-from .parametric import ParametricMachine
 
 NORM = (
     "worst force component [N], worst torque or moment over the longest link [N], absolute,"

@@ -15,22 +15,20 @@ from ..core.errors import bad
 from ..core.inputs import names_in_a_row
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import BROADCAST, DeferredChecks, Result, provenance
-from ..linkages.linkage import TURN, Array, checked_drive
+from ..linkages.linkage import JOINTS, TURN, Array, checked_drive
 from .evaluation import FRAME_FORCE, Evaluation, Output
 from .machine import Machine, require_machine
 
 _LATER = DeferredField()
 OUTPUTS: tuple[Output, ...] = ("pins", "torque", "shaking_force", "shaking_moment")
-_JOINTS = ("12", "23", "34", "41")
 _POLAR = {
-    **{joint: (f"x{joint}", f"y{joint}", f"pin force {joint}") for joint in _JOINTS},
+    **{joint: (f"x{joint}", f"y{joint}", f"pin force {joint}") for joint in JOINTS},
     "frame": (*FRAME_FORCE, "force on the frame"),
 }
 _CURVES = {
     "torque": ("torque", "driving torque [N m]"),
     "moment": ("shaking_moment", "shaking moment about A [N m]"),
 }
-_DEFAULTS = ("frame", "34", "torque", "moment")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,7 +59,7 @@ class RigidForces(Result):
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
         (
             *("theta2", "speed", "acceleration", "torque", "error", "couple34", "couple41"),
-            *(axis + joint for axis in "xy" for joint in _JOINTS),
+            *(axis + joint for axis in "xy" for joint in JOINTS),
             *FRAME_FORCE,
             "shaking_moment",
         ),
@@ -141,7 +139,8 @@ class RigidForces(Result):
         """
         known = {**_POLAR, **_CURVES}
         if joint is None:
-            joint = next(name for name in _DEFAULTS if known[name][0] in self.values)
+            first = ("frame", "34", "torque", "moment")
+            joint = next(name for name in first if known[name][0] in self.values)
         if joint not in known:
             raise bad("joint", repr(joint), f"one of {sorted(known)}", "correct the name")
         *names, label = known[joint]

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import Problem, bad, refuse, shown
-from ..core.inputs import are_finite
+from ..core.inputs import are_finite, is_one_of, numbers
 from ..linkages.linkage import Array, Linkage
 from .loads import FRAME, Load, Spring, TorsionSpring, Wrench
 from .masses import MassDistribution
 
 if TYPE_CHECKING:
-    from .parametric import ParametricMachine
+    from .evaluation import ParametricMachine
 
 AnySpring: TypeAlias = Spring | TorsionSpring
 Part: TypeAlias = Literal["all", "outside", "springs", "nonconservative"]
@@ -103,7 +103,7 @@ class Machine:
         BadInput
             If the machine has a load that is a function.
         """
-        from .parametric import ParametricMachine
+        from .evaluation import ParametricMachine
 
         if any(callable(item.force) or callable(item.couple) for item in self.loads):
             raise bad(
@@ -304,3 +304,17 @@ def _item_problems(
             if link not in allowed
         ]
     return problems
+
+
+def finite_number(value: object, where: str) -> float:
+    """Return a finite number, or raise BadInput."""
+    number = numbers(where, value)
+    if number.size != 1 or not np.isfinite(number).all():
+        raise bad(where, shown(value), "a finite number", "correct it")
+    return float(number.item())
+
+
+def require_link(link: object, links: tuple[str, ...], where: str) -> None:
+    """Raise BadInput where a linkage has no such moving link."""
+    if not is_one_of(link, links):
+        raise bad(where, repr(link), f"one of {', '.join(links)}", "correct the name")

@@ -15,8 +15,6 @@ from ..linkages.linkage import TURN, Array
 from .evaluation import Evaluation
 from .machine import Machine, Part, power_of, wrenches
 
-_FIRST = np.array([0.0, 1.0])
-_SECOND = np.array([1.0, 0.0])
 # Angles of a scan: every half degree of a turn.
 _SCANNED = 720
 _PROBES = (0.37, 1.91, 4.05, 5.83, 7.77)
@@ -42,9 +40,10 @@ class OneFreedom:
         """Return J and J'/2 [kg m^2] at crank angles [rad]."""
         angles = np.asarray(theta, dtype=float)[..., np.newaxis]
         batch = (*angles.shape[:-1], 2)
-        torque = Evaluation(self._bare, angles, _FIRST, _SECOND, batch).values(("torque",))[
-            "torque"
-        ]
+        # At rest with unit acceleration, and at unit speed without any.
+        speed, acceleration = np.array([0.0, 1.0]), np.array([1.0, 0.0])
+        evaluation = Evaluation(self._bare, angles, speed, acceleration, batch)
+        torque = evaluation.values(("torque",))["torque"]
         return torque[..., 0], torque[..., 1]
 
     def load(self, theta: Any, speed: Any) -> Array:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from functools import partial
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,18 +13,20 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic, require_system
 from ..core.inputs import is_one_of, numbers_in_a_row, require_between
+from ..core.plotting import RPM, axes_or_new
 from ..core.results import Check, Result
 from ..hill.form import is_hill
 from ..hill.perturbation import check_order
-from .chart_axes import natural_frequency
+from ..periodic import floquet_multipliers
+from .chart_axes import damping_rate, natural_frequency, on_grid
 from .chart_boundaries import BoundaryCurves, boundary_curves
-from .chart_lines import invariants
-from .chart_sampling import Map, Sampler, relative_error
-from .verdict import judged, spot_check
+from .chart_lines import Map, Sampler, Series, invariants, relative_error
+from .invariants import instability_kind, known_to, largest_modulus, root_uncertainty
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from .chart_boundaries import BoundaryCurves
 
 Axis = tuple[str, ArrayLike]
 
@@ -145,9 +148,43 @@ class StabilityChart(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Shade the unstable regions by kind and draw the boundaries; speeds in rpm."""
-        from .chart_picture import draw_chart
-
-        return draw_chart(self, ax)
+        ax = axes_or_new(ax)
+        x, y = (_shown(n, v) for n, v in ((self.x_name, self.x), (self.y_name, self.y)))
+        _shade(ax, self, x, y)
+        order = "first-order boundary" if self.order == 1 else f"boundary of order {self.order}"
+        for curves, style, colour, label in (
+            (self.exact, "-", _EXACT, "exact boundary (Hill matrix)"),
+            (self.perturbation, "--", _NEAR, order),
+        ):
+            if curves is not None:
+                text = label if _reach_in(self, curves) else f"{label}: none here"
+                _draw_curves(ax, self, curves, style, colour, text)
+        if self.edges is not None:
+            _draw_edges(ax, self, self.edges)
+        ax.set_xlim(x[0], x[-1])
+        ax.set_ylim(y[0], y[-1])
+        for label, values in self.marks.items():
+            _draw_marks(ax, _shown(self.y_name, np.asarray(values)), label, float(x[0]))
+        ax.set_xlabel(_LABELS.get(self.x_name, self.x_name))
+        ax.set_ylabel(_LABELS.get(self.y_name, self.y_name))
+        if self.x_name == "speed" and np.isfinite(self.natural_frequency):
+            _draw_fractions(ax, self)
+        what = "discriminant" if self.error_norm.startswith("half trace") else "invariants"
+        ax.text(
+            0.99,
+            0.01,
+            f"error of the {what} < {self.error:.1e} (estimate)",
+            transform=ax.transAxes,
+            ha="right",
+            va="bottom",
+            fontsize=7,
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.5},
+        )
+        # Below the axes, where it covers nothing.
+        ax.legend(
+            loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=2, fontsize=8, frameon=False
+        )
+        return ax
 
 
 def stability_chart(
@@ -328,3 +365,263 @@ def _edge_curves(
         tuple(key[0] for key in keys),
         Check(float(failed), 0.0),
     )
+
+
+_SPOTS = 5
+
+
+class Judged(NamedTuple):
+    """What is told of each point, ``(ny, nx)``; see :class:`~.chart.StabilityChart`."""
+
+    largest: Array
+    stable: NDArray[np.bool_]
+    slack: Array
+    undecided: NDArray[np.bool_]
+    kind: NDArray[np.int8]
+
+
+def judged(sampler: Sampler, series: Series, workers: Map) -> Judged:
+    """Return what is told of each point, some rows at a time, which bounds the memory."""
+    rows, points = series.values.shape[:2]
+    # Points that are judged together.
+    together = max(1, 250_000 // max(1, points))
+    parts = [slice(start, start + together) for start in range(0, rows, together)]
+    # Of one mode the verdict is quicker than the way to another process and back.
+    run = map if sampler.hill else workers
+    blocks = run(partial(_judge, sampler), ((part, series.rows(part)) for part in parts))
+    return Judged(*(np.concatenate(columns) for columns in zip(*blocks, strict=True)))
+
+
+def _judge(sampler: Sampler, item: tuple[slice, Series]) -> Judged:
+    """Return what is told of the points of some rows."""
+    part, series = item
+    rows = sampler.rows(part)
+    if rows.hill:
+        half = np.abs(series.values[..., 0])
+        level = _level(rows, half)
+        largest = _larger_root(half, level)
+        # An error of the half trace moves the boundary, where it is (1 + W) / 2.
+        edge = 0.5 * (1.0 + level)
+        slack = _larger_root(edge + series.error, level) - 1.0
+        stable = half <= edge + series.error
+        undecided = np.abs(half - edge) <= series.error
+    else:
+        error = series.error if series.errors is None else series.errors
+        largest, stable, slack = largest_modulus(series.values, reduced=rows.reduced, error=error)
+        # Unstable is only what some multiplier proves beyond its own error.
+        doubtful = slack > 0.0 if rows.reduced else largest + slack >= 1.0
+        undecided = np.isnan(largest) | (stable & doubtful)
+    kind = instability_kind(series.values, stable, hill=rows.hill, reduced=rows.reduced)
+    return Judged(largest, stable, slack, undecided, kind)
+
+
+def _level(sampler: Sampler, half: Array) -> Array:
+    """Return the determinant of the monodromy matrices of one mode."""
+    if not sampler.damped:
+        return np.ones_like(half)
+    speed, _ = on_grid(sampler.names, sampler.axes, sampler.speed)
+    rate = damping_rate(sampler.system, sampler.names, sampler.axes)
+    return np.asarray(np.exp(-2 * np.pi * rate / speed) * np.ones_like(half))
+
+
+def _larger_root(half: Array, level: Array) -> Array:
+    """Return the largest modulus of the roots of ``rho^2 - 2 X rho + W`` at X >= 0.
+
+    W is the determinant.
+    """
+    with np.errstate(over="ignore"):
+        square = half**2
+        real = square >= level
+        root = half + np.sqrt(np.where(real, square - level, 0.0))
+    return np.where(real, root, np.sqrt(level))
+
+
+def spot_check(sampler: Sampler, series: Series, found: Judged) -> Check:
+    """Compare a handful of points with their Floquet multipliers.
+
+    The value is the worst gap of the largest modulus over what the errors allow.  The allowance
+    comes from the multipliers themselves, not from the slack of the verdict.
+    """
+    rng = np.random.default_rng(1972)
+    largest, stable = found.largest, found.stable
+    i = rng.integers(0, largest.shape[0], _SPOTS)
+    j = rng.integers(0, largest.shape[1], _SPOTS)
+    point = {"speed": np.full(_SPOTS, sampler.speed)}
+    point |= {sampler.names[0]: sampler.axes[0][j], sampler.names[1]: sampler.axes[1][i]}
+    with np.errstate(over="ignore", invalid="ignore"):
+        multipliers, known = _direct(sampler.system, point)
+    modulus = np.abs(multipliers)
+    usable = np.all(np.isfinite(modulus), axis=-1) & np.isfinite(largest[i, j])
+    usable &= np.all(np.isfinite(series.values[i, j]), axis=-1)
+    if not np.any(usable):
+        return Check(0.0, 1.0)
+    top = np.argmax(modulus, axis=-1)
+    rows = np.arange(_SPOTS)
+    error = _full_errors(series, i, j, modulus.shape[-1])
+    own = root_uncertainty(np.where(usable[:, None], multipliers, 0.0), error)[rows, top]
+    peak = np.where(usable, modulus[rows, top], 1.0)
+    allowed = 4.0 * (own + known[rows, top]) + 1e-12 * peak
+    gap = np.abs(peak - np.where(usable, largest[i, j], peak))
+    # A growth beyond the allowance that is called stable is a gap as well.
+    gap = np.where(stable[i, j], np.maximum(gap, peak - 1.0), gap)
+    return Check(float(np.max((gap / allowed)[usable])), 1.0)
+
+
+def _full_errors(series: Series, i: NDArray[np.int64], j: NDArray[np.int64], size: int) -> Array:
+    """Return errors of all coefficients of characteristic polynomials at points, doubled."""
+    values = series.values[i, j]
+    if series.errors is None:
+        known = known_to(values, series.error[i, j])[..., :1]
+        return np.broadcast_to(2.0 * known, (len(i), size))
+    known = known_to(values, series.errors[i, j])
+    if known.shape[-1] < size:
+        # Palindromic: the same again backwards, and a last coefficient that is 1.
+        known = np.concatenate([known, known[:, -2::-1], np.zeros((len(i), 1))], axis=1)
+    return 2.0 * known
+
+
+def _direct(
+    system: LinearPeriodic, point: dict[str, Array]
+) -> tuple[NDArray[np.complex128], Array]:
+    """Return multipliers and their errors at points, ``(points, 2n)`` each."""
+    if any(name in system.geometry for name in point):
+        members = [{name: float(v[i]) for name, v in point.items()} for i in range(_SPOTS)]
+        each = [floquet_multipliers(system, **member) for member in members]
+        return np.stack([e.multipliers for e in each]), np.stack([e.error for e in each])
+    values: dict[str, Any] = {**point}
+    found = floquet_multipliers(system, **values)
+    return found.multipliers, found.error
+
+
+_LABELS = {
+    "speed": "crank speed [rpm]",
+    "follower_inertia": r"follower inertia $I_4$ [kg m$^2$]",
+    "lam2": r"$\lambda^2$",
+    "mu": r"$\mu$",
+    "crank_ratio": r"crank ratio $\epsilon$",
+}
+_EXACT, _NEAR, _MARK = "#8c2d04", "#2b5c8a", "#3a7d44"
+# By kind of instability; the shades differ in lightness too.
+_SHADES = {-1: "#f2c6a8", 1: "#e0a070", 2: "#b9a3d6"}
+_WORDS = {
+    -1: "odd regions (multiplier below -1)",
+    1: "even regions (multiplier above 1)",
+    2: "combination (complex multipliers)",
+}
+# Relative width up to which a region is drawn as a hair.
+_NARROW = 1e-4
+_EDGES = {"principal": "#8c2d04", "sum": "#5b2d8c", "difference": "#1f6f6b"}
+
+
+def _shade(ax: Axes, chart: StabilityChart, x: Array, y: Array) -> None:
+    from matplotlib.colors import ListedColormap
+
+    codes = np.zeros(chart.kind.shape)
+    colours = ["#ffffff"]
+    for kind, colour in _SHADES.items():
+        here = chart.kind == kind
+        if np.any(here):
+            colours.append(colour)
+            codes[here] = len(colours) - 1
+    ax.pcolormesh(
+        x,
+        y,
+        codes,
+        cmap=ListedColormap(colours),
+        vmin=0,
+        vmax=max(len(colours) - 1, 1),
+        shading="nearest",
+        rasterized=True,
+    )
+    for kind, colour in _SHADES.items():
+        if colour in colours:
+            ax.fill([], [], color=colour, label=f"unstable: {_WORDS[kind]}")
+
+
+def _draw_edges(ax: Axes, chart: StabilityChart, edges: EdgeCurves) -> None:
+    """Draw the ends of traced regions between the rows at which they are known, with labels."""
+    horizontal = chart.x_name == "speed"
+    at = _shown(chart.y_name if horizontal else chart.x_name, edges.at)
+    seen: set[str] = set()
+    low, high = (RPM * v for v in ((chart.x if horizontal else chart.y)[[0, -1]]))
+    for i, kind in enumerate(edges.kind):
+        with np.errstate(invalid="ignore"):
+            narrow = not np.any(edges.upper[i] - edges.lower[i] > _NARROW * edges.lower[i])
+        for ends in (edges.lower[i], edges.upper[i]):
+            pair = (ends * RPM, at) if horizontal else (at, ends * RPM)
+            label = None if kind in seen else f"{kind} regions, traced"
+            ax.plot(*pair, color=_EDGES[kind], lw=0.35 if narrow else 0.8, label=label)
+            seen.add(kind)
+        if kind == "principal":
+            continue
+        # Labels stand at the row nearest to the end of the axis where the region is in the chart.
+        known = np.flatnonzero((edges.lower[i] * RPM > low) & (edges.lower[i] * RPM < high))
+        if len(known):
+            text = (
+                "+".join(map(str, edges.modes[i]))
+                if kind == "sum"
+                else "-".join(map(str, edges.modes[i][::-1]))
+            )
+            place = (edges.lower[i, known[-1]] * RPM, at[known[-1]])
+            ax.annotate(
+                f"{text}, {edges.harmonic[i]}",
+                place if horizontal else place[::-1],
+                fontsize=6,
+                color=_EDGES[kind],
+                rotation=90 if horizontal else 0,
+                va="top" if horizontal else "center",
+                ha="right",
+            )
+
+
+def _shown(name: str, values: Array) -> Array:
+    return values * RPM if name == "speed" else values
+
+
+def _reach_in(chart: StabilityChart, curves: BoundaryCurves) -> bool:
+    values = chart.x if curves.along == chart.x_name else chart.y
+    ends = np.concatenate([curves.lower, curves.upper])
+    with np.errstate(invalid="ignore"):
+        return bool(np.any((ends >= values[0]) & (ends <= values[-1])))
+
+
+def _draw_curves(
+    ax: Axes, chart: StabilityChart, curves: BoundaryCurves, style: str, colour: str, label: str
+) -> None:
+    horizontal = curves.along == chart.x_name
+    other = chart.y_name if horizontal else chart.x_name
+    at = _shown(other, curves.at)
+    first = True
+    for ends in (curves.lower, curves.upper):
+        for row in ends:
+            values = _shown(curves.along, row)
+            pair = (values, at) if horizontal else (at, values)
+            ax.plot(*pair, style, color=colour, lw=1.0, label=label if first else None)
+            first = False
+
+
+def _draw_marks(ax: Axes, values: Array, label: str, left: float) -> None:
+    for value in values:
+        ax.axhline(value, color=_MARK, lw=0.6, alpha=0.7)
+    ax.plot(np.full(len(values), left), values, ">", color=_MARK, ms=6, clip_on=False, label=label)
+
+
+def _draw_fractions(ax: Axes, chart: StabilityChart) -> None:
+    """Put the speeds 2 Omega / n on a second axis along the top, n the number of the region."""
+    low, high = ax.get_xlim()
+    ticks: list[float] = []
+    labels: list[str] = []
+    for n in range(1, 41):
+        speed = 2.0 * chart.natural_frequency / n * RPM
+        if low <= speed <= high and (not ticks or ticks[-1] - speed > 0.045 * (high - low)):
+            ticks.append(speed)
+            labels.append(_fraction(n))
+    top = ax.secondary_xaxis("top")
+    top.set_xticks(ticks, labels, fontsize=8)
+    top.set_xlabel(rf"fractions of the {chart.frequency_name} $\Omega$", fontsize=9)
+
+
+def _fraction(n: int) -> str:
+    if n == 2:
+        return r"$\Omega$"
+    return rf"$\Omega/{n // 2}$" if n % 2 == 0 else rf"$2\Omega/{n}$"

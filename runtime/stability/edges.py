@@ -19,7 +19,7 @@ from ..periodic.equation import at_geometry, equation_of
 from ..periodic.lowest_modes import LowestModes
 from ..periodic.over_speed import MatricesOverSpeed
 from .boundary_speeds import SpeedBoundaries, speed_boundaries
-from .crossings import damped_regions, mended
+from .crossings import Regions, damped_regions, edge_checks, joined, mended
 from .labels import (
     averaged_modes,
     boundary_units,
@@ -30,7 +30,6 @@ from .labels import (
     unit_labels,
 )
 from .pairs import Edges, Events, Samples, meetings, refined_edges, sampled_phases
-from .regions import Regions, edge_checks, joined
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,7 +44,6 @@ _WIDEST = 5.0
 # Sine of the argument up to which two multipliers meet at +-1.
 _REAL = 1e-4
 _GAP = "multiplier +-1, and gap of multipliers of opposite Krein signature"
-_RPM = 30.0 / np.pi
 _TOLD = ("lower", "upper", "multiplier", "modes", "harmonic", "detuning")
 _CLOSED = "closed: too narrow to be told from none"
 _COLOURS = {"principal": "#c05a1f", "sum": "#6b3d8f", "difference": "#2b7a78"}
@@ -133,18 +131,18 @@ class StabilityEdges(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the regions as bars over the speed, closed ones as dots, a row for each pair."""
-        from ..core.plotting import axes_or_new
+        from ..core.plotting import RPM, axes_or_new
 
         ax = axes_or_new(ax)
-        low, high = (speed * _RPM for speed in self.speed_range)
+        low, high = (speed * RPM for speed in self.speed_range)
         pairs = sorted({tuple(pair) for pair in self.modes.tolist()})
         seen: set[str] = set()
         last = dict.fromkeys(pairs, -np.inf)
         for i in np.argsort(self.lower, kind="stable"):
             pair = tuple(self.modes[i].tolist())
             row = pairs.index(pair)
-            begin = self.lower[i] * _RPM if np.isfinite(self.lower[i]) else low
-            end = self.upper[i] * _RPM if np.isfinite(self.upper[i]) else high
+            begin = self.lower[i] * RPM if np.isfinite(self.lower[i]) else low
+            end = self.upper[i] * RPM if np.isfinite(self.upper[i]) else high
             closed = bool(self.width[i] <= 2 * (self.error[i] - self.shift[i]))
             kind = _CLOSED if closed else self.kind[i]
             label = None if kind in seen else kind

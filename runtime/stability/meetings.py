@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad
 from ..core.families import DAMPING, Array, LinearPeriodic
 from ..core.inputs import is_whole, speed_span
-from ..core.roots import bracketed_roots
+from ..core.maxima import bracketed_roots
 from ..periodic.equation import at_geometry, equation_of, sampled
 from ..periodic.signatures import form_matrix
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
-from ..core.roots import bracketed_roots
+from ..core.maxima import bracketed_roots
 from ..periodic.equation import equation_of
 from ..periodic.multipliers import conditions, eigenvalues
 from ..periodic.over_speed import MatricesOverSpeed
@@ -29,7 +29,7 @@ Index = NDArray[np.intp]
 
 _EPS = float(np.finfo(float).eps)
 _MOST_SAMPLES = 40_000
-_TOGETHER = 256
+TOGETHER = 256
 # How far a sum of phases may lie from a whole turn where the multipliers are taken for locked.
 _LOCKED = 1e-4
 _TURN_ROUND = 2.0 * np.pi
@@ -96,8 +96,8 @@ def sampled_phases(matrices: MatricesOverSpeed, span: tuple[float, float], more:
     """
     speed = phase_grid(matrices, span, more)
     phases, flags = [], []
-    for start in range(0, len(speed), _TOGETHER):
-        scaled, error = matrices(speed[start : start + _TOGETHER])
+    for start in range(0, len(speed), TOGETHER):
+        scaled, error = matrices(speed[start : start + TOGETHER])
         if not np.all(np.isfinite(scaled)):
             raise bad(
                 "speed_range",

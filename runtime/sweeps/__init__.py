@@ -9,7 +9,7 @@ from ..core.lazy import on_first_use
 if TYPE_CHECKING:
     from ..core.workers import WorkersLost as WorkersLost
     from ..core.workers import process_pool as process_pool
-    from .result import Sweep as Sweep
+    from .sweeping import Sweep as Sweep
     from .sweeping import estimate_sweep as estimate_sweep
     from .sweeping import sweep as sweep
 
@@ -17,7 +17,6 @@ __all__, __getattr__, __dir__ = on_first_use(
     globals(),
     {
         ".core.workers": ("WorkersLost", "process_pool"),
-        "result": ("Sweep",),
-        "sweeping": ("estimate_sweep", "sweep"),
+        "sweeping": ("Sweep", "estimate_sweep", "sweep"),
     },
 )

@@ -15,12 +15,12 @@ import numpy as np
 
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
+from ..core.trigonometric import GOLDEN
 from .pieces import Grid
 
 FORMAT = 2
 # Angles by the golden section, at which functions of the angle are told apart.
 _ANGLES = 16
-_GOLDEN = 0.6180339887498949
 
 
 class _Hash(Protocol):
@@ -111,7 +111,7 @@ def _feed_system(found: _Hash, system: LinearPeriodic, inner: tuple[int, ...]) -
     """Add what a system does: its numbers, and its functions at some angles and parameters."""
     numbers = (system.size, system.period, system.labels, system.reference_length)
     _feed(found, (*numbers, dict(system.parameters), dict(system.geometry)), inner)
-    theta = np.asarray(system.period * (np.arange(_ANGLES) * _GOLDEN % 1.0), dtype=np.float64)
+    theta = np.asarray(system.period * (np.arange(_ANGLES) * GOLDEN % 1.0), dtype=np.float64)
     for term in system.terms:
         _feed(found, (term.array, term.scale, term.power, term.constant), inner)
         _feed_numbers(found, _rounded(term(theta)))

@@ -178,9 +178,10 @@ def _block(
     """Return the arrays of a chart, ``(points, ...)``, and the chart; one value may stand alone."""
     from ..stability import stability_chart
 
+    # A chart wants two values along an axis: beside a single one stands one next to it.
     (y, along_y), (x, along_x) = (
-        (name, values if len(values) > 1 else _with_a_near_one(values))
-        for name, values in axes.items()
+        (name, v if len(v) > 1 else np.append(v, v + 1e-9 * (np.abs(v) + 1e-9)))
+        for name, v in axes.items()
     )
     told = {"boundaries": False, **options}
     chart = stability_chart(system, x=(x, along_x), y=(y, along_y), **told)
@@ -191,11 +192,6 @@ def _block(
     }
     flat = {k: v.reshape(-1, *v.shape[2:]) for k, v in arrays.items()}
     return _wanted(flat, outputs), chart
-
-
-def _with_a_near_one(values: Array) -> Array:
-    """Return two values for one: a chart wants no less along an axis."""
-    return np.append(values, values + 1e-9 * (np.abs(values) + 1e-9))
 
 
 def _not_built(system: LinearPeriodic, axes: Mapping[str, Array]) -> dict[int, str]:

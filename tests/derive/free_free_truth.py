@@ -15,12 +15,11 @@ from functools import lru_cache
 import mpmath
 import numpy as np
 from elastolink import generated
-from elastolink.derive.external import external_values
-from elastolink.derive.lagrange import euler_lagrange, variational_equations
 from elastolink.derive.models import free_free_rod as rod
 from elastolink.runtime.core.families import Constrained
 from frequency_truth import clamped_root
-from judging import Exact, Point, reference_of
+from judging import Exact, Point, Reference
+from scalar_entries import ScalarEntries, derived_reference
 
 MODES_MODULE = "beam_free_free_modes"
 ROD_MODULE = "quick_return_rod_free_free"
@@ -145,111 +144,57 @@ def _end_slope(i: int) -> float:
 
 
 @lru_cache(maxsize=4)
-def rod_reference(count: int):
+def rod_reference(count: int) -> Reference:
     """Return the equations of a number of modes, derived for just that number, in many digits."""
-    e = euler_lagrange(rod.lagrangian(count))
-    v = variational_equations(e)
-    arrays = {name: getattr(e, name) for name in _ARRAYS}
-    arrays |= {name: getattr(v, name) for name in _VARIED}
-    values = external_values(arrays.values())
-    outputs = [
-        (f"{name}_{i + 1}_{j + 1}", values.plain(matrix)[i, j])
-        for name, matrix in arrays.items()
-        for i in range(matrix.rows)
-        for j in range(matrix.cols)
-    ]
-    inputs = set().union(*(value.free_symbols for _, value in outputs))
-    return reference_of(sorted(inputs, key=str), outputs)
+    return derived_reference(rod.lagrangian(count), _ARRAYS)
 
 
 _ARRAYS = ("constraints", "jacobian", "mass", "rest", "velocity_rhs", "gamma")
-_VARIED = ("damping", "stiffness", "jacobian_rate", "jacobian_acceleration")
+_ARRAYS += ("damping", "stiffness", "jacobian_rate", "jacobian_acceleration")
+_SQUARES, _ROWS = ("inward", "retreat"), ("left", "stiffness")
 
 
-class WithModes:
-    """A function of the rod's equations, as its family evaluates it for so many modes.
-
-    Its arguments and what it returns are scalars: each entry that is not zero by form.
-    """
+class WithModes(ScalarEntries):
+    """A function of the rod's equations, as its family evaluates it for so many modes."""
 
     def __init__(self, function: str, count: int) -> None:
-        self.module = importlib.import_module(f"{generated.__name__}.{ROD_MODULE}")
-        self.function, self.count = function, count
-        self.scalars = self._scalars(inspect.signature(self.module.variations).parameters)
-        kind = inspect.Parameter.KEYWORD_ONLY
-        self.__signature__ = inspect.Signature([inspect.Parameter(n, kind) for n in self.scalars])
-        generic = self._entries({name: 1.0 + 0.1 * k for k, name in enumerate(self.scalars)})
-        self.names = tuple(name for name, value in generic.items() if value != 0.0)
-
-    def __call__(self, **given: float) -> tuple[float, ...]:
-        entries = self._entries(given)
-        return tuple(entries[name] for name in self.names)
-
-    def _scalars(self, parameters) -> list[str]:
-        """Return the names of the components of parameters of the emitted function."""
-        every = range(1, self.count + 1)
-        names = []
-        for name in parameters:
-            if name in ("inward", "retreat"):
-                names += [f"{name}_{i}_{j}" for i in every for j in every if i <= j]
-            elif name in ("left", "stiffness"):
-                names += [f"{name}_{i}" for i in every]
-            elif name.startswith("psi"):
-                names += [f"psi_{i}{name.removeprefix('psi')}" for i in every]
-            elif name == "f" or name.startswith("f_"):
-                names += [f"f{i}{name.removeprefix('f')}" for i in every]
-            else:
-                names.append(name)
-        return names
-
-    def _entries(self, given: Mapping[str, float]) -> dict[str, float]:
-        every, rod_ = range(1, self.count + 1), self.module
-
-        def row(*names: str) -> np.ndarray:
-            return np.array([given[name] for name in self._scalars(names)])
-
-        pairs = {
-            name: [[given[f"{name}_{min(i, j)}_{max(i, j)}"] for j in every] for i in every]
-            for name in ("inward", "retreat")
-        }
-        system = Constrained.from_module(
-            rod_,
-            {name: given[name] for name in rod_.PARAMETERS},
-            external={name: lambda q, t, name=name: row(name) for name in rod_.EXTERNAL},
-            modes={"left": row("left"), "stiffness": row("stiffness"), **pairs},
+        super().__init__(
+            importlib.import_module(f"{generated.__name__}.{ROD_MODULE}"), function, count
         )
-        state = [
-            row(*(f"{name}{order}" for name in rod_.COORDINATES)) for order in ("", "_dot", "_ddot")
-        ]
-        called, vectors = {
-            "constraints": (system.violation, state[:1]),
-            "dynamics": (system.dynamics, state[:2]),
-            "variations": (system.variations, [*state, row(*rod_.MULTIPLIERS)]),
-        }[self.function]
-        return {
-            f"{array}_{i + 1}_{j + 1}": float(value)
-            for array, matrix in called(*vectors, given["t"]).items()
-            for (i, j), value in np.ndenumerate(matrix)
-        }
+
+    def components(self, name: str) -> list[str]:
+        if name in _SQUARES:
+            return [f"{name}_{i}_{j}" for i in self.every for j in self.every if i <= j]
+        if name in _ROWS:
+            return [f"{name}_{i}" for i in self.every]
+        if name.startswith("psi"):
+            return [f"psi_{i}{name.removeprefix('psi')}" for i in self.every]
+        if name == "f" or name.startswith("f_"):
+            return [f"f{i}{name.removeprefix('f')}" for i in self.every]
+        return [name]
+
+    def system(self, given: Mapping[str, float], row: Callable[..., np.ndarray]) -> Constrained:
+        pairs = {name: self.square(given, name).tolist() for name in _SQUARES}
+        return Constrained.from_module(
+            self.module,
+            {name: given[name] for name in self.module.PARAMETERS},
+            external={name: lambda q, t, name=name: row(name) for name in self.module.EXTERNAL},
+            modes={**{name: row(name) for name in _ROWS}, **pairs},
+        )
 
 
 @lru_cache(maxsize=4)
 def _rod_points(count: int) -> tuple[tuple[Point, dict], ...]:
-    names = WithModes("variations", count).scalars
-    parameters = importlib.import_module(f"{generated.__name__}.{ROD_MODULE}").PARAMETERS
-    random = np.random.default_rng(57 + count)
+    case = WithModes("variations", count)
+
+    def at_rest(inputs):
+        return {name: 0.0 for name in inputs if name.startswith("f") and name[1:2].isdigit()}
+
     made = []
-    for k in range(3):
-        inputs = {}
-        for name in names:
-            size = 10.0 ** random.uniform(-2, 2)
-            positive = name in parameters
-            inputs[name] = float(size if positive else random.choice((-1, 1)) * size)
-        if k == 0:  # the rod undeformed and at rest in itself
-            inputs |= {name: 0.0 for name in names if name.startswith("f") and name[1:2].isdigit()}
+    for point in case.states(57, case.module.PARAMETERS, "undeformed", at_rest):
         with mpmath.workdps(80):
-            exact = rod_reference(count)({n: mpmath.mpf(v) for n, v in inputs.items()})
-        made.append((Point("undeformed" if k == 0 else f"random {k}", inputs), exact))
+            exact = rod_reference(count)({n: mpmath.mpf(v) for n, v in point.inputs.items()})
+        made.append((point, exact))
     return tuple(made)
 
 

@@ -47,7 +47,7 @@ def test_other_numbers_of_stations_give_what_is_derived_for_them(module, count):
     for point in station_points(module, count):
         exact = explicit(module, count)({n: mpmath.mpf(v) for n, v in point.inputs.items()})
         for function, arrays in FUNCTIONS.items():
-            entries = AtEachStation(module, function, count)._entries(point.inputs)
+            entries = AtEachStation(module, function, count).entries(point.inputs)
             assert set(entries) == {n for n in exact if n.rsplit("_", 2)[0] in arrays}
             for array in arrays:
                 values = {n: v for n, v in entries.items() if n.rsplit("_", 2)[0] == array}

@@ -6,9 +6,9 @@ import elastolink as el
 import mpmath
 import numpy as np
 import pytest
+from edge_truth import flexible_rod
 from elastolink.runtime.stability.invariants import weighed_characteristic
-from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis, rod_system
-from free_free_loads import ROD
+from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis
 from periodic_systems import system_of, wave
 
 
@@ -20,10 +20,6 @@ def divergent(modes, first=-1.0):
     own[0, 0] = first
     pair[0, 1] = pair[1, 0] = 0.2
     return system_of({"k": 1.0}, M=np.eye(modes), K=[held, ("k", own), wave(pair)])
-
-
-def rod(basis):
-    return rod_system(basis, crank_ratio=0.1, **ROD)
 
 
 @pytest.mark.parametrize("modes", [2, pytest.param(5, marks=pytest.mark.slow)])
@@ -118,7 +114,7 @@ def test_error_estimates_of_circulatory_systems_hold():
 
 def test_a_given_speed_is_a_slice_of_the_chart_over_speeds():
     """Damping, several powers of the speed, and geometry as an axis."""
-    system = rod(PolynomialBasis(2)).with_parameters(damping=30.0)
+    system = flexible_rod(PolynomialBasis(2)).with_parameters(damping=30.0)
     ratios, masses = np.linspace(0.05, 0.2, 4), np.linspace(6.5, 8.0, 3)
     chart = el.stability_chart(
         system, ("crank_ratio", ratios), ("mass_per_length", masses), speed=1500.0
@@ -155,5 +151,5 @@ def test_two_axes_of_geometry_are_weighed_before_work():
     ratios, frames = np.linspace(0.05, 0.2, 50), np.linspace(0.5, 0.6, 20000)
     with pytest.raises(el.BadInput, match="fewer modes or points"):
         el.stability_chart(
-            rod(OverhangBasis(4)), ("crank_ratio", ratios), ("frame", frames), speed=800.0
+            flexible_rod(OverhangBasis(4)), ("crank_ratio", ratios), ("frame", frames), speed=800.0
         )

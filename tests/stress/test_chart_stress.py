@@ -5,7 +5,7 @@ from __future__ import annotations
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.stability import verdict
+from elastolink.runtime.stability import chart
 from periodic_systems import system_of, wave
 
 ONE, TWO = np.eye(1), np.eye(2)
@@ -80,13 +80,13 @@ def test_weak_combination_resonance_is_seen(eps):
 
 
 def test_spot_check_catches_a_slack_that_hides_a_resonance(monkeypatch):
-    sharp = verdict.largest_modulus
+    sharp = chart.largest_modulus
 
     def blunt(coefficients, **options):
         largest, _, slack = sharp(coefficients, **options)
         return np.where(largest < 1.01, 1.0, largest), largest < 1.01, slack + 0.01
 
-    monkeypatch.setattr(verdict, "largest_modulus", blunt)
+    monkeypatch.setattr(chart, "largest_modulus", blunt)
     system = two(b=1e-3, pull=((0.0, 1.0), (1.0, 0.0)), squares=(1.0, 3.0))
     middle = 1.0 + np.sqrt(3.0)
     speeds = np.linspace(middle - 1e-4, middle + 1e-4, 21)

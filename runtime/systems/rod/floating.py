@@ -19,7 +19,6 @@ from .basis import require_drop, require_numbers, require_points
 from .free_free import FreeFreeModes
 
 DROPPED = ("tension",)
-_DERIVATIVES = ("psi", "psi_d1", "psi_d2", "psi_d3")
 # Deflections over the length beyond which the equations mean nothing any more.
 _BENT = 0.5
 _STATIONS = np.linspace(0.0, 1.0, 21)
@@ -264,7 +263,7 @@ def rod_equations(
     return Constrained.from_module(
         emitted.module,
         parameters,
-        external={name: at_block.modes(order) for order, name in enumerate(_DERIVATIVES)},
+        external={f"psi{d}": at_block.modes(k) for k, d in enumerate(("", "_d1", "_d2", "_d3"))},
         modes={
             "left": modes.left_values,
             "stiffness": modes.roots**4,

@@ -10,7 +10,7 @@ from elastolink.runtime.beams.layered import (
     ViscoelasticLayer,
     sandwich_section,
 )
-from elastolink.runtime.core.errors import BadInput
+from refusals import refused
 
 BASE = ElasticLayer(3e-3, 70e9, 2700.0)
 COVER = ElasticLayer(1e-3, 70e9, 2700.0)
@@ -127,8 +127,8 @@ def test_equivalent_section_keeps_stiffness_mass_and_loss():
 # ---------------------------------------------------------------- refusals
 
 
-@pytest.mark.parametrize(
-    ("make", "word"),
+test_unusable_numbers_are_refused = refused(
+    lambda make: make(),
     [
         (lambda: ElasticLayer(0.0, 70e9, 2700.0), "thickness"),
         (lambda: ElasticLayer(1e-3, float("nan"), 2700.0), "modulus"),
@@ -140,7 +140,3 @@ def test_equivalent_section_keeps_stiffness_mass_and_loss():
         (lambda: section(core(1e19)), "core_shear_modulus"),
     ],
 )
-def test_unusable_numbers_are_refused(make, word):
-    with pytest.raises(BadInput, match=word) as caught:
-        make()
-    assert "\n" not in str(caught.value)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from elastolink.runtime.core.roots import bracketed_roots
+from elastolink.runtime.core.maxima import bracketed_roots
 
 POWERS, WANTED = np.array([1.0, 3.0, 7.0, 2.0]), np.array([0.3, 0.5, 0.9, 1e-3])
 

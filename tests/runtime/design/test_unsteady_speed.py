@@ -7,8 +7,13 @@ import pytest
 from elastolink import BadInput, load_scene, steady_state
 from elastolink.runtime.core.trigonometric import interpolated
 from elastolink.runtime.design import SpeedProfile, run_through
-from elastolink.runtime.design.changing_length import ChangingLength
-from elastolink.runtime.design.unsteady import Drive, arrays_of, generator_of, march
+from elastolink.runtime.design.transient import (
+    ChangingLength,
+    Drive,
+    arrays_of,
+    generator_of,
+    march,
+)
 from periodic_systems import second_order, system_of, wave
 from scipy.integrate import solve_ivp
 

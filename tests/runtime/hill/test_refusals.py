@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
-from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import (
     Mathieu,
@@ -20,6 +18,7 @@ from elastolink.runtime.hill import (
 )
 from elastolink.runtime.hill.series import boundary_latex
 from hill_functions import COSINE
+from refusals import each_of, refused
 
 TURN = 2.0 * np.pi
 LONG = PeriodicFunction(np.ones(1001))
@@ -158,10 +157,7 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize(
-    ("call", "changes", "words"), [(call, *case) for call, cases in CASES.items() for case in cases]
+test_bad_input_is_refused_in_one_line = refused(
+    lambda call, changes: call(**GIVEN.get(call, {}) | changes),
+    each_of(CASES),
 )
-def test_bad_input_is_refused_in_one_line(call, changes, words):
-    with pytest.raises(BadInput, match=words) as told:
-        call(**GIVEN.get(call, {}) | changes)
-    assert "\n" not in str(told.value)

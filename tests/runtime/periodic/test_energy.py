@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from elastolink.runtime.periodic import simulate
-from elastolink.runtime.periodic.energy import energy_balance
 from elastolink.runtime.periodic.equation import equation_of
+from elastolink.runtime.periodic.motion import energy_balance
 from manufactured import manufactured
 from periodic_systems import system_of
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import scipy.integrate
 import scipy.linalg
+from edge_truth import flexible_rod
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic import floquet_multipliers, monodromy
@@ -19,9 +20,7 @@ from elastolink.runtime.systems.rod import (
     OverhangBasis,
     PolynomialBasis,
     TwoSegmentBasis,
-    rod_system,
 )
-from free_free_loads import ROD
 from periodic_systems import mathieu, system_of, wave
 
 
@@ -46,13 +45,9 @@ def _general() -> LinearPeriodic:
     )
 
 
-def _rod(basis, crank_ratio=0.2):
-    return rod_system(basis, crank_ratio=crank_ratio, **ROD)
-
-
 # Undamped systems, speeds, and how far from symplectic, over the square of the norm.
 UNDAMPED = {"every kind of term": (_general(), np.linspace(0.5, 9.0, 40), 1e-13)} | {
-    type(basis).__name__ + suffix: (_rod(basis), [500.0, 900.0, 4000.0], 1e-12)
+    type(basis).__name__ + suffix: (flexible_rod(basis, 0.2), [500.0, 900.0, 4000.0], 1e-12)
     for basis, suffix in (
         (PolynomialBasis(3), ""),
         (PolynomialBasis(3, orthogonal=False), ", powers"),
@@ -299,8 +294,8 @@ def test_damping_counts_only_where_it_is_not_zero():
 
 
 def test_multipliers_at_another_geometry():
-    system = _rod(PolynomialBasis(3), 0.1)
-    direct = floquet_multipliers(_rod(PolynomialBasis(3), 0.15), 900.0)
+    system = flexible_rod(PolynomialBasis(3))
+    direct = floquet_multipliers(flexible_rod(PolynomialBasis(3), 0.15), 900.0)
     changed = floquet_multipliers(system, 900.0, crank_ratio=0.15)
     assert np.array_equal(direct.multipliers, changed.multipliers)
     with pytest.raises(BadInput, match="one number"):

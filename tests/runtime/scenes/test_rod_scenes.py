@@ -12,6 +12,7 @@ from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.scenes import load_scene
 from elastolink.runtime.systems.rod import OverhangBasis, rod_system
 from free_free_loads import ROD
+from refusals import refused
 
 FLEXIBLE = "beale_1992_flexible_rod"
 STIFF = "beale_1992_bahgat_willmert"
@@ -98,8 +99,8 @@ def test_a_damping_ratio_is_that_of_the_first_mode(law):
     assert np.min(np.abs(np.abs(found) - wanted)) < 1e-9
 
 
-@pytest.mark.parametrize(
-    ("overrides", "message"),
+test_impossible_rods_are_refused_in_words = refused(
+    lambda overrides: load_scene(FLEXIBLE, overrides).system(),
     [
         ({"links.crank_ratio": 1.0}, "another length than frame"),
         ({"links.crank_ratio": 0.8}, "the block would leave the rod"),
@@ -115,9 +116,6 @@ def test_a_damping_ratio_is_that_of_the_first_mode(law):
         (FREE | {"operation.speed": None}, "crank speed"),
     ],
 )
-def test_impossible_rods_are_refused_in_words(overrides, message):
-    with pytest.raises(BadInput, match=message):
-        load_scene(FLEXIBLE, overrides).system()
 
 
 def test_stiffness_and_section_take_each_others_place():

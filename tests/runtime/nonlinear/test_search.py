@@ -30,7 +30,7 @@ def test_planted_motions_are_found():
 
 @pytest.mark.slow
 def test_nearly_all_planted_motions_are_found():
-    assert found(1, 40) >= 0.95
+    assert found(1, 20) >= 0.95
 
 
 def test_the_three_motions_of_a_hardened_resonance():

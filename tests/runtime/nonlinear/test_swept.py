@@ -65,7 +65,7 @@ def test_jumps_come_after_the_folds(folds):
 
 @pytest.mark.slow
 def test_the_delay_of_jumps_goes_with_two_thirds_of_the_rate(folds):
-    rates = np.array([8e-5, 2e-5, 5e-6])
+    rates = np.array([8e-5, 2e-5, 1e-5])
     late = delays(rates, folds)
     assert np.all(late[-1] < 0.01 * folds)
     slopes = np.diff(np.log(late), axis=0) / np.diff(np.log(rates))[:, None]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from .. import nonlinear
 from ..core.errors import bad
+from ..core.plotting import RPM
 from . import options as opt
 from .linkages import speed_of, speed_range
 
@@ -14,7 +15,6 @@ if TYPE_CHECKING:
     from ..core.families import Nonlinear
     from ..scenes import Scene
 
-_RPM = 9.549296585513721
 _INEXTENSIBLE = "inextensible"
 
 
@@ -138,7 +138,7 @@ def _lines(curve: nonlinear.ResponseCurve) -> list[str]:
     import numpy as np
 
     speed = curve.parameter == "speed"
-    factor, head = (_RPM, "speed [rpm]") if speed else (1.0, f"{curve.parameter} [SI]")
+    factor, head = (RPM, "speed [rpm]") if speed else (1.0, f"{curve.parameter} [SI]")
     size, unit = (1e3, "mm") if curve.unit == "m" else (1.0, curve.unit)
     deflection = size * (curve.special_highest - curve.special_lowest)
     count = len(curve.ended)
@@ -151,6 +151,8 @@ def _lines(curve: nonlinear.ResponseCurve) -> list[str]:
             f"  branch {number}, {turns} turn{'s' * (turns > 1)}: {ends[0]:.6g} to {ends[1]:.6g}, "
             f"{int(np.sum(curve.stable[at]))} of {int(np.sum(at))} points stable; {ended}"
         )
+    for end in curve.missed:
+        lines.append(f"  no motion was found to begin with at {head.split()[0]} {factor * end:.6g}")
     if not curve.special:
         return [*lines, "", "no folds, doublings or crossings"]
     table = opt.columns(
@@ -179,7 +181,7 @@ def _sweep(options: argparse.Namespace, scene: Scene, system: Nonlinear, told: l
         lines += [
             "",
             *opt.columns(
-                ("jump at [rpm]", ".6g", _RPM * found.jump_speed),
+                ("jump at [rpm]", ".6g", RPM * found.jump_speed),
                 ("", "", ["run up" if up else "run down" for up in found.jump_rising]),
                 ("deflection after / before", ".3g", found.jump_ratio),
             ),

@@ -11,7 +11,7 @@ import numpy as np
 from ..core.errors import bad
 from ..core.families import Array
 from ..core.inputs import is_finite, numbers, require_kind
-from ..core.plotting import Axes, axes_or_new
+from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.progress import bar
 from ..core.results import Result, provenance
 from .branch import TESTS, value_error
@@ -20,7 +20,6 @@ from .response import ResponseCurve
 from .segments import NotFinite, Problem
 
 _FAILURES = (Lost, NotFinite, np.linalg.LinAlgError)
-_RPM = 30.0 / np.pi
 # Steps in the plane of both parameters, in parts of their ranges: the first, least and largest.
 _FIRST, _LEAST, _LARGEST = 0.01, 1e-5, 0.05
 _POINTS = 400
@@ -60,7 +59,7 @@ class SpecialCurve(Result):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the curve; speeds in rpm, as in stability charts."""
         ax = axes_or_new(ax)
-        factors = [_RPM if name == "speed" else 1.0 for name in self.parameters]
+        factors = [RPM if name == "speed" else 1.0 for name in self.parameters]
         label = f"{self.kind} of {self.turns} turn{'s' * (self.turns > 1)}"
         ax.plot(factors[0] * self.first, factors[1] * self.second, label=label)
         x, y = ("crank speed [rpm]" if n == "speed" else f"{n} [SI]" for n in self.parameters)

@@ -12,6 +12,7 @@ from .segments import Motion, NotFinite, Problem, Ramp, chained, sweep
 
 # Newton's iteration of a revolution: the last correction, and how many.
 _LAST, _ITERATIONS, _PATIENCE = 1e-9, 12, 5
+_SETTLING = 30  # revolutions from rest to a motion that Newton's iteration does not find from there
 _FIRST = 6  # steps of a revolution at first, for each coordinate
 
 
@@ -92,6 +93,20 @@ class Marcher:
                 return motion
             before = large
         return None
+
+
+def from_rest(marcher: Marcher, value: float) -> Motion:
+    """Return the last of some revolutions that begin at rest.
+
+    Raises `Lost` or `NotFinite` where they cannot be computed.
+    """
+    motion = None
+    state = np.zeros((1, 2 * marcher.problem.system.size))
+    for _ in range(_SETTLING):
+        motion = marcher.revolution(value, state, motion)
+        state = end(motion)
+    assert motion is not None
+    return motion
 
 
 def end(motion: Motion) -> Array:

@@ -14,21 +14,21 @@ from numpy.typing import NDArray
 from ..core.errors import bad
 from ..core.families import Array, Nonlinear
 from ..core.inputs import is_finite, numbers, require_between, require_kind, require_whole
-from ..core.plotting import Axes, axes_or_new
+from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from .branch import CLOSED, JOINED, Branch, Limits, crossing, doubled, followed
+from .march import Marcher, from_rest
 from .orbit import FIRST_STEPS, MOST_STEPS, STAGES, Lost, Measure, Orbit, Solver, closed, taken
 from .segments import Motion, NotFinite, Problem, sweep
 
 _POINTS = 2000  # of one branch
 _BRANCHES = 24
-_SAMPLES = 128  # of a revolution, for the extremes of the linear deflection
+SAMPLES = 128  # of a revolution, for extremes
 _POLISHED = 4  # parabolas about the highest sample, each a tenth as wide
 # Relative distance within which motions are one: within its steps a motion is right to 1e-5 or so.
 _SAME = 1e-4
 _LINEAR = 120  # values at which the linear answer is computed
-_RPM = 30.0 / np.pi
 _STYLE = {"fold": "o", "doubling": "s", "branch point": "D", "torus": "^"}
 _FAILURES = (Lost, NotFinite, np.linalg.LinAlgError)
 
@@ -67,6 +67,8 @@ class ResponseCurve(Result):
         Why each branch ends.
     bounds : tuple of float
         The range [SI].
+    missed : tuple of float
+        Ends of the range at which no motion was found to follow.
     linear_value, linear_lowest, linear_highest : ndarray, shape (l,)
         The answer of the equations linearised about no deflection, computed when first read.
     unit, parameter_unit : str
@@ -95,6 +97,7 @@ class ResponseCurve(Result):
     special_highest: Array
     ended: tuple[str, ...]
     bounds: tuple[float, float]
+    missed: tuple[float, ...] = ()
     unit: str = ""
     orbits: tuple[Orbit, ...] = ()
     special_orbits: tuple[Orbit, ...] = ()
@@ -151,7 +154,7 @@ class ResponseCurve(Result):
         """Draw the peak-to-peak deflection: stable solid, unstable dotted, the linear one thin."""
         ax = axes_or_new(ax)
         speed = self.parameter == "speed"
-        factor, axis = (_RPM, "crank speed [rpm]") if speed else (1.0, f"{self.parameter} [SI]")
+        factor, axis = (RPM, "crank speed [rpm]") if speed else (1.0, f"{self.parameter} [SI]")
         size, unit = (1e3, "mm") if self.unit == "m" else (1.0, self.unit)
         ax.plot(
             factor * self.linear_value,
@@ -255,8 +258,8 @@ def response_curve(
     require_between("largest", largest, 1e-6, 10.0, "try 0.25")
     solver, limits = Solver(problem, high - low, rtol), Limits(low, high, largest, _POINTS)
     with bar(progress, _BRANCHES, unit="branch") as tick:
-        branches = _all_branches(solver, limits, turns, list(starts), tick)
-    return _result(solver, branches, (low, high))
+        branches, missed = _all_branches(solver, limits, turns, list(starts), tick)
+    return _result(solver, branches, (low, high), missed)
 
 
 def checked_problem(
@@ -297,17 +300,19 @@ def _all_branches(
     turns: int,
     starts: list[tuple[float, Motion]],
     tick: Callable[[int], None] | None,
-) -> list[Branch]:
-    """Return the branch from either end of the range, and those that begin on it."""
+) -> tuple[list[Branch], tuple[float, ...]]:
+    """Return the branch from either end of the range, and those that begin on it.
+
+    And the ends at which none was found.
+    """
     branches: list[Branch] = []
     queue: list[tuple[Orbit, Measure]] = []
-    refused = ""
+    missed: dict[float, str] = {}
     for value, sign in ((limits.low, 1.0), (limits.high, -1.0)):
         try:
-            motion = solver.settled(value, first_motion(solver.problem))
-            begun = solver.fine(value, motion, solver.along_parameter(motion, sign))
+            begun = _begun(solver, value, sign)
         except _FAILURES as failure:
-            refused = str(failure)
+            missed[value] = str(failure)
             continue
         _follow(solver, begun, limits, branches, queue, turns, tick)
     for value, motion in starts:
@@ -317,10 +322,20 @@ def _all_branches(
         _follow(solver, begun, limits, branches, queue, turns, tick, back)
     if not branches:
         fix = "choose another range: begin where the motion is small"
-        raise bad("bounds", f"no periodic motion at either end ({refused})", "one", fix)
+        found = f"no periodic motion at either end ({missed[limits.high]})"
+        raise bad("bounds", found, "one", fix)
     while queue and len(branches) < _BRANCHES:
         _follow(solver, queue.pop(0), limits, branches, queue, turns, tick)
-    return branches
+    return branches, tuple(missed)
+
+
+def _begun(solver: Solver, value: float, sign: float) -> tuple[Orbit, Measure]:
+    """Return the motion that is found from rest: by Newton's iteration, or after some turns."""
+    try:
+        motion = solver.settled(value, first_motion(solver.problem))
+    except _FAILURES:
+        motion = solver.settled(value, from_rest(Marcher(solver.problem, solver.rtol), value))
+    return solver.fine(value, motion, solver.along_parameter(motion, sign))
 
 
 def _follow(
@@ -435,7 +450,12 @@ def tops(
     return float(np.min(found[which == 0])), float(np.max(found[which == 1]))
 
 
-def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float]) -> ResponseCurve:
+def _result(
+    solver: Solver,
+    branches: list[Branch],
+    bounds: tuple[float, float],
+    missed: tuple[float, ...],
+) -> ResponseCurve:
     problem = solver.problem
     points = [point for branch in branches for point in branch.points]
     counts = [len(branch.points) for branch in branches]
@@ -469,6 +489,7 @@ def _result(solver: Solver, branches: list[Branch], bounds: tuple[float, float])
         special_highest=at_special[:, 1],
         ended=tuple(branch.ended for branch in branches),
         bounds=bounds,
+        missed=missed,
         unit=problem.system.unit,
         orbits=tuple(orbit for orbit, _ in points),
         special_orbits=tuple(point.orbit for point in special),
@@ -481,7 +502,7 @@ def _linear(problem: Problem, bounds: tuple[float, float]) -> tuple[Array, Array
     values = np.linspace(*bounds, _LINEAR)
     rest = first_motion(problem)
     low, high = np.full((2, _LINEAR), np.nan)
-    angles = 2.0 * np.pi * np.arange(_SAMPLES) / _SAMPLES
+    angles = 2.0 * np.pi * np.arange(SAMPLES) / SAMPLES
     for i, value in enumerate(values.tolist()):
         motion = linear_motion(problem, value, rest)
         shown = problem.system.shown(motion.at(angles)[0], problem.at(value)[1])

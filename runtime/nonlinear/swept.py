@@ -14,18 +14,15 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad
 from ..core.families import Array, Nonlinear
 from ..core.inputs import is_finite, numbers_in_a_row, require_between, require_whole
-from ..core.plotting import Axes, axes_or_new
+from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
-from .march import Marcher, end, unresolved
+from .march import Marcher, end, from_rest, unresolved
 from .orbit import EPS, Lost, Solver
-from .response import checked_problem, first_motion, tops
+from .response import SAMPLES, checked_problem, first_motion, tops
 from .segments import Motion, NotFinite, Problem, Ramp
 
-_RPM = 30.0 / np.pi
-_SAMPLES = 128  # of a revolution, for its extremes
 _MOST_TURNS = 200_000
-_SETTLING = 30  # revolutions at the first speed where no periodic motion is found by itself
 # A jump: the peak-to-peak value changes by this factor, in logarithms, and in a revolution by so
 # many times what it does in the middle; revolutions between two parts of one jump.
 _JUMP, _SUDDEN, _PAUSE = 0.15, 6.0, 6
@@ -100,7 +97,7 @@ class SweepResponse(Result):
             at = self.rising == rising
             if np.any(at):
                 values = size * self.peak_to_peak[at]
-                ax.plot(self.speed[at] * _RPM, values, color=colour, linewidth=1.0, label=label)
+                ax.plot(self.speed[at] * RPM, values, color=colour, linewidth=1.0, label=label)
         ax.set(xlabel="crank speed [rpm]", ylabel=f"peak-to-peak deflection [{unit}]")
         ax.legend(frameon=False, fontsize="small")
         return ax
@@ -213,15 +210,11 @@ def _begun(marcher: Marcher, speed: float) -> Array:
         return solver.fine(speed, motion, solver.along_parameter(motion))[0].motion.states[:1]
     except (Lost, NotFinite):
         pass
-    state, before = np.zeros((1, 2 * problem.system.size)), None
     try:
-        for _ in range(_SETTLING):
-            before = marcher.revolution(speed, state, before)
-            state = end(before)
+        return end(from_rest(marcher, speed))
     except (Lost, NotFinite) as failure:
         fix = "begin at a speed where the motion stays small"
         raise bad("bounds", f"no motion at {speed:.6g} rad/s: {failure}", "one", fix) from failure
-    return state
 
 
 def _swept(
@@ -236,7 +229,7 @@ def _swept(
     low, high = bounds
     speed = low if rise > 0 else high
     system, before = marcher.problem.system, None
-    angles = np.linspace(0.0, 2.0 * np.pi, _SAMPLES + 1)
+    angles = np.linspace(0.0, 2.0 * np.pi, SAMPLES + 1)
     while True:
         after = speed**2 + 4.0 * np.pi * rise
         if not low**2 <= after <= high**2:
@@ -421,7 +414,7 @@ def basins(
 
 
 def _peak_to_peak(problem: Problem, motion: Motion) -> float:
-    angles = np.linspace(0.0, motion.span, _SAMPLES * motion.turns, endpoint=False)
+    angles = np.linspace(0.0, motion.span, SAMPLES * motion.turns, endpoint=False)
     return float(np.ptp(problem.system.shown(motion.at(angles)[0])))
 
 

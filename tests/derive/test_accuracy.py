@@ -36,6 +36,11 @@ LONG = {
     "beam_element_curvature",
     "beam_element_internal_node",
     "beam_element_timoshenko",
+    "beam_amplitude_law",
+    "slider_crank_coupler_inextensible",
+    "slider_crank_coupler_inextensible_cubic_1_modes",
+    "slider_crank_coupler_inextensible_cubic_2_modes",
+    "four_bar_coupler_inextensible_cubic_2_modes",
 }
 
 

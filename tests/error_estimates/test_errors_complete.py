@@ -18,6 +18,7 @@ DELEGATED = {
     "shaking_force": "rigid_forces",
     "shaking_moment": "rigid_forces",
     "sweep": "stability_chart",
+    "response_curve": "curve_of",  # of random_systems.py, which calls it
     "balance": "with_crank_counterweight",  # a helper of its test, which calls it
 }
 # Whole numbers, classes, or an approximation whose error is another function's.

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import elastolink as el
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.nonlinear import coexisting_motions
 from planted import duffing, planted_system
+from random_systems import random_rig
 
 ANGLES = 2.0 * np.pi * np.arange(32) / 32
 
@@ -75,3 +78,30 @@ def test_refusals(changes, word):
     arguments = {"parameter": "speed", "value": 1.2, **changes}
     with pytest.raises(BadInput, match=word):
         coexisting_motions(duffing(), **arguments)
+
+
+@pytest.mark.slow
+def test_a_start_that_newton_misses_from_rest_is_marched_to():
+    # At the upper end of this rig's range Newton's iteration fails from rest.
+    system, bounds = random_rig(np.random.default_rng(402))
+    curve = el.response_curve(system, "speed", bounds)
+    assert curve.missed == () and len(curve.ended) == 2
+    last = int(np.argmax(np.where(curve.branch == 1, curve.value, 0.0)))
+    assert curve.value[last] == pytest.approx(bounds[1], rel=1e-12) and curve.stable[last]
+    # A slow sweep from there begins with the same motion.
+    far = el.sweep_response(system, (bounds[1], 1.001 * bounds[1]), 1e-3, "up", kicks=0.0)
+    assert far.peak_to_peak[0] == pytest.approx(curve.peak_to_peak[last], rel=0.02)
+
+
+def test_an_end_without_a_motion_is_said():
+    system = duffing()
+
+    def limited(q, qd, qdd, drive, parameters, derivatives=True):
+        left = system.equations(q, qd, qdd, drive, parameters, derivatives)
+        beyond = np.asarray(drive.speed)[..., None] > 0.7
+        return left._replace(residual=np.where(beyond, np.nan, left.residual))
+
+    curve = el.response_curve(replace(system, equations=limited), "speed", (0.5, 0.9))
+    assert curve.missed == (0.9,)
+    assert curve.ended == ("it cannot be followed",)
+    assert curve.value.max() == pytest.approx(0.7, abs=1e-3)

@@ -151,8 +151,8 @@ def _lines(curve: nonlinear.ResponseCurve) -> list[str]:
             f"  branch {number}, {turns} turn{'s' * (turns > 1)}: {ends[0]:.6g} to {ends[1]:.6g}, "
             f"{int(np.sum(curve.stable[at]))} of {int(np.sum(at))} points stable; {ended}"
         )
-    for end in curve.missed:
-        lines.append(f"  no motion was found to begin with at {head.split()[0]} {factor * end:.6g}")
+    none = f"  no motion was found to begin with at {head.split()[0]}"
+    lines += [f"{none} {factor * end:.6g}" for end in curve.missed]
     if not curve.special:
         return [*lines, "", "no folds, doublings or crossings"]
     table = opt.columns(

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, cast
 
 from .. import nonlinear
 from ..core.errors import bad
-from ..core.plotting import RPM
 from . import options as opt
 from .linkages import speed_of, speed_range
 
@@ -137,6 +136,8 @@ def _lines(curve: nonlinear.ResponseCurve) -> list[str]:
     """Return the special points, the branches, and the largest stable deflection."""
     import numpy as np
 
+    from ..core.plotting import RPM
+
     speed = curve.parameter == "speed"
     factor, head = (RPM, "speed [rpm]") if speed else (1.0, f"{curve.parameter} [SI]")
     size, unit = (1e3, "mm") if curve.unit == "m" else (1.0, curve.unit)
@@ -167,6 +168,8 @@ def _lines(curve: nonlinear.ResponseCurve) -> list[str]:
 
 def _sweep(options: argparse.Namespace, scene: Scene, system: Nonlinear, told: list[str]) -> int:
     """March up and down, and print the jumps."""
+    from ..core.plotting import RPM
+
     opt.refuse_unused(options, ("in", "search"), "a response curve, without --sweep")
     rate = opt.positive(options, "sweep", "angular_acceleration") or 0.0
     bounds = speed_range(options.speed, scene, "--speed")

@@ -28,8 +28,6 @@ _MOST_SAMPLES = 4000
 _ANGLES = 256
 # Error of the transition matrices: the place of a maximum is open by the root of it.
 _RTOL = 1e-9
-
-
 # Step beside a maximum, over the speed: of its fourth power the place is off.
 _BESIDE = 1e-4
 

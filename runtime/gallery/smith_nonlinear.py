@@ -10,7 +10,7 @@ from math import pi
 from typing import Any, NamedTuple, cast
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+from scipy.interpolate import CubicSpline, PchipInterpolator
 from scipy.signal import find_peaks
 
 from ..core.families import Nonlinear
@@ -136,11 +136,10 @@ def _peak(one: Bench, order: int) -> float:
     lower = first[: np.argmin(np.append(curve.stable[first], False))]
     bent = [one.system.shown(curve.orbits[i].motion.at(turn)[0]) for i in lower]
     sizes, speed = np.abs(np.fft.rfft(bent, axis=-1))[:, order], curve.value[lower]
-    tops = find_peaks(sizes)[0]
-    top = tops[np.argmin(np.abs(speed[tops] - one.rig.frequency / order))]
-    near = slice(top - 1, top + 2)
-    bend, slope, _ = np.polyfit(speed[near] - speed[top], sizes[near], 2)
-    return float(speed[top] - 0.5 * slope / bend) / RPM
+    size = CubicSpline(speed, sizes)
+    flat = size.derivative().roots(extrapolate=False)
+    tops = flat[size(flat, 2) < 0.0]
+    return float(tops[np.argmin(np.abs(tops - one.rig.frequency / order))]) / RPM
 
 
 def _amplitudes(one: Bench, speed: float) -> list[tuple[int, bool, float]]:

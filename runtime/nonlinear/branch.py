@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..core.families import Array
-from .orbit import EPS, STAGES, Direction, Lost, Measure, Orbit, Solver, changed
-from .segments import Motion, NotFinite
+from .orbit import EPS, FAILURES, STAGES, Direction, Lost, Measure, Orbit, Solver, changed
+from .segments import Motion
 
 # First correction that a step aims at, relative; factors by which a step changes at once; its
 # first, its least and its largest length.
@@ -28,7 +28,6 @@ _ROUNDING = 64 * EPS  # of a test, over the size of the matrix
 _LOCATED = 1e-14  # part of a step to which a special point is located
 # Part of a test's value to which the parabola through three has to fall for a pair to be sought.
 _DIP = 0.3
-_FAILURES = (Lost, NotFinite, np.linalg.LinAlgError)
 
 
 @dataclass(frozen=True)
@@ -162,7 +161,7 @@ def _steps(
                 if ahead.tangent.dot(orbit.tangent) < 0.5:
                     raise Lost("the branch turns within a step")
                 ahead, measure = solver.refined(ahead)
-            except _FAILURES:
+            except FAILURES:
                 ahead, step = None, step * _SHORTER
         if ahead.tangent.dot(orbit.tangent) < 0:
             ahead = ahead.turned()
@@ -170,7 +169,7 @@ def _steps(
             yield None, None, JOINED
             return
         if not limits.hold(ahead.value):
-            with suppress(*_FAILURES):
+            with suppress(*FAILURES):
                 # The last motion is that at the end of the range.
                 value = limits.low if ahead.value < limits.low else limits.high
                 across = solver.along_parameter(ahead.motion, ahead.value - orbit.value)
@@ -225,7 +224,7 @@ def special_points(solver: Solver, before: Orbit, after: Orbit) -> Iterator[Spec
             continue
         if kind == "torus" and not _leaves(solver, before, after):
             continue
-        with suppress(*_FAILURES):
+        with suppress(*FAILURES):
             yield _located(solver, kind, _Between(solver, before, after))
 
 
@@ -258,7 +257,7 @@ def hidden_pairs(solver: Solver, before: Orbit, here: Orbit, after: Orbit) -> It
         if middle - (last - first) ** 2 / (8.0 * bend) > _DIP * middle:
             continue
         between = _Between(solver, *((before, here) if first < last else (here, after)))
-        with suppress(*_FAILURES):
+        with suppress(*FAILURES):
             lowest = minimize_scalar(
                 lambda part, between=between, test=test, sign=sign: sign * test(between(part)),
                 bounds=(0.0, 1.0),
@@ -363,7 +362,7 @@ def doubled(solver: Solver, orbit: Orbit) -> tuple[Orbit, Measure]:
         guess = twice.moved(length * states, length * a)
         try:
             return solver.fine(orbit.value, guess, long.unit())
-        except _FAILURES:
+        except FAILURES:
             length *= _SHORTER
     raise Lost("the branch of twice the turns cannot be entered")
 
@@ -390,6 +389,6 @@ def crossing(solver: Solver, orbit: Orbit, sign: float) -> tuple[Orbit, Measure]
         try:
             found, measure = solver.fine(value, guess, mixed.times(sign))
             return found, measure
-        except _FAILURES:
+        except FAILURES:
             length *= _SHORTER
     raise Lost("the branch that crosses cannot be entered")

@@ -15,11 +15,10 @@ from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.progress import bar
 from ..core.results import Result, provenance
 from .branch import TESTS, value_error
-from .orbit import Lost, Orbit, Solver, changed
+from .orbit import FAILURES, Lost, Orbit, Solver, changed
 from .response import ResponseCurve
-from .segments import NotFinite, Problem
+from .segments import Problem
 
-_FAILURES = (Lost, NotFinite, np.linalg.LinAlgError)
 # Steps in the plane of both parameters, in parts of their ranges: the first, least and largest.
 _FIRST, _LEAST, _LARGEST = 0.01, 1e-5, 0.05
 _POINTS = 400
@@ -220,7 +219,7 @@ class _Plane:
                 way = way / np.linalg.norm(way)
             try:
                 point = self._next(before, last, way, step)
-            except _FAILURES:
+            except FAILURES:
                 step *= 0.4
                 continue
             moved = self.place(point) - self.place(last)

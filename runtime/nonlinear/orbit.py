@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 
 from ..core.families import Array
-from .segments import Motion, Problem, Sweep, chained, sweep
+from .segments import Motion, NotFinite, Problem, Sweep, chained, sweep
 
 EPS = float(np.finfo(float).eps)
 # Newton has arrived where its correction, relative to the motion, is below the first: its square
 # is round-off; or where it no longer falls below the second.
 _LAST, _SMALL = 3e-10, 1e-8
 _ITERATIONS, _MOST_ITERATIONS = 10, 40
-_NEAR = 1e-5
+_NEAR = 1e-5  # correction after which the derivative by the parameter is kept
 # First correction beyond which a guess is refused, relative.
 _FAR = 0.3
 # Stages of the motion beside which errors are measured, less than those of the motion, and the
@@ -39,6 +39,9 @@ STAGES, FIRST_STEPS, MOST_STEPS = 12, 5, 384
 
 class Lost(ArithmeticError):  # noqa: N818 - reads as what it is
     """There is no periodic motion near a guess, or it cannot be followed."""
+
+
+FAILURES = (Lost, NotFinite, np.linalg.LinAlgError)
 
 
 @dataclass(frozen=True)
@@ -284,8 +287,8 @@ class Solver:
         within = taken(fewer, swept, change, 0.0).at(motion.angles.ravel() - motion.begin)[0]
         moved_most, off = self._shown(orbit, within)
         n = motion.x.shape[1]
-        moved_by = float(np.max(np.abs(change[:, :n]) / self.scale(motion)[:n]))
-        moved_by = share(moved_by, noise) + rounding
+        coordinates = float(np.max(np.abs(change[:, :n]) / self.scale(motion)[:n]))
+        moved_by = share(coordinates, noise) + rounding
         differences = _differences(orbit, np.asarray(whole[-1]))
         return Measure(
             away,

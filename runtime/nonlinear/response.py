@@ -19,8 +19,18 @@ from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from .branch import CLOSED, JOINED, Branch, Limits, crossing, doubled, followed
 from .march import Marcher, from_rest
-from .orbit import FIRST_STEPS, MOST_STEPS, STAGES, Lost, Measure, Orbit, Solver, closed, taken
-from .segments import Motion, NotFinite, Problem, sweep
+from .orbit import (
+    FAILURES,
+    FIRST_STEPS,
+    MOST_STEPS,
+    STAGES,
+    Measure,
+    Orbit,
+    Solver,
+    closed,
+    taken,
+)
+from .segments import Motion, Problem, sweep
 
 _POINTS = 2000  # of one branch
 _BRANCHES = 24
@@ -30,7 +40,6 @@ _POLISHED = 4  # parabolas about the highest sample, each a tenth as wide
 _SAME = 1e-4
 _LINEAR = 120  # values at which the linear answer is computed
 _STYLE = {"fold": "o", "doubling": "s", "branch point": "D", "torus": "^"}
-_FAILURES = (Lost, NotFinite, np.linalg.LinAlgError)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -311,7 +320,7 @@ def _all_branches(
     for value, sign in ((limits.low, 1.0), (limits.high, -1.0)):
         try:
             begun = _begun(solver, value, sign)
-        except _FAILURES as failure:
+        except FAILURES as failure:
             missed[value] = str(failure)
             continue
         _follow(solver, begun, limits, branches, queue, turns, tick)
@@ -333,7 +342,7 @@ def _begun(solver: Solver, value: float, sign: float) -> tuple[Orbit, Measure]:
     """Return the motion that is found from rest: by Newton's iteration, or after some turns."""
     try:
         motion = solver.settled(value, first_motion(solver.problem))
-    except _FAILURES:
+    except FAILURES:
         motion = solver.settled(value, from_rest(Marcher(solver.problem, solver.rtol), value))
     return solver.fine(value, motion, solver.along_parameter(motion, sign))
 
@@ -366,7 +375,7 @@ def _follow(
                 queue.append(doubled(solver, point.orbit))
             elif point.kind == "branch point":
                 queue += [crossing(solver, point.orbit, sign) for sign in (1.0, -1.0)]
-        except _FAILURES:
+        except FAILURES:
             continue
 
 
@@ -386,7 +395,7 @@ def _on(solver: Solver, orbit: Orbit, branch: Branch) -> bool:
         near = min(one, other, key=lambda point: abs(point.value - orbit.value))
         try:
             settled = solver.settled(orbit.value, near.motion)
-        except _FAILURES:
+        except FAILURES:
             continue
         if same_motion(solver, settled, orbit.motion):
             return True

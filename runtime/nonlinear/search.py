@@ -16,11 +16,10 @@ from ..core.inputs import is_finite, require_whole
 from ..core.progress import bar
 from ..core.results import Result, provenance
 from .march import Marcher, end
-from .orbit import FIRST_STEPS, STAGES, Lost, Solver, closed, taken
+from .orbit import FAILURES, FIRST_STEPS, STAGES, Lost, Solver, closed, taken
 from .response import checked_problem, extremes, first_motion, same_motion
-from .segments import Motion, NotFinite, Problem, chained, sweep
+from .segments import Motion, Problem, chained, sweep
 
-_FAILURES = (Lost, NotFinite, np.linalg.LinAlgError)
 # Amplitudes of the starts in the first coordinate that suits, over its largest trial; phases.
 _AMPLITUDES, _PHASES = (0.1, 0.2, 0.35, 0.5), 6
 # Marched starts, revolutions of each at the most, and how near a state has to come back.
@@ -137,7 +136,7 @@ def coexisting_motions(
                 tick(number + 1)
         counts["known ones, deflated"] = len(found) + 1
         for start in [first_motion(problem), *found]:
-            with suppress(*_FAILURES):
+            with suppress(*FAILURES):
                 near = start.moved(0.1 * largest * np.ones_like(start.states), 0.0 * start.a)
                 motion = _deflated(solver, value, near, found, bound)
                 _keep(solver, found, solver.settled(value, motion))
@@ -163,7 +162,7 @@ def _together(solver: Solver, value: float, starts: Sequence[Motion], bound: flo
             arrived += _newton(solver, value, queue[first : first + _AT_ONCE], bound)
     settled = []
     for motion in arrived:
-        with suppress(*_FAILURES):
+        with suppress(*FAILURES):
             settled.append(solver.settled(value, motion))
     return settled
 
@@ -179,7 +178,7 @@ def _newton(solver: Solver, value: float, starts: list[Motion], bound: float) ->
         runs, m = motion.runs, len(motion.x) // motion.runs
         try:
             swept = sweep(solver.problem, value, motion)
-        except _FAILURES:
+        except FAILURES:
             if len(starts) == 1:
                 break
             # One that cannot be evaluated must not stop the others.
@@ -287,7 +286,7 @@ def _marched(marcher: Marcher, speed: float, state: Array, turns: int) -> Motion
             if near and len(last) >= near[0]:
                 last = last[-near[0] :]
                 break
-    except _FAILURES:
+    except FAILURES:
         return None
     steps = max(len(motion.x) for motion in last)
     whole = Motion.together([motion.resampled(steps, STAGES) for motion in last])
@@ -363,7 +362,7 @@ def _result(
     for motion in found:
         try:
             orbit, measure = solver.fine(value, motion, solver.along_parameter(motion))
-        except _FAILURES:
+        except FAILURES:
             continue
         if any(same_motion(solver, known, orbit.motion) for known in kept):
             continue

@@ -8,6 +8,7 @@ spectrally, for the bending moment may jump in slope at the block, as the block'
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -144,7 +145,7 @@ def _inverse_norm(k: int, a: int, b: int) -> float:
     return sqrt(square)
 
 
-class _TwoSided:
+class _TwoSided(ABC):
     """A basis of polynomials on both sides of the block.
 
     Each of its arrays is a sum of parts, which are a power of a length times a polynomial in xi.
@@ -152,17 +153,17 @@ class _TwoSided:
 
     size: int
 
+    @abstractmethod
     def _degrees(self, name: str) -> tuple[int, int]:
         """Return the degree of these polynomials in xi, and that of the integrands in eta."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _sampler(self, side: str, s: Array, place: Array) -> Samples:
         """Return the shapes at points of one side."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _parts(self, name: str, xi: Array) -> list[tuple[tuple[str, ...], Array]]:
         """Return the sides that each part belongs to, and its power of a length."""
-        raise NotImplementedError
 
     def _places(self, place: Array) -> Array:
         return require_places(place)

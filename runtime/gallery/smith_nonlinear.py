@@ -5,25 +5,23 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import pairwise
 from math import pi
 from typing import Any, NamedTuple, cast
 
 import numpy as np
-from scipy.interpolate import CubicSpline, PchipInterpolator
+from scipy.interpolate import CubicSpline
 from scipy.signal import find_peaks
 
 from ..core.families import Nonlinear
 from ..nonlinear import ResponseCurve, SweepResponse, response_curve, sweep_response
 from ..scenes import load_scene
-from .drawing import COLOURS, Array, Axes, Panels, mark_fractions, panel_title
+from .drawing import COLOURS, Array, Panels, mark_fractions, panel_title
 from .records import Drawn, contents
 from .smith_linkages import LBF_IN_S2, RPM, OfRig, Rig
 from .smith_responses import response
 
 _MM = 1e3
 _WAYS = {True: "run up", False: "run down"}
-_FINE = 8  # places drawn between two points of a branch
 
 
 def coupler(
@@ -250,7 +248,7 @@ def trace(
     label = f"{_WAYS[rising]}, {one.rate:g} rpm/s"
     ax.fill_between(way.speed, way.lowest, way.highest, color="#cfdce8", lw=0, label=label)
     curve = branches(one)
-    _draw(ax, curve, curve.lowest, curve.highest)
+    curve.draw(ax, curve.lowest, curve.highest)
     seen = way.within(low, high)
     ax.set(xlim=(low, high), ylim=(1.2 * np.min(seen.lowest), 1.2 * np.max(seen.highest)))
     marks = one.rig.frequency / RPM, range(1, 13), "Ω/{}", (low, high)
@@ -258,27 +256,6 @@ def trace(
     panel_title(axes[0], "complete linear equation")
     panel_title(ax, f"nonlinear equation, decrement {one.rig.decrement:g}")
     return Drawn([*values, *(_CLAIMS[claim[0]](one, rising, *claim[1:]) for claim in claims)])
-
-
-def _draw(ax: Axes, curve: ResponseCurve, *sizes: Array) -> None:
-    """Draw sizes [m] of periodic motions over the speed: stable solid, unstable dotted."""
-    for number in range(len(curve.ended)):
-        at = np.flatnonzero(curve.branch == number)
-        if len(at) < 2:
-            continue
-        turns, points = int(curve.turns[at[0]]), np.arange(len(at))
-        fine = np.linspace(0, points[-1], _FINE * int(points[-1]) + 1)
-        speed = PchipInterpolator(points, curve.value[at] / RPM)(fine)
-        holds = curve.stable[at[:-1]] & curve.stable[at[1:]]
-        ends = [0, *(np.flatnonzero(np.diff(holds)) + 1).tolist(), len(holds)]
-        for size in sizes:
-            shown = PchipInterpolator(points, _MM * size[at])(fine)
-            for first, last in pairwise(ends):
-                part = slice(_FINE * first, _FINE * last + 1)
-                style, word = ("-", "stable") if holds[first] else (":", "unstable")
-                label = f"{turns} turn{'s' * (turns > 1)}, {word}"
-                colour = COLOURS[0 if turns == 1 else 3]
-                ax.plot(speed[part], shown[part], style, color=colour, label=label)
 
 
 def figure_64(axes: Panels, name: str, speed: float) -> Drawn:
@@ -306,7 +283,7 @@ def figure_69(axes: Panels, name: str, speeds: Sequence[float]) -> Drawn:
         # Every eighth revolution, and the larger of two: a motion of two turns alternates.
         size = np.maximum(way.size[:-1], way.size[1:])
         ax.plot(way.speed[:-1:8], size[::8], mark, ms=2.5, color=colour, label=_WAYS[rising])
-    _draw(ax, curve, curve.peak_to_peak)
+    curve.draw(ax, curve.peak_to_peak)
     linear = _MM * (curve.linear_highest - curve.linear_lowest)
     ax.plot(curve.linear_value / RPM, linear, color="0.6", lw=0.8, label="linear")
     ax.set(

@@ -38,6 +38,7 @@ SAMPLES = 128  # of a revolution, for extremes
 _POLISHED = 4  # parabolas about the highest sample, each a tenth as wide
 # Relative distance within which motions are one: within its steps a motion is right to 1e-5 or so.
 _SAME = 1e-4
+_DRAWN = 8  # places drawn between two points of a branch
 _LINEAR = 120  # values at which the linear answer is computed
 _STYLE = {"fold": "o", "doubling": "s", "branch point": "D", "torus": "^"}
 
@@ -159,12 +160,48 @@ class ResponseCurve(Result):
         """Highest less lowest deflection, shape ``(k,)``."""
         return self.highest - self.lowest
 
+    @property
+    def _axes(self) -> tuple[float, str, float, str]:
+        """Factors and labels or units of the parameter and of the deflection in pictures."""
+        speed = self.parameter == "speed"
+        along = (RPM, "crank speed [rpm]") if speed else (1.0, f"{self.parameter} [SI]")
+        return (*along, *((1e3, "mm") if self.unit == "m" else (1.0, self.unit)))
+
+    def draw(self, ax: Axes, *sizes: Array) -> None:
+        """Draw sizes of the motions, ``(k,)`` each, smoothly: stable solid, unstable dotted."""
+        from scipy.interpolate import PchipInterpolator
+
+        factor, _, scale, _ = self._axes
+        seen: set[str] = set()
+        for number in range(len(self.ended)):
+            (at,) = np.nonzero(self.branch == number)
+            if len(at) < 2:
+                continue
+            turns, points = int(self.turns[at[0]]), np.arange(len(at))
+            fine = np.linspace(0, points[-1], _DRAWN * int(points[-1]) + 1)
+            along = PchipInterpolator(points, factor * self.value[at])(fine)
+            # A special point is all but stable: what it leads to decides.
+            holds = self.stable[at[:-1]] & self.stable[at[1:]]
+            ends = [0, *(np.flatnonzero(np.diff(holds)) + 1).tolist(), len(holds)]
+            for size in sizes:
+                shown = PchipInterpolator(points, scale * size[at])(fine)
+                for first, last in pairwise(ends):
+                    part = slice(_DRAWN * first, _DRAWN * last + 1)
+                    style, word = ("-", "stable") if holds[first] else (":", "unstable")
+                    label = f"{turns} turn{'s' * (turns > 1)}, {word}"
+                    ax.plot(
+                        along[part],
+                        shown[part],
+                        style,
+                        color=f"C{turns.bit_length() - 1}",
+                        label=None if label in seen else label,
+                    )
+                    seen.add(label)
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the peak-to-peak deflection: stable solid, unstable dotted, the linear one thin."""
         ax = axes_or_new(ax)
-        speed = self.parameter == "speed"
-        factor, axis = (RPM, "crank speed [rpm]") if speed else (1.0, f"{self.parameter} [SI]")
-        size, unit = (1e3, "mm") if self.unit == "m" else (1.0, self.unit)
+        factor, axis, size, unit = self._axes
         ax.plot(
             factor * self.linear_value,
             size * (self.linear_highest - self.linear_lowest),
@@ -172,26 +209,8 @@ class ResponseCurve(Result):
             linewidth=0.8,
             label="linear",
         )
-        stable, seen = self.stable, set()
-        for number in range(len(self.ended)):
-            (at,) = np.nonzero(self.branch == number)
-            if not at.size:
-                continue
-            colour = f"C{int(self.turns[at[0]]).bit_length() - 1}"
-            for part in np.split(at, np.flatnonzero(np.diff(stable[at].astype(int))) + 1):
-                # A stretch reaches to the first point of the next one, so that nothing is missing.
-                part = np.append(part, part[-1] + 1) if part[-1] < at[-1] else part
-                holds = bool(stable[part[0]])
-                turns = int(self.turns[part[0]])
-                label = f"{turns} turn{'s' * (turns > 1)}, {'stable' if holds else 'unstable'}"
-                ax.plot(
-                    factor * self.value[part],
-                    size * self.peak_to_peak[part],
-                    "-" if holds else ":",
-                    color=colour,
-                    label=None if label in seen else label,
-                )
-                seen.add(label)
+        self.draw(ax, self.peak_to_peak)
+        seen: set[str] = set()
         for kind, value, low, high in zip(
             self.special, self.special_value, self.special_lowest, self.special_highest, strict=True
         ):

@@ -63,7 +63,7 @@ def test_harmonics_and_doublings_are_read_where_the_branch_has_them():
 
 def test_stable_motions_are_drawn_solid_and_others_dotted():
     ax, curve = new_figure().add_subplot(), smith_nonlinear.branches(FOLD)
-    smith_nonlinear._draw(ax, curve, curve.peak_to_peak)
+    curve.draw(ax, curve.peak_to_peak)
     styles = [line.get_linestyle() for line in ax.lines]
     # Up to the first fold, back to the second one, up to a doubling, and beyond.
     assert styles == ["-", ":", "-", ":"]

@@ -25,8 +25,8 @@ from .periodic_motion import SteadyState, peaks
 from .tables import Table, flows_at, next_rung, table_of
 from .transition import cheapest
 
-# Ratio of the speeds of one table.
-_RATIO = 1.5
+# Ratio of the speeds of one table: nodes for an octave cost two thirds of those for its halves.
+_RATIO = 2.0
 # Error of a motion over its peak, from which it is integrated step by step.
 _TRANSIENT = 1e-6
 # Places of each table at which other segments tell its error, and the margin.
@@ -390,7 +390,7 @@ def prepare(
     ------
     BadInput
         If an argument is unusable, M or A carries a power of the speed, numba is wanted and
-        missing, or the tables would take more than 320 MB for a range of 3 to 2.
+        missing, or the tables would take more than 480 MB for a range of 2 to 1.
 
     Examples
     --------

@@ -24,8 +24,8 @@ _EPS = float(np.finfo(float).eps)
 # Chebyshev nodes of small states: more than the segments need, so that their products can be
 # tables, too.  Of large ones as many as a few segments need; of any at the most.
 _SMALL, _NODES, _TRIED, _TRIAL_NODES, _MOST_NODES = 12, 32, 4, 24, 72
-# Numbers in a table: 320 MB.
-_MOST_FLOATS = 40_000_000
+# Numbers in a table: 480 MB.
+_MOST_FLOATS = 60_000_000
 # Values that are evaluated together, in numbers of their matrices.
 _BLOCK = 1_000_000
 
@@ -119,7 +119,7 @@ def table_of(
     of a matrix, relative to it.  Matrices are wanted at ``samples`` even angles of the period from
     0, too.  With ``half`` half of the period is enough.  A few segments tell how many Chebyshev
     nodes there are to begin with, where ``nodes`` does not; ``first`` is the equation at
-    :func:`places` of these, where it is at hand.  Tables beyond 320 MB are refused.
+    :func:`places` of these, where it is at hand.  Tables beyond 480 MB are refused.
     """
     low, high = ends
     if samples:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple, Protocol
+from functools import cached_property
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -164,28 +165,33 @@ class Reduced:
         derivatives: bool = True,
     ) -> Varied:
         """Return the residual at states ``(*batch, n)``, with its derivatives where wanted."""
-        system, time = self.make(parameters, drive), _time(q, drive)
-        x, at = self._closed(system, q, drive, parameters, time)
-        basis, inverse = self._basis(at["jacobian"])
+        system, time, held, free = self.make(parameters, drive), _time(q, drive), *self._places
+        x, at, inverse = self._closed(system, q, drive, parameters, time)
+        basis = np.zeros((*x.shape, len(self.free)))
+        basis[..., list(self.free), np.arange(len(self.free))] = 1.0
+        basis[..., held, :] = follow = -inverse @ at["jacobian"][..., free]
         if "velocity_rhs" not in at:  # which depends on the place alone
             at = system.dynamics(x, np.zeros_like(x), time)
-        xd = (basis @ qd[..., None])[..., 0]
-        xd[..., list(self.held)] += (inverse @ at["velocity_rhs"])[..., 0]
+        xd, xdd = np.empty_like(x), np.empty_like(x)
+        xd[..., free], xdd[..., free] = qd, qdd
+        rate = follow @ qd[..., None] + inverse @ at["velocity_rhs"]
+        xd[..., held] = rate[..., 0]
         terms = system.dynamics(x, xd, time)
-        xdd = (basis @ qdd[..., None])[..., 0]
-        xdd[..., list(self.held)] += (inverse @ terms["gamma"])[..., 0]
+        rate = follow @ qdd[..., None] + inverse @ terms["gamma"]
+        xdd[..., held] = rate[..., 0]
         left = terms["mass"] @ xdd[..., None] + terms["rest"] - terms["forces"]
-        back = np.swapaxes(basis, -1, -2)
+        back = basis.mT
         residual = (back @ left)[..., 0]
         if not derivatives:
             return Varied(residual)
         assert system.variations is not None
-        forces = np.swapaxes(inverse, -1, -2) @ left[..., list(self.held), :]
+        forces = inverse.mT @ left[..., held, :]
         varied = system.variations(x, xd, xdd, forces[..., 0], time)
+        turning = varied["jacobian_rate"]
         rate, change = np.zeros_like(basis), np.zeros_like(basis)
-        rate[..., list(self.held), :] = -inverse @ (varied["jacobian_rate"] @ basis)
-        turned = varied["jacobian_acceleration"] @ basis + 2.0 * varied["jacobian_rate"] @ rate
-        change[..., list(self.held), :] = -inverse @ turned
+        rate[..., held, :] = turned = -inverse @ (turning @ basis)
+        changed = varied["jacobian_acceleration"] @ basis + 2.0 * turning[..., held] @ turned
+        change[..., held, :] = -inverse @ changed
         mass, damping = terms["mass"], varied["damping"]
         return Varied(
             residual,
@@ -199,13 +205,15 @@ class Reduced:
         system = self.make(parameters, drive)
         return self._closed(system, q, drive, parameters, _time(q, drive))[0]
 
-    def _basis(self, jacobian: Array) -> tuple[Array, Array]:
-        """Return G ``(*batch, n + k, n)``, and the inverse of the Jacobian by those held."""
-        inverse: Array = np.asarray(np.linalg.inv(jacobian[..., list(self.held)]), dtype=np.float64)
-        basis = np.zeros((*jacobian.shape[:-2], jacobian.shape[-1], len(self.free)))
-        basis[..., list(self.free), np.arange(len(self.free))] = 1.0
-        basis[..., list(self.held), :] = -inverse @ jacobian[..., list(self.free)]
-        return basis, inverse
+    @cached_property
+    def _places(self) -> tuple[Any, Any]:
+        """Places of the coordinates held and free, slices where they stand together."""
+        together = (
+            slice(each[0], each[-1] + 1) if each and np.all(np.diff(each) == 1) else list(each)
+            for each in (self.held, self.free)
+        )
+        held, free = together
+        return held, free
 
     def _closed(
         self,
@@ -214,22 +222,25 @@ class Reduced:
         drive: Drive,
         parameters: Mapping[str, float],
         time: Array,
-    ) -> tuple[Array, Mapping[str, Array]]:
-        """Return coordinates on the constraints, and the arrays of the constraints there."""
+    ) -> tuple[Array, Mapping[str, Array], Array]:
+        """Return coordinates on the constraints, and the arrays of the constraints there.
+
+        And the inverse of the Jacobian by the coordinates held, ``(*batch, k, k)``.
+        """
+        held, free = self._places
         x = np.empty((*q.shape[:-1], len(self.free) + len(self.held)))
-        x[..., list(self.free)] = q
-        x[..., list(self.held)] = self.guess(q, drive, parameters)
+        x[..., free] = q
+        x[..., held] = self.guess(q, drive, parameters)
         last = np.inf
         for _ in range(_CLOSING):
             at = system.violation(x, time)
-            change = np.linalg.solve(at["jacobian"][..., list(self.held)], -at["constraints"])[
-                ..., 0
-            ]
-            x[..., list(self.held)] += change
+            inverse: Array = np.asarray(np.linalg.inv(at["jacobian"][..., held]), dtype=np.float64)
+            change = (inverse @ at["constraints"])[..., 0]
+            x[..., held] -= change
             size = float(np.max(np.abs(change), initial=0.0))
             # Newton squares what is left; a change that no longer falls is round-off.
             if size <= _CLOSE or (size <= 1e-10 and size >= 0.5 * last):
-                return x, at
+                return x, at, inverse
             last = size
         raise SelfCheckFailed("the loop of the linkage cannot be closed at a state")
 

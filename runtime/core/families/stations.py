@@ -74,6 +74,7 @@ class AtStations:
         arrays = {}
         for name, shape, entries in _plan(self.module, self.name, shapes.shape[1] - 1):
             array = arrays[name] = np.zeros((*batch, *shape))
+            block, weighted = array[..., first:, first:], []
             for kind, i, j, at, *product in entries:
                 value = returned[at]
                 if kind == "entry":
@@ -83,34 +84,32 @@ class AtStations:
                 elif kind == "column":
                     array[..., i, first:] += _times(value, shapes)
                 elif kind == "diagonal":
-                    weighted = value[..., None, :] * shapes.T
-                    array[..., first:, first:] += _times(weighted, shapes)
+                    weighted.append(value[..., None, :] * shapes.T)
                 else:
-                    self._add(array[..., first:, first:], (at, value), product, returned, across)
+                    kernel, place = product
+                    right = returned[place]
+                    if _alone(value) and _alone(right):
+                        between = np.asarray(value * right)[..., None]
+                        block += between * self.stations.projected[kernel]
+                        continue
+                    if (at, kernel) not in across:
+                        before = np.asarray(value)[..., None, :] * shapes.T
+                        across[at, kernel] = _times(before, self.stations.numbers[kernel])
+                    weighted.append(across[at, kernel] * np.asarray(right)[..., None, :])
+            if weighted:
+                block += _times(sum(weighted[1:], weighted[0]), shapes)
         return arrays
 
-    def _add(
-        self,
-        block: Array,
-        left: tuple[int, Any],
-        product: list[Any],
-        returned: tuple[Any, ...],
-        across: dict[tuple[int, str], Array],
-    ) -> None:
-        """Add ``(left shapes)^T kernel (right shapes)`` to a block of an array."""
-        (at, value), (kernel, place) = left, product
-        right, shapes = returned[place], self.stations.shapes
-        if np.size(value) == 1 and np.shape(right)[-1:] in ((), (1,)):
-            block += np.asarray(value * right)[..., None] * self.stations.projected[kernel]
-            return
-        if (at, kernel) not in across:
-            before = np.asarray(value)[..., None, :] * shapes.T
-            across[at, kernel] = _times(before, self.stations.numbers[kernel])
-        block += _times(across[at, kernel] * np.asarray(right)[..., None, :], shapes)
+
+def _alone(value: Any) -> bool:
+    """Return True for what is the same at all stations."""
+    return not isinstance(value, np.ndarray) or value.shape[-1:] in ((), (1,))
 
 
 def _times(many: Array, matrix: Array) -> Array:
     """Return ``many @ matrix`` of rows ``(*batch, Q)`` as one product."""
+    if many.ndim <= 2:
+        return np.asarray(many @ matrix)
     flat = many.reshape(-1, many.shape[-1]) @ matrix
     return np.asarray(flat.reshape(*many.shape[:-1], matrix.shape[1]))
 

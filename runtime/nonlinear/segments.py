@@ -22,8 +22,9 @@ from ..core.families.nonlinear import Drive, Nonlinear, Varied
 # Relative step of the differences by a parameter: rounding and second derivatives leave 1e-8, which
 # slows Newton's iteration by as much and turns the tangent by as much.
 _DIFFERENCE = 2.0**-26
-# Numbers of a batch of matrices that stay in a cache while they are solved.
-_CACHED = 1 << 18
+# Numbers of a batch of matrices that stay in a cache while they are solved, and states that are
+# evaluated at once: temporary arrays of many more cost three times as much a state.
+_CACHED, _ROWS = 1 << 18, 256
 
 
 @dataclass(frozen=True)
@@ -187,14 +188,20 @@ def evaluated(
     x, v, a = (part.reshape(-1, n) for part in states)
     square = np.maximum(speed**2 + 2.0 * rise * since, 0.0).reshape(-1, 1)
     w: Array = np.sqrt(square)
-    angle = angles.ravel()
-    drive = Drive(angle, w[:, 0], np.full_like(angle, rise))
-    try:
-        found = problem.system.equations(
-            x, w * v, square * a + rise * v, drive, parameters, derivatives
+    rates, accelerations = w * v, square * a + rise * v
+
+    def part_of(at: slice) -> Varied:
+        angle = angles.ravel()[at]
+        drive = Drive(angle, w[at, 0], np.full_like(angle, rise))
+        return problem.system.equations(
+            x[at], rates[at], accelerations[at], drive, parameters, derivatives
         )
+
+    try:
+        parts = [part_of(slice(i, i + _ROWS)) for i in range(0, len(x), _ROWS)]
     except (SelfCheckFailed, np.linalg.LinAlgError) as lost:
         raise NotFinite(str(lost)) from lost
+    found = parts[0] if len(parts) == 1 else Varied(*map(np.concatenate, zip(*parts, strict=True)))
     residual = (found.residual / square).reshape(*batch, n)
     if not np.all(np.isfinite(residual)):
         raise NotFinite("the equations are not finite along the motion")

@@ -119,17 +119,14 @@ def stage_matrix(by_x: Array, by_v: Array, h: float, points: Nodes) -> Array:
     return matrix
 
 
-def integrals(part: Array, terms: Array) -> tuple[Array, Array]:
-    """Return integrals from 0 to parts of a step, ``(nt, n)``, and twofold ones.
+def at_places(part: Array, count: int) -> Array:
+    """Return what Legendre terms have at parts of a step, ``(nt, 3, count)``.
 
-    Of Legendre terms ``(s, n)``, or ``(nt, s, n)`` each for one part.
+    Their twofold integral from 0, their integral and their value.
     """
-    once, twice = _integrals(terms.shape[-2])
-    values = np.polynomial.legendre.legvander(2.0 * part - 1.0, terms.shape[-2] + 1)
-    first, second = values[:, :-1] @ once, values @ twice
-    if terms.ndim == 2:
-        return first @ terms, second @ terms
-    return np.einsum("ts,tsn->tn", first, terms), np.einsum("ts,tsn->tn", second, terms)
+    once, twice = _integrals(count)
+    values = np.polynomial.legendre.legvander(2.0 * part - 1.0, count + 1)
+    return np.stack([values @ twice, values[:, :-1] @ once, values[:, :count]], axis=1)
 
 
 @dataclass(frozen=True)
@@ -249,7 +246,8 @@ def _step(window: _Window, after: State, astray: _Astray | None) -> Step:
 
     def at(t: Array) -> tuple[Array, Array]:
         part = (t - before.t) / h
-        once, twice = integrals(part, window.terms)
+        values = at_places(part, len(window.terms)) @ window.terms
+        twice, once = values[:, 0], values[:, 1]
         return before.x + h * part[:, None] * before.v + h * h * twice, before.v + h * once
 
     error = np.full_like(before.x, np.inf)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..constrained.collocation import Nodes, integrals, nodes, stage_matrix
+from ..constrained.collocation import Nodes, at_places, nodes, stage_matrix
 from ..core.errors import SelfCheckFailed
 from ..core.families import Array
 from ..core.families.nonlinear import Drive, Nonlinear, Varied
@@ -101,10 +101,10 @@ class Motion:
         j = np.clip(within.astype(int), 0, len(self.x) - 1)
         part, h = within - j, self.step
         terms = (self.points.series @ self.a)[j]
-        once, twice = integrals(part, terms)
-        legendre = np.polynomial.legendre.legvander(2.0 * part - 1.0, terms.shape[1] - 1)
+        values = at_places(part, terms.shape[1]) @ terms
+        twice, once, value = values[:, 0], values[:, 1], values[:, 2]
         x = self.x[j] + h * part[:, None] * self.v[j] + h * h * twice
-        return x, self.v[j] + h * once, np.einsum("ks,ksn->kn", legendre, terms)
+        return x, self.v[j] + h * once, value
 
     def resampled(self, steps: int, stages: int, turns: int | None = None) -> Motion:
         """Return the motion on other steps; on more turns it is repeated."""

@@ -63,7 +63,7 @@ def beams(
 
 def stresses(system: LinearPeriodic, speeds: Array, rtol: float = 1e-3) -> StressCurve:
     """Return the largest stresses over the speed, by the shapes as in the thesis."""
-    return stress_curve(system, speeds, rtol=rtol, method="shape")
+    return stress_curve(system, speeds, rtol=rtol, method="shape", stability=False, whole=False)
 
 
 def midpoint(system: LinearPeriodic, link: str, theta: Array) -> Array:

@@ -25,7 +25,7 @@ _FINER = 1.4  # steps of a special point over those of the motions about it
 _BEYOND = 1e-3  # part of a step that it may lie beyond it by
 _FRESH = 1e-13  # last correction after which a test is what it is
 _ROUNDING = 64 * EPS  # of a test, over the size of the matrix
-_LOCATED = 1e-14  # part of a step to which a special point is located
+_LOCATED = 1e-12  # part of a step to which a special point is located
 # Part of a test's value to which the parabola through three has to fall for a pair to be sought.
 _DIP = 0.3
 

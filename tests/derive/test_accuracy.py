@@ -10,15 +10,7 @@ import array_api_strict
 import numpy as np
 import pytest
 import sympy as sp
-from emitted_accuracy import (
-    EXCEPTIONS,
-    INDEXED,
-    PAGE,
-    bound,
-    emitted_functions,
-    page_bounds,
-    rows,
-)
+from emitted_accuracy import EXCEPTIONS, INDEXED, PAGE, bound, emitted_functions, page_bounds, rows
 from free_free_truth import ROD_MODULE
 from judging import ALLOWED, ROUNDOFF, Point, exact_at, judge, reference_of
 

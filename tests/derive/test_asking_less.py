@@ -73,8 +73,7 @@ DROPPED = [
 
 
 @pytest.mark.parametrize(
-    ("spec", "terms"),
-    [case(spec, terms, quick=spec.name() in QUICK) for spec, terms in DROPPED],
+    ("spec", "terms"), [case(spec, terms, quick=spec.name() in QUICK) for spec, terms in DROPPED]
 )
 def test_a_general_module_leaves_out_what_the_derivation_does(spec, terms):
     """The same numbers as the module that is derived without the terms."""

@@ -85,10 +85,7 @@ def test_amplitudes_of_shapes_are_the_angles_projected(module):
     pairs = [
         (by_shape.violation(q, time), by_angle.violation(states[0], time)),
         (by_shape.dynamics(q, qd, time), by_angle.dynamics(*states[:2], time)),
-        (
-            by_shape.variations(q, qd, qdd, lam, time),
-            by_angle.variations(*states, lam, time),
-        ),
+        (by_shape.variations(q, qd, qdd, lam, time), by_angle.variations(*states, lam, time)),
     ]
     for found, angles in pairs:
         assert set(found) == set(angles)
@@ -116,10 +113,7 @@ REFUSED = {
         INERTIA[1, 2] ** 2 * sp.cos(PHI[0]) * sp.cos(PHI[1]),
         "joins two stations",
     ),
-    "a function of both stations": (
-        INERTIA[1, 2] * sp.exp(PHI[0] * PHI[1]),
-        "joins two stations",
-    ),
+    "a function of both stations": (INERTIA[1, 2] * sp.exp(PHI[0] * PHI[1]), "joins two stations"),
 }
 
 

@@ -12,11 +12,7 @@ from elastolink.derive.records import ActionDensity
 from elastolink.derive.series import taylor
 from elastolink.derive.variational import hamilton
 from elastolink.runtime.beams import element_arrays
-from elastolink.runtime.frequencies import (
-    dynamic_stiffness,
-    element_matrices,
-    wittrick_williams,
-)
+from elastolink.runtime.frequencies import dynamic_stiffness, element_matrices, wittrick_williams
 from frame_truth import portal
 from scipy.linalg import eigvalsh
 from seed_ledger import Ledger, hold, holds, quoted, same

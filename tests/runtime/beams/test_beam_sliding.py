@@ -4,12 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from beam_energies import slope
-from elastolink.runtime.beams import (
-    Section,
-    beam_linkage,
-    frame,
-    linear_system,
-)
+from elastolink.runtime.beams import Section, beam_linkage, frame, linear_system
 from elastolink.runtime.linkages import QuickReturn
 from refusals import refused
 

@@ -147,10 +147,7 @@ REFUSED = [
 ]
 
 
-test_what_cannot_be_is_refused_in_one_line = refused(
-    lambda make, values: make(**values),
-    REFUSED,
-)
+test_what_cannot_be_is_refused_in_one_line = refused(lambda make, values: make(**values), REFUSED)
 
 
 def test_every_problem_of_a_section_is_told_at_once():

@@ -5,11 +5,7 @@ from __future__ import annotations
 import mpmath
 import numpy as np
 import pytest
-from elastolink.runtime.beams.layered import (
-    ElasticLayer,
-    ViscoelasticLayer,
-    sandwich_section,
-)
+from elastolink.runtime.beams.layered import ElasticLayer, ViscoelasticLayer, sandwich_section
 from refusals import refused
 
 BASE = ElasticLayer(3e-3, 70e9, 2700.0)

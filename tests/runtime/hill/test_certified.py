@@ -54,12 +54,7 @@ def assert_enclosed(f, mu, regions, found, harmonic):
 
 @pytest.mark.parametrize(
     ("f", "mu", "harmonic"),
-    [
-        (COSINE, 1.0, 30),
-        (GENERAL, 0.7, 40),
-        (GENERAL, -3.0, 70),
-        (COSINE, 300.0, 90),
-    ],
+    [(COSINE, 1.0, 30), (GENERAL, 0.7, 40), (GENERAL, -3.0, 70), (COSINE, 300.0, 90)],
 )
 def test_intervals_hold_the_eigenvalues_at_60_digits(f, mu, harmonic):
     regions = (0, 1, 2, 3, 4, 5, 6)

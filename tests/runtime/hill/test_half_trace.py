@@ -17,12 +17,7 @@ from hypothesis import strategies as st
 FUNCTIONS = functions()
 
 
-@given(
-    lam2=st.floats(-100, 1e6),
-    mean=st.floats(-2, 2),
-    mu=st.floats(-5, 5),
-    k=st.floats(0, 1),
-)
+@given(lam2=st.floats(-100, 1e6), mean=st.floats(-2, 2), mu=st.floats(-5, 5), k=st.floats(0, 1))
 def test_a_constant_coefficient_has_its_closed_form(lam2, mean, mu, k):
     f = PeriodicFunction([mean])
     found = discriminant(f, lam2, mu, k)

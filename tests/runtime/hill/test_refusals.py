@@ -158,6 +158,5 @@ CASES = {
 
 
 test_bad_input_is_refused_in_one_line = refused(
-    lambda call, changes: call(**GIVEN.get(call, {}) | changes),
-    each_of(CASES),
+    lambda call, changes: call(**GIVEN.get(call, {}) | changes), each_of(CASES)
 )

@@ -2,13 +2,7 @@
 
 import numpy as np
 import pytest
-from balancing_machines import (
-    INCH,
-    POUND,
-    random_machine,
-    sampled_peaks,
-    smith,
-)
+from balancing_machines import INCH, POUND, random_machine, sampled_peaks, smith
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank, harmonics
 from elastolink.runtime.rigid import (

@@ -47,10 +47,7 @@ def test_the_energy_fluctuation_is_that_of_the_machine(linkage) -> None:
 def test_the_fluctuation_is_that_of_summits_that_samples_take_for_the_lower() -> None:
     """E = cos 3t + h cos(t - 120 deg): its highest and lowest places lie between samples."""
     height = 3e-6
-    load = Load(
-        "crank",
-        couple=lambda t: 3.0 * np.sin(3.0 * t) + height * np.sin(t - TURN / 3.0),
-    )
+    load = Load("crank", couple=lambda t: 3.0 * np.sin(3.0 * t) + height * np.sin(t - TURN / 3.0))
     found = torque_fluctuation(Machine(ROCKER, loads=(load,)), 8.0)
     assert abs(found.energy_fluctuation - 2.0 - 2.0 * height) <= found.error < 1e-12
     assert found.slowest == pytest.approx(TURN / 3.0, abs=1e-7)

@@ -113,6 +113,5 @@ CASES = {
 
 
 test_bad_input_is_refused_in_one_line = refused(
-    lambda call, changes: call(**{"system": PAIR, **GIVEN[call], **changes}),
-    each_of(CASES),
+    lambda call, changes: call(**{"system": PAIR, **GIVEN[call], **changes}), each_of(CASES)
 )

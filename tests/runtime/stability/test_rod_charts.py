@@ -9,11 +9,7 @@ from edge_truth import flexible_rod as rod
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic.equation import equation_of
 from elastolink.runtime.stability.chart_lines import is_mirrored
-from elastolink.runtime.stability.invariants import (
-    from_sum,
-    largest_modulus,
-    surely_stable,
-)
+from elastolink.runtime.stability.invariants import from_sum, largest_modulus, surely_stable
 from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis
 
 SPEEDS = np.linspace(500.0, 4000.0, 160)

@@ -11,8 +11,7 @@ from scipy.integrate import quad
 
 def _rod(ratio, **more):
     return el.load_scene(
-        "beale_1992_flexible_rod",
-        overrides={"links.crank_ratio": ratio, "model.modes": 2, **more},
+        "beale_1992_flexible_rod", overrides={"links.crank_ratio": ratio, "model.modes": 2, **more}
     ).linear_system()
 
 

@@ -81,8 +81,7 @@ def contents(path: Path) -> dict[str, bytes]:
 
 @pytest.mark.parametrize("chunk", [1, 2, 5, 7, 12, 40, 1000])
 @pytest.mark.parametrize(
-    ("shape", "rows"),
-    [*product([(4, 5), (3, 2), (7, 3)], [False, True]), ((3, 4, 5), False)],
+    ("shape", "rows"), [*product([(4, 5), (3, 2), (7, 3)], [False, True]), ((3, 4, 5), False)]
 )
 def test_pieces_are_runs_that_cover_the_grid_once(chunk, shape, rows):
     axes = {name: np.arange(float(n)) for name, n in zip("abc", shape, strict=False)}

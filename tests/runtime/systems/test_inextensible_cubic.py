@@ -14,11 +14,7 @@ from elastolink.runtime.scenes import scene_from_document
 SCENE = "smith_1972_101104_thirtysecond_inch"
 RPM = np.pi / 30.0
 # Everything that the equations know: damping, an initial bow, gravity across the frame.
-ALL = {
-    "coupler.damping": "3 N s/m^2",
-    "coupler.bow": "1 mm",
-    "gravity.direction": "-70 deg",
-}
+ALL = {"coupler.damping": "3 N s/m^2", "coupler.bow": "1 mm", "gravity.direction": "-70 deg"}
 SLIDER = """
 [model]
 mechanism = "slider_crank"

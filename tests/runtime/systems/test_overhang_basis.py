@@ -5,10 +5,7 @@ from __future__ import annotations
 import mpmath
 import numpy as np
 import pytest
-from elastolink.runtime.systems.rod import (
-    OverhangBasis,
-    overhang_roots,
-)
+from elastolink.runtime.systems.rod import OverhangBasis, overhang_roots
 from elastolink.runtime.systems.rod.overhang import root_count
 from overhang_reference import DIGITS, Drift, gauss
 from overhang_truth import NAMED

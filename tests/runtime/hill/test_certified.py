@@ -187,6 +187,14 @@ def test_mu_is_large(mu):
         assert gap >= 0
 
 
+@pytest.mark.parametrize(
+    ("mu", "n", "k"), [(150.0, 1, 5.137), (100.0, 3, 6.0), (30.0, 0, 2.0), (-2000.0, 2, 10.9)]
+)
+def test_strong_damping_in_deep_wells(mu, n, k):
+    """The eigenvalues of the matrix are off by many times its round-off, or beyond their slack."""
+    assert np.isfinite(agree(COSINE, mu, (n,), k).upper[0])
+
+
 @pytest.mark.parametrize("b", [0.125, -0.25, 0.5])
 def test_coexistence_in_the_whittaker_hill_equation(b):
     """cos theta + b cos 2 theta closes all even regions at mu = 2 b, odd ones from 3 on at 8 b.

@@ -9,12 +9,10 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import discriminant, hill_boundaries
 from half_trace_truth import half_traces
-from hill_functions import COSINE, functions, general
+from hill_functions import COSINE, general
 from honesty import extended
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-FUNCTIONS = functions()
 
 
 @given(lam2=st.floats(-100, 1e6), mean=st.floats(-2, 2), mu=st.floats(-5, 5), k=st.floats(0, 1))

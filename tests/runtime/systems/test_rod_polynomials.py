@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 import sympy as sp
 from elastolink.runtime.systems.rod import (
-    MovingBasis,
-    OverhangBasis,
     PolynomialBasis,
     TwoSegmentBasis,
 )
@@ -90,15 +88,6 @@ def test_derivatives_along_the_rod(basis, shapes, order):
             sp.diff(shape[side], eta, order).subs({xi: place, eta: point}) for shape in shapes()
         ]
         assert row == pytest.approx([float(value) for value in truth], rel=1e-13, abs=1e-13)
-
-
-@pytest.mark.parametrize("basis", [*BASES, OverhangBasis(3), OverhangBasis(1)], ids=repr)
-def test_bases_are_what_the_equations_ask_for(basis):
-    assert isinstance(basis, MovingBasis)
-    assert len(basis.labels) == basis.size == len(set(basis.labels))
-    assert basis.shapes(np.linspace(0, 1, 7), PLACES).shape == (5, 7, basis.size)
-    assert basis.array("moment", PLACES).shape == (5, basis.size)
-    assert basis.array("drift", PLACES).shape == (5, basis.size, basis.size)
 
 
 def test_block_at_the_tip():

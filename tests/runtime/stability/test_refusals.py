@@ -37,6 +37,20 @@ ROD = {
     "y": ("mass_per_length", [7.0, 8.0]),
 }
 
+SLOW = {"x": ("speed", [1e-3, 1.0]), "y": ("crank_ratio", [0.1, 0.2])}
+
+
+def rooted(geometry):
+    """Return a system with a wave of the root of 0.5 - r."""
+
+    def pull(theta):
+        with np.errstate(invalid="ignore"):
+            return (np.sqrt(0.5 - geometry["r"]) * np.cos(theta))[:, None, None] * np.eye(2)
+
+    made = system_of(M=np.eye(2), K=np.diag([1.0, 3.3]), Kg=pull)
+    return replace(made, geometry=geometry, rebuild=rooted)
+
+
 # What is given where a case does not change it.
 GIVEN = {
     tongue: {"resonance": SUM, "parameter": ("eps", [0.1, 0.2, 0.3])},
@@ -107,6 +121,8 @@ CASES = {
         (ROD, "give speed"),
         ({**ROD, "x": ("damping", [0.0, 1.0])}, "give speed"),
         ({**ROD, "x": ("speed", [900.0, 1000.0]), "speed": 100.0}, "leave it out"),
+        ({**SLOW, "system": flexible_rod(PolynomialBasis(3))}, r"raise the (lowest )?speed"),
+        ({"system": rooted({"r": 0.1}), "y": ("r", [0.1, 0.9])}, "not finite"),
         *(({**ROD, "speed": value}, "positive number") for value in (-5.0, np.nan, "fast")),
     ],
 }

@@ -9,7 +9,7 @@ from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.boundaries import hill_boundaries
 from elastolink.runtime.periodic import floquet_multipliers, monodromy
 from elastolink.runtime.stability.boundary_speeds import parity, speed_boundaries
-from periodic_systems import system_of, wave
+from periodic_systems import every_term, system_of, wave
 from scipy.special import mathieu_a, mathieu_b
 
 
@@ -22,19 +22,6 @@ def _beam(**changes) -> LinearPeriodic:
         K=("k", np.eye(1)),
         Kg=[("depth", cosine), ("pull", cosine, 2)],
         C=("C", np.eye(1)),
-    )
-
-
-def _coupled(**changes) -> LinearPeriodic:
-    """Two modes, periodic mass, Coriolis, centrifugal and axial terms."""
-    return system_of(
-        {"C": 0.0, "load": 1.0, **changes},
-        M=[np.array([[2.0, 0.3], [0.3, 1.0]]), wave([[0.3, 0.1], [0.1, 0.2]], 1, 0.3)],
-        A=[np.array([[0.1, -0.2], [0.3, 0.0]]), wave([[0.1, 0.2], [-0.1, 0.1]], 2, 1.0)],
-        B=wave([[0.2, 0.1], [0.1, -0.3]]),
-        K=np.array([[20.0, 3.0], [3.0, 9.0]]),
-        Kg=("load", wave([[2.0, 1.0], [1.0, 3.0]], 1, -0.4)),
-        C=("C", np.array([[0.4, 0.1], [0.1, 0.3]])),
     )
 
 
@@ -76,7 +63,7 @@ def test_divergence_of_a_whirling_shaft():
 
 @pytest.mark.parametrize("damping", [0.0, 0.05])
 def test_coupled_modes_against_multipliers(damping):
-    system = _coupled(C=damping)
+    system = every_term(eps=1.0, c=damping)
     found = speed_boundaries(system, speed_range=(1.0, 12.0))
     assert len(found.speed) >= (2 if damping else 8)
     assert found.passed, found.checks
@@ -90,7 +77,7 @@ def test_coupled_modes_against_multipliers(damping):
 
 
 def test_motion_solves_the_equation():
-    system = _coupled()
+    system = every_term(eps=1.0)
     found = speed_boundaries(system, speed_range=(3.0, 12.0))
     for index in range(len(found.speed)):
         theta = np.linspace(0.0, 2 * np.pi, 3)

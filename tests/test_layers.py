@@ -1,7 +1,5 @@
 """Who may import what: walls between folders, layers of rooms; in the source and in processes."""
 
-from __future__ import annotations
-
 import ast
 import re
 import sys

@@ -1,7 +1,5 @@
 """Packaging: lists that must agree with the folders, and what a built distribution holds."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

@@ -1,7 +1,5 @@
 """Periodic motions of beams by dense Fourier collocation, and structures for tests of recovery."""
 
-from __future__ import annotations
-
 import numpy as np
 from elastolink.runtime.beams import (
     Beam,

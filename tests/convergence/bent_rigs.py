@@ -4,8 +4,6 @@
 Gauss's rule, without the equations under test.
 """
 
-from __future__ import annotations
-
 import tomllib
 from dataclasses import dataclass
 from functools import cache

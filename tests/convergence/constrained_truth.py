@@ -1,7 +1,5 @@
 """A pendulum in oblique Cartesian coordinates, its pivot moving evenly, and its exact motion."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import mpmath

@@ -6,8 +6,6 @@ A third, stiff and without f, may join them.  The coordinates couple everything;
 of the two equations, from Taylor series in extended precision, know nothing of them.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from half_trace_truth import half_traces

@@ -6,8 +6,6 @@
 coordinate by coordinate where it says powers.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Small linear periodic systems, and how far two of their motions differ."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

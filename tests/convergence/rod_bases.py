@@ -5,8 +5,6 @@ with those of sixteen two-segment polynomials, which agree with twelve to ten di
 with a fixed mesh (``test_rod_tip_deflection.py``).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 

@@ -1,7 +1,5 @@
 """Frequencies from beam elements: order of convergence by slope, against independent references."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy.linalg

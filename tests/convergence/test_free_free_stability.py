@@ -1,7 +1,5 @@
 """Stability of the constrained free-free equations, the open question of Beale & Scott's 3.1."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from documented import documented_rows, last_digit

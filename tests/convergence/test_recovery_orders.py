@@ -1,7 +1,5 @@
 """Order of the recovered moments in the length of the elements, by slope."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from beam_motions import periodic_motion, rocking, turning_bar

@@ -1,7 +1,5 @@
 """Machines that the rigid tests share, and their forces from the equations of free bodies."""
 
-from __future__ import annotations
-
 import numpy as np
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import FourBar

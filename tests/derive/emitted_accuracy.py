@@ -4,8 +4,6 @@ After a change of a model or of the lowering:  python tests/derive/emitted_accur
 writes the tables of docs/accuracy.md, a line a module, and prints every output.
 """
 
-from __future__ import annotations
-
 import importlib
 import json
 import math

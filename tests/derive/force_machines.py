@@ -1,7 +1,5 @@
 """Random machines, their states in redundant coordinates, calls by name."""
 
-from __future__ import annotations
-
 import importlib
 import inspect
 

@@ -4,8 +4,6 @@ Angles and their derivatives come from the closures of ``linkage_truth`` and ``s
 vectors are complex numbers.  No formula is shared with the package.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import linkage_truth

@@ -4,8 +4,6 @@ Modes are sums of four growing and decaying exponentials on roots refined to the
 integrals those of polynomials times exponentials.
 """
 
-from __future__ import annotations
-
 import importlib
 import inspect
 import itertools

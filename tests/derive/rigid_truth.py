@@ -1,7 +1,5 @@
 """Forces of a machine in many digits: free bodies as in ``forces_truth``, gravity and loads."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 from forces_truth import cross, inertia_pushes, links, reactions

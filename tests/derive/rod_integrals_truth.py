@@ -1,7 +1,5 @@
 """Integrals of piecewise polynomial shapes in exact fractions, from their definition alone."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import sympy as sp

@@ -1,7 +1,5 @@
 """Every emitted function at 80 digits: the measure, the machinery behind it, and the page."""
 
-from __future__ import annotations
-
 import importlib
 import inspect
 import math

@@ -3,8 +3,6 @@
 Derived here, so that it holds for what is not packaged, too.
 """
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

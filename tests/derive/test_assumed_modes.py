@@ -1,7 +1,5 @@
 """A continuum of several fields on shape functions, against hand results and the projection."""
 
-from __future__ import annotations
-
 import pytest
 import sympy as sp
 from elastolink.derive import authoring as au

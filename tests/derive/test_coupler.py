@@ -1,7 +1,5 @@
 """The flexible coupler through the whole pipeline: dropped terms, hand cases, exact arrays."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import pytest

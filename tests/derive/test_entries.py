@@ -1,7 +1,5 @@
 """Arrays with explicit entries: what is emitted, what is left out, what is passed in."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy as sp

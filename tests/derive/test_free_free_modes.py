@@ -1,7 +1,5 @@
 """Green's identity by machine, and what it gives for free-free beams."""
 
-from __future__ import annotations
-
 import free_free_truth as truth
 import mpmath
 import pytest

@@ -1,7 +1,5 @@
 """Integrals against quadrature, Taylor polynomials against SymPy's own series."""
 
-from __future__ import annotations
-
 import itertools
 
 import mpmath

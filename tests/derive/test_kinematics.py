@@ -3,8 +3,6 @@
 The digits of every output are those of ``emitted_accuracy``, against the closed loops.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy as sp

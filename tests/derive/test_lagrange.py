@@ -1,7 +1,5 @@
 """Lagrange's equations by machine against published and independently derived equations."""
 
-from __future__ import annotations
-
 import pytest
 import sympy as sp
 from elastolink.derive.arrays import CrankMotion, DiscreteSystem

@@ -1,7 +1,5 @@
 """The LaTeX document: complete, balanced, the same on every run, with the model's own symbols."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

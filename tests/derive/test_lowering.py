@@ -1,7 +1,5 @@
 """Printing, common subexpressions, order and layout of what the pipeline emits."""
 
-from __future__ import annotations
-
 import ast
 from pathlib import Path
 from types import SimpleNamespace

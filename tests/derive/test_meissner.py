@@ -1,7 +1,5 @@
 """Meissner's half traces: the digits next to coexistence, and half turns."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Derivation of the rod's equations: moving support, tension, floating frame, projection."""
 
-from __future__ import annotations
-
 import importlib
 from dataclasses import replace
 

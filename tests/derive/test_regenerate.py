@@ -1,7 +1,5 @@
 """The regenerate-equations command: the same bytes always, nothing done twice, clear refusals."""
 
-from __future__ import annotations
-
 import importlib
 import json
 import os

@@ -1,7 +1,5 @@
 """Forces of rigid linkages: derivations of the same numbers, and what each of them refuses."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import SimpleNamespace
 

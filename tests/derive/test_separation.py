@@ -1,7 +1,5 @@
 """Separation of arrays into scales, functions of angle and modal arrays, on small systems."""
 
-from __future__ import annotations
-
 from collections import namedtuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Equations closed in the stations of a link: against those of just so many, and hand cases."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import mpmath

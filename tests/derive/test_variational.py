@@ -1,7 +1,5 @@
 """Hamilton's principle by machine against equations derived by hand."""
 
-from __future__ import annotations
-
 import pytest
 import sympy as sp
 from coupler_action import EI, Fx, N, beam, coupler, l3, mu, t, tension, th2, th3, u, x, y, zero

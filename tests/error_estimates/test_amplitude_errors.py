@@ -1,7 +1,5 @@
 """The error of the amplitude law's coefficient is covered, next to dead positions too."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 from elastolink import load_scene

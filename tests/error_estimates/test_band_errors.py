@@ -4,8 +4,6 @@ Two of Hill's equations are hidden in wavy coordinates; each end that is a simpl
 trace is compared.  The half traces are Taylor series in extended precision.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.stability import resonances, stability_edges, tongue, tongue_curves

@@ -4,8 +4,6 @@ What counts as true is the same model of beams with the same law of damping on m
 of bars that rock it is computed by dense Fourier collocation, another solver of the motion too.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

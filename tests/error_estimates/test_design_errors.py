@@ -6,8 +6,6 @@ angles; it shares no mode, no node in the speed and no rational function with th
 is compared with a rainflow count of its own, on the stresses of many elements.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Every public solver has its error estimate tested in this folder, or hands on another one's."""
 
-from __future__ import annotations
-
 import re
 from importlib import import_module
 from pathlib import Path

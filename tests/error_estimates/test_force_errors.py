@@ -1,7 +1,5 @@
 """The error estimate of the forces against 60 digits, over random machines of every linkage."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import rigid_truth

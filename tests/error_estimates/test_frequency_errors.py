@@ -1,7 +1,5 @@
 """Error estimates of frequencies: held ones, their means, least gaps, and bounds of frames'."""
 
-from __future__ import annotations
-
 import frame_truth
 import frequency_truth
 import mpmath

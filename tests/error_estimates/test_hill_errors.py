@@ -1,7 +1,5 @@
 """Errors of half traces, exponents, boundaries and thresholds: references of more digits."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

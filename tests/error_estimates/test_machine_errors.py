@@ -4,8 +4,6 @@ A slider-crank whose crank is a bar and whose slider has a mass, the coupler non
 ``J = I + m (dx/dtheta)^2``, and constant energy or constant torque gives the rest.
 """
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 from elastolink.runtime.core.errors import BadInput

@@ -1,7 +1,5 @@
 """The estimates of the motions of all linkages against 80 digits, random and nasty ones."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Error estimates of the overhang modes' frequencies, over random scenes."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import overhang_truth

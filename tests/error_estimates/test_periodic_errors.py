@@ -5,8 +5,6 @@ coordinates, known to about 1e-15 of the flow, which the Fourier series of the t
 springs seen in wavy coordinates, whose multipliers and boundary speeds are known in closed form.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import taylor_truth

@@ -5,8 +5,6 @@ modes and mean products are known without any solver; their arrays and the proje
 evaluated in long doubles at angles of their own.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.periodic import reduced_system

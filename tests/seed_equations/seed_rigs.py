@@ -1,7 +1,5 @@
 """Smith's rigs of chapter 9: parameters, functions, regions and the damping that closes one."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 

@@ -1,7 +1,5 @@
 """Aannaque chapter 5 and appendix B: exact functions, dynamic stiffness, Wittrick and Williams."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Charts of several modes where the growth is large or overflows, and at a speed that is given."""
 
-from __future__ import annotations
-
 import elastolink as el
 import mpmath
 import numpy as np

@@ -1,7 +1,5 @@
 """Random lengths: classified or refused, never a wrong class, never NaN."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from fractions import Fraction

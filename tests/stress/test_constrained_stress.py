@@ -1,7 +1,5 @@
 """Constrained motion over thousands of revolutions, stiff, in any units: no drift, at any level."""
 
-from __future__ import annotations
-
 import free_free_loads
 import mpmath
 import numpy as np

@@ -1,7 +1,5 @@
 """Kinematics where formulas break: adversarial linkages, hairs' breadths, far scales and angles."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.generated import (

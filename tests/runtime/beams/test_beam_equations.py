@@ -1,7 +1,5 @@
 """Systems of beams: structure of the equations, frames of closed form, other lengths, copies."""
 
-from __future__ import annotations
-
 import pickle
 from dataclasses import replace
 

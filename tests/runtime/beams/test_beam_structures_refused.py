@@ -1,7 +1,5 @@
 """What a structure of beams cannot be: one clear line each."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.beams import (

@@ -1,7 +1,5 @@
 """Three-layer beams with a viscoelastic core: limits, formulas, plane elasticity, refusals."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import pytest

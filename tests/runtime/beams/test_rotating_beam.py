@@ -1,7 +1,5 @@
 """A beam that turns with its clamp: frequencies against power series and published figures."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from beam_reference import rotating

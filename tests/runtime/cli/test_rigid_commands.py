@@ -1,7 +1,5 @@
 """Commands for rigid linkages beside the functions that they call: text, JSON, pictures, drive."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Motion of constrained systems: methods, constraints, guards, refusals."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

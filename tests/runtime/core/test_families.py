@@ -1,7 +1,5 @@
 """System families at run time: shapes, hand cases, refusals."""
 
-from __future__ import annotations
-
 import types
 
 import elastolink as el

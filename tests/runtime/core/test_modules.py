@@ -1,7 +1,5 @@
 """Finding emitted modules: order of folders, honesty about old and edited ones, the way out."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

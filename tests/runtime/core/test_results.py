@@ -1,7 +1,5 @@
 """What every result does: checks, JSON, CSV."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar

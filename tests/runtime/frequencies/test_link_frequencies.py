@@ -1,7 +1,5 @@
 """Frequencies against one link's length or section: weight, parameters and geometry stay."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

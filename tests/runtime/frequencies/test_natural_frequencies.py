@@ -1,7 +1,5 @@
 """Natural frequencies over the crank angle: modes, veerings, buckling, pictures, bad input."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from beam_motions import SECTIONS, four_bar

@@ -1,7 +1,5 @@
 """Exact boundaries without and with damping: tables, mpmath, half traces, extremes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput

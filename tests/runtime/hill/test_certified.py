@@ -1,7 +1,5 @@
 """Proved enclosures: many digits, pairs, damping, extremes; and the bounds they rest on."""
 
-from __future__ import annotations
-
 import pickle
 from fractions import Fraction
 

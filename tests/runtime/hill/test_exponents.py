@@ -1,7 +1,5 @@
 """Exponents at given lam2 and lam2 of given exponents: half trace, boundaries, mpmath."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput

@@ -1,7 +1,5 @@
 """Half traces: other integrators, closed forms, extremes, shapes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from boundary_cases import rough

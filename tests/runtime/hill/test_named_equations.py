@@ -1,7 +1,5 @@
 """Mathieu's and Meissner's equations, and those of Whittaker and Hill."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import pytest

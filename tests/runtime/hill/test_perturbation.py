@@ -1,7 +1,5 @@
 """Perturbation boundaries: exact coefficients, flags, extremes."""
 
-from __future__ import annotations
-
 import tracemalloc
 from fractions import Fraction
 

@@ -1,7 +1,5 @@
 """What the functions of Hill's equation refuse: one line that names the argument."""
 
-from __future__ import annotations
-
 import numpy as np
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import (

@@ -1,7 +1,5 @@
 """Coefficients of the boundaries and their formulas: published, derived otherwise, read back."""
 
-from __future__ import annotations
-
 import inspect
 import itertools
 import re

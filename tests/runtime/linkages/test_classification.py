@@ -1,7 +1,5 @@
 """Grashof's and Barker's classes, and the base planes of Barker's solution space."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

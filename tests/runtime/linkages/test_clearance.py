@@ -1,7 +1,5 @@
 """Clearance: exact ranges against trial of the pins and many digits, folds, extremes, refusals."""
 
-from __future__ import annotations
-
 import itertools
 import json
 

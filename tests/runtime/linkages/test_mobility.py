@@ -1,7 +1,5 @@
 """Mobility: Kutzbach's count, Gruebler's condition, and the rank that decides."""
 
-from __future__ import annotations
-
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages.degrees_of_freedom import mobility

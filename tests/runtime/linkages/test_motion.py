@@ -3,8 +3,6 @@
 Their values in 80 digits: ``tests/error_estimates/test_motion.py``.
 """
 
-from __future__ import annotations
-
 import json
 import pickle
 from dataclasses import replace

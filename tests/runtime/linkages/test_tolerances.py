@@ -1,7 +1,5 @@
 """Tolerances against derivatives in many digits, exact extremes, and random linkages."""
 
-from __future__ import annotations
-
 import itertools
 import json
 import math

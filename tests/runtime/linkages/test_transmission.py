@@ -1,7 +1,5 @@
 """Transmission angle, dead centres and mechanical advantage against swept motions."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The energy balance of a motion: it holds for right motions, and sees wrong ones."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.periodic import simulate

@@ -1,7 +1,5 @@
 """Monodromy matrices and multipliers: hand cases, structure, growth, what is hard to see."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Systems prepared for a range of speeds: against the solvers that start anew each time."""
 
-from __future__ import annotations
-
 import pickle
 from dataclasses import replace
 

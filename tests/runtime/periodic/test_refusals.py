@@ -1,7 +1,5 @@
 """What the solvers of linear periodic systems refuse: one line that names the argument."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Peaks over many speeds, and resonances."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

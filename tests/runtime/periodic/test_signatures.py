@@ -1,7 +1,5 @@
 """Krein signatures: hand cases, Krein's theorem, and the motion of multipliers on the circle."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy.linalg

@@ -1,7 +1,5 @@
 """Simulation against hand solutions, heyoka and itself; its warnings, checks and refusals."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import mpmath

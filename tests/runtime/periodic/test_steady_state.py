@@ -1,7 +1,5 @@
 """Steady states: harmonic balance, marching, closed forms, singular speeds, growth, bad input."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Energies of beams: the balance of power, and strain energies by hand."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Forces along beams against statics by hand, and as linear forms of the motion."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

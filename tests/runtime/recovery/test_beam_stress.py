@@ -1,7 +1,5 @@
 """Stresses over the cycle: hand cases, the four-bar of Aannaque's Table 4.1, refusals."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

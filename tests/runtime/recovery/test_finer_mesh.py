@@ -1,7 +1,5 @@
 """The mesh's part of the error estimates: which finer mesh, what is done where there is none."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Pin forces and driving torque of elastic linkages: the rigid limit, and balances."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Torque fluctuation and flywheels: by hand, by energies, and by forward dynamics."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Machines: refusals, and springs, dampers and loads against their own potentials and powers."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Forces of rigid machines: against nine equations, momenta, energies, and symmetries."""
 
-from __future__ import annotations
-
 import itertools
 import json
 import pickle

@@ -1,7 +1,5 @@
 """Machines under a motor: against solutions by hand, energies, and runs of more digits."""
 
-from __future__ import annotations
-
 import math
 import pickle
 

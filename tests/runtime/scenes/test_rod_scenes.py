@@ -1,7 +1,5 @@
 """Scenes of the flexible rod: its numbers, its formulations, what is refused before any work."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

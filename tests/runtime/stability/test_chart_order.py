@@ -1,7 +1,5 @@
 """Charts: perturbation boundaries of any order, kinds of instability, traced regions, options."""
 
-from __future__ import annotations
-
 import elastolink as el
 import numpy as np
 import pytest

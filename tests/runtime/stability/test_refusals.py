@@ -1,7 +1,5 @@
 """What charts, regions and tongues refuse: one line that names the argument."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import elastolink as el

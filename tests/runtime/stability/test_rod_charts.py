@@ -1,7 +1,5 @@
 """Stability charts over crank speed and crank ratio, and what their verdicts rest on."""
 
-from __future__ import annotations
-
 import elastolink as el
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Slow driving: tongues of high order, and the practical range of the rod."""
 
-from __future__ import annotations
-
 import elastolink as el
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Speeds of multipliers +1 and -1: Mathieu values, Hill boundaries, closed regions, damping."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.core.families import LinearPeriodic, Term

@@ -1,7 +1,5 @@
 """Tongues of the rod over the crank ratio: feet, ends, growth, bases, tension, lost ones."""
 
-from __future__ import annotations
-
 import elastolink as el
 import numpy as np
 import pytest

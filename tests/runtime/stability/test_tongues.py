@@ -1,7 +1,5 @@
 """Tongues of coupled modes as series: orders, damping, checks, random systems, Smith's rig."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """Unstable regions along the speed: first-order widths, labels, damping, random systems."""
 
-from __future__ import annotations
-
 import elastolink as el
 import numpy as np
 import pytest

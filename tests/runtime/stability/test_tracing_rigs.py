@@ -1,7 +1,5 @@
 """Unstable regions of Smith's rigs along the speed: multipliers, numbers, thin regions."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from edge_truth import region_of

@@ -1,7 +1,5 @@
 """Sweeps: the same bytes by any workers and order, stores, refusals, estimates."""
 
-from __future__ import annotations
-
 import io
 import json
 import os

@@ -1,7 +1,5 @@
 """From an emitted module and numbers to the system: shapes, sharing, what is refused."""
 
-from __future__ import annotations
-
 import types
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Free-free modes to number 60, and the moving basis that the paper's conjecture makes of them."""
 
-from __future__ import annotations
-
 import free_free_truth as truth
 import mpmath
 import numpy as np

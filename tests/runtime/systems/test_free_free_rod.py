@@ -1,7 +1,5 @@
 """The rod in Buckens' frame: constraints, balances by quadrature, and the linear formulation."""
 
-from __future__ import annotations
-
 import free_free_loads
 import numpy as np
 import pytest

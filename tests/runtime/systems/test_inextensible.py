@@ -1,7 +1,5 @@
 """The inextensible coupler: another derivation, its linear limit, energy, exact derivatives."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import elastolink as el

@@ -1,7 +1,5 @@
 """The inextensible coupler to third order against the exact equations."""
 
-from __future__ import annotations
-
 import tomllib
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Damping by modal ratios: the mechanism held still, other geometry, and what it refuses."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import elastolink as el

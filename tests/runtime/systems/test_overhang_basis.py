@@ -1,7 +1,5 @@
 """The rod's overhang modes: every root, orthonormality to mode 60, drift, integrals."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import pytest

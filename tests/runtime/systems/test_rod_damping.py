@@ -1,7 +1,5 @@
 """What "0.2 percent proportional damping" can mean for the stiff rod: docs/rod_damping.md."""
 
-from __future__ import annotations
-
 import warnings
 
 import elastolink as el

@@ -1,7 +1,5 @@
 """Polynomial and two-segment bases: exact integrals, span, condition, continuity, refusals."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy as sp

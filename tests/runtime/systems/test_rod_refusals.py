@@ -1,7 +1,5 @@
 """What the flexible rod's functions refuse: one clear line, and never a traceback or NaN."""
 
-from __future__ import annotations
-
 import elastolink as el
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """The linear system of the flexible rod: Newton's law, tension and frame, damping, geometry."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import elastolink as el

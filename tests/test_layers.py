@@ -127,9 +127,6 @@ def test_nothing_imports_a_folder_by_its_bare_name():
     assert bare.search("    import runtime.hill\n")
 
 
-# --- rooms ----------------------------------------------------------------------------------------
-
-
 def edges(folder: str) -> dict[tuple[str, str], str]:
     """Return pairs (importing package, imported package) below a folder with a file of each."""
     found: dict[tuple[str, str], str] = {}

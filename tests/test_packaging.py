@@ -116,9 +116,6 @@ def test_no_file_is_large_or_empty_by_mistake():
     assert [name for name, size in sizes.items() if size > 500_000] == []
 
 
-# --- what a build holds ----------------------------------------------------------------------
-
-
 def run(*command: object, cwd: Path, **environment: str) -> str:
     done = subprocess.run(
         [str(part) for part in command],

@@ -44,9 +44,6 @@ def test_order_of_the_squared_frequency(kind, order, mode, counts, margin, suppo
     np.testing.assert_allclose(-slopes(counts, errors), order, atol=margin)
 
 
-# ---------------------------------------------------------------- shear and rotary inertia
-
-
 @pytest.mark.parametrize(("ratio", "slimness", "order"), [(1e-9, 1e-9, 4.0), (0.03, 0.01, 2.0)])
 def test_timoshenkos_beam_does_not_lock(ratio, slimness, order):
     """Slender: fourth order.  Thick: second, for the angle of shear is constant in an element."""

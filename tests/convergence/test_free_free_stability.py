@@ -97,9 +97,6 @@ def test_beyond_the_linear_range_shooting_diverges_and_says_so():
     assert not orbit.checks["linear range"].passed
 
 
-# ---------------------------------------------------------------- the page
-
-
 def rows(table):
     return documented_rows("free_free_stability", table)
 

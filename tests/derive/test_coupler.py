@@ -55,9 +55,6 @@ def close(found, expected, tolerance=1e-12):
     np.testing.assert_allclose(found, expected, rtol=tolerance, atol=tolerance * scale)
 
 
-# ---------------------------------------------------------------- against a hand-written Galerkin
-
-
 def pose(linkage, theta):
     """Return the exact motion at one angle as floats, and the numbers that gave it."""
     with mpmath.workdps(40):
@@ -119,9 +116,6 @@ def test_complete_arrays_against_quadrature_of_the_weak_form(name):
         for array in ARRAYS:
             close(complete.array(array, THETA)[i], expected[array])
     assert not complete.has("A") and not complete.has("Kg")
-
-
-# ---------------------------------------------------------------- metamorphic
 
 
 def rows(module):

@@ -118,8 +118,6 @@ def test_a_frequency_that_may_vanish_is_an_error():
     assert definite(wave.subs(m, 2) * sp.sin(2 * sp.pi * x), x) == sp.Rational(1, 2)
 
 
-# ---------------------------------------------------------------- series
-
 p = sp.Symbol("p", positive=True)
 
 

@@ -125,9 +125,6 @@ def test_system_records_refuse_nonsense():
         CrankMotion(theta, td, tdd, {k: w}).derivative(w * theta)
 
 
-# ---------------------------------------------------------------- linear periodic arrays
-
-
 def equations(energy: sp.Expr, coordinates=(x, y), forces=None) -> EquationsOfMotion:
     return euler_lagrange(Lagrangian(coordinates, t, energy, forces=forces or {}))
 

@@ -19,8 +19,6 @@ from hypothesis import strategies as st
 x, y, z = sp.symbols("x y z", positive=True)
 m, n = sp.symbols("m n", integer=True, positive=True)
 
-# ---------------------------------------------------------------- round trip
-
 
 class _Exact(ast.NodeTransformer):
     """Turn every literal of a line into a call, so that 1 / 3 is not rounded."""
@@ -120,9 +118,6 @@ def test_a_choice_between_numbers_runs_in_every_namespace(first, second):
 def test_what_has_no_emitted_form_is_refused(expression):
     with pytest.raises(CannotPrint):
         to_line(expression)
-
-
-# ---------------------------------------------------------------- kernels
 
 
 def kernel(outputs, steps=None, arguments=("x", "y", "z")):

@@ -16,9 +16,6 @@ def test_a_half_turn_that_is_wrong_is_refused(monkeypatch):
         model.half_turn_matrix()
 
 
-# ---------------------------------------------------------------- what is emitted
-
-
 def test_the_edge_keeps_its_digits_next_to_coexistence():
     """J^2 - 1 is of the order 1e-16 here: from J alone nothing of it is left."""
     levels = np.array([9.0 * (1.0 + 1e-9), 1.0 - 2e-9])

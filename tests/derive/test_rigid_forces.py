@@ -17,9 +17,6 @@ from forces_truth import LOADS, MECHANISMS, MOMENTS, forces, loads
 FULL = ModelSpec("four_bar", "forces")
 
 
-# ---------------------------------------------------------------- three ways to the same numbers
-
-
 @pytest.mark.parametrize("loaded", [False, True], ids=["moving", "loads alone"])
 @pytest.mark.parametrize("mechanism", MECHANISMS)
 def test_multipliers_and_free_bodies_agree(mechanism, loaded):
@@ -53,9 +50,6 @@ def test_the_free_linkage_follows_its_torque(mechanism):
         numbers["torque"] = call(module, "driving_torque", numbers)["torque"]
         found, _ = eliminate(free, numbers | state_of(mechanism, numbers))
         assert abs(found[2] - numbers["acceleration"]) < 1e-9 * (200 + numbers["speed"] ** 2)
-
-
-# ---------------------------------------------------------------- refusals
 
 
 def test_four_numbers_describe_no_other_integral():

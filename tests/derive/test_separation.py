@@ -78,8 +78,6 @@ def by_sympy(matrix, steps=STEPS, **more):
     return np.array([np.array(plain.subs(theta, angle), dtype=float) for angle in THETA])
 
 
-# ---------------------------------------------------------------- explicit matrices
-
 SCALES = (sp.Integer(1), mass, stiff / mass, 1 / mass, mass * stiff)
 ANGLES = (sp.Integer(1), turned, sp.cos(theta), turned**2 * sp.cos(theta))
 GEOMETRY = (sp.Integer(1), length, gravity / length)
@@ -173,9 +171,6 @@ def test_a_symbol_that_nothing_defines_is_refused():
     arrays = {"M": sp.ImmutableDenseMatrix(sp.eye(2) * stray)}
     with pytest.raises(TypeError, match="stray"):
         lowered(arrays)
-
-
-# ---------------------------------------------------------------- closed in the mode indices
 
 
 def closed_arrays():

@@ -35,9 +35,6 @@ END = sp.symbols("end_1 end_2")
 INERTIA = {(i, j): sp.Symbol(f"inertia_{i}_{j}") for i, j in ((1, 1), (1, 2), (2, 2))}
 
 
-# ---------------------------------------------------------------- other numbers of stations
-
-
 @pytest.mark.parametrize("count", [2, 4])
 @pytest.mark.parametrize("module", STATION_MODULES)
 def test_other_numbers_of_stations_give_what_is_derived_for_them(module, count):
@@ -97,8 +94,6 @@ def test_amplitudes_of_shapes_are_the_angles_projected(module):
             assert found[name] == pytest.approx(expected, rel=1e-13, abs=1e-12), name
 
 
-# ---------------------------------------------------------------- what is refused
-
 _BOTH = sp.Add(*(m * sp.cos(PHI[i - 1]) * sp.cos(PHI[j - 1]) for (i, j), m in INERTIA.items()))
 REFUSED = {
     "a product of two stations without a kernel": (sp.cos(PHI[0]) * sp.cos(PHI[1]), "is no sum"),
@@ -147,9 +142,6 @@ def test_a_mass_at_the_end_by_the_coupler_is_refused():
 
 def test_the_order_of_the_kernel_does_not_matter():
     assert Stations("phi", (), ("inertia",)).pair("inertia", 2, 1) == INERTIA[1, 2]
-
-
-# ---------------------------------------------------------------- hand cases
 
 
 def changed(mechanism: str, extra: sp.Expr):

@@ -147,9 +147,6 @@ def test_derivatives_against_differences_of_enclosures(rng, name, k):
     return found.error[0, 0], gaps
 
 
-# ---------------------------------------------------------------- thresholds and series
-
-
 def waves(rng, count):
     """Return a random function whose coefficients have few binary digits."""
     size = 0.6 ** np.arange(count + 1)

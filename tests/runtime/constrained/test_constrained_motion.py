@@ -79,9 +79,6 @@ def test_the_rod_moves_as_by_explicit_steps_and_windows_are_few():
     assert 10 * found.steps < steps
 
 
-# Projection onto the constraints -----------------------------------------------------------------
-
-
 def test_differences_are_the_emitted_variations():
     """Where a system has no variations, against the derivatives of the Lagrangian."""
     motion = constrained_motion(rod(), span=0.02, samples=5, rtol=1e-6)
@@ -99,8 +96,6 @@ def test_differences_are_the_emitted_variations():
     one, other = (constrained_motion(s, span=0.02, samples=5) for s in (rod(), lean))
     assert np.all(np.max(np.abs(one.q - other.q), axis=0) <= one.error + other.error)
 
-
-# Linkages ----------------------------------------------------------------------------------------
 
 SPEED = 6.0
 
@@ -123,9 +118,6 @@ def test_a_driven_linkage_moves_as_its_kinematics():
         assert np.max(np.abs(np.exp(1j * (found.q[:, place] - angle)) - 1.0)) < 1e-12
         np.testing.assert_allclose(found.qd[:, place], omega, atol=1e-11)
         np.testing.assert_allclose(found.qdd[:, place], alpha, atol=1e-10)
-
-
-# What stops a motion -----------------------------------------------------------------------------
 
 
 def test_a_guard_stops_where_it_is_met():
@@ -220,9 +212,6 @@ def test_an_escape_in_finite_time_ends_with_a_reason():
     assert "diverge" in found.message
     assert 0.99 < found.time[-1] <= 1.001
     assert np.isfinite(found.q).all()
-
-
-# Refusals ------------------------------------------------------------------------------------
 
 
 def test_the_picture_names_the_coordinates():

@@ -39,9 +39,6 @@ def system(**changes) -> LinearPeriodic:
     return LinearPeriodic(**values)
 
 
-# Linear periodic -----------------------------------------------------------------------------
-
-
 def test_arrays_are_sums_of_their_terms():
     theta = np.array([0.0, 1.0, 2.0])
     found = system().array("Kg", theta, speed=3.0)
@@ -93,9 +90,6 @@ def test_unknown_parameters_are_refused():
         system().with_parameters(weight=1.0)
 
 
-# Transcendental ------------------------------------------------------------------------------
-
-
 def test_count_on_a_chain_whose_answer_is_known():
     """Masses as D = K - Omega^2 M without poles: the count is that of the eigenvalues below."""
     stiffness = 2.0 * np.eye(5) - np.eye(5, k=1) - np.eye(5, k=-1)
@@ -110,8 +104,6 @@ def test_count_on_a_chain_whose_answer_is_known():
     assert found.dtype == np.int64
     np.testing.assert_array_equal(found, np.sum(frequency[..., None] > exact, axis=-1))
 
-
-# Emitted modules -----------------------------------------------------------------------------
 
 PLACES = {"K": ((2, 2), ((0, 0, 0), (0, 1, 1), (1, 0, 1))), "f": ((2, 1), ())}
 

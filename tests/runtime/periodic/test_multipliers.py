@@ -56,9 +56,6 @@ UNDAMPED = {"every kind of term": (_general(), np.linspace(0.5, 9.0, 40), 1e-13)
 }
 
 
-# Hand cases ----------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("damping", [0.0, 0.6])
 def test_whirling_mass_has_the_multipliers_of_the_resting_one(damping):
     k, speed = 7.0, 1.9
@@ -97,9 +94,6 @@ def test_damped_determinant_is_liouvilles():
         assert found.determinant[index] == pytest.approx(expected, rel=1e-12)
     assert found.passed
     assert set(found.checks) == {"converged", "liouville"}
-
-
-# Structure -----------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", UNDAMPED)
@@ -154,9 +148,6 @@ def test_semisimple_double_multiplier_keeps_a_small_error():
     assert np.all(found.error < 1e-12)
 
 
-# Growth --------------------------------------------------------------------------------------
-
-
 def test_growth_beyond_double_precision():
     found = monodromy(mathieu(), 1.0, lam2=-1e6)
     assert found.exponent > 1024
@@ -169,15 +160,9 @@ def test_growth_beyond_double_precision():
     assert multipliers.passed
 
 
-# The record ----------------------------------------------------------------------------------
-
-
 def test_picture():
     found = floquet_multipliers(_general(), [1.0, 2.0])
     assert found.plot().get_xlabel() == "real part of multiplier"
-
-
-# What is hard to see --------------------------------------------------------------------------
 
 
 def _single(spring=None) -> LinearPeriodic:

@@ -130,9 +130,6 @@ def test_deflections_without_shapes_or_off_the_beam_are_refused():
         steady_state(forced_mathieu(), 1.0).deflection(1.5)
 
 
-# Both methods ----------------------------------------------------------------------------------
-
-
 def stiff(damping=0.02, fast=1600.0):
     """Return three freedoms on axes that turn: a soft one, and two a thousand times as stiff.
 

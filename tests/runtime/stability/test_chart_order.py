@@ -90,9 +90,6 @@ def test_three_independent_parts_go_row_by_row():
             np.testing.assert_allclose(curves.lower[:, j], lower, rtol=1e-10)
 
 
-# Kinds of instability ----------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("ratio", [0.0, 1e-5])
 def test_kinds_are_those_of_the_largest_multiplier(ratio):
     """Undamped by the reduced polynomial, damped by the whole one."""
@@ -130,9 +127,6 @@ def test_kind_of_one_mode_is_the_sign_of_the_half_trace():
     assert not any("combination" in label for label in labels)
 
 
-# Traced regions --------------------------------------------------------------------------------
-
-
 @pytest.fixture(scope="module")
 def traced():
     speeds = ("speed", np.linspace(79.0, 83.0, 9))
@@ -162,8 +156,6 @@ def test_picture_labels_combinations(traced):
     table = traced.to_dict()
     assert "sum" in table["edges"]["kind"]
 
-
-# Command line ------------------------------------------------------------------------------------
 
 LINE = ["chart", "mathieu", "--x", "lam2=0.1:1.4:21", "--y", "mu=0:0.5:9"]
 

@@ -326,9 +326,6 @@ def test_a_series_out_of_its_depth_does_not_pass_a_closed_range():
     assert not found.passed
 
 
-# ---------------------------------------------------------------- Smith's 1/16 inch rig
-
-
 RANGE = (38.0, 95.0)
 
 

@@ -24,9 +24,6 @@ def _pair(pull=0.02, own=0.0, damping=(0.0, 0.0)) -> LinearPeriodic:
     )
 
 
-# First order ---------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     ("system", "span", "least"),
     [(_pair(0.3, own=1.0), (1.3, 6.0), 4), (rig(**{"model.modes": 2}), (81.0, 81.7), 1)],
@@ -75,9 +72,6 @@ def test_uncoupled_oscillators_have_only_closed_regions():
     assert np.all(found.detuning < 1e-9)
 
 
-# Damping -------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(("first", "second"), [(0.004, 0.004), (0.004, 0.0004)])
 def test_damping_draws_a_sum_region_in_and_if_unequal_widens_it(first, second):
     """Mettler; Schmidt and Weidenhammer.
@@ -117,9 +111,6 @@ def test_narrow_regions_within_wide_ones(damping):
     assert found.lower[around] < found.lower[nested] < found.upper[nested] < found.upper[around]
     # Of like multiplier as the wider region, told by the number of those off the circle.
     assert "region 15 of mode 2" in found.labels
-
-
-# Random systems against a dense line of multipliers ---------------------------------------------
 
 
 def _random(seed, strength) -> LinearPeriodic:

@@ -69,9 +69,6 @@ def test_integrals_of_slopes_against_quadrature():
     assert np.max(np.abs(modes.tension() - exact)) < 1e-12 * np.max(np.abs(exact))
 
 
-# ---------------------------------------------------------------- the basis
-
-
 def drifts(basis, eta, place, derivative):
     """Return the derivative of the shapes by the block's place, by differences of order 4."""
     step = 2.0**-9 * np.minimum(place, 1 / basis.size)

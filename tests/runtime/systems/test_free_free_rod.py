@@ -47,9 +47,6 @@ def test_the_undeformed_rod_meets_the_constraints(modes, drop):
     assert rod.period == pytest.approx(2 * np.pi / SPEED)
 
 
-# ---------------------------------------------------------------- the functions of the state
-
-
 @pytest.mark.parametrize("drop", DROPS)
 def test_the_modes_follow_the_block(drop):
     """Jacobians and variations against differences through the modes at the moving block.
@@ -111,9 +108,6 @@ def test_batches_and_single_states_agree():
         alone = rod.accelerations(q[i], qd[i], t[i])[0]
         np.testing.assert_allclose(alone, together[i], rtol=1e-9)
         np.testing.assert_allclose(other, together[::-1, ::-1][i], rtol=1e-9)
-
-
-# ---------------------------------------------------------------- balances
 
 
 class ByQuadrature:
@@ -193,9 +187,6 @@ def test_the_crank_gives_the_energy(drop):
         exact = ByQuadrature(rod).energy(q, qd)
         assert rod.energy(q, qd) == pytest.approx(exact, rel=1e-12)
     assert rod.energy(np.stack([q, q]), np.stack([qd, 0 * qd]), np.array([t, t])).shape == (2,)
-
-
-# ---------------------------------------------------------------- deflections and refusals
 
 
 def test_deflection_is_measured_from_the_line_of_the_block():

@@ -44,9 +44,6 @@ def many_stations(monkeypatch):
     coupler_stations.cache_clear()
 
 
-# ---------------------------------------------------------------- another derivation
-
-
 def test_accelerations_are_those_of_another_lagrangian(many_stations):
     """In minimal coordinates and 40 digits, amplitudes of the tangent's angle to 0.4."""
     for state in REFERENCE["states"]:
@@ -95,9 +92,6 @@ def test_stations_are_as_many_as_large_motions_need(modes):
         exact = more.equations(*state, drive, more.parameters, False).residual
     coupler_stations.cache_clear()
     assert np.max(np.abs(found - exact)) <= 5e-12 * np.max(np.abs(exact))
-
-
-# ---------------------------------------------------------------- no deflection
 
 
 @pytest.mark.parametrize("modes", range(1, 6))
@@ -162,9 +156,6 @@ def test_a_straight_rod_is_that_of_the_hand_derivation(slider_crank, modes, slid
     assert force == pytest.approx(load, rel=0, abs=16 * EPS * size)
 
 
-# ---------------------------------------------------------------- energy
-
-
 def assert_balanced(system, q, qd, qdd, drive) -> None:
     """Assert that the crank's power is the rate of energy and what damping and gravity take.
 
@@ -221,9 +212,6 @@ def test_the_power_of_the_crank_balances(slider_crank, modes):
             assert_balanced(system, q, qd, accelerations(system, q, qd, drive), drive)
 
 
-# ---------------------------------------------------------------- derivatives
-
-
 def test_derivatives_are_exact(slider_crank):
     """Residuals are linear in accelerations, quadratic in rates: differences of these round."""
     more = {"bow": 2e-3, "gravity_x": 3.0, "gravity_y": -9.0}
@@ -258,9 +246,6 @@ def test_derivatives_are_exact(slider_crank):
                     (expected,) = rows
                 size = np.max(np.abs(matrix))
                 assert matrix[:, j] == pytest.approx(expected, rel=0, abs=2e-11 * size), place
-
-
-# ---------------------------------------------------------------- what is refused
 
 
 def test_a_loop_that_cannot_close_is_told():

@@ -20,9 +20,6 @@ def defect(modes, weights):
     return np.max(np.abs(gram - np.eye(gram.shape[0])), axis=1)
 
 
-# ---------------------------------------------------------------- roots
-
-
 def test_every_root_is_found_and_counted():
     roots = overhang_roots(PLACES, 60)
     assert np.all(np.diff(roots, axis=1) > 1.5)  # the closest approach is 1.557, at xi = 0.452
@@ -45,9 +42,6 @@ def test_roots_at_the_ends_of_the_rod():
 def test_roots_do_not_depend_on_their_company():
     alone = np.concatenate([overhang_roots(place, 9) for place in PLACES])
     np.testing.assert_allclose(overhang_roots(PLACES, 30)[:, :9], alone, rtol=4 * EPS)
-
-
-# ---------------------------------------------------------------- shapes
 
 
 @pytest.mark.parametrize("place", PLACES[::2])
@@ -80,8 +74,6 @@ def test_drift_against_differences_in_many_digits():
             size = start ** (order + 1)
             np.testing.assert_allclose(found[:, mode], exact, rtol=0, atol=1e-13 * size)
 
-
-# ---------------------------------------------------------------- integrals
 
 PRODUCTS = {
     "overlap": (("e", 0), ("e", 0)),

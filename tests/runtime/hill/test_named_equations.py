@@ -1,17 +1,9 @@
 """Mathieu's and Meissner's equations, and those of Whittaker and Hill."""
 
+import elastolink as el
 import mpmath
 import numpy as np
 import pytest
-from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.hill import (
-    Mathieu,
-    Meissner,
-    characteristic_exponents,
-    discriminant,
-    hill_boundaries,
-)
 from scipy.special import mathieu_a, mathieu_b
 
 # Abramowitz & Stegun table 20.1 (DLMF 28.1 cites it), all digits printed there.
@@ -29,7 +21,7 @@ TABLE = {
 @pytest.mark.smoke
 @pytest.mark.parametrize("name", TABLE)
 def test_the_printed_table(name):
-    found = Mathieu.characteristic(int(name[1]), (5, 10, 25), name[0])
+    found = el.Mathieu.characteristic(int(name[1]), (5, 10, 25), name[0])
     np.testing.assert_allclose(found.value, TABLE[name], rtol=0, atol=0.6e-8)
 
 
@@ -38,15 +30,15 @@ def test_signs_of_q():
     q = np.array([0.3, 2.0, 40.0])
     for m in (1, 2, 3, 4):
         for kind, other in (("a", "b"), ("b", "a")):
-            mirrored = Mathieu.characteristic(m, -q, kind).value
-            wanted = Mathieu.characteristic(m, q, other if m % 2 else kind).value
+            mirrored = el.Mathieu.characteristic(m, -q, kind).value
+            wanted = el.Mathieu.characteristic(m, q, other if m % 2 else kind).value
             np.testing.assert_allclose(mirrored, wanted, rtol=1e-13, atol=1e-12)
 
 
 def test_the_characteristic_values_of_a_constant_coefficient():
     for m in (0, 1, 6):
-        assert Mathieu.characteristic(m, 0.0).value == m * m
-    found = Mathieu.characteristic(3, np.linspace(-1, 1, 5))
+        assert el.Mathieu.characteristic(m, 0.0).value == m * m
+    found = el.Mathieu.characteristic(3, np.linspace(-1, 1, 5))
     assert found.value.shape == found.error.shape == (5,)
     assert found.passed and found.plot().lines
 
@@ -55,18 +47,18 @@ def test_mathieus_notation():
     """On the boundaries that SciPy computes the Hill form has the half traces 1 and -1 in turn."""
     for m in range(1, 6):
         for a in (mathieu_a(m, 5.0), mathieu_b(m, 5.0)):
-            case = Mathieu(a, 5.0)
-            half = discriminant(case.function(), case.lam2, case.mu).value
+            case = el.Mathieu(a, 5.0)
+            half = el.discriminant(case.function(), case.lam2, case.mu).value
             assert half == pytest.approx((-1.0) ** m, abs=1e-12)
-    with pytest.raises(BadInput, match=r"^a: "):
-        _ = Mathieu(np.nan, 1.0).lam2
+    with pytest.raises(el.BadInput, match=r"^a: "):
+        _ = el.Mathieu(np.nan, 1.0).lam2
 
 
 TURN = 2.0 * np.pi
 
 
 def meissner_boundaries(mu, regions=(1, 2), levels=(1.0, -1.0), lengths=(np.pi, np.pi), damping=0):
-    return hill_boundaries(Meissner(levels, lengths), mu, regions, damping)
+    return el.hill_boundaries(el.Meissner(levels, lengths), mu, regions, damping)
 
 
 def true_half_trace(levels, lengths, lam2, mu, damping):
@@ -140,8 +132,8 @@ def test_a_region_that_damping_closed_is_stable_throughout():
     bare = meissner_boundaries(0.7, (3,))
     assert np.isnan(meissner_boundaries(0.7, (3,), damping=0.2).upper[0])
     inside = np.linspace(bare.lower[0], bare.upper[0], 201) + 0.04
-    assert np.all(discriminant(Meissner(), inside, 0.7, 0.2).stable)
-    assert np.all(characteristic_exponents(Meissner(), inside, 0.7, 0.2).stable)
+    assert np.all(el.discriminant(el.Meissner(), inside, 0.7, 0.2).stable)
+    assert np.all(el.characteristic_exponents(el.Meissner(), inside, 0.7, 0.2).stable)
 
 
 @pytest.mark.parametrize("cases", [20, pytest.param(200, marks=pytest.mark.slow)])
@@ -151,10 +143,10 @@ def test_half_traces_of_any_number_of_levels(cases):
     for _ in range(cases):
         lengths = rng.uniform(0.1, 1.0, int(rng.integers(1, 13)))
         lengths *= TURN / lengths.sum()
-        case = Meissner(tuple(rng.uniform(-1, 1, lengths.size)), tuple(lengths))
+        case = el.Meissner(tuple(rng.uniform(-1, 1, lengths.size)), tuple(lengths))
         lam2, mu = float(rng.uniform(-3, 20)), float(rng.normal() * 10 ** rng.uniform(-1, 2))
         k = float(rng.uniform(0, 2)) if rng.random() < 0.5 else 0.0
-        found = discriminant(case, lam2, mu, k)
+        found = el.discriminant(case, lam2, mu, k)
         assert found.passed
         with mpmath.workdps(50):
             truth = true_half_trace(case.levels, case.lengths, mpmath.mpf(lam2), mu, k)
@@ -167,20 +159,20 @@ def test_half_traces_of_any_number_of_levels(cases):
 
 def test_a_smooth_function_in_steps():
     """The method of Pipes and Hsu: half traces err with the second power of the step."""
-    f, gaps = PeriodicFunction([0.0, 1.0, 0.3], [0.0, 0.2]), []
-    exact = discriminant(f, [0.3, 2.0], 0.8, 0.05).value
+    f, gaps = el.PeriodicFunction([0.0, 1.0, 0.3], [0.0, 0.2]), []
+    exact = el.discriminant(f, [0.3, 2.0], 0.8, 0.05).value
     for n in (50, 100, 200):
-        steps = Meissner.of(f(TURN / n * (np.arange(n) + 0.5)))
-        gaps.append(np.abs(discriminant(steps, [0.3, 2.0], 0.8, 0.05).value - exact).max())
+        steps = el.Meissner.of(f(TURN / n * (np.arange(n) + 0.5)))
+        gaps.append(np.abs(el.discriminant(steps, [0.3, 2.0], 0.8, 0.05).value - exact).max())
     np.testing.assert_allclose(np.log2(np.divide(gaps[:-1], gaps[1:])), 2.0, atol=0.02)
 
 
 def test_half_traces_of_levels_over_grids_and_beyond_doubles():
-    case = Meissner((2.0, -1.0, 0.5), (1.0, 2.0, TURN - 3.0))
-    grid = discriminant(case, np.linspace(0, 3, 4)[:, None], np.linspace(0, 2, 3), 0.1)
+    case = el.Meissner((2.0, -1.0, 0.5), (1.0, 2.0, TURN - 3.0))
+    grid = el.discriminant(case, np.linspace(0, 3, 4)[:, None], np.linspace(0, 2, 3), 0.1)
     assert grid.value.shape == (4, 3) and grid.method == "exact matrices of intervals"
-    assert grid.value[2, 1] == discriminant(case, 2.0, 1.0, 0.1).value
+    assert grid.value[2, 1] == el.discriminant(case, 2.0, 1.0, 0.1).value
     np.testing.assert_allclose(case([0.5, 1.5, 4.0, 7.0]), [2.0, -1.0, 0.5, 2.0])
     assert case.mean == pytest.approx((2.0 - 2.0 + 0.5 * (TURN - 3.0)) / TURN)
-    steep = discriminant(case, -1e6, 1.0)
+    steep = el.discriminant(case, -1e6, 1.0)
     assert np.isinf(steep.value) and not steep.passed

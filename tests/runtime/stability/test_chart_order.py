@@ -5,11 +5,6 @@ import numpy as np
 import pytest
 from edge_truth import RIG, rig
 from elastolink.runtime.cli.application import main
-from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.hill.boundaries import hill_boundaries
-from elastolink.runtime.hill.form import hill_form
-from elastolink.runtime.hill.perturbation import perturbation_boundaries
 from periodic_systems import wave
 
 SPEEDS = ("speed", np.linspace(40.0, 99.0, 31))
@@ -26,7 +21,7 @@ def test_overlay_along_the_speed_belongs_to_its_own_row_and_damping(order, ratio
     """At a drawn end, lam2 and K of that very speed: the perturbation gives this lam2 again."""
     system = rig(**{"coupler.damping_ratio": ratio})
     chart = el.stability_chart(system, SPEEDS, INERTIAS, order=order)
-    form = hill_form(system)
+    form = el.hill_form(system)
     curves, checked = chart.perturbation, 0
     for j, inertia in enumerate(curves.at):
         f = form.function(1.0, follower_inertia=float(inertia))
@@ -35,7 +30,7 @@ def test_overlay_along_the_speed_belongs_to_its_own_row_and_damping(order, ratio
                 if np.isnan(speed):
                     continue
                 damping = form.damping() / (2 * speed)
-                row = perturbation_boundaries(f, 1.0, (n,), order, damping)
+                row = el.perturbation_boundaries(f, 1.0, (n,), order, damping)
                 lam2 = (row.lower, row.upper)[side][0]
                 assert lam2 == pytest.approx(form.stiffness() / speed**2, rel=rtol)
                 checked += 1
@@ -69,21 +64,21 @@ def test_three_independent_parts_go_row_by_row():
     """More parts than are done together: each row is its own function all the same."""
     values = {"a": 0.02, "k": 1.0}
     names = {"a": 1, "square": 2, "cube": 3}
-    waves = [Term("Kg", name, wave(np.eye(1), m)) for name, m in names.items()]
-    terms = (Term("M", None, np.eye(1)), Term("K", "k", np.eye(1)), *waves)
+    waves = [el.Term("Kg", name, wave(np.eye(1), m)) for name, m in names.items()]
+    terms = (el.Term("M", None, np.eye(1)), el.Term("K", "k", np.eye(1)), *waves)
 
     def scales(given):
         a = np.asarray(given["a"], dtype=float)
         k = np.asarray(given["k"], dtype=float)
         return {"a": a, "square": a**2, "cube": a**3, "k": k}
 
-    system = LinearPeriodic(1, terms, values, scales)
+    system = el.LinearPeriodic(1, terms, values, scales)
     rows = np.array([0.02, 0.05, 0.1])
     chart = el.stability_chart(system, ("k", np.linspace(0.1, 1.3, 9)), ("a", rows), order=3)
     for j, a in enumerate(rows):
-        f = PeriodicFunction(a=[0.0, a, a**2, a**3], b=[0.0] * 4)
-        row = hill_boundaries(f, 1.0, chart.exact.regions)
-        near = perturbation_boundaries(f, 1.0, chart.exact.regions, 3)
+        f = el.PeriodicFunction(a=[0.0, a, a**2, a**3], b=[0.0] * 4)
+        row = el.hill_boundaries(f, 1.0, chart.exact.regions)
+        near = el.perturbation_boundaries(f, 1.0, chart.exact.regions, 3)
         for curves, other in ((chart.exact, row), (chart.perturbation, near)):
             # Region 0 has no lower end.
             lower = np.where(np.isfinite(other.lower), other.lower, np.nan)

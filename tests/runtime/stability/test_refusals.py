@@ -5,15 +5,7 @@ from dataclasses import replace
 import elastolink as el
 import numpy as np
 from edge_truth import flexible_rod
-from elastolink.runtime.core.families import Term
-from elastolink.runtime.stability import (
-    resonances,
-    speed_boundaries,
-    stability_chart,
-    stability_edges,
-    tongue,
-    tongue_curves,
-)
+from elastolink.runtime.stability import resonances, tongue, tongue_curves
 from elastolink.runtime.systems.rod import PolynomialBasis
 from periodic_systems import system_of, wave
 from refusals import each_of, refused
@@ -21,8 +13,8 @@ from refusals import each_of, refused
 PAIR = system_of(
     {"eps": 0.1}, M=np.eye(2), K=[np.diag([1.0, 5.3]), ("eps", wave([[0.4, 1.0], [1.0, -0.3]]))]
 )
-SKEW = PAIR.with_terms(Term("K", None, np.array([[0.0, 0.1], [-0.1, 0.0]])))
-FED = PAIR.with_terms(Term("C", None, -0.01 * np.eye(2)))
+SKEW = PAIR.with_terms(el.Term("K", None, np.array([[0.0, 0.1], [-0.1, 0.0]])))
+FED = PAIR.with_terms(el.Term("C", None, -0.01 * np.eye(2)))
 SUM = next(one for one in resonances(PAIR, (3.0, 4.0)) if one.kind == "sum")
 MATHIEU = {
     "system": el.load_scene("mathieu").system(),
@@ -53,10 +45,10 @@ def rooted(geometry):
 GIVEN = {
     tongue: {"resonance": SUM, "parameter": ("eps", [0.1, 0.2, 0.3])},
     resonances: {"speed_range": (1.0, 5.0)},
-    stability_edges: {"speed_range": (3.0, 4.0)},
-    speed_boundaries: {"speed_range": (1.0, 2.0)},
+    el.stability_edges: {"speed_range": (3.0, 4.0)},
+    el.speed_boundaries: {"speed_range": (1.0, 2.0)},
     tongue_curves: {"name": "eps", "values": [0.1, 0.2], "speed_range": (1.0, 5.0)},
-    stability_chart: {"x": ("speed", [1.0, 2.0]), "y": ("eps", [0.1, 0.2])},
+    el.stability_chart: {"x": ("speed", [1.0, 2.0]), "y": ("eps", [0.1, 0.2])},
 }
 CASES = {
     tongue: [
@@ -79,7 +71,7 @@ CASES = {
         ({"kinds": None}, "kinds"),
         ({"push": 1.0}, "push"),
     ],
-    stability_edges: [
+    el.stability_edges: [
         ({"speed_range": (0.0, 1.0)}, "speed_range"),
         ({"speed_range": (1e-4, 1.0)}, "speed_range"),
         ({"rtol": 1.0}, "rtol"),
@@ -89,7 +81,7 @@ CASES = {
         ({"system": SKEW}, "not symmetric"),
         ({"system": FED}, "feeds energy"),
     ],
-    speed_boundaries: [
+    el.speed_boundaries: [
         ({"multiplier": 2}, "multiplier"),
         ({"multiplier": ()}, "multiplier"),
         ({"speed_range": (2.0, 1.0)}, "speed_range"),
@@ -104,7 +96,7 @@ CASES = {
         ({"values": [0.0, 0.1]}, "values"),
         ({"speed_range": (4.0, 0.5)}, "speed_range"),
     ],
-    stability_chart: [
+    el.stability_chart: [
         ({"x": ("speeed", [1.0, 2.0])}, "speeed"),
         ({"y": ("speed", [1.0, 2.0])}, "another parameter"),
         ({"x": ("speed", [-1.0, 2.0])}, "positive speeds"),

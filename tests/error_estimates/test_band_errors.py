@@ -49,9 +49,8 @@ def test_ends_of_all_regions(rng, drag):
 
 
 @over_scenes(42, few=None, many=ENDS, floor=1e-18)
-@damped
-def test_bands_of_a_truncated_system(rng, drag):
-    scene = HillPair(rng, drag, stiff=True)
+def test_bands_of_a_truncated_system(rng):
+    scene = HillPair(rng, drag=float(rng.choice([0.0, 0.01])), stiff=True)
     return of_regions(scene, stability_edges(scene.system, SPAN, modes=2))
 
 

@@ -194,7 +194,6 @@ def points(mechanism, *, loaded=False):
 
 @lru_cache(maxsize=32)
 def exact_points(module, function):
-    """Return exact forces at all points of one emitted function."""
     mechanism = module.split("_forces")[0]
     if function == "load_forces":
         made, reference = points(mechanism, loaded=True), loads(mechanism)

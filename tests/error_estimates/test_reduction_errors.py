@@ -80,7 +80,6 @@ def exact_parts(scene, small, theta):
 
 @over_scenes(9100, floor=1e-17)
 def test_arrays_and_squared_frequencies(rng):
-    """Arrays, and the squared frequencies that they hold."""
     scene, small = reduced(rng)
     theta = rng.uniform(0.0, 2 * np.pi, ANGLES)
     worst = 0.0

@@ -319,7 +319,6 @@ def exact_portal():
 
 
 def element_frequencies(*args):
-    """Return the frequencies of finite elements."""
     mass, stiffness, _ = element_matrices(portal(*args), inextensible=True)
     return np.sqrt(eigvalsh(stiffness, mass))
 
@@ -371,7 +370,6 @@ def near(ours, printed):
 
 @cache
 def columns():
-    """Return the columns of Table 5.1.a."""
     found = {name: FACTOR * element_frequencies(*model) for name, model in MODELS.items()}
     return found | {"f": FACTOR * exact_portal()[1].frequencies}
 

@@ -227,7 +227,6 @@ row(
 
 
 def pairs(last=4):
-    """Return pairs of modes."""
     return [{**POINT, "m": m, "n": n} for m in range(1, last) for n in range(1, last)]
 
 

@@ -51,7 +51,6 @@ def exponents(system, speed):
 
 
 def frequencies(structure, speed):
-    """Return the frequencies that they have."""
     values = exponents(linear_system(structure), speed)
     return np.sort(values.imag[values.imag > 0.0])
 

@@ -32,11 +32,8 @@ def test_shapes_and_independence_of_the_batch(shape, regions, seed):
 
 
 def test_plot_and_export():
-    import matplotlib.pyplot as plt
-
     found = hill_boundaries(COSINE, np.linspace(0, 1, 5), (1, 2))
     assert len(found.plot().lines) == 4
-    plt.close("all")
     assert found.to_dict()["regions"] == [1, 2] and found.to_dict()["checks"][CHECK]["passed"]
     assert len(hill_boundaries(COSINE, 0.0, (1,), damping=0.1).checks) == 0
     with pytest.raises(BadInput, match="slice"):

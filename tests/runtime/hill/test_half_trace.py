@@ -62,8 +62,6 @@ def test_the_error_of_the_function_enters():
 
 
 def test_plots():
-    import matplotlib.pyplot as plt
-
     f = PeriodicFunction([0.0, 1.0])
     grid = discriminant(f, np.linspace(0, 3, 20)[:, None], np.linspace(0, 1, 10))
     line = discriminant(f, np.linspace(0, 3, 20), 0.3)
@@ -71,7 +69,6 @@ def test_plots():
     assert line.plot().get_ylabel() == "half trace"
     with pytest.raises(BadInput, match="a line or a grid"):
         discriminant(f, 1.0, 1.0).plot()
-    plt.close("all")
 
 
 @extended

@@ -4,6 +4,7 @@ import elastolink as el
 import mpmath
 import numpy as np
 import pytest
+from honesty import over_scenes
 from scipy.special import mathieu_a, mathieu_b
 
 # Abramowitz & Stegun table 20.1 (DLMF 28.1 cites it), all digits printed there.
@@ -85,27 +86,22 @@ def root(levels, lengths, mu, n, near, damping=0.0):
     return mpmath.findroot(gap, (start, start + nudge), tol=mpmath.mpf(10) ** -80, verify=False)
 
 
+@over_scenes(8, few=10, many=None, floor=1e-40)
 @pytest.mark.parametrize("damped", [False, True])
-def test_boundaries_against_fifty_digits(damped):
-    random = np.random.default_rng(8)
-    shares, closed = [], 0
-    for i in range(12 if damped else 10):
-        mu, n = float(random.uniform(-30.0, 30.0)), i % 8
-        k = float(10.0 ** random.uniform(-4.0, -0.3)) if damped else 0.0
-        first = float(random.uniform(0.2, 5.0))
-        levels, lengths = tuple(map(float, random.uniform(-2.0, 2.0, 2))), (first, TURN - first)
-        found = meissner_boundaries(mu, (n,), levels, lengths, k)
-        assert found.passed
-        if np.isnan(found.upper[0]):
-            closed += 1
-            continue
-        for end in (found.lower[0], found.upper[0])[n == 0 :]:
-            with mpmath.workdps(50):
-                off = abs(root(levels, lengths, mu, n, end, k) - mpmath.mpf(float(end)))
-            shares.append(float(off / float(found.error[0])))
-    assert max(shares) <= 1.0
-    assert np.median(shares) >= 1e-3
-    assert (closed > 0) == damped and len(shares) > 8
+def test_boundaries_against_fifty_digits(rng, damped):
+    mu, n = float(rng.uniform(-30.0, 30.0)), int(rng.integers(0, 8))
+    k = float(10.0 ** rng.uniform(-4.0, -0.3)) if damped else 0.0
+    first = float(rng.uniform(0.2, 5.0))
+    levels, lengths = tuple(map(float, rng.uniform(-2.0, 2.0, 2))), (first, TURN - first)
+    found = meissner_boundaries(mu, (n,), levels, lengths, k)
+    assert found.passed
+    if np.isnan(found.upper[0]):
+        assert damped
+        return None
+    ends = [found.lower[0], found.upper[0]][n == 0 :]
+    with mpmath.workdps(50):
+        gaps = [root(levels, lengths, mu, n, end, k) - mpmath.mpf(float(end)) for end in ends]
+    return found.error[0], [float(gap) for gap in gaps]
 
 
 @pytest.mark.parametrize("lengths", [(np.pi, np.pi), (1.0, TURN - 1.0)])
@@ -136,25 +132,22 @@ def test_a_region_that_damping_closed_is_stable_throughout():
     assert np.all(el.characteristic_exponents(el.Meissner(), inside, 0.7, 0.2).stable)
 
 
-@pytest.mark.parametrize("cases", [20, pytest.param(200, marks=pytest.mark.slow)])
-def test_half_traces_of_any_number_of_levels(cases):
+@over_scenes(4, floor=1e-40)
+def test_half_traces_of_any_number_of_levels(rng):
     """Aannaque (7.9)-(7.11) for N = 1 to 12, steep intervals and damping included."""
-    rng, ratios = np.random.default_rng(4), []
-    for _ in range(cases):
-        lengths = rng.uniform(0.1, 1.0, int(rng.integers(1, 13)))
-        lengths *= TURN / lengths.sum()
-        case = el.Meissner(tuple(rng.uniform(-1, 1, lengths.size)), tuple(lengths))
-        lam2, mu = float(rng.uniform(-3, 20)), float(rng.normal() * 10 ** rng.uniform(-1, 2))
-        k = float(rng.uniform(0, 2)) if rng.random() < 0.5 else 0.0
-        found = el.discriminant(case, lam2, mu, k)
-        assert found.passed
-        with mpmath.workdps(50):
-            truth = true_half_trace(case.levels, case.lengths, mpmath.mpf(lam2), mu, k)
-            truth *= mpmath.exp(-2 * mpmath.pi * mpmath.mpf(k))
-            off = abs(truth - mpmath.mpf(float(found.value)))
-        ratios.append(float(found.error / (off + mpmath.mpf(10) ** -40)))
-    assert np.min(ratios) >= 1.0
-    assert np.median(ratios) < 1e3
+    lengths = rng.uniform(0.1, 1.0, int(rng.integers(1, 13)))
+    lengths *= TURN / lengths.sum()
+    case = el.Meissner(tuple(rng.uniform(-1, 1, lengths.size)), tuple(lengths))
+    lam2, mu = float(rng.uniform(-3, 20)), float(rng.normal() * 10 ** rng.uniform(-1, 2))
+    k = float(rng.uniform(0, 2)) if rng.random() < 0.5 else 0.0
+    found = el.discriminant(case, lam2, mu, k)
+    assert found.passed
+    with mpmath.workdps(50):
+        truth = true_half_trace(case.levels, case.lengths, mpmath.mpf(lam2), mu, k)
+        truth *= mpmath.exp(-2 * mpmath.pi * mpmath.mpf(k))
+        gap = float(truth - mpmath.mpf(float(found.value)))
+    assert abs(gap) <= found.error
+    return found.error, gap
 
 
 def test_a_smooth_function_in_steps():

@@ -3,15 +3,12 @@
 from dataclasses import replace
 from types import SimpleNamespace
 
-import matplotlib
 import numpy as np
 import pytest
 from edge_truth import rig
 from elastolink.runtime.core.families import Term
 from elastolink.runtime.stability import resonances, stability_edges, tongue
 from periodic_systems import every_term, is_growing, system_of, wave
-
-matplotlib.use("Agg")
 
 W2 = np.sqrt(5.3)
 

@@ -60,8 +60,7 @@ def emitted_functions() -> dict[str, dict[str, tuple[str, ...]]]:
     """Return the names of what each function of each packaged module returns.
 
     Without the recursions: their functions take an algebra, not numbers.  What they compute in
-    double precision is compared with extended precision in
-    ``tests/runtime/hill/test_perturbation.py``.
+    double precision is compared with 90 digits in ``tests/runtime/hill/test_series.py``.
     """
     entries = json.loads(MANIFEST.read_text())["modules"].values()
     names = sorted(entry["module"] for entry in entries)

@@ -21,6 +21,7 @@ _GEOMETRY = {
     "slider_crank": ("crank", "coupler", "offset", "assembly"),
     "quick_return": ("frame", "crank"),
 }
+_ANGLES = (0.0, np.pi / 2, np.pi, 1e-8, np.pi + 1e-8, 0.7, 1000 * 2 * np.pi + 1.0)
 
 
 def cross(a, b):
@@ -150,8 +151,6 @@ def loads(mechanism):
 
 
 # ---------------------------------------------------------------- points
-
-_ANGLES = (0.0, np.pi / 2, np.pi, 1e-8, np.pi + 1e-8, 0.7, 1000 * 2 * np.pi + 1.0)
 
 
 def _poses(mechanism):

@@ -17,6 +17,9 @@ from elastolink.derive.pipeline import only_wanted
 from elastolink.derive.separation import StagedSystem
 from elastolink.derive.staged import ClosedForm
 
+QUICK_TERM = ("four_bar_coupler_reduced", "follower_end_load")
+COUPLER = [s for s in WHOLE if s.formulation in coupler.MODEL.formulations]
+
 
 def cost(module):
     """Return operations and bytes."""
@@ -154,10 +157,6 @@ def returned(space, name, numbers, gone):
             if not of_rows or i in held:
                 found[array, i, j, *kind] = values[at]
     return {key: value for key, value in found.items() if np.any(np.asarray(value) != 0)}
-
-
-QUICK_TERM = ("four_bar_coupler_reduced", "follower_end_load")
-COUPLER = [s for s in WHOLE if s.formulation in coupler.MODEL.formulations]
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 
 x, y, z = sp.symbols("x y z", positive=True)
 m, n = sp.symbols("m n", integer=True, positive=True)
+MPMATH = SimpleNamespace(**{**vars(mpmath), "abs": abs})
 
 
 class _Exact(ast.NodeTransformer):
@@ -25,9 +26,6 @@ class _Exact(ast.NodeTransformer):
 
     def visit_Constant(self, node):
         return ast.Call(ast.Name("number", ast.Load()), [ast.Constant(repr(node.value))], [])
-
-
-MPMATH = SimpleNamespace(**{**vars(mpmath), "abs": abs})
 
 
 def evaluate(line, values):

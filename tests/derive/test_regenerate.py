@@ -50,6 +50,7 @@ def describe(spec):
 MODEL = au.Model("pair", ("plain",), energies, describe, discretise)
 SPECS = (au.ModelSpec("pair", "plain"),)
 '''
+ALL = sorted(spec.name() for entry in CATALOGUE for spec in entry.specs)
 
 
 def run(*arguments, cwd, seed="0", blocked=(), **environment):
@@ -105,9 +106,6 @@ def own(tmp_path):
     file = tmp_path / "pair.py"
     file.write_text(OWN_MODEL)
     return file
-
-
-ALL = sorted(spec.name() for entry in CATALOGUE for spec in entry.specs)
 
 
 def test_the_packaged_modules_are_as_derived_now(emitted, tmp_path):

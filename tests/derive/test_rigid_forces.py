@@ -18,6 +18,7 @@ from elastolink.runtime.core.families.emitted import array_function
 from forces_truth import LOADS, MECHANISMS, MOMENTS, forces, links, loads, points
 
 LENGTHS = ("frame", "crank", "coupler", "follower", "offset")
+FULL = ModelSpec("four_bar", "forces")
 
 
 def emitted(name):
@@ -85,9 +86,6 @@ def eliminate(module, numbers):
     right = np.concatenate([filled["forces"] - filled["rest"], filled["gamma"]])[:, 0]
     solution = np.linalg.solve(whole, right)
     return solution[:9], dict(zip(module.MULTIPLIERS, solution[9:], strict=True))
-
-
-FULL = ModelSpec("four_bar", "forces")
 
 
 @pytest.mark.parametrize("loaded", [False, True], ids=["moving", "loads alone"])

@@ -13,6 +13,8 @@ from honesty import extended, over_scenes
 from periodic_systems import system_of
 from wavy_springs import WavyCoordinates
 
+damped = pytest.mark.parametrize("drag", [0.0, 0.01])
+
 
 class HillPair:
     """A random pair z_i'' + 2 k z_i' + (w_i^2 + e_i f(theta)) z_i = 0 [1/s^2], hidden by z = R q.
@@ -97,9 +99,6 @@ def of_regions(scene, found):
             mode, harmonic = int(found.modes[i, 0]) - 1, int(found.harmonic[i])
             pairs.append(compared(scene, mode, harmonic, ends, found.error[i]))
     return joined(pairs)
-
-
-damped = pytest.mark.parametrize("drag", [0.0, 0.01])
 
 
 @over_scenes(41, few=None, many=ENDS, floor=1e-18)

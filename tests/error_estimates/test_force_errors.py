@@ -12,6 +12,7 @@ from random_linkages import KINDS, random_linkage
 
 DIGITS = 60
 _NAMES = {"FourBar": "four_bar", "SliderCrank": "slider_crank", "QuickReturn": "quick_return"}
+ANGLES = 2
 
 
 def forces(machine, theta, speed, acceleration, outside):
@@ -57,9 +58,6 @@ def compared(machine, found, outside=None):
             ]
             worst.append(float(max(gaps)))
     return np.array(worst), np.asarray(found.error)
-
-
-ANGLES = 2
 
 
 def random_machine(kind, random):

@@ -16,6 +16,7 @@ from free_free_loads import ROD
 
 CIRCLE = Circle(oblique=np.array([[1.0, 0.3], [0.0, 0.02]]), pivot=np.array([0.4, -0.2]), row=50.0)
 TURNING = Circle(start=7.5)
+SPEED = 6.0
 
 
 @cache
@@ -95,9 +96,6 @@ def test_differences_are_the_emitted_variations():
         np.testing.assert_allclose(getattr(found, name), getattr(exact, name), atol=1e-5 * size)
     one, other = (constrained_motion(s, span=0.02, samples=5) for s in (rod(), lean))
     assert np.all(np.max(np.abs(one.q - other.q), axis=0) <= one.error + other.error)
-
-
-SPEED = 6.0
 
 
 def test_a_driven_linkage_moves_as_its_kinematics():

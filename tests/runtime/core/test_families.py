@@ -11,6 +11,8 @@ from elastolink.runtime.core.families import MATRICES, VECTORS, Transcendental, 
 from periodic_systems import named, wave
 from refusals import refused
 
+PLACES = {"K": ((2, 2), ((0, 0, 0), (0, 1, 1), (1, 0, 1))), "f": ((2, 1), ())}
+
 
 def system(**changes) -> el.LinearPeriodic:
     terms = (
@@ -94,9 +96,6 @@ def test_count_on_a_chain_whose_answer_is_known():
     found = chain.count(frequency)
     assert found.dtype == np.int64
     np.testing.assert_array_equal(found, np.sum(frequency[..., None] > exact, axis=-1))
-
-
-PLACES = {"K": ((2, 2), ((0, 0, 0), (0, 1, 1), (1, 0, 1))), "f": ((2, 1), ())}
 
 
 def module(**changes) -> types.SimpleNamespace:

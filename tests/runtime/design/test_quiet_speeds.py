@@ -13,15 +13,14 @@ from elastolink.runtime.design.quiet import _bands, _maxima
 
 TABLE = "aannaque_1996_table_4_1"
 STEEL = el.Material(tensile_strength=600e6, endurance_limit=200e6, exponent=9.0, knee=1e6)
+PI = np.pi
+UNSTABLE = ((3.0, 3.5), (4.0, 4.5), (6.0, 7.0), (9.9, 10.0))
+WAVE = np.cos(2 * np.pi * np.arange(64) / 64)
 
 
 @cache
 def system():
     return load_scene(TABLE, overrides={"mesh.elements": 1}).system()
-
-
-PI = np.pi
-UNSTABLE = ((3.0, 3.5), (4.0, 4.5), (6.0, 7.0), (9.9, 10.0))
 
 
 @pytest.mark.parametrize(
@@ -153,9 +152,6 @@ def test_a_resonance_without_damping_is_infinite_and_constant_loads_count():
     assert np.all(least > 1e4) and np.all(least < 6 * 7850 * 9.81 * 0.525**2 / 3e-3)
     with pytest.raises(BadInput, match="damping"):
         screen(made, [10.0], damping="a")
-
-
-WAVE = np.cos(2 * np.pi * np.arange(64) / 64)
 
 
 def test_one_harmonic_is_one_cycle_on_goodmans_line():

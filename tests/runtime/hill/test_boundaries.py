@@ -10,6 +10,8 @@ from hill_functions import COSINE
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+CHECK = "half trace at the ends over what the errors explain"
+
 
 @settings(max_examples=15, deadline=None)
 @given(
@@ -38,9 +40,6 @@ def test_plot_and_export():
     assert len(hill_boundaries(COSINE, 0.0, (1,), damping=0.1).checks) == 0
     with pytest.raises(BadInput, match="slice"):
         hill_boundaries(COSINE, 1.0).plot()
-
-
-CHECK = "half trace at the ends over what the errors explain"
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,8 @@ from honesty import extended
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+SHAPES = [(), (1,), (4,), (3, 1), (1, 4), (3, 4), (2, 1, 1), (1, 3, 1), (2, 3, 4)]
+
 
 @given(lam2=st.floats(-100, 1e6), mean=st.floats(-2, 2), mu=st.floats(-5, 5), k=st.floats(0, 1))
 def test_a_constant_coefficient_has_its_closed_form(lam2, mean, mu, k):
@@ -22,9 +24,6 @@ def test_a_constant_coefficient_has_its_closed_form(lam2, mean, mu, k):
     # The closed form loses digits itself: the argument's round-off times its size.
     slack = 1e-15 * (1 + 2 * np.pi * abs(root)) * np.exp(2 * np.pi * (abs(root.imag) - k))
     assert abs(found.value - exact) <= found.error + 4 * slack
-
-
-SHAPES = [(), (1,), (4,), (3, 1), (1, 4), (3, 4), (2, 1, 1), (1, 3, 1), (2, 3, 4)]
 
 
 @settings(max_examples=25, deadline=None)

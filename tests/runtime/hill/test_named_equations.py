@@ -17,6 +17,7 @@ TABLE = {
     "b5": (25.51081605, 26.76642636, 28.06276590),
     "a5": (25.54997175, 27.70376873, 40.05019099),
 }
+TURN = 2.0 * np.pi
 
 
 @pytest.mark.smoke
@@ -53,9 +54,6 @@ def test_mathieus_notation():
             assert half == pytest.approx((-1.0) ** m, abs=1e-12)
     with pytest.raises(el.BadInput, match=r"^a: "):
         _ = el.Mathieu(np.nan, 1.0).lam2
-
-
-TURN = 2.0 * np.pi
 
 
 def meissner_boundaries(mu, regions=(1, 2), levels=(1.0, -1.0), lengths=(np.pi, np.pi), damping=0):

@@ -16,6 +16,7 @@ from elastolink.runtime.hill.bloch import effective_operator
 from elastolink.runtime.hill.series import boundary_latex
 
 MIXED = el.PeriodicFunction(a=[0.1, 1.0, 0.4, 0.15], b=[0.0, 0.3, -0.2, 0.1])
+RULE = r"\text{in the sums: } c_{m-l}"
 
 
 def test_no_width_to_first_order():
@@ -89,9 +90,6 @@ def lines(text):
         left = head.strip() or left
         found[left] = found.get(left, "") + rest.removeprefix("= ").replace(r"\quad", "")
     return found
-
-
-RULE = r"\text{in the sums: } c_{m-l}"
 
 
 def evaluate(sums, name, f, n, order):

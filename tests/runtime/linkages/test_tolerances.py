@@ -28,6 +28,7 @@ MOTIONS = {
     el.SliderCrank: ("slider_crank", slider_motion),
     el.QuickReturn: ("quick_return", rod_motion),
 }
+EVERY = pytest.mark.parametrize("linkage", LINKAGES, ids=lambda item: type(item).__name__)
 
 
 def machine_of(linkage, **more):
@@ -68,9 +69,6 @@ def exact(machine, theta, speed, acceleration):
         return m | exact_forces(mechanism)(given)
 
     return numbers, outputs
-
-
-EVERY = pytest.mark.parametrize("linkage", LINKAGES, ids=lambda item: type(item).__name__)
 
 
 @EVERY

@@ -10,6 +10,8 @@ from refusals import refused
 
 ROCKER = el.FourBar(0.3, 0.1, 0.28, 0.25)
 TURN = 2.0 * np.pi
+DRAG = {"loads": (el.Load("follower", couple=lambda at: -2.0 * at.speed, given="motion"),)}
+DAMPED = {"springs": (el.Spring(("frame", 0.1, 0.5), ("follower", 0.1, 0.0), 90.0, 0.2, 4.0),)}
 
 
 def bars(linkage, **more):
@@ -94,10 +96,6 @@ def test_a_torque_must_repeat_turn_by_turn(law) -> None:
     given = given or {"loads": (el.Load("crank", couple=law),)}
     with pytest.raises(el.BadInput, match="changes turn by turn"):
         torque_fluctuation(bars(ROCKER, **given), 8.0)
-
-
-DRAG = {"loads": (el.Load("follower", couple=lambda at: -2.0 * at.speed, given="motion"),)}
-DAMPED = {"springs": (el.Spring(("frame", 0.1, 0.5), ("follower", 0.1, 0.0), 90.0, 0.2, 4.0),)}
 
 
 @pytest.mark.parametrize(

@@ -20,6 +20,7 @@ THICKNESSES = {"sixteenth": 1 / 16, "threesixtyfourths": 3 / 64, "thirtysecond":
 PROPORTIONS = {"5152": (5, 1, 5, 2), "101104": (10, 1, 10, 4)}
 RIGS = [(p, t) for p in PROPORTIONS for t in THICKNESSES]
 RIG = "smith_1972_5152_sixteenth_inch"
+COUPLER = ("bending_stiffness", "mass_per_length", "damping", "inertia", "first_moment")
 
 
 def test_the_promised_scenes_are_there():
@@ -220,9 +221,6 @@ def own_module(tmp_path, monkeypatch):
     (tmp_path / "manifest.json").write_text(json.dumps({"modules": {spec.key(): row}}))
     monkeypatch.setenv("ELASTOLINK_GENERATED", str(tmp_path))
     return spec
-
-
-COUPLER = ("bending_stiffness", "mass_per_length", "damping", "inertia", "first_moment")
 
 
 def own_rig():

@@ -9,6 +9,7 @@ from periodic_systems import wave
 
 SPEEDS = ("speed", np.linspace(40.0, 99.0, 31))
 INERTIAS = ("follower_inertia", np.linspace(1e-4, 9e-4, 9))
+LINE = ["chart", "mathieu", "--x", "lam2=0.1:1.4:21", "--y", "mu=0:0.5:9"]
 
 
 def mathieu():
@@ -150,9 +151,6 @@ def test_picture_labels_combinations(traced):
     assert any(text.get_text() == "1+2, 10" for text in axes.texts)
     table = traced.to_dict()
     assert "sum" in table["edges"]["kind"]
-
-
-LINE = ["chart", "mathieu", "--x", "lam2=0.1:1.4:21", "--y", "mu=0:0.5:9"]
 
 
 def test_command_takes_the_order(tmp_path, capsys):

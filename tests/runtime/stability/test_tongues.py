@@ -11,6 +11,7 @@ from elastolink.runtime.stability import resonances, stability_edges, tongue
 from periodic_systems import every_term, is_growing, system_of, wave
 
 W2 = np.sqrt(5.3)
+RANGE = (38.0, 95.0)
 
 
 def _pair(first=((0.0, 1.0), (1.0, 0.0)), second=((0.0, 0.0), (0.0, 0.0)), **changes):
@@ -321,9 +322,6 @@ def test_a_series_out_of_its_depth_does_not_pass_a_closed_range():
     assert np.isnan(found.lower)
     assert is_growing(system, 1 + np.sqrt(5.3), 1e-3, eps=5.0)
     assert not found.passed
-
-
-RANGE = (38.0, 95.0)
 
 
 @pytest.fixture(scope="module", name="rig")

@@ -24,6 +24,7 @@ from fresh_process import python
 
 MU, LAM2 = np.linspace(0.0, 3.0, 23), np.linspace(-0.5, 6.0, 31)
 VALUES = {"mu": MU, "lam2": LAM2}
+CHART = "stability_chart"
 
 
 def square_sum(subject, a, b=1.0):
@@ -514,9 +515,6 @@ def test_digests_tell_content_and_nothing_else(mathieu):
     code += "print(digest((el.load_scene('mathieu').system(), {'a', 'b', 'c'}, el.load_scene)))"
     seen = {python(code, PYTHONHASHSEED=seed) for seed in ("1", "2")}
     assert seen == {digest((mathieu, {"a", "b", "c"}, el.load_scene)) + "\n"}
-
-
-CHART = "stability_chart"
 
 
 @pytest.mark.parametrize(

@@ -36,6 +36,7 @@ direction = "-70 deg"
 """
 MACHINES = ["four-bar, open", "four-bar, crossed", "slider-crank, open", "slider-crank, crossed"]
 MODES = [1, 2]
+SPEED, ACCELERATION = 40.0, 300.0
 
 
 def system(machine, formulation, modes):
@@ -56,9 +57,6 @@ def states(modes, count=200, seed=18):
     """Return states of order one, their rates over the crank's speed, and crank angles."""
     rng = np.random.default_rng(seed)
     return rng.normal(size=(3, count, modes)), rng.uniform(0.0, 2.0 * np.pi, count)
-
-
-SPEED, ACCELERATION = 40.0, 300.0
 
 
 def varied(one, amplitude, modes):

@@ -3,6 +3,7 @@
 import elastolink as el
 import numpy as np
 from elastolink.runtime.beams import linear_system
+from elastolink.runtime.core.trigonometric import resampled
 from elastolink.runtime.linkages.linkage import LinkMotion
 from elastolink.runtime.recovery import BeamMotion
 from elastolink.runtime.recovery.stresses import StressResult
@@ -46,6 +47,15 @@ def periodic_motion(system, speed, count=64):
     q = np.linalg.solve(blocks.reshape(count * n, count * n), force.reshape(-1))
     q = q.reshape(count, n)
     return BeamMotion(theta=theta, q=q, qd=speed * (first @ q), speed=speed, period=system.period)
+
+
+def peaks(values, count):
+    """Return the largest sizes of periodic histories ``(nt, ...)``, by parabolas between angles."""
+    size = np.abs(resampled(values, count))
+    before, after = np.roll(size, 1, axis=0), np.roll(size, -1, axis=0)
+    bend = 2.0 * size - before - after
+    top = (size >= before) & (size >= after) & (bend > 0.0)
+    return np.max(size + (before - after) ** 2 / (8.0 * np.where(top, bend, np.inf)), axis=0)
 
 
 def turning_bar(angle, *, pinned=False, modulus=210e9, thickness=0.01, drag=0.0, **beam):

@@ -11,7 +11,8 @@ from dataclasses import replace
 import elastolink as el
 import numpy as np
 import pytest
-from beam_motions import FIRST, of_history, periodic_motion, rocking_bar, turning_bar
+from beam_motions import FIRST, of_history, peaks, periodic_motion, rocking_bar, turning_bar
+from elastolink.runtime.core.trigonometric import resampled
 from elastolink.runtime.design import damping_effect, length_effect
 from elastolink.runtime.periodic.periodic_motion import quiet_state
 from honesty import over_scenes
@@ -54,31 +55,12 @@ def random_speeds(rng, first, count):
     return np.sort(speeds)
 
 
-def fine_values(values):
-    """Return periodic histories ``(nt, ...)`` at many angles, through their Fourier series."""
-    half = np.fft.rfft(values, axis=0)
-    if len(values) % 2 == 0:
-        half[-1] *= 0.5
-    return np.fft.irfft(half, n=FINE, axis=0) * (FINE / len(values))
-
-
-def largest(values):
-    """Return the largest size in periodic histories ``(nt, stations)``, between angles too."""
-    highest = np.max(np.abs(values), axis=0)
-    size = np.abs(fine_values(values[:, highest > 0.8 * np.max(highest)]))
-    low, high = np.roll(size, 1, axis=0), np.roll(size, -1, axis=0)
-    bend = 2.0 * size - low - high
-    top = (size >= low) & (size >= high) & (bend > 0)
-    added = np.where(top, (low - high) ** 2 / (8.0 * np.where(top, bend, 1.0)), 0.0)
-    return np.max(size + added)
-
-
 def exact_maximum(system, speed, method="equilibrium"):
     """Return the largest stress of a bar at one speed by dense collocation."""
     found = el.stress(
         system, periodic_motion(system, speed, COUNT), stations=STATIONS, method=method
     )
-    return max(largest(found.fibre(name)) for name in ("positive", "negative"))
+    return max(np.max(peaks(found.fibre(name), FINE)) for name in ("positive", "negative"))
 
 
 @over_scenes(7200, few=2, many=20, floor=FLOOR)
@@ -206,7 +188,7 @@ def test_safeties_of_bars(rng):
 
     motion = periodic_motion(system.remesh(meshed), speed, 32)
     fine = el.stress(system.remesh(meshed), motion, stations=3)
-    values = np.hstack([fine_values(fine.fibre(name)) for name in ("positive", "negative")])
+    values = np.hstack([resampled(fine.fibre(name), FINE) for name in ("positive", "negative")])
     return found.error, np.min(found.safety) / least_safety(values, material) - 1.0
 
 

@@ -5,7 +5,7 @@ from itertools import pairwise
 import elastolink as el
 import numpy as np
 import pytest
-from bent_rigs import BENT, REFERENCE, SLIDER_CRANK, Shape, rig
+from bent_rigs import BENT, REFERENCE, Shape, rig, slider_crank
 from elastolink.runtime.core.errors import BadInput, SelfCheckFailed
 from elastolink.runtime.core.families import LinearPeriodic
 from elastolink.runtime.core.families.nonlinear import Drive
@@ -20,19 +20,6 @@ EPS = np.finfo(float).eps
 def accelerations(system, q, qd, drive):
     left = system.equations(q, qd, np.zeros_like(q), drive, system.parameters)
     return -np.linalg.solve(left.mass, left.residual[..., None])[..., 0]
-
-
-@pytest.fixture(scope="module")
-def slider_crank(tmp_path_factory):
-    """Return a function from modes and changes to the system of a slider-crank."""
-    file = tmp_path_factory.mktemp("scene") / "slider_crank.toml"
-    file.write_text(SLIDER_CRANK)
-
-    def made(modes=2, **changes):
-        system = el.load_scene(file, {"model.modes": modes}).system()
-        return system.with_parameters(**changes)
-
-    return made
 
 
 @pytest.fixture
@@ -134,8 +121,8 @@ def assert_linear(system, linear: LinearPeriodic, theta, speed, acceleration) ->
 
 
 @pytest.mark.parametrize(("modes", "slider"), [(1, 0.01), (3, 0.2), (6, 3.0)])
-def test_a_straight_rod_is_that_of_the_hand_derivation(slider_crank, modes, slider):
-    system = slider_crank(modes, slider_mass=slider)
+def test_a_straight_rod_is_that_of_the_hand_derivation(modes, slider):
+    system = slider_crank(modes).with_parameters(slider_mass=slider)
     numbers = system.parameters
     theta = np.random.default_rng(6).uniform(-7.0, 7.0, 20)
     still = np.zeros((len(theta), modes))
@@ -199,12 +186,12 @@ def assert_balanced(system, q, qd, qdd, drive) -> None:
 
 
 @pytest.mark.parametrize("modes", [1, 3])
-def test_the_power_of_the_crank_balances(slider_crank, modes):
+def test_the_power_of_the_crank_balances(modes):
     more = {"bow": 2e-3, "gravity_x": 3.0, "gravity_y": -9.0}
     follower = {"follower_first_moment": 0.01}
     four_bar = rig("B58", modes).with_parameters(**more, **follower)
     random = np.random.default_rng(modes)
-    for system in (four_bar, slider_crank(modes, **more)):
+    for system in (four_bar, slider_crank(modes).with_parameters(**more)):
         for _ in range(4):
             q, qd = random.uniform(-0.5, 0.5, (2, modes)) / np.arange(1, modes + 1) ** 1.5
             drive = Drive(random.uniform(-7, 7), 60.0, random.choice([0.0, 900.0]))
@@ -212,11 +199,11 @@ def test_the_power_of_the_crank_balances(slider_crank, modes):
             assert_balanced(system, q, qd, accelerations(system, q, qd, drive), drive)
 
 
-def test_derivatives_are_exact(slider_crank):
+def test_derivatives_are_exact():
     """Residuals are linear in accelerations, quadratic in rates: differences of these round."""
     more = {"bow": 2e-3, "gravity_x": 3.0, "gravity_y": -9.0}
     random = np.random.default_rng(3)
-    for system in (rig("A58", 2).with_parameters(**more), slider_crank(3, **more)):
+    for system in (rig("A58", 2).with_parameters(**more), slider_crank(3).with_parameters(**more)):
         n = system.size
         state = 0.2 * random.normal(size=(3, n)) * np.array([1.0, 60.0, 3600.0])[:, None]
         drive = Drive(2.2, 50.0, 300.0)

@@ -6,7 +6,7 @@ import elastolink as el
 import numpy as np
 from edge_truth import flexible_rod
 from elastolink.runtime.stability import resonances, tongue, tongue_curves
-from elastolink.runtime.systems.rod import PolynomialBasis
+from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis
 from periodic_systems import system_of, wave
 from refusals import each_of, refused
 
@@ -28,6 +28,8 @@ ROD = {
 }
 
 SLOW = {"x": ("speed", [1e-3, 1.0]), "y": ("crank_ratio", [0.1, 0.2])}
+MANY = {"x": ("crank_ratio", np.linspace(0.05, 0.2, 50)), "speed": 800.0}
+MANY["y"] = ("frame", np.linspace(0.5, 0.6, 20000))
 
 
 def rooted(geometry):
@@ -112,6 +114,7 @@ CASES = {
         ({**ROD, "x": ("damping", [0.0, 1.0])}, "give speed"),
         ({**ROD, "x": ("speed", [900.0, 1000.0]), "speed": 100.0}, "leave it out"),
         ({**SLOW, "system": flexible_rod(PolynomialBasis(3))}, r"raise the (lowest )?speed"),
+        ({**MANY, "system": flexible_rod(OverhangBasis(4))}, "fewer modes or points"),
         ({"system": rooted({"r": 0.1}), "y": ("r", [0.1, 0.9])}, "not finite"),
         *(({**ROD, "speed": value}, "positive number") for value in (-5.0, np.nan, "fast")),
     ],

@@ -65,7 +65,8 @@ def test_the_modes_follow_the_block(drop):
     def close(found, exact):
         assert np.max(np.abs(found - exact)) < 1e-7 * np.max(np.abs(exact))
 
-    close(rod.dynamics(q, qd, t)["jacobian"], slopes(constraints_of(rod, t), q))
+    constraints = slopes(lambda x: rod.violation(x, t)["constraints"][:, 0], q)
+    close(rod.dynamics(q, qd, t)["jacobian"], constraints)
     found = rod.variations(q, qd, qdd, lam, t)
     close(found["stiffness"], slopes(lambda x: residual(rod, x, qd, qdd, lam, t), q))
     # Quadratic in the velocities: differences are exact at any step.
@@ -82,10 +83,6 @@ def test_the_modes_follow_the_block(drop):
 
     close(found["jacobian_rate"], slopes(rate, q))
     close(found["jacobian_acceleration"], slopes(acceleration, q))
-
-
-def constraints_of(rod, t):
-    return lambda x: rod.violation(x, t)["constraints"][:, 0]
 
 
 def residual(rod, q, qd, qdd, lam, t):

@@ -85,11 +85,6 @@ PRODUCTS = {
 }
 
 
-def power_of_root(name):
-    """Return what an array grows with: each derivative of a mode along eta or xi."""
-    return sum(order + (kind == "f") for kind, order in PRODUCTS.get(name, ()))
-
-
 def by_quadrature(basis, name, place, count):
     """Return an array from the shapes at Gauss nodes on both sides of the block."""
     xi = np.array([place])
@@ -112,7 +107,8 @@ def test_closed_forms_against_quadrature(place):
     for name in (*PRODUCTS, "moment", "mean"):
         found = basis.array(name, xi)[0]
         exact = by_quadrature(basis, name, place, 230)
-        power = power_of_root(name) / 2
+        # Each derivative of a mode along eta or xi makes an array grow by beta.
+        power = sum(order + (kind == "f") for kind, order in PRODUCTS.get(name, ())) / 2
         size = np.outer(beta**power, beta**power) if found.ndim == 2 else np.ones_like(beta)
         assert np.max(np.abs(found - exact) / size) < 1e-12, name
 

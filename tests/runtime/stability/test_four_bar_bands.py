@@ -23,12 +23,8 @@ def four_bar(ratio=0.0):
     return el.load_scene("aannaque_1996_table_4_1", overrides=overrides).system()
 
 
-@pytest.fixture(scope="module")
-def bands():
-    return stability_edges(four_bar(), SPAN, modes=5, margin=1.02)
-
-
-def test_the_widest_band_is_found_by_reduction_too(bands):
+def test_the_widest_band_is_found_by_reduction_too():
+    bands = stability_edges(four_bar(), SPAN, modes=5, margin=1.02)
     # Its checks: multipliers grow well inside every band, and nowhere else.
     assert bands.passed, bands.checks
     assert "sum" in {bands.kind[i] for i in np.flatnonzero(bands.width > 1e-4)}

@@ -1,7 +1,5 @@
 """Tests of what is refused: one line that holds the words of each row."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 
 import pytest

@@ -1,7 +1,5 @@
 """Who may import what: walls between folders, layers of rooms; in the source and in processes."""
 
-from __future__ import annotations
-
 import ast
 import re
 import sys
@@ -127,9 +125,6 @@ def test_nothing_imports_a_folder_by_its_bare_name():
     files = sources(*FOLDERS, "tests", "docs")
     assert [relative(path) for path in files if bare.search(path.read_text())] == []
     assert bare.search("    import runtime.hill\n")
-
-
-# --- rooms ----------------------------------------------------------------------------------------
 
 
 def edges(folder: str) -> dict[tuple[str, str], str]:

@@ -1,7 +1,5 @@
 """The worked example of a user's own mechanism: its page runs, its numbers are found by hand."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,7 +1,5 @@
 """Packaging: lists that must agree with the folders, and what a built distribution holds."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil
@@ -116,9 +114,6 @@ def test_no_file_is_large_or_empty_by_mistake():
     sizes = {path.as_posix(): (ROOT / path).stat().st_size for path in TRACKED}
     assert [name for name, size in sizes.items() if size == 0] == ["runtime/_root/py.typed"]
     assert [name for name, size in sizes.items() if size > 500_000] == []
-
-
-# --- what a build holds ----------------------------------------------------------------------
 
 
 def run(*command: object, cwd: Path, **environment: str) -> str:

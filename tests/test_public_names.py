@@ -1,7 +1,5 @@
 """Public names: they exist, they are listed in one order, and what is not public says so."""
 
-from __future__ import annotations
-
 import ast
 import contextlib
 import importlib

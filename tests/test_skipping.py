@@ -1,7 +1,5 @@
 """Asking for less costs less: emitted modules beside fuller ones, imports, functions called."""
 
-from __future__ import annotations
-
 import importlib.util
 import itertools
 import pickle

@@ -10,8 +10,6 @@ constant, its compilation in the first call.  Their error is the difference to t
 at 1e-12, over the largest entry.
 """
 
-from __future__ import annotations
-
 import sys
 import time
 import warnings

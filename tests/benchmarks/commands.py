@@ -6,8 +6,6 @@
 ``commands.json`` and their ratio; ``--store`` replaces the stored times.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -6,8 +6,6 @@ from a start ``(m, columns)`` and rising angles to the states ``(angles, m, colu
 compiled, is compiled then.  What is not installed is left out.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Callable

@@ -16,8 +16,6 @@ of ours and of the peers within it count.  ``--compare`` fails where a ratio has
 than 1.25.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import time

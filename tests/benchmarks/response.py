@@ -9,8 +9,6 @@ for the multipliers: its time is scaled to as many points as the curve has.  The
 the distance of its multipliers from those on more steps, relative to the largest.
 """
 
-from __future__ import annotations
-
 import time
 
 import elastolink as el

@@ -6,8 +6,6 @@ gives their velocities, Gauss's rule the energies.  Velocities are linear in the
 crank speed times the displacements, so that columns of them give every array of the Lagrangian.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 

@@ -1,32 +1,20 @@
 """Periodic motions of beams by dense Fourier collocation, and structures for tests of recovery."""
 
-from __future__ import annotations
-
+import elastolink as el
 import numpy as np
-from elastolink.runtime.beams import (
-    Beam,
-    Node,
-    Section,
-    Structure,
-    frame,
-    linear_system,
-    linkage_system,
-)
-from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.linkages import FourBar, SliderCrank
+from elastolink.runtime.beams import linear_system
+from elastolink.runtime.core.trigonometric import resampled
 from elastolink.runtime.linkages.linkage import LinkMotion
 from elastolink.runtime.recovery import BeamMotion
 from elastolink.runtime.recovery.stresses import StressResult
-from elastolink.runtime.rigid import Machine, MassDistribution
-from elastolink.runtime.systems import with_modal_damping
 from periodic_systems import second_order
 
 STEEL = {"modulus": 210e9, "density": 7850.0}
-FOUR_BAR = FourBar(crank=0.170, coupler=0.328, follower=0.525, frame=0.547)
-BAR = Section.rectangle(0.02, 0.01, poisson=0.3, **STEEL)
+FOUR_BAR = el.FourBar(crank=0.170, coupler=0.328, follower=0.525, frame=0.547)
+BAR = el.Section.rectangle(0.02, 0.01, poisson=0.3, **STEEL)
 # Aannaque's Table 4.1.
 SECTIONS = {
-    name: Section(area=area, second_moment=inertia, thickness=thickness, **STEEL)
+    name: el.Section(area=area, second_moment=inertia, thickness=thickness, **STEEL)
     for name, area, inertia, thickness in (
         ("crank", 157.5e-6, 520.47e-12, 6.35e-3),
         ("coupler", 85.5e-6, 83.34e-12, 3.42e-3),
@@ -61,13 +49,22 @@ def periodic_motion(system, speed, count=64):
     return BeamMotion(theta=theta, q=q, qd=speed * (first @ q), speed=speed, period=system.period)
 
 
+def peaks(values, count):
+    """Return the largest sizes of periodic histories ``(nt, ...)``, by parabolas between angles."""
+    size = np.abs(resampled(values, count))
+    before, after = np.roll(size, 1, axis=0), np.roll(size, -1, axis=0)
+    bend = 2.0 * size - before - after
+    top = (size >= before) & (size >= after) & (bend > 0.0)
+    return np.max(size + (before - after) ** 2 / (8.0 * np.where(top, bend, np.inf)), axis=0)
+
+
 def turning_bar(angle, *, pinned=False, modulus=210e9, thickness=0.01, drag=0.0, **beam):
     """Return a bar of 1 m whose rigid angle is given with two derivatives by the crank angle.
 
     Clamped to what turns at its first end and free at the other; or, pinned, held there.  The drag
     is that of its elastic motion, over the mass [1/s].
     """
-    section = Section.rectangle(0.02, thickness, modulus=modulus, density=7850.0, poisson=0.3)
+    section = el.Section.rectangle(0.02, thickness, modulus=modulus, density=7850.0, poisson=0.3)
 
     def configuration(theta):
         phi, rate, acceleration = angle(theta)
@@ -76,9 +73,9 @@ def turning_bar(angle, *, pinned=False, modulus=210e9, thickness=0.01, drag=0.0,
 
     ends = (("x", "y"), ("x", "y")) if pinned else (("x", "y", "rotation"), ())
     return linear_system(
-        Structure(
-            beams=(Beam(name="bar", start="O", end="P", section=section, length=1.0, **beam),),
-            nodes=(Node(name="O", held=ends[0]), Node(name="P", held=ends[1])),
+        el.Structure(
+            beams=(el.Beam(name="bar", start="O", end="P", section=section, length=1.0, **beam),),
+            nodes=(el.Node(name="O", held=ends[0]), el.Node(name="P", held=ends[1])),
             configuration=configuration,
         ),
         rayleigh=(drag, 0.0),
@@ -89,7 +86,7 @@ def cantilever(
     kind="cubic", elements=1, length=1.0, angle=0.0, force=(0.0, 0.0), gravity=(0.0, 0.0)
 ):
     """Return a bar clamped at O with a force at its end, without stiffness from axial forces."""
-    structure = frame(
+    structure = el.frame(
         {"O": (0.0, 0.0), "P": (length * np.cos(angle), length * np.sin(angle))},
         {"bar": ("O", "P")},
         BAR,
@@ -132,27 +129,27 @@ def rocking_bar(rng, elements=1, *, thickness=0.01, drag=True):
 
 def four_bar(elements=1, sections=SECTIONS, **options):
     """Return the elastic four-bar without modal damping."""
-    return linkage_system(
+    return el.linkage_system(
         FOUR_BAR, sections, joint_masses=JOINT_MASSES, elements=elements, **options
     )
 
 
 def damped_four_bar(elements=1, **options):
     """Return the elastic four-bar with 2 % of modal damping."""
-    return with_modal_damping(four_bar(elements, **options), 0.02)
+    return el.with_modal_damping(four_bar(elements, **options), 0.02)
 
 
 def rigid_machine(linkage, masses):
     """Return the machine of rigid bars and point masses at the ends of the links named; weight."""
     bars = {
-        name: MassDistribution.uniform_bar(section.mass_per_length * length, length)
+        name: el.MassDistribution.uniform_bar(section.mass_per_length * length, length)
         for name, section in SECTIONS.items()
         if (length := linkage.lengths.get(name))
     }
     for link, mass in masses.items():
-        point = MassDistribution.point(mass, along=linkage.lengths.get(link, 0.0))
-        bars[link] = bars.get(link, MassDistribution()) + point
-    return Machine(linkage, bars, gravity=(0.0, -9.81))
+        point = el.MassDistribution.point(mass, along=linkage.lengths.get(link, 0.0))
+        bars[link] = bars.get(link, el.MassDistribution()) + point
+    return el.Machine(linkage, bars, gravity=(0.0, -9.81))
 
 
 def of_history(history, error=0.0):
@@ -184,12 +181,12 @@ def random_linkage(rng, kind):
         crank = rng.uniform(0.03, 0.3)
         lengths = {name: rng.uniform(0.2, 0.8) for name in ("coupler", "follower", "frame")}
         try:
-            if kind is SliderCrank:
+            if kind is el.SliderCrank:
                 offset = crank * rng.uniform(-0.3, 0.3)
-                return SliderCrank(crank=crank, coupler=crank * rng.uniform(2, 5), offset=offset)
-            found = FourBar(crank=crank, **lengths)
+                return el.SliderCrank(crank=crank, coupler=crank * rng.uniform(2, 5), offset=offset)
+            found = el.FourBar(crank=crank, **lengths)
             found.require_full_turn()
-        except BadInput:
+        except el.BadInput:
             continue
         b, f = lengths["coupler"], lengths["follower"]
         sides = lengths["frame"] + crank * np.array([-1.0, 1.0])
@@ -200,14 +197,14 @@ def random_linkage(rng, kind):
 def elastic_linkage(rng, kind, elements):
     """Return a random elastic linkage and its speed, over its least frequency at any angle."""
     made = random_linkage(rng, kind)
-    names = ("crank", "coupler", "follower") if kind is FourBar else ("crank", "coupler")
+    names = ("crank", "coupler", "follower") if kind is el.FourBar else ("crank", "coupler")
     sections = {
-        name: Section.rectangle(rng.uniform(0.01, 0.03), 10 ** rng.uniform(-2.6, -1.9), **STEEL)
+        name: el.Section.rectangle(rng.uniform(0.01, 0.03), 10 ** rng.uniform(-2.6, -1.9), **STEEL)
         for name in names
     }
     masses = {"B": rng.uniform(0.0, 0.3), "C": rng.uniform(0.0, 0.3)}
-    bare = linkage_system(made, sections, joint_masses=masses, elements=elements)
-    system = with_modal_damping(bare, 10 ** rng.uniform(-2.3, -1.3))
+    bare = el.linkage_system(made, sections, joint_masses=masses, elements=elements)
+    system = el.with_modal_damping(bare, 10 ** rng.uniform(-2.3, -1.3))
     theta = np.linspace(0.0, 2 * np.pi, 16, endpoint=False)
     flexible = np.linalg.solve(system.array("K", theta), system.array("M", theta))
     least = np.min(np.max(np.linalg.eigvals(flexible).real, axis=1) ** -0.5)

@@ -1,7 +1,5 @@
 """Frequencies of beams in many digits, by characteristic equations and by power series."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 

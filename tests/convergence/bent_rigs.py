@@ -4,8 +4,6 @@
 Gauss's rule, without the equations under test.
 """
 
-from __future__ import annotations
-
 import tomllib
 from dataclasses import dataclass
 from functools import cache
@@ -17,6 +15,7 @@ import numpy as np
 from elastolink.runtime.nonlinear.orbit import Solver
 from elastolink.runtime.nonlinear.response import first_motion
 from elastolink.runtime.nonlinear.segments import Problem
+from elastolink.runtime.scenes import scene_from_document
 from numpy.polynomial import legendre
 
 REFERENCE = tomllib.loads((Path(__file__).parent / "bent_rigs.toml").read_text())
@@ -41,6 +40,12 @@ damping = 0.6
 [slider]
 mass = "0.2 kg"
 """
+
+
+def slider_crank(modes=2, **changes):
+    """Return the system of the slider-crank, with changes of its scene."""
+    document = tomllib.loads(SLIDER_CRANK)
+    return scene_from_document("slider", document, {"model.modes": modes, **changes}).system()
 
 
 @cache

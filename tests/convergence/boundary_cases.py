@@ -33,7 +33,6 @@ def rough(harmonics):
 
 @cache
 def function(name):
-    """Return one of the functions by name."""
     return {
         "mixed": trigonometric(1, 3),
         "four harmonics": trigonometric(2, 4),

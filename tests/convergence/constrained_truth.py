@@ -1,7 +1,5 @@
 """A pendulum in oblique Cartesian coordinates, its pivot moving evenly, and its exact motion."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import mpmath
@@ -9,6 +7,8 @@ import numpy as np
 from elastolink.generated import four_bar_multibody as multibody
 from elastolink.runtime.core.families import Constrained
 from scipy.integrate import solve_ivp
+
+LENGTHS = {"frame": 1.0, "crank": 0.3, "coupler": 0.9, "follower": 0.8}
 
 
 @dataclass(frozen=True)
@@ -158,9 +158,6 @@ def unconstrained(push, slope=None) -> Constrained:
         return {"damping": 0.0 * stiffness, "stiffness": stiffness, **held}
 
     return Constrained(1, 0, dynamics, violation, variations if slope else None)
-
-
-LENGTHS = {"frame": 1.0, "crank": 0.3, "coupler": 0.9, "follower": 0.8}
 
 
 def driven_four_bar(speed):

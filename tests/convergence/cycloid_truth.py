@@ -1,7 +1,5 @@
 """The bead on a cycloid in closed form: its steady motion and its two multipliers."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import mpmath as mp

@@ -1,7 +1,5 @@
 """Numbers of the documents' tables, which tests compute again."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"

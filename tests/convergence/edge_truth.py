@@ -18,6 +18,12 @@ def flexible_rod(basis, crank_ratio=0.1, **changes):
     return rod_system(basis, crank_ratio=crank_ratio, **ROD, **changes)
 
 
+def scene_rod(crank_ratio=0.2, modes=2, **more):
+    """Return the linear system of the same rod's scene."""
+    changes = {"links.crank_ratio": crank_ratio, "model.modes": modes, **more}
+    return el.load_scene("beale_1992_flexible_rod", overrides=changes).linear_system()
+
+
 def region_of(found, kind, harmonic):
     """Return the place of the first region of a kind and harmonic."""
     for i, label in enumerate(found.kind):

@@ -1,7 +1,5 @@
 """Random frames, and their frequencies from the determinant of the exact stiffness, many digits."""
 
-from __future__ import annotations
-
 import frequency_truth
 import mpmath
 import numpy as np

@@ -1,7 +1,5 @@
 """What the stability tests of the rod in Buckens' frame share: loads, multipliers, differences."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Half traces of Hill's equation to more digits than doubles hold: :mod:`taylor_truth`."""
 
-from __future__ import annotations
-
 import numpy as np
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from numpy.typing import ArrayLike

@@ -1,7 +1,5 @@
 """Functions of Hill's equation that tests and benchmarks share."""
 
-from __future__ import annotations
-
 import elastolink as el
 import numpy as np
 

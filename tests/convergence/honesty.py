@@ -1,7 +1,5 @@
 """What an error estimate has to be over many cases: nearly always enough, and not idle."""
 
-from __future__ import annotations
-
 import functools
 import inspect
 

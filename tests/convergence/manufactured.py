@@ -1,7 +1,5 @@
 """Random linear periodic systems whose periodic motion was chosen beforehand."""
 
-from __future__ import annotations
-
 import numpy as np
 from periodic_systems import system_of
 

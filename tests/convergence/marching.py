@@ -1,7 +1,5 @@
 """Marching through a forced system with fixed steps of Gauss collocation."""
 
-from __future__ import annotations
-
 import numpy as np
 from elastolink.runtime.core.collocation import gauss_maps
 from elastolink.runtime.periodic.equation import equation_of

@@ -1,7 +1,5 @@
 """Observed orders: the exponents k of ``errors ~ sizes^k``; of counts, minus the order."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

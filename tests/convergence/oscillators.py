@@ -6,8 +6,6 @@
 coordinate by coordinate where it says powers.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -59,13 +57,7 @@ def oscillators(stiffness=1.0, parametric=None, load=None, **numbers: float) -> 
 
 
 def marched(
-    system,
-    speed,
-    state,
-    turns: int,
-    samples: int = 0,
-    rtol: float = 3e-14,
-    rise: float = 0.0,
+    system, speed, state, turns: int, samples: int = 0, rtol: float = 3e-14, rise: float = 0.0
 ):
     """Return states ``(q, dq/dtheta)`` after each turn by DOP853, the first one included.
 

@@ -1,7 +1,5 @@
 """The sliding pendulum by hand: its drive, its places and its energy."""
 
-from __future__ import annotations
-
 import numpy as np
 
 ROD = 0.8  # m

@@ -1,7 +1,5 @@
 """Small linear periodic systems, and how far two of their motions differ."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -62,6 +60,19 @@ def forced_mathieu(**changes) -> LinearPeriodic:
         p=lambda theta: (1 / (1.5 - np.cos(theta)))[:, None],
     )
     return replace(made, reference_length=2.0, shape=lambda x: 1e-4 * x[:, None])
+
+
+def every_term(**changes):
+    """Two modes with periodic mass, Coriolis, centrifugal and axial terms, all times eps."""
+    return system_of(
+        {"eps": 0.0, "c": 0.0, **changes},
+        M=[np.array([[2.0, 0.3], [0.3, 1.0]]), ("eps", wave([[0.3, 0.1], [0.1, 0.2]], 1, 0.3))],
+        A=[np.array([[0.1, -0.2], [0.3, 0.0]]), ("eps", wave([[0.1, 0.2], [-0.1, 0.1]], 2, 1.0))],
+        B=[np.array([[0.1, 0.05], [0.05, -0.2]]), ("eps", wave([[0.2, 0.1], [0.1, -0.3]]))],
+        K=np.array([[20.0, 3.0], [3.0, 9.0]]),
+        Kg=("eps", wave([[2.0, 1.0], [1.0, 3.0]], 1, -0.4)),
+        C=("c", np.array([[0.4, 0.1], [0.1, 0.3]])),
+    )
 
 
 def coupled_pair(coupling, sign=1.0, damping=0.0) -> LinearPeriodic:

@@ -1,7 +1,5 @@
 """Driven oscillators with cubic springs, some with a periodic motion planted in them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Random linkages of every kind, class and assembly; the class of a four-bar by its table."""
 
-from __future__ import annotations
-
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
 

@@ -1,7 +1,5 @@
 """Random systems with response curves: crank-rockers with a soft coupler, and oscillators."""
 
-from __future__ import annotations
-
 import elastolink as el
 import numpy as np
 from bent_rigs import rig

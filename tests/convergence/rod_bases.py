@@ -5,31 +5,22 @@ with those of sixteen two-segment polynomials, which agree with twelve to ten di
 with a fixed mesh (``test_rod_tip_deflection.py``).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 
 import numpy as np
 from elastolink.runtime.linkages import QuickReturn
 from elastolink.runtime.periodic import floquet_multipliers, steady_state
-from elastolink.runtime.systems.rod import (
-    FreeFreeBasis,
-    OverhangBasis,
-    PolynomialBasis,
-    TwoSegmentBasis,
-    overhang_roots,
-    rod_system,
-)
+from elastolink.runtime.systems import rod as rods
 from marching import marched
 from rod_reference import Rod, flexible, stiff
 from scipy.linalg import eigh
 
 BASES: Mapping[str, Callable] = {
-    "overhang": OverhangBasis,
-    "polynomial": PolynomialBasis,
-    "two_segment": TwoSegmentBasis,
-    "free_free_linear": FreeFreeBasis,
+    "overhang": rods.OverhangBasis,
+    "polynomial": rods.PolynomialBasis,
+    "two_segment": rods.TwoSegmentBasis,
+    "free_free_linear": rods.FreeFreeBasis,
 }
 RODS: Mapping[str, Callable[[], Rod]] = {"flexible": lambda: flexible(0.01, 100.0), "stiff": stiff}
 # Angles of the steady motion, and steps of the one from rest: twice as many change nothing here.
@@ -47,13 +38,13 @@ def frequencies(basis, place: float) -> np.ndarray:
 
 def frequency_error(basis, place: float, mode: int) -> float:
     """Return the relative error of one frozen frequency; mode from 1."""
-    exact = overhang_roots(np.array([place]), mode)[0, -1] ** 2
+    exact = rods.overhang_roots(np.array([place]), mode)[0, -1] ** 2
     return float(abs(frequencies(basis, place)[mode - 1] / exact - 1))
 
 
 def made(rod: Rod, basis):
     """Return the linear periodic system of a rod on a basis."""
-    return rod_system(
+    return rods.rod_system(
         basis,
         crank_ratio=rod.crank / rod.frame,
         frame=rod.frame,
@@ -86,7 +77,7 @@ def transient_tip(rod: Rod, basis, turns: int = 1) -> np.ndarray:
 @lru_cache(maxsize=8)
 def reference(rod_name: str, kind: str) -> np.ndarray:
     """Return the tip deflection that the others are compared with."""
-    return _deflection(rod_name, TwoSegmentBasis(REFERENCE), kind)
+    return _deflection(rod_name, rods.TwoSegmentBasis(REFERENCE), kind)
 
 
 def _deflection(rod_name: str, basis, kind: str) -> np.ndarray:

@@ -18,8 +18,6 @@ rule of order 5.  Rest, v = v_t = 0, meets both levels of the constraint as it s
 has to be made consistent; phi_tt = 0 at theta = 0 makes the start smooth.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from itertools import pairwise
 

@@ -3,8 +3,6 @@
 The numbers are those of docs/examples/slider_crank_rod.toml, in SI units.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 

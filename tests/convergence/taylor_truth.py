@@ -6,8 +6,6 @@ long double has 64 bits of fraction the results are good to about 1e-18 times th
 that the state goes.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Frequencies from beam elements: order of convergence by slope, against independent references."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy.linalg
@@ -44,9 +42,6 @@ def test_order_of_the_squared_frequency(kind, order, mode, counts, margin, suppo
     errors = found / exact - 1.0
     assert np.all(errors > 0)  # Rayleigh: from above
     np.testing.assert_allclose(-slopes(counts, errors), order, atol=margin)
-
-
-# ---------------------------------------------------------------- shear and rotary inertia
 
 
 @pytest.mark.parametrize(("ratio", "slimness", "order"), [(1e-9, 1e-9, 4.0), (0.03, 0.01, 2.0)])

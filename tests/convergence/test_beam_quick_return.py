@@ -1,7 +1,5 @@
 """The quick-return of beams against the flexible rod on a fixed mesh, from rest."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.beams import Section, beam_linkage, linear_system

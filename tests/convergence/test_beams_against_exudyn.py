@@ -7,8 +7,6 @@ these equations' own periodic motion; after a few revolutions what is left of th
 away.
 """
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import replace
 from functools import cache, partial

@@ -1,7 +1,5 @@
 """Perturbation boundaries of every order against Hill's matrix: the order by slope."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from boundary_cases import drag, function, trigonometric

@@ -1,7 +1,5 @@
 """The observed order of collocation: slope of log error over log step, down to round-off."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from manufactured import manufactured

@@ -1,7 +1,5 @@
 """Observed order of collocation, and errors of constrained motions that fall with the tolerance."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from constrained_truth import unconstrained

@@ -1,7 +1,5 @@
 """Frames: finite elements against the exact frequencies; Table 5.1 is in the ledger."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

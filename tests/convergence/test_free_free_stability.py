@@ -1,7 +1,5 @@
 """Stability of the constrained free-free equations, the open question of Beale & Scott's 3.1."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from documented import documented_rows, last_digit
@@ -97,9 +95,6 @@ def test_beyond_the_linear_range_shooting_diverges_and_says_so():
     assert orbit.message.startswith("diverging shooting")
     assert not orbit.passed
     assert not orbit.checks["linear range"].passed
-
-
-# ---------------------------------------------------------------- the page
 
 
 def rows(table):

@@ -1,7 +1,5 @@
 """Order of the recovered moments in the length of the elements, by slope."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from beam_motions import periodic_motion, rocking, turning_bar
@@ -11,6 +9,8 @@ from orders import slopes
 # A third of the first frequency, where the elastic inertia matters: some harmonics resonate.
 SPEED, COUNT = 17.0, 32
 PLACES = np.linspace(0.0, 1.0, 97)
+# A cubic's curvature is right to h^2, its nodes to h^4; a quintic's curvature to h^4.
+ORDERS = {("cubic", "equilibrium"): 4.0, ("cubic", "shape"): 2.0, ("internal_node", "shape"): 4.0}
 
 
 def moment(elements, kind, method):
@@ -25,10 +25,6 @@ def reference():
     coarse = moment(4, "internal_node", "equilibrium")
     assert np.max(np.abs(fine - coarse)) <= 2e-7 * np.max(np.abs(fine))
     return fine
-
-
-# A cubic's curvature is right to h^2, its nodes to h^4; a quintic's curvature to h^4.
-ORDERS = {("cubic", "equilibrium"): 4.0, ("cubic", "shape"): 2.0, ("internal_node", "shape"): 4.0}
 
 
 @pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.LinearRangeWarning")

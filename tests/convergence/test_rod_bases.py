@@ -1,7 +1,5 @@
 """The bases of the rod against the number of modes: observed orders, one limit, the page."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import pytest

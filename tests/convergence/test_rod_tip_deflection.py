@@ -1,7 +1,5 @@
 """The rod's tip from rest: every basis against a fixed mesh that knows of no moving basis."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

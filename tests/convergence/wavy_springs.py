@@ -4,8 +4,6 @@ Two springs seen in random wavy coordinates z = R(theta) q have periodic mass, C
 centrifugal and stiffness terms, and multipliers and boundaries that are known.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from periodic_systems import system_of
 

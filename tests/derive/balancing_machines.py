@@ -1,12 +1,7 @@
 """Machines that the rigid tests share, and their forces from the equations of free bodies."""
 
-from __future__ import annotations
-
+import elastolink as el
 import numpy as np
-from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.linkages import FourBar
-from elastolink.runtime.rigid import Bounds, MassDistribution, balance
-from elastolink.runtime.rigid.machine import Machine
 
 INCH = 0.0254
 # The weights of Smith's example become masses with g = 384 in/s^2, the value with which a uniform
@@ -16,17 +11,17 @@ POUND = 4.4482216152605 / (384.0 * INCH)
 
 def smith():
     """Return the machine of Smith Figs. 12-16 and 20-23."""
-    linkage = FourBar(*(INCH * length for length in (12.0, 6.0, 12.0, 12.0)))
+    linkage = el.FourBar(*(INCH * length for length in (12.0, 6.0, 12.0, 12.0)))
     weights = zip(linkage.links, (0.5 * POUND, POUND, POUND), strict=True)
-    bars = {k: MassDistribution.uniform_bar(m, linkage.lengths[k]) for k, m in weights}
-    return Machine(linkage, bars)
+    bars = {k: el.MassDistribution.uniform_bar(m, linkage.lengths[k]) for k, m in weights}
+    return el.Machine(linkage, bars)
 
 
 def crooked_bodies(linkage):
     """Return a body for each link of any linkage, its centre beside the link."""
     bodies = ((0.4, 0.03, 0.01, 0.002), (0.7, 0.15, -0.04, 0.006), (0.6, 0.1, 0.02, 0.004))
     return {
-        link: MassDistribution.about_centre(*body)
+        link: el.MassDistribution.about_centre(*body)
         for link, body in zip(linkage.links, bodies, strict=True)
     }
 
@@ -37,26 +32,26 @@ def random_machine(rng):
         lengths = rng.uniform(0.2, 1.0, 4)
         lengths[1] = 0.1
         try:
-            linkage = FourBar(*lengths, assembly=str(rng.choice(["open", "crossed"])))
-        except BadInput:
+            linkage = el.FourBar(*lengths, assembly=str(rng.choice(["open", "crossed"])))
+        except el.BadInput:
             continue
         if linkage.crank_turns:
             break
     bodies = {}
     for link in linkage.links:
         mass, along, across = rng.uniform([0.1, -0.5, -0.5], [2.0, 0.5, 0.5])
-        bodies[link] = MassDistribution.about_centre(mass, along, across, rng.uniform(0.0, 0.2))
-    return Machine(linkage, bodies)
+        bodies[link] = el.MassDistribution.about_centre(mass, along, across, rng.uniform(0.0, 0.2))
+    return el.Machine(linkage, bodies)
 
 
 def with_crank_counterweight(machine, speed):
     """Return the optimum of a counterweight on the crank, by the root mean square of the force."""
-    return balance(
+    return el.balance(
         machine,
         speed,
         weights={"shaking_force": 1.0},
         links=("crank",),
-        bounds=Bounds(mass=50.0, offset=1.0),
+        bounds=el.Bounds(mass=50.0, offset=1.0),
         measure="rms",
     )
 

@@ -1,7 +1,5 @@
 """Actions that tests share: a beam at rest, and a coupler with an end load, in variants."""
 
-from __future__ import annotations
-
 import sympy as sp
 from elastolink.derive.arrays import CrankMotion
 from elastolink.derive.records import ActionDensity, EndForce, Essential, FieldEquations

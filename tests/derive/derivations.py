@@ -33,7 +33,6 @@ def model_of(spec: ModelSpec):
 
 @cache
 def system_of(spec: ModelSpec):
-    """Return the derived system of a spec."""
     model = model_of(spec)
     return model.discretise(spec, equations_of_motion(model.energies(spec)))
 
@@ -47,7 +46,6 @@ def lowered(spec: ModelSpec, derived: ModelSpec | None = None):
 
 @cache
 def text_of(spec: ModelSpec) -> str:
-    """Return the emitted text of a spec."""
     return emit(lowered(spec), CONTENT)
 
 

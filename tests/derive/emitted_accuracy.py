@@ -4,8 +4,6 @@ After a change of a model or of the lowering:  python tests/derive/emitted_accur
 writes the tables of docs/accuracy.md, a line a module, and prints every output.
 """
 
-from __future__ import annotations
-
 import importlib
 import json
 import math
@@ -62,8 +60,7 @@ def emitted_functions() -> dict[str, dict[str, tuple[str, ...]]]:
     """Return the names of what each function of each packaged module returns.
 
     Without the recursions: their functions take an algebra, not numbers.  What they compute in
-    double precision is compared with extended precision in
-    ``tests/runtime/hill/test_perturbation.py``.
+    double precision is compared with 90 digits in ``tests/runtime/hill/test_series.py``.
     """
     entries = json.loads(MANIFEST.read_text())["modules"].values()
     names = sorted(entry["module"] for entry in entries)

@@ -4,8 +4,6 @@ Angles and their derivatives come from the closures of ``linkage_truth`` and ``s
 vectors are complex numbers.  No formula is shared with the package.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import linkage_truth
@@ -23,6 +21,7 @@ _GEOMETRY = {
     "slider_crank": ("crank", "coupler", "offset", "assembly"),
     "quick_return": ("frame", "crank"),
 }
+_ANGLES = (0.0, np.pi / 2, np.pi, 1e-8, np.pi + 1e-8, 0.7, 1000 * 2 * np.pi + 1.0)
 
 
 def cross(a, b):
@@ -153,8 +152,6 @@ def loads(mechanism):
 
 # ---------------------------------------------------------------- points
 
-_ANGLES = (0.0, np.pi / 2, np.pi, 1e-8, np.pi + 1e-8, 0.7, 1000 * 2 * np.pi + 1.0)
-
 
 def _poses(mechanism):
     """Return points of the geometry alone: random ones and the named nasty shapes."""
@@ -196,7 +193,6 @@ def points(mechanism, *, loaded=False):
 
 @lru_cache(maxsize=32)
 def exact_points(module, function):
-    """Return exact forces at all points of one emitted function."""
     mechanism = module.split("_forces")[0]
     if function == "load_forces":
         made, reference = points(mechanism, loaded=True), loads(mechanism)

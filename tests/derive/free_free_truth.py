@@ -4,8 +4,6 @@ Modes are sums of four growing and decaying exponentials on roots refined to the
 integrals those of polynomials times exponentials.
 """
 
-from __future__ import annotations
-
 import importlib
 import inspect
 import itertools
@@ -199,8 +197,6 @@ def _rod_points(count: int) -> tuple[tuple[Point, dict], ...]:
 
 
 def exact_rod(function: WithModes) -> tuple[Exact, ...]:
-    """Return exact values of one emitted function of the rod."""
-
     def compute(point: Point, values: dict) -> Callable:
         return lambda: (values, fair(function, function.names, point))
 

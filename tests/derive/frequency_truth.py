@@ -4,8 +4,6 @@ The general solution is fitted to unit displacements of the ends; forces are its
 Rates with the squared frequency are differences, static values Hermite's polynomials.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import lru_cache
 

@@ -8,8 +8,6 @@ rounding of its inputs would do.  The measure of an output f at a point x is
 with the exact value and its gradient in many digits at the doubles that were passed in.
 """
 
-from __future__ import annotations
-
 import inspect
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence

@@ -5,8 +5,6 @@ in its half-angle tangent, the coupler angle follows from the place of C, rates 
 from the two closure equations differentiated, pin forces from a 2 x 2 solve of moments.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 

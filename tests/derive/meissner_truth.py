@@ -1,7 +1,5 @@
 """Points at which Meissner's matrices are judged, and an interval by complex square roots."""
 
-from __future__ import annotations
-
 import math
 
 import mpmath

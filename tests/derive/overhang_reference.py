@@ -4,8 +4,6 @@ Sine and hyperbolic sine from the pin up to the support, all four waves of ``bet
 the conditions are six linear equations.  Shares nothing with the package but the conditions.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import mpmath

@@ -1,7 +1,5 @@
 """Roots of the beam with an overhang in many digits, and the points where its modes are judged."""
 
-from __future__ import annotations
-
 import inspect
 import math
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """A basis of the rod that is none of the package's: plain polynomials, integrated by quadrature."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 

@@ -4,8 +4,6 @@ A family evaluates them for a number of modes or stations; the truth is what is 
 that number, in many digits.
 """
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Iterator, Mapping
 

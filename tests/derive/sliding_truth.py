@@ -5,8 +5,6 @@ Pythagoras in the triangle of the coupler, the rod's angle is the argument of a 
 rates solve the closure equations differentiated, two by two.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache

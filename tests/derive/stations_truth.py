@@ -5,8 +5,6 @@ is evaluated as its family evaluates it, with the angles at the stations for coo
 its arguments and results are scalars.
 """
 
-from __future__ import annotations
-
 import importlib
 from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """Every emitted function at 80 digits: the measure, the machinery behind it, and the page."""
 
-from __future__ import annotations
-
 import importlib
 import inspect
 import math
@@ -10,15 +8,7 @@ import array_api_strict
 import numpy as np
 import pytest
 import sympy as sp
-from emitted_accuracy import (
-    EXCEPTIONS,
-    INDEXED,
-    PAGE,
-    bound,
-    emitted_functions,
-    page_bounds,
-    rows,
-)
+from emitted_accuracy import EXCEPTIONS, INDEXED, PAGE, bound, emitted_functions, page_bounds, rows
 from free_free_truth import ROD_MODULE
 from judging import ALLOWED, ROUNDOFF, Point, exact_at, judge, reference_of
 
@@ -72,9 +62,6 @@ def test_the_page_lists_every_module():
     assert set(page_bounds(PAGE.read_text())) == set(emitted_functions())
 
 
-# ---------------------------------------------------------------- the machinery
-
-
 def test_the_measure_sees_cancellation_and_forgives_conditioning():
     x = sp.Symbol("x")
     reference = reference_of((x,), [("f", sp.exp(x) - 1)])
@@ -88,8 +75,6 @@ def test_the_measure_sees_cancellation_and_forgives_conditioning():
     (judged,) = judge(lambda x: math.cos(x) * (1 + 1e-3) + ROUNDOFF, ("f",), exact)
     assert judged.passed
 
-
-# ---------------------------------------------------------------- namespaces
 
 GEOMETRY = {"frame": 5.0, "crank": 1.0, "coupler": 4.5, "follower": 2.0}
 ANY = {**GEOMETRY, "offset": 0.5, "assembly": -1.0, "winding": 0.0}

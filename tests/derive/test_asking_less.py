@@ -3,8 +3,6 @@
 Derived here, so that it holds for what is not packaged, too.
 """
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np
@@ -18,6 +16,9 @@ from elastolink.derive.models import coupler
 from elastolink.derive.pipeline import only_wanted
 from elastolink.derive.separation import StagedSystem
 from elastolink.derive.staged import ClosedForm
+
+QUICK_TERM = ("four_bar_coupler_reduced", "follower_end_load")
+COUPLER = [s for s in WHOLE if s.formulation in coupler.MODEL.formulations]
 
 
 def cost(module):
@@ -73,8 +74,7 @@ DROPPED = [
 
 
 @pytest.mark.parametrize(
-    ("spec", "terms"),
-    [case(spec, terms, quick=spec.name() in QUICK) for spec, terms in DROPPED],
+    ("spec", "terms"), [case(spec, terms, quick=spec.name() in QUICK) for spec, terms in DROPPED]
 )
 def test_a_general_module_leaves_out_what_the_derivation_does(spec, terms):
     """The same numbers as the module that is derived without the terms."""
@@ -157,10 +157,6 @@ def returned(space, name, numbers, gone):
             if not of_rows or i in held:
                 found[array, i, j, *kind] = values[at]
     return {key: value for key, value in found.items() if np.any(np.asarray(value) != 0)}
-
-
-QUICK_TERM = ("four_bar_coupler_reduced", "follower_end_load")
-COUPLER = [s for s in WHOLE if s.formulation in coupler.MODEL.formulations]
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,5 @@
 """A continuum of several fields on shape functions, against hand results and the projection."""
 
-from __future__ import annotations
-
 import pytest
 import sympy as sp
 from elastolink.derive import authoring as au
@@ -12,6 +10,7 @@ theta, td, tdd = sp.symbols("theta td tdd", real=True)
 CRANK = au.CrankMotion(theta, td, tdd)
 u, v = (sp.Function(name)(x, t) for name in ("u", "v"))
 spin = sp.Function("turn")(t).diff(t)
+BASES = {u: au.FiniteBasis(x, length, (x,)), v: au.FiniteBasis(x, length, (x**2,))}
 
 
 def arm(**changes: object) -> au.ActionDensity:
@@ -33,9 +32,6 @@ def arrays(action: au.ActionDensity, bases: dict) -> au.DiscreteSystem:
     lagrangian = au.assumed_modes(action, bases)
     energy = au.in_crank_angle(lagrangian.expression, CRANK, t, {sp.Function("turn")(t): theta})
     return au.quadratic_form(energy, lagrangian.coordinates, CRANK, t, forces=lagrangian.forces)
-
-
-BASES = {u: au.FiniteBasis(x, length, (x,)), v: au.FiniteBasis(x, length, (x**2,))}
 
 
 def test_turning_arm_by_hand():

@@ -1,7 +1,5 @@
 """Bloch's recursion by machine: the words solve the equation, and the emitted text returns them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.derive import bloch

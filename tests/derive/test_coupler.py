@@ -1,7 +1,5 @@
 """The flexible coupler through the whole pipeline: dropped terms, hand cases, exact arrays."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import pytest
@@ -55,9 +53,6 @@ def system(module, linkage, modes=4, **changes):
 def close(found, expected, tolerance=1e-12):
     scale = np.abs(expected).max(initial=0.0)
     np.testing.assert_allclose(found, expected, rtol=tolerance, atol=tolerance * scale)
-
-
-# ---------------------------------------------------------------- against a hand-written Galerkin
 
 
 def pose(linkage, theta):
@@ -121,9 +116,6 @@ def test_complete_arrays_against_quadrature_of_the_weak_form(name):
         for array in ARRAYS:
             close(complete.array(array, THETA)[i], expected[array])
     assert not complete.has("A") and not complete.has("Kg")
-
-
-# ---------------------------------------------------------------- metamorphic
 
 
 def rows(module):

@@ -1,7 +1,5 @@
 """Mechanisms that a crank drives completely: motion and forces against other routes."""
 
-from __future__ import annotations
-
 import pytest
 import sympy as sp
 from elastolink.derive.arrays import CrankMotion

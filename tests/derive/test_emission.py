@@ -3,8 +3,6 @@
 The text of the packaged modules is compared byte by byte: ``test_regenerate.py``.
 """
 
-from __future__ import annotations
-
 import json
 import shutil
 from dataclasses import replace

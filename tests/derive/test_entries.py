@@ -1,7 +1,5 @@
 """Arrays with explicit entries: what is emitted, what is left out, what is passed in."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy as sp
@@ -40,9 +38,6 @@ def motion(energy: sp.Expr, *coordinates: sp.Expr, constraints=(), forces=None):
 
 def coordinate(name: str) -> sp.Expr:
     return sp.Function(name)(t)
-
-
-# Matrices ------------------------------------------------------------------------------------
 
 
 def matrices(*arrays: tuple[str, sp.Matrix]) -> ModuleSpec:
@@ -85,9 +80,6 @@ def test_an_undeclared_symbol_is_refused():
         matrices(("K", sp.Matrix([a + sp.Symbol("stray")])))
 
 
-# Constrained ---------------------------------------------------------------------------------
-
-
 def test_open_functions_are_passed_in():
     """A bead on a wire y = shape(x) that is lifted by y0(t)."""
     x, lift = coordinate("x"), sp.Function("lift")(t)
@@ -112,15 +104,9 @@ def test_one_open_function_has_one_argument():
         external_values([sp.Function("g")(x, t)])
 
 
-# Transcendental ------------------------------------------------------------------------------
-
-
 def test_dynamic_stiffness_is_square():
     with pytest.raises(ValueError, match="not square"):
         TranscendentalSystem(a, sp.ImmutableDenseMatrix([[a, b]]), sp.S.Zero)
-
-
-# Pipeline ------------------------------------------------------------------------------------
 
 
 def test_a_continuum_does():

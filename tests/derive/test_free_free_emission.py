@@ -1,7 +1,5 @@
 """The emitted rod in Buckens' frame: short code for any number of modes, proved at two."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """Green's identity by machine, and what it gives for free-free beams."""
 
-from __future__ import annotations
-
 import free_free_truth as truth
 import mpmath
 import pytest
@@ -19,13 +17,10 @@ def at_ends(i, j):
     """Return the derivatives of two modes at the ends, in many digits."""
 
     def value(which, order, end):
-        return mode_number((i, j)[which], order, end)
+        place = mpmath.mpf(0.5 if end > 0 else -0.5)
+        return sp.Float(truth.mode((i, j)[which], place, order), 50)
 
     return value
-
-
-def mode_number(i, order, end):
-    return sp.Float(truth.mode(i, mpmath.mpf(0.5 if end > 0 else -0.5), order), 50)
 
 
 @pytest.mark.parametrize("power", [0, 1, 2, 3])

@@ -1,7 +1,5 @@
 """The derivation of the dynamic stiffness: it follows the Lagrangian, and proves what it emits."""
 
-from __future__ import annotations
-
 import pytest
 import sympy as sp
 from elastolink.derive.models import beam_frequency_functions as ff

@@ -1,7 +1,5 @@
 """Expansions of the inextensible coupler, and the law of frequency against amplitude."""
 
-from __future__ import annotations
-
 import mpmath
 import pytest
 import sympy as sp

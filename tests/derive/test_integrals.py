@@ -1,7 +1,5 @@
 """Integrals against quadrature, Taylor polynomials against SymPy's own series."""
 
-from __future__ import annotations
-
 import itertools
 
 import mpmath
@@ -20,6 +18,7 @@ x = sp.Symbol("x")
 a, b, L = sp.symbols("a b L", positive=True)
 m, n = sp.symbols("m n", integer=True, positive=True)
 VALUES = {a: sp.Rational(13, 10), b: sp.Rational(7, 10), L: sp.Rational(9, 5)}
+p = sp.Symbol("p", positive=True)
 
 
 def quadrature(integrand: sp.Expr, lower: sp.Expr, upper: sp.Expr) -> mpmath.mpf:
@@ -118,11 +117,6 @@ def test_a_frequency_that_may_vanish_is_an_error():
         mode_integral(wave * sp.sin(2 * n * sp.pi * x), x, m, n)
     # with explicit numbers the same integrals exist
     assert definite(wave.subs(m, 2) * sp.sin(2 * sp.pi * x), x) == sp.Rational(1, 2)
-
-
-# ---------------------------------------------------------------- series
-
-p = sp.Symbol("p", positive=True)
 
 
 @pytest.mark.parametrize(

@@ -3,8 +3,6 @@
 The digits of every output are those of ``emitted_accuracy``, against the closed loops.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy as sp
@@ -35,8 +33,7 @@ def test_a_rewriting_that_does_not_hold_is_refused():
 
 
 @pytest.mark.parametrize(
-    ("base", "angle", "lengths"),
-    [(20.0, 0.0, (10.0, 10.0)), (4.0, np.pi, (6.0, 10.0))],
+    ("base", "angle", "lengths"), [(20.0, 0.0, (10.0, 10.0)), (4.0, np.pi, (6.0, 10.0))]
 )
 def test_play_of_links_in_line(base, angle, lengths):
     """At a dead position the range is one-sided; the link may leave on either side of the line."""

@@ -1,7 +1,5 @@
 """Lagrange's equations by machine against published and independently derived equations."""
 
-from __future__ import annotations
-
 import pytest
 import sympy as sp
 from elastolink.derive.arrays import CrankMotion, DiscreteSystem
@@ -125,9 +123,6 @@ def test_system_records_refuse_nonsense():
         system.matrix("M", 2)
     with pytest.raises(ValueError, match="no derivative"):
         CrankMotion(theta, td, tdd, {k: w}).derivative(w * theta)
-
-
-# ---------------------------------------------------------------- linear periodic arrays
 
 
 def equations(energy: sp.Expr, coordinates=(x, y), forces=None) -> EquationsOfMotion:

@@ -1,7 +1,5 @@
 """The LaTeX document: complete, balanced, the same on every run, with the model's own symbols."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 
@@ -14,16 +12,6 @@ EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "slider_crank_rod.py
 
 def document(*names, model=None):
     return latex_document([(job.spec, job.model()) for job in jobs_of(names, [], [], model)])
-
-
-@pytest.fixture(scope="module")
-def everything():
-    return document()
-
-
-@pytest.fixture(scope="module")
-def example():
-    return document(model=str(EXAMPLE))
 
 
 def assert_well_formed(text):
@@ -50,7 +38,8 @@ def assert_well_formed(text):
 
 
 @pytest.mark.slow
-def test_every_packaged_model_is_a_section_of_a_well_formed_document(everything):
+def test_every_packaged_model_is_a_section_of_a_well_formed_document():
+    everything = document()
     assert_well_formed(everything)
     assert everything.startswith("\\documentclass")
     assert everything.endswith("\\end{document}\n")
@@ -60,7 +49,8 @@ def test_every_packaged_model_is_a_section_of_a_well_formed_document(everything)
         assert name.replace("_", r"\_") in everything
 
 
-def test_a_continuum_shows_each_stage_with_its_symbols(example):
+def test_a_continuum_shows_each_stage_with_its_symbols():
+    example = document(model=str(EXAMPLE))
     assert_well_formed(example)
     stages = ["Lagrangian per length", "Field equations", "Natural conditions", "Projected arrays"]
     places = [example.index(f"\\subsection*{{{stage}") for stage in stages]

@@ -1,7 +1,5 @@
 """Printing, common subexpressions, order and layout of what the pipeline emits."""
 
-from __future__ import annotations
-
 import ast
 from pathlib import Path
 from types import SimpleNamespace
@@ -20,8 +18,7 @@ from hypothesis import strategies as st
 
 x, y, z = sp.symbols("x y z", positive=True)
 m, n = sp.symbols("m n", integer=True, positive=True)
-
-# ---------------------------------------------------------------- round trip
+MPMATH = SimpleNamespace(**{**vars(mpmath), "abs": abs})
 
 
 class _Exact(ast.NodeTransformer):
@@ -29,9 +26,6 @@ class _Exact(ast.NodeTransformer):
 
     def visit_Constant(self, node):
         return ast.Call(ast.Name("number", ast.Load()), [ast.Constant(repr(node.value))], [])
-
-
-MPMATH = SimpleNamespace(**{**vars(mpmath), "abs": abs})
 
 
 def evaluate(line, values):
@@ -122,9 +116,6 @@ def test_a_choice_between_numbers_runs_in_every_namespace(first, second):
 def test_what_has_no_emitted_form_is_refused(expression):
     with pytest.raises(CannotPrint):
         to_line(expression)
-
-
-# ---------------------------------------------------------------- kernels
 
 
 def kernel(outputs, steps=None, arguments=("x", "y", "z")):

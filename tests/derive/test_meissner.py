@@ -1,7 +1,5 @@
 """Meissner's half traces: the digits next to coexistence, and half turns."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import pytest
@@ -16,9 +14,6 @@ def test_a_half_turn_that_is_wrong_is_refused(monkeypatch):
     monkeypatch.setattr(model, "monodromy", lambda count: model.Parts.of(2 * sp.eye(2)))
     with pytest.raises(UnsafeRewriting, match="is not"):
         model.half_turn_matrix()
-
-
-# ---------------------------------------------------------------- what is emitted
 
 
 def test_the_edge_keeps_its_digits_next_to_coexistence():

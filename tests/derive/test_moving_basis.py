@@ -1,7 +1,5 @@
 """Derivation of the rod's equations: moving support, tension, floating frame, projection."""
 
-from __future__ import annotations
-
 import importlib
 from dataclasses import replace
 
@@ -45,9 +43,6 @@ def undamped(spec):
     return rod.action(spec).with_(dissipation=sp.S.Zero)
 
 
-# ---------------------------------------------------------------- the continuum
-
-
 def test_damping_is_in_the_equation_and_in_the_moment():
     equations = hamilton(rod.action(PRINTED))
     drag = -rod.damping * v.diff(t) - rod.internal * v.diff(x, 4, t)
@@ -58,9 +53,6 @@ def test_damping_is_in_the_equation_and_in_the_moment():
     assert sp.expand(moment + bent).doit() == 0
     (jump,) = [j for j in equations.jumps if j.order == 1]
     assert sp.expand(jump.value + bent).doit() == 0 and jump.applied == 0
-
-
-# ---------------------------------------------------------------- the floating frame
 
 
 def test_frame_is_the_line_of_least_squares():
@@ -89,9 +81,6 @@ def test_frame_part_is_the_difference_of_two_works():
     slope = sp.diff(deflection, x)
     work = sp.integrate(force * (slope**2 - (slope - rotation) ** 2) / 2, (x, 0, length))
     assert sp.simplify(part.expression.subs(moments) + work) == 0
-
-
-# ---------------------------------------------------------------- projection
 
 
 def test_points_stand_at_fixed_places():
@@ -179,9 +168,6 @@ def test_terms_without_a_place_are_refused(density, words):
 def test_unknown_terms_are_refused(drop):
     with pytest.raises(ValueError, match="unknown terms"):
         rod.action(SPEC.with_(drop=drop))
-
-
-# ---------------------------------------------------------------- emitted numbers
 
 
 class Defined(PlainBasis):

@@ -1,7 +1,5 @@
 """The overhang modes' derivation: what it solves, what it proves, and what moves with it."""
 
-from __future__ import annotations
-
 import mpmath
 import pytest
 import sympy as sp

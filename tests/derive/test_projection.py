@@ -1,7 +1,5 @@
 """Galerkin projection: the action itself agrees, and hand cases come out."""
 
-from __future__ import annotations
-
 import pytest
 import sympy as sp
 from coupler_action import (

@@ -1,7 +1,5 @@
 """The regenerate-equations command: the same bytes always, nothing done twice, clear refusals."""
 
-from __future__ import annotations
-
 import importlib
 import json
 import os
@@ -52,6 +50,7 @@ def describe(spec):
 MODEL = au.Model("pair", ("plain",), energies, describe, discretise)
 SPECS = (au.ModelSpec("pair", "plain"),)
 '''
+ALL = sorted(spec.name() for entry in CATALOGUE for spec in entry.specs)
 
 
 def run(*arguments, cwd, seed="0", blocked=(), **environment):
@@ -107,9 +106,6 @@ def own(tmp_path):
     file = tmp_path / "pair.py"
     file.write_text(OWN_MODEL)
     return file
-
-
-ALL = sorted(spec.name() for entry in CATALOGUE for spec in entry.specs)
 
 
 def test_the_packaged_modules_are_as_derived_now(emitted, tmp_path):

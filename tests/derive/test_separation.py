@@ -1,7 +1,5 @@
 """Separation of arrays into scales, functions of angle and modal arrays, on small systems."""
 
-from __future__ import annotations
-
 from collections import namedtuple
 
 import numpy as np
@@ -79,8 +77,6 @@ def by_sympy(matrix, steps=STEPS, **more):
     plain = matrix.applyfunc(steps.inline).subs({**VALUES, **more})
     return np.array([np.array(plain.subs(theta, angle), dtype=float) for angle in THETA])
 
-
-# ---------------------------------------------------------------- explicit matrices
 
 SCALES = (sp.Integer(1), mass, stiff / mass, 1 / mass, mass * stiff)
 ANGLES = (sp.Integer(1), turned, sp.cos(theta), turned**2 * sp.cos(theta))
@@ -175,9 +171,6 @@ def test_a_symbol_that_nothing_defines_is_refused():
     arrays = {"M": sp.ImmutableDenseMatrix(sp.eye(2) * stray)}
     with pytest.raises(TypeError, match="stray"):
         lowered(arrays)
-
-
-# ---------------------------------------------------------------- closed in the mode indices
 
 
 def closed_arrays():

@@ -1,7 +1,5 @@
 """Specs, choices and manifests: the records that both sides of the house share."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

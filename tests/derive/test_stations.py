@@ -1,12 +1,11 @@
 """Equations closed in the stations of a link: against those of just so many, and hand cases."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import mpmath
 import numpy as np
 import pytest
+import stations_truth as truth
 import sympy as sp
 from derivations import loaded, model_of
 from elastolink.derive.emission import emit
@@ -19,15 +18,6 @@ from elastolink.derive.stations import Stations, closed_in_stations
 from elastolink.generated import beam_tangent_harmonics
 from elastolink.runtime.core.families import Constrained
 from elastolink.runtime.core.families import stations as evaluated
-from stations_truth import (
-    COUNT,
-    FUNCTIONS,
-    STATION_MODULES,
-    AtEachStation,
-    emitted_module,
-    explicit,
-    station_points,
-)
 
 MECHANISMS = ("four_bar", "slider_crank")
 SPECS = {name: ModelSpec(name, "inextensible", flexible=("coupler",)) for name in MECHANISMS}
@@ -37,17 +27,14 @@ END = sp.symbols("end_1 end_2")
 INERTIA = {(i, j): sp.Symbol(f"inertia_{i}_{j}") for i, j in ((1, 1), (1, 2), (2, 2))}
 
 
-# ---------------------------------------------------------------- other numbers of stations
-
-
 @pytest.mark.parametrize("count", [2, 4])
-@pytest.mark.parametrize("module", STATION_MODULES)
+@pytest.mark.parametrize("module", truth.STATION_MODULES)
 def test_other_numbers_of_stations_give_what_is_derived_for_them(module, count):
     """Three are compared in 80 digits, see test_accuracy.py."""
-    for point in station_points(module, count):
-        exact = explicit(module, count)({n: mpmath.mpf(v) for n, v in point.inputs.items()})
-        for function, arrays in FUNCTIONS.items():
-            entries = AtEachStation(module, function, count).entries(point.inputs)
+    for point in truth.station_points(module, count):
+        exact = truth.explicit(module, count)({n: mpmath.mpf(v) for n, v in point.inputs.items()})
+        for function, arrays in truth.FUNCTIONS.items():
+            entries = truth.AtEachStation(module, function, count).entries(point.inputs)
             assert set(entries) == {n for n in exact if n.rsplit("_", 2)[0] in arrays}
             for array in arrays:
                 values = {n: v for n, v in entries.items() if n.rsplit("_", 2)[0] == array}
@@ -56,7 +43,7 @@ def test_other_numbers_of_stations_give_what_is_derived_for_them(module, count):
                     assert abs(value - float(exact[name])) <= 1e-14 * size, (name, point.name)
 
 
-@pytest.mark.parametrize("module", STATION_MODULES)
+@pytest.mark.parametrize("module", truth.STATION_MODULES)
 def test_amplitudes_of_shapes_are_the_angles_projected(module):
     """With angles ``S a`` at the stations: entries by a are ``S^T`` times those by the angles."""
     random = np.random.default_rng(5)
@@ -65,7 +52,7 @@ def test_amplitudes_of_shapes_are_the_angles_projected(module):
     for name in coupler.STATIONS.matrices:
         square = random.normal(size=(6, 6))
         numbers[name] = square + square.T
-    home = emitted_module(module)
+    home = truth.emitted_module(module)
     parameters = dict(
         zip(home.PARAMETERS, random.uniform(0.5, 2.0, len(home.PARAMETERS)), strict=True)
     )
@@ -85,10 +72,7 @@ def test_amplitudes_of_shapes_are_the_angles_projected(module):
     pairs = [
         (by_shape.violation(q, time), by_angle.violation(states[0], time)),
         (by_shape.dynamics(q, qd, time), by_angle.dynamics(*states[:2], time)),
-        (
-            by_shape.variations(q, qd, qdd, lam, time),
-            by_angle.variations(*states, lam, time),
-        ),
+        (by_shape.variations(q, qd, qdd, lam, time), by_angle.variations(*states, lam, time)),
     ]
     for found, angles in pairs:
         assert set(found) == set(angles)
@@ -102,8 +86,6 @@ def test_amplitudes_of_shapes_are_the_angles_projected(module):
             assert found[name] == pytest.approx(expected, rel=1e-13, abs=1e-12), name
 
 
-# ---------------------------------------------------------------- what is refused
-
 _BOTH = sp.Add(*(m * sp.cos(PHI[i - 1]) * sp.cos(PHI[j - 1]) for (i, j), m in INERTIA.items()))
 REFUSED = {
     "a product of two stations without a kernel": (sp.cos(PHI[0]) * sp.cos(PHI[1]), "is no sum"),
@@ -116,10 +98,7 @@ REFUSED = {
         INERTIA[1, 2] ** 2 * sp.cos(PHI[0]) * sp.cos(PHI[1]),
         "joins two stations",
     ),
-    "a function of both stations": (
-        INERTIA[1, 2] * sp.exp(PHI[0] * PHI[1]),
-        "joins two stations",
-    ),
+    "a function of both stations": (INERTIA[1, 2] * sp.exp(PHI[0] * PHI[1]), "joins two stations"),
 }
 
 
@@ -157,9 +136,6 @@ def test_the_order_of_the_kernel_does_not_matter():
     assert Stations("phi", (), ("inertia",)).pair("inertia", 2, 1) == INERTIA[1, 2]
 
 
-# ---------------------------------------------------------------- hand cases
-
-
 def changed(mechanism: str, extra: sp.Expr):
     """Return the emitted module of a coupler with something added to its Lagrangian alone."""
     spec = SPECS[mechanism]
@@ -169,7 +145,7 @@ def changed(mechanism: str, extra: sp.Expr):
     return loaded(emit(lower(spec, model.discretise(spec, equations), model.describe(spec)), "0"))
 
 
-def numbers_of(module, count: int = COUNT, **changes: float) -> dict[str, np.ndarray | float]:
+def numbers_of(module, count: int = truth.COUNT, **changes: float) -> dict[str, np.ndarray | float]:
     """Return random arguments of the functions of a module, by name."""
     random, names = np.random.default_rng(11), {**module.QUANTITIES}
     size = {name: (count, count) for name in coupler.STATIONS.matrices}
@@ -192,7 +168,7 @@ def called(module, function: str, numbers) -> dict[str, np.ndarray]:
 def agree(first, second, one, other) -> None:
     """Assert that two modules return the same, each with its numbers."""
     assert first.RETURNS == second.RETURNS and first.ARRAYS == second.ARRAYS
-    for function in FUNCTIONS:
+    for function in truth.FUNCTIONS:
         found, expected = called(first, function, one), called(second, function, other)
         for name, value in found.items():
             assert value == pytest.approx(expected[name], rel=1e-13), name
@@ -208,7 +184,7 @@ def test_a_mass_added_at_the_end_is_inertia_and_weight_of_what_it_drives(mechani
     weight = sum(g * place for g, place in zip(coupler.PULL, driven.place, strict=True))
     extra = (kinetic + weight).subs(sp.Symbol("follower", positive=True), length) * mass
     module = changed(mechanism, extra)
-    packaged = emitted_module(f"{mechanism}_coupler_inextensible")
+    packaged = truth.emitted_module(f"{mechanism}_coupler_inextensible")
     if mechanism == "four_bar":
         one = numbers_of(packaged, follower=length)
         other = one | {
@@ -223,7 +199,7 @@ def test_a_mass_added_at_the_end_is_inertia_and_weight_of_what_it_drives(mechani
 
 def test_the_weight_of_follower_and_coupler_is_that_of_their_centres():
     """Straight and at rest: moments of the weights about the pins, by hand."""
-    module = emitted_module("four_bar_coupler_inextensible")
+    module = truth.emitted_module("four_bar_coupler_inextensible")
     count, psi, phi, g = 4, 1.1, 0.4, np.array([3.0, -9.0])
     still = dict.fromkeys(("theta_d1", "theta_d2", "bending_stiffness"), 0.0)
     numbers = numbers_of(module, count, **still, gravity_x=g[0], gravity_y=g[1])
@@ -242,9 +218,9 @@ def test_the_weight_of_follower_and_coupler_is_that_of_their_centres():
 
 def test_a_bow_is_where_the_coupler_bears_no_moment():
     """Moments are those of the angle from the bow: none there, and none by a rigid turn."""
-    module = emitted_module("slider_crank_coupler_inextensible")
+    module = truth.emitted_module("slider_crank_coupler_inextensible")
     still = dict.fromkeys(("theta_d1", "theta_d2", "gravity_x", "gravity_y"), 0.0)
-    numbers = numbers_of(module, **still, phi_dot=np.zeros(COUNT))
+    numbers = numbers_of(module, **still, phi_dot=np.zeros(truth.COUNT))
     numbers["phi"] = numbers["bow"].copy()
     assert np.all(called(module, "dynamics", numbers)["rest_2_1"] == 0.0)
     bent = numbers["phi"] = numbers["bow"] + np.array([0.1, -0.2, 0.3])

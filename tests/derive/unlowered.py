@@ -4,8 +4,6 @@ That these expressions are right is proved elsewhere, symbolically or against me
 here is what the digits of the emitted functions are judged by, and at which points.
 """
 
-from __future__ import annotations
-
 import importlib
 from collections.abc import Iterator
 from contextlib import ExitStack

@@ -59,11 +59,7 @@ def test_values_do_not_hang_on_the_unit_of_length_beyond_the_error(rng):
     given = {"weights": {"shaking_force": 1.0, "torque": 1.0}, "links": ("crank",)}
     one, other = (
         balance(
-            made(unit),
-            SPEED,
-            angles=angles,
-            bounds=Bounds(mass=2.0, offset=0.1 * unit),
-            **given,
+            made(unit), SPEED, angles=angles, bounds=Bounds(mass=2.0, offset=0.1 * unit), **given
         )
         for unit in units
     )

@@ -1,7 +1,5 @@
 """Bound of the corners of base planes, against meeting points of their lines in 50 digits."""
 
-from __future__ import annotations
-
 from itertools import combinations, product
 
 import mpmath

@@ -4,23 +4,14 @@ What counts as true is the same model of beams with the same law of damping on m
 of bars that rock it is computed by dense Fourier collocation, another solver of the motion too.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
+import elastolink as el
 import numpy as np
 import pytest
 from beam_motions import elastic_linkage, periodic_motion, rocking_bar
-from elastolink.runtime.linkages import FourBar, SliderCrank
 from elastolink.runtime.periodic.periodic_motion import quiet_state
-from elastolink.runtime.recovery import (
-    BeamMotion,
-    beam_energies,
-    elastic_coupler_curve,
-    pin_reactions,
-    recover,
-    stress,
-)
+from elastolink.runtime.recovery import BeamMotion, beam_energies, elastic_coupler_curve
 from elastolink.runtime.recovery.beam_forces import stations_of
 from elastolink.runtime.recovery.finer_mesh import intervals_for, solved
 from elastolink.runtime.recovery.stresses import fibre_factors, largest_difference, stresses
@@ -53,8 +44,8 @@ def pairs_of(rng, kind, elements):
         system, speed = elastic_linkage(rng, kind, elements)
     method = "equilibrium" if rng.integers(2) else "shape"
     steady, true = quiet_state(system, speed, 1e-7), fine(system, elements)
-    found = stress(system, steady, stations=PLACES, method=method)
-    pins = pin_reactions(system, steady)
+    found = el.stress(system, steady, stations=PLACES, method=method)
+    pins = el.pin_reactions(system, steady)
     every = len(found.theta) // COUNT if kind is None else 1
     if kind is None:
         motion = periodic_motion(true, speed, COUNT)
@@ -70,7 +61,7 @@ def pairs_of(rng, kind, elements):
             largest_difference((found.axial[::every], found.bending[::every]), exact),
         )
     }
-    limit = pin_reactions(true, motion)
+    limit = el.pin_reactions(true, motion)
     longest = max(beam.length for beam in true.structure.beams)
     scale = np.array([1.0, 1.0, 1.0 / longest])
     gaps = [
@@ -85,7 +76,10 @@ def pairs_of(rng, kind, elements):
 
 def pairs_along(system, steady, true, motion, every):
     """Return estimates and actual errors of forces, strain energy and curve of one bar."""
-    ours, exact = recover(system, steady, stations=PLACES), recover(true, motion, stations=PLACES)
+    ours, exact = (
+        el.recover(system, steady, stations=PLACES),
+        el.recover(true, motion, stations=PLACES),
+    )
     out = {
         name: (error, np.max(np.abs(getattr(ours, name)[::every] - getattr(exact, name))))
         for name, error in zip(("axial", "shear", "moment"), ours.error, strict=True)
@@ -107,9 +101,9 @@ def test_rocking_bars(rng):
 # References of more elements take too long.
 @over_scenes(1997, few=None, many=6, median=30.0)
 def test_slider_cranks(rng):
-    return pairs_of(rng, SliderCrank, int(rng.integers(1, 3)))
+    return pairs_of(rng, el.SliderCrank, int(rng.integers(1, 3)))
 
 
 @over_scenes(1998, few=None, many=2, median=30.0)
 def test_four_bars(rng):
-    return pairs_of(rng, FourBar, 1)
+    return pairs_of(rng, el.FourBar, 1)

@@ -1,7 +1,5 @@
 """The error estimate of clearance ranges against 50 digits, over random linkages and near folds."""
 
-from __future__ import annotations
-
 import mpmath
 import pytest
 from elastolink.runtime.core.errors import BadInput

@@ -3,8 +3,6 @@
 An estimate covers the error in 99 of 100 cases and is within a factor of 100 of it in the median.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

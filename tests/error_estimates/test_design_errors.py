@@ -6,30 +6,23 @@ angles; it shares no mode, no node in the speed and no rational function with th
 is compared with a rainflow count of its own, on the stresses of many elements.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
+import elastolink as el
 import numpy as np
 import pytest
-from beam_motions import FIRST, of_history, periodic_motion, rocking_bar, turning_bar
-from elastolink.runtime.design import (
-    Material,
-    damping_effect,
-    fatigue,
-    length_effect,
-    quiet_speeds,
-    running_speed,
-)
+from beam_motions import FIRST, of_history, peaks, periodic_motion, rocking_bar, turning_bar
+from elastolink.runtime.core.trigonometric import resampled
+from elastolink.runtime.design import damping_effect, length_effect
 from elastolink.runtime.periodic.periodic_motion import quiet_state
-from elastolink.runtime.recovery import stress
-from elastolink.runtime.systems import with_modal_damping
 from honesty import over_scenes
 
 # Angles of the reference's motion, and those at which its stresses are looked at.
 COUNT, FINE = 64, 4096
 STATIONS = 7
 pytestmark = pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning")
+# The reference has round-off of its own.
+FLOOR = 1e-13
 
 
 def rocker(rng):
@@ -62,33 +55,12 @@ def random_speeds(rng, first, count):
     return np.sort(speeds)
 
 
-def fine_values(values):
-    """Return periodic histories ``(nt, ...)`` at many angles, through their Fourier series."""
-    half = np.fft.rfft(values, axis=0)
-    if len(values) % 2 == 0:
-        half[-1] *= 0.5
-    return np.fft.irfft(half, n=FINE, axis=0) * (FINE / len(values))
-
-
-def largest(values):
-    """Return the largest size in periodic histories ``(nt, stations)``, between angles too."""
-    highest = np.max(np.abs(values), axis=0)
-    size = np.abs(fine_values(values[:, highest > 0.8 * np.max(highest)]))
-    low, high = np.roll(size, 1, axis=0), np.roll(size, -1, axis=0)
-    bend = 2.0 * size - low - high
-    top = (size >= low) & (size >= high) & (bend > 0)
-    added = np.where(top, (low - high) ** 2 / (8.0 * np.where(top, bend, 1.0)), 0.0)
-    return np.max(size + added)
-
-
 def exact_maximum(system, speed, method="equilibrium"):
     """Return the largest stress of a bar at one speed by dense collocation."""
-    found = stress(system, periodic_motion(system, speed, COUNT), stations=STATIONS, method=method)
-    return max(largest(found.fibre(name)) for name in ("positive", "negative"))
-
-
-# The reference has round-off of its own.
-FLOOR = 1e-13
+    found = el.stress(
+        system, periodic_motion(system, speed, COUNT), stations=STATIONS, method=method
+    )
+    return max(np.max(peaks(found.fibre(name), FINE)) for name in ("positive", "negative"))
 
 
 @over_scenes(7200, few=2, many=20, floor=FLOOR)
@@ -96,7 +68,7 @@ def test_quiet_speeds(rng):
     """Each with ten stresses."""
     system, first = rocking_bar(rng)
     speeds = random_speeds(rng, first, 10)
-    found = quiet_speeds(system, speeds, 1e8, rtol=10.0 ** rng.uniform(-5, -2.5))
+    found = el.quiet_speeds(system, speeds, 1e8, rtol=10.0 ** rng.uniform(-5, -2.5))
     exact = np.array([exact_maximum(system, speed) / 1e8 for speed in speeds])
     return found.error, found.worst / exact - 1.0
 
@@ -108,7 +80,9 @@ def test_running_and_quiet_speeds(rng):
     speeds = random_speeds(rng, first, 3)
     exact = np.array([exact_maximum(system, speed) for speed in speeds])
     limit = float(np.max(exact)) * rng.uniform(1.1, 3.0)
-    found = running_speed(system, speeds, limit, values=[frame], rtol=10.0 ** rng.uniform(-5, -2.5))
+    found = el.running_speed(
+        system, speeds, limit, values=[frame], rtol=10.0 ** rng.uniform(-5, -2.5)
+    )
     place = int(np.argmin(np.abs(speeds - found.speed)))
     assert speeds[place] == found.speed
     assert found.checks["within limits"].value >= exact[place] / limit * (1.0 - 1e-13)
@@ -119,7 +93,7 @@ def test_running_and_quiet_speeds(rng):
 @over_scenes(7200, few=2, many=20, floor=FLOOR)
 def test_damping_effects(rng):
     bare, first = rocking_bar(rng, drag=False)
-    system = with_modal_damping(bare, 0.02)
+    system = el.with_modal_damping(bare, 0.02)
     speeds, values = random_speeds(rng, first, 5), np.sort(10.0 ** rng.uniform(-3, -0.7, 2))
     found = damping_effect(system, speeds, values, rtol=10.0 ** rng.uniform(-5, -2.5))
     exact = [
@@ -195,8 +169,8 @@ def test_safeties_of_histories(rng):
     push = doubt / np.max(np.abs(off(fine)))
     theta = 2 * np.pi * np.arange(64) / 64
     given = of_history(size * (exact(theta) + push * off(theta)), size * doubt)
-    material = Material(tensile_strength=6e8, endurance_limit=2e8)
-    found = fatigue(given, material)
+    material = el.Material(tensile_strength=6e8, endurance_limit=2e8)
+    found = el.fatigue(given, material)
     truth = least_safety(size * exact(fine), material)
     return found.error, np.min(found.safety) / truth - 1.0
 
@@ -206,15 +180,15 @@ def test_safeties_of_bars(rng):
     """Stresses of one element, against those of many."""
     system, first = rocking_bar(rng)
     speed = first * rng.uniform(0.03, 0.4)
-    material = Material(tensile_strength=1e12, endurance_limit=2e8)
-    found = fatigue(stress(system, quiet_state(system, speed, 1e-7), stations=3), material)
+    material = el.Material(tensile_strength=1e12, endurance_limit=2e8)
+    found = el.fatigue(el.stress(system, quiet_state(system, speed, 1e-7), stations=3), material)
 
     def meshed(structure):
         return replace(structure, beams=tuple(replace(b, elements=4) for b in structure.beams))
 
     motion = periodic_motion(system.remesh(meshed), speed, 32)
-    fine = stress(system.remesh(meshed), motion, stations=3)
-    values = np.hstack([fine_values(fine.fibre(name)) for name in ("positive", "negative")])
+    fine = el.stress(system.remesh(meshed), motion, stations=3)
+    values = np.hstack([resampled(fine.fibre(name), FINE) for name in ("positive", "negative")])
     return found.error, np.min(found.safety) / least_safety(values, material) - 1.0
 
 

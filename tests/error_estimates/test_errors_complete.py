@@ -1,7 +1,5 @@
 """Every public solver has its error estimate tested in this folder, or hands on another one's."""
 
-from __future__ import annotations
-
 import re
 from importlib import import_module
 from pathlib import Path
@@ -39,10 +37,6 @@ def _descendants(kind):
         yield from _descendants(child)
 
 
-def _returned(function):
-    return getattr(function, "__annotations__", {}).get("return", "")
-
-
 def _solvers():
     """Return the public functions, of the package and of its rooms, that return a result."""
     public = {name: getattr(elastolink, name) for name in elastolink.__all__}
@@ -55,7 +49,8 @@ def _solvers():
         for name, value in public.items()
         if not isinstance(value, type)
         and callable(value)
-        and names & set(re.findall(r"\w+", str(_returned(value))))
+        and names
+        & set(re.findall(r"\w+", str(getattr(value, "__annotations__", {}).get("return", ""))))
     }
 
 

@@ -1,16 +1,10 @@
 """Error estimates of frequencies: held ones, their means, least gaps, and bounds of frames'."""
 
-from __future__ import annotations
-
 import frame_truth
 import frequency_truth
 import mpmath
 import numpy as np
-from elastolink.runtime.frequencies import (
-    dynamic_stiffness,
-    natural_frequencies,
-    wittrick_williams,
-)
+from elastolink.runtime.frequencies import dynamic_stiffness, natural_frequencies, wittrick_williams
 from elastolink.runtime.frequencies.held import cycle_mean, held_frequencies
 from honesty import over_scenes
 from periodic_systems import system_of

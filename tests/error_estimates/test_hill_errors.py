@@ -1,21 +1,11 @@
 """Errors of half traces, exponents, boundaries and thresholds: references of more digits."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
+import elastolink as el
 import numpy as np
 import pytest
 from boundary_truth import coefficients
-from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.hill import (
-    boundary_derivatives,
-    boundary_series,
-    characteristic_exponents,
-    critical_damping,
-    discriminant,
-    hill_boundaries,
-)
 from half_trace_truth import half_traces
 from honesty import extended, over_scenes
 
@@ -24,7 +14,7 @@ PI = 4 * np.arctan(np.longdouble(1))
 LEAST = 1e-17
 STEP = 2.0**-17
 BOTH = (False, True)
-G = PeriodicFunction([0.25, 0.5, -0.375], [0.0, 0.125, 0.75])
+G = el.PeriodicFunction([0.25, 0.5, -0.375], [0.0, 0.125, 0.75])
 
 
 def scene(rng, counts=(1, 2, 4, 8)):
@@ -34,7 +24,7 @@ def scene(rng, counts=(1, 2, 4, 8)):
     a, b = np.rint(rng.normal(size=(2, count + 1)) * size * 2.0**20) * 2.0**-20
     b[0] = 0.0
     mu = np.rint(10.0 ** rng.uniform(-2, 0.7) * 2.0**20) * 2.0**-20
-    return PeriodicFunction(a, b), float(mu)
+    return el.PeriodicFunction(a, b), float(mu)
 
 
 @extended
@@ -50,8 +40,8 @@ def test_half_traces(rng):
     truth, at = half_traces(f, lam2, mu), (np.searchsorted(x, lam2), np.searchsorted(y, mu))
     least = 1e-18 * np.maximum(1.0, np.abs(truth.astype(float)))
     found = {
-        "points": (discriminant(f, lam2, mu), ...),
-        "grid": (discriminant(f, x[:, None], y), at),
+        "points": (el.discriminant(f, lam2, mu), ...),
+        "grid": (el.discriminant(f, x[:, None], y), at),
     }
     return {
         name: (made.error[where], np.maximum(np.abs(made.value[where] - truth), least))
@@ -64,7 +54,7 @@ def test_half_traces(rng):
 def test_exponents(rng):
     (f, mu), lam2 = scene(rng), rng.uniform(0.0, 6.0, 2)
     k = float(rng.choice([0.0, 0.03]))
-    found = characteristic_exponents(f, lam2, mu, k)
+    found = el.characteristic_exponents(f, lam2, mu, k)
     x = half_traces(f, lam2, mu, k) * np.exp(2 * PI * np.longdouble(k))
     rise = np.where(np.abs(x) > 1, np.arccosh(np.maximum(np.abs(x), 1)), 0) / (2 * PI)
     nu = np.arccos(np.clip(x, -1, 1)) / (2 * PI)
@@ -79,7 +69,7 @@ def test_boundaries_against_enclosures(rng, damped):
     f, mu = scene(rng)
     mu *= 10.0 ** rng.uniform(0, 2)
     k = float(10.0 ** rng.uniform(-2, 0.8)) if damped else 0.0
-    plain, proved = (hill_boundaries(f, mu, (0, 1, 2, 3), k, certified=c) for c in BOTH)
+    plain, proved = (el.hill_boundaries(f, mu, (0, 1, 2, 3), k, certified=c) for c in BOTH)
     assert np.isnan(plain.upper[proved.closed]).all()
     errors, gaps = [], []
     for end in ("lower", "upper"):
@@ -99,16 +89,16 @@ def test_bands_against_enclosures(rng):
     regions end at the bands of nu = 1/4, both ends of region 2 j + 1 being band j.
     """
     f, mu = scene(rng)
-    ours = characteristic_exponents(f, None, mu, nu=0.25, bands=(0, 1, 2, 3))
+    ours = el.characteristic_exponents(f, None, mu, nu=0.25, bands=(0, 1, 2, 3))
     a, b = np.zeros((2, 2 * f.harmonics + 1))
     a[::2], b[::2] = f.a, f.b
-    proved = hill_boundaries(PeriodicFunction(a, b), 4 * mu, (1, 3, 5, 7), certified=True)
+    proved = el.hill_boundaries(el.PeriodicFunction(a, b), 4 * mu, (1, 3, 5, 7), certified=True)
     assert proved.pair.all()
     return ours.error, ours.lam2 - 0.25 * proved.lower - 0.25 * proved.lower_rest
 
 
 def exact_ends(n, f, mu, k):
-    found = hill_boundaries(f, mu, (n,), k, certified=True)
+    found = el.hill_boundaries(f, mu, (n,), k, certified=True)
     return [sum(found.enclosure(end, 0)) / 2 for end in ("lower", "upper")]
 
 
@@ -117,7 +107,7 @@ def moved(f, mu, k, name, step):
     if name in ("a1", "b1"):
         a, b = f.a.copy(), f.b.copy()
         {"a1": a, "b1": b}[name][1] += step
-        return PeriodicFunction(a, b), mu, k
+        return el.PeriodicFunction(a, b), mu, k
     if name == "g":
         return f * mu + G * step, 1.0, k
     return f, mu + step * (name == "mu"), k + step * (name == "K")
@@ -133,8 +123,8 @@ def test_derivatives_against_differences_of_enclosures(rng, name, k):
     weights = {1: Fraction(3, 4), 2: Fraction(-3, 20), 3: Fraction(1, 60)}
     f, mu = scene(rng)
     n = int(rng.integers(1, 4))
-    found = boundary_derivatives(f, mu, (n,), (G if name == "g" else name,), k)
-    if not hill_boundaries(f, mu, (n,), k).width[0] > 0.02:
+    found = el.boundary_derivatives(f, mu, (n,), (G if name == "g" else name,), k)
+    if not el.hill_boundaries(f, mu, (n,), k).width[0] > 0.02:
         # Closed, or so narrow that the ends turn about each other within the steps.
         return None
     slopes = [Fraction(0), Fraction(0)]
@@ -149,16 +139,13 @@ def test_derivatives_against_differences_of_enclosures(rng, name, k):
     return found.error[0, 0], gaps
 
 
-# ---------------------------------------------------------------- thresholds and series
-
-
 def waves(rng, count):
     """Return a random function whose coefficients have few binary digits."""
     size = 0.6 ** np.arange(count + 1)
     a, b = np.rint(rng.normal(size=(2, count + 1)) * size * 64.0) / 64.0
     a[0] = b[0] = 0.0
     a[1] = a[1] or 1.0
-    return PeriodicFunction(a, b)
+    return el.PeriodicFunction(a, b)
 
 
 def closing(f, lam2, mu):
@@ -173,7 +160,7 @@ def closing(f, lam2, mu):
 @over_scenes(81, floor=1e-18)
 def test_damping_that_closes_regions(rng):
     f, mu = waves(rng, int(rng.choice([1, 2, 5]))), rng.uniform(0.2, 3.0, 2)
-    found = critical_damping(f, mu, (1, 2))
+    found = el.critical_damping(f, mu, (1, 2))
     truth = closing(f, found.lam2 - found.damping**2, np.broadcast_to(mu, found.lam2.shape))
     known = np.asarray(found.damping > 1e-3)
     return (found.error[known], (found.damping - truth)[known]) if known.any() else None
@@ -184,13 +171,13 @@ def test_damping_that_closes_regions(rng):
 def test_least_parameters(rng):
     """The damping that closes the region at the parameter found, over how fast it grows there."""
     f, damping = waves(rng, int(rng.choice([1, 2, 5]))), rng.uniform(0.02, 0.3, 2)
-    found = critical_damping(f, None, (1,), damping=damping)
+    found = el.critical_damping(f, None, (1,), damping=damping)
     kept = np.isfinite(found.mu[0])
     if not kept.any():
         return None
     mu, lam2 = found.mu[0, kept], found.lam2[0, kept]
     step = 1e-5 * mu
-    low, high = critical_damping(f, np.stack([mu - step, mu + step]), (1,)).damping[0]
+    low, high = el.critical_damping(f, np.stack([mu - step, mu + step]), (1,)).damping[0]
     at = closing(f, lam2 - damping[kept] ** 2, mu)
     return found.error[0, kept], (at - damping[kept]) / ((high - low) / (2 * step))
 
@@ -199,7 +186,7 @@ def test_least_parameters(rng):
 def test_coefficients_of_boundaries(rng):
     """Against those of Hill's matrix in 90 digits."""
     f, region = waves(rng, 2), int(rng.integers(0, 4))
-    found = boundary_series(f, region, 3)
+    found = el.boundary_series(f, region, 3)
     truth = np.array([coefficients(f, 0, region, side, 3) for side in (-1, 1)], dtype=float)
     gaps = np.abs(np.array([found.lower, found.upper]) - truth)
     errors = np.asarray(found.error)

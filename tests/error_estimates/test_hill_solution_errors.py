@@ -4,8 +4,6 @@ The reference eliminates all unknowns but those of ``k = n/2`` at the boundary i
 ``boundary_truth`` does for its place, and puts them back.
 """
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 from boundary_truth import ONE, combined, fixed, hill_rows, near, solutions

@@ -1,7 +1,5 @@
 """The estimates of the motions of all linkages against 80 digits, random and nasty ones."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import pytest
@@ -22,6 +20,7 @@ from sliding_truth import (
 
 OPEN = {"assembly": 1.0}
 TRUTHS = {FourBar: four_bar_motion, SliderCrank: slider_motion, QuickReturn: rod_motion}
+SPEED, ACCELERATION = 3.0, -2.0
 
 
 def compared(kind, point):
@@ -125,9 +124,6 @@ def every_error_is_known(kind, points):
 def test_estimates_cover_the_errors_and_are_not_idle(kind, count):
     linkage, points, seed = RANDOM[kind]
     covers(*every_error_is_known(linkage, points(count, seed)), count)
-
-
-SPEED, ACCELERATION = 3.0, -2.0
 
 
 def points_of_links(kind, point, along, across):

@@ -1,7 +1,5 @@
 """Error estimates of periodic orbits on constraints, against a bead on a cycloid in closed form."""
 
-from __future__ import annotations
-
 import numpy as np
 from cycloid_truth import Cycloid
 from elastolink.derive.spec import ModelSpec

@@ -1,7 +1,5 @@
 """Error estimates of the overhang modes' frequencies, over random scenes."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import overhang_truth
@@ -9,14 +7,11 @@ from elastolink.runtime.systems.rod import OverhangBasis
 from honesty import over_scenes
 
 
-def random_place(rng):
-    return float(rng.choice([rng.uniform(0.03, 1.0), 1.0 - 10.0 ** rng.uniform(-9, -1)]))
-
-
 @over_scenes(81)
 def test_frequencies(rng, monkeypatch):
     monkeypatch.setattr(overhang_truth, "DIGITS", 120)
-    place, mode = random_place(rng), int(rng.integers(1, 21))
+    place = float(rng.choice([rng.uniform(0.03, 1.0), 1.0 - 10.0 ** rng.uniform(-9, -1)]))
+    mode = int(rng.integers(1, 21))
     rod = {
         name: float(10.0 ** rng.uniform(-3, 3))
         for name in ("length", "bending_stiffness", "mass_per_length")

@@ -5,19 +5,10 @@ coordinates, known to about 1e-15 of the flow, which the Fourier series of the t
 springs seen in wavy coordinates, whose multipliers and boundary speeds are known in closed form.
 """
 
-from __future__ import annotations
-
+import elastolink as el
 import numpy as np
 import pytest
 import taylor_truth
-from elastolink.runtime.periodic import (
-    floquet_multipliers,
-    monodromy,
-    prepare,
-    simulate,
-    steady_state,
-)
-from elastolink.runtime.stability.boundary_speeds import speed_boundaries
 from honesty import over_scenes
 from manufactured import manufactured
 from periodic_systems import system_of, wave
@@ -49,7 +40,7 @@ def _outcomes(seed):
     whole = truth.unscaled(flows[-1])[: 2 * n, : 2 * n]
     out = {}
     for rtol in (1e-13, 1e-10, 1e-5):
-        matrix = monodromy(system, speed, rtol=rtol)
+        matrix = el.monodromy(system, speed, rtol=rtol)
         assert matrix.passed, matrix.checks
         out[f"monodromy {rtol:g}"] = _of_matrix(matrix, whole)
 
@@ -59,12 +50,12 @@ def _outcomes(seed):
         states += list(flows[1:] @ states[-1])
     exact = truth.coordinates(np.array(states))
     for rtol in (1e-11, 1e-6):
-        run = simulate(system, speed, 2.0, initial=start, samples=SAMPLES, rtol=rtol)
+        run = el.simulate(system, speed, 2.0, initial=start, samples=SAMPLES, rtol=rtol)
         assert run.passed, run.checks
         out[f"simulate {rtol:g}"] = _of_motion(run, exact)
 
     for method, rtol in (("auto", 1e-10), ("auto", 1e-4), ("harmonic_balance", 1e-9)):
-        steady = steady_state(system, speed, method=method, rtol=rtol)
+        steady = el.steady_state(system, speed, method=method, rtol=rtol)
         exact_steady = motion(steady.theta)
         out[f"{method} {rtol:g}"] = _of_motion(steady, exact_steady)
         assert steady.passed, steady.checks
@@ -75,7 +66,7 @@ def _outcomes(seed):
 
     if seed % 2:
         return out
-    ready = prepare(system, (0.8 * speed, 1.3 * speed), samples=SAMPLES)
+    ready = el.prepare(system, (0.8 * speed, 1.3 * speed), samples=SAMPLES)
     out["prepared monodromy"] = _of_matrix(ready.monodromy(speed), whole)
     out["prepared simulate"] = _of_motion(ready.simulate(speed, 2, start), exact)
     angles = ready.theta
@@ -115,7 +106,7 @@ def test_prepared_for_any_tolerance(rng):
     )
     span = speed * rng.uniform(0.6, 1.0), speed * rng.uniform(1.0, 1.6)
     rtol = float(10.0 ** rng.uniform(-13.0, -4.0))
-    ready = prepare(system, span, samples=SAMPLES, rtol=rtol)
+    ready = el.prepare(system, span, samples=SAMPLES, rtol=rtol)
     truth = taylor_truth.Equation.of(system, speed, forced=True)
     flows = taylor_truth.flows(truth, 1.0, SAMPLES)
     matrix = ready.monodromy(speed)
@@ -149,7 +140,7 @@ def test_motions_of_fast_modes_that_live(rng):
     steady = system.array("f", np.zeros(1))[0] / (rates**2 + loss**2 - 1.0 + 2j * loss)
     start = steady.real + size, (1j * steady).real
     rtol = float(10.0 ** rng.uniform(-8.0, -2.0))
-    found = simulate(system, 1.0, turns, initial=start, samples=samples, rtol=rtol)
+    found = el.simulate(system, 1.0, turns, initial=start, samples=samples, rtol=rtol)
     time = found.theta[:, None]
     ring = np.exp(-loss * time) * (np.cos(rates * time) + loss / rates * np.sin(rates * time))
     exact = (steady * np.exp(1j * time)).real + size * ring
@@ -166,7 +157,7 @@ def test_estimates_of_multipliers(rng, repelling):
     if not tame(scene):
         return None
     speed = float(rng.uniform(0.3, 4.0))
-    result = floquet_multipliers(scene.system, speed)
+    result = el.floquet_multipliers(scene.system, speed)
     assert result.passed, (result.checks, squares, speed)
     gaps = np.abs(scene.multipliers(speed)[:, None] - result.multipliers)
     return result.error, np.min(gaps, axis=0)
@@ -177,7 +168,7 @@ def test_boundary_estimate(rng):
     scene = Wavy(rng, rng.uniform(1.0, 9.0, 2))
     if not tame(scene):
         return None
-    found = speed_boundaries(scene.system, speed_range=(0.9, 7.0))
+    found = el.speed_boundaries(scene.system, speed_range=(0.9, 7.0))
     # w = 2 Omega/k, k odd for -1; every one double, as nothing couples.
     natural = np.sqrt(scene.squares)
     exact = np.sort((2 * natural[:, None] / np.arange(1, 9)).ravel())

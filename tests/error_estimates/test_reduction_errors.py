@@ -5,8 +5,6 @@ modes and mean products are known without any solver; their arrays and the proje
 evaluated in long doubles at angles of their own.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.periodic import reduced_system
@@ -82,7 +80,6 @@ def exact_parts(scene, small, theta):
 
 @over_scenes(9100, floor=1e-17)
 def test_arrays_and_squared_frequencies(rng):
-    """Arrays, and the squared frequencies that they hold."""
     scene, small = reduced(rng)
     theta = rng.uniform(0.0, 2 * np.pi, ANGLES)
     worst = 0.0

@@ -1,7 +1,5 @@
 """Error estimates of charts of several modes: random rods, random axes, every sampled point."""
 
-from __future__ import annotations
-
 import elastolink as el
 import numpy as np
 from elastolink.runtime.stability.invariants import weighed_characteristic

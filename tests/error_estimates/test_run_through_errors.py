@@ -5,8 +5,6 @@ stages a step, in which the axial waves turn by 0.4 rad; the solver marches the 
 three stages and a hundred times longer steps.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from beam_motions import rocking_bar

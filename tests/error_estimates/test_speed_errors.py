@@ -1,7 +1,5 @@
 """Figures of frequencies, critical speeds and peaks over the speed, on scenes known exactly."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -7,7 +7,7 @@ random four-bars do it by dense Fourier collocation, and recover stresses at man
 import elastolink as el
 import numpy as np
 import pytest
-from beam_motions import elastic_linkage, periodic_motion
+from beam_motions import elastic_linkage, peaks, periodic_motion
 from elastolink.runtime.core.trigonometric import differentiated, even_angles, resampled
 from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.recovery import BeamMotion
@@ -67,13 +67,9 @@ def exact_maxima(system, speed, method, count=160, fine=1024):
     stations = stations_of(system.structure, STATIONS)
     axial, bending = stresses(system, motion, STATIONS, method, fibre_factors(system, stations))
     fibres = np.concatenate([axial + bending, axial - bending], axis=1)
-    size = np.abs(resampled(fibres, 16 * fine))
-    before, after = np.roll(size, 1, axis=0), np.roll(size, -1, axis=0)
-    bend = 2.0 * size - before - after
-    peak = (size >= before) & (size >= after) & (bend > 0.0)
-    top = size + (before - after) ** 2 / (8.0 * np.where(peak, bend, np.inf))
+    top = peaks(fibres, 16 * fine)
     links = np.array([station.beam for station in stations] * 2)
-    return np.array([np.max(top[:, links == link]) for link in dict.fromkeys(links)])
+    return np.array([np.max(top[links == link]) for link in dict.fromkeys(links)])
 
 
 @over_scenes(1414, few=1, many=8, median=100.0)

@@ -1,7 +1,5 @@
 """The error estimate of tolerances against exact extremes of many digits, over random four-bars."""
 
-from __future__ import annotations
-
 import itertools
 
 import mpmath

@@ -5,8 +5,6 @@ of ``F(theta) + c`` under a limit to another peak a question of circles in the p
 that two or three of them determine are tried, in extended precision.
 """
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import numpy as np

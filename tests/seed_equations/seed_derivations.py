@@ -5,8 +5,6 @@ cylinder; the coupler's field equation and its modes are the package's own.  No 
 enters.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import sympy as sp

@@ -3,8 +3,6 @@
 The transliteration keeps every fault; ``repair`` switches name the ones that can be mended.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from math import atan, cos, floor, sin, sqrt

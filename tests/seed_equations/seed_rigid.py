@@ -1,7 +1,5 @@
 """Forces of rigid linkages by the package, complex numbers, in the units of the documents."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 from elastolink.runtime.linkages import FourBar

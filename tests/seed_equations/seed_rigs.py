@@ -1,7 +1,5 @@
 """Smith's rigs of chapter 9: parameters, functions, regions and the damping that closes one."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 
@@ -10,14 +8,7 @@ import sympy as sp
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import critical_damping
 from seed_derivations import EI, l2, l3, mode, mode_coefficient, theta2, theta3
-from seed_truth import (
-    CRANK_ROCKERS,
-    TURN,
-    boundaries,
-    coupler_functions,
-    motion,
-    named,
-)
+from seed_truth import CRANK_ROCKERS, TURN, boundaries, coupler_functions, motion, named
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,5 @@
 """Numeric truth that no printed formula enters: the package's motions and boundaries."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 

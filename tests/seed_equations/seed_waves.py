@@ -3,8 +3,6 @@
 Derivatives by FFT, the parts in cos and sin(h theta/2).
 """
 
-from __future__ import annotations
-
 from functools import cache
 from itertools import product
 

@@ -8,14 +8,7 @@ import pytest
 from elastolink.runtime.linkages import classify, mobility
 from seed_ledger import Ledger, hold, holds, quoted, truths
 from seed_rigid import TABLE_3_2, Link, forces, plane
-from seed_truth import (
-    CRANK_ROCKERS,
-    DRAG_LINK,
-    LONG_CRANK,
-    TURN,
-    closure,
-    motion,
-)
+from seed_truth import CRANK_ROCKERS, DRAG_LINK, LONG_CRANK, TURN, closure, motion
 
 row = Ledger("Aannaque", __file__)
 # Lengths stand here in the order frame, input, coupler, output: L4, L1, L2, L3 of the text.

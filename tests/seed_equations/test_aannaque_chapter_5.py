@@ -1,7 +1,5 @@
 """Aannaque chapter 5 and appendix B: exact functions, dynamic stiffness, Wittrick and Williams."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np
@@ -12,11 +10,7 @@ from elastolink.derive.records import ActionDensity
 from elastolink.derive.series import taylor
 from elastolink.derive.variational import hamilton
 from elastolink.runtime.beams import element_arrays
-from elastolink.runtime.frequencies import (
-    dynamic_stiffness,
-    element_matrices,
-    wittrick_williams,
-)
+from elastolink.runtime.frequencies import dynamic_stiffness, element_matrices, wittrick_williams
 from frame_truth import portal
 from scipy.linalg import eigvalsh
 from seed_ledger import Ledger, hold, holds, quoted, same
@@ -325,7 +319,6 @@ def exact_portal():
 
 
 def element_frequencies(*args):
-    """Return the frequencies of finite elements."""
     mass, stiffness, _ = element_matrices(portal(*args), inextensible=True)
     return np.sqrt(eigvalsh(stiffness, mass))
 
@@ -377,7 +370,6 @@ def near(ours, printed):
 
 @cache
 def columns():
-    """Return the columns of Table 5.1.a."""
     found = {name: FACTOR * element_frequencies(*model) for name, model in MODELS.items()}
     return found | {"f": FACTOR * exact_portal()[1].frequencies}
 

@@ -5,17 +5,7 @@ from collections import Counter
 from dataclasses import replace
 
 import pytest
-from seed_ledger import (
-    DOCUMENTS,
-    TARGET,
-    VERDICTS,
-    entries,
-    frame,
-    inventory,
-    quoted,
-    table,
-    title,
-)
+from seed_ledger import DOCUMENTS, TARGET, VERDICTS, entries, frame, inventory, quoted, table, title
 
 ENTRIES = entries()
 LABELS = [(part.document, label) for part in inventory() for label in part.labels]

@@ -4,6 +4,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+import seed_truth as truth
 from scipy.integrate import solve_ivp
 from seed_ledger import Ledger, derivative, hold, quoted, same
 from seed_listings import (
@@ -15,22 +16,10 @@ from seed_listings import (
     hill_kinematics,
     hill_parts,
 )
-from seed_truth import (
-    CRANK_ROCKERS,
-    DRAG_LINK,
-    LONG_CRANK,
-    TURN,
-    closure,
-    coupler_functions,
-    fourier,
-    motion,
-    named,
-    rates,
-)
 from seed_waves import harmonics
 
 row = Ledger("Smith", __file__)
-FIVE = CRANK_ROCKERS["5,1,5,2"]
+FIVE = truth.CRANK_ROCKERS["5,1,5,2"]
 SAMPLES = range(3, 512, 7)
 MENDED = ("stop", "last")
 
@@ -38,7 +27,7 @@ MENDED = ("stop", "last")
 @cache
 def turn(lengths, reversed_follower=False):
     """Return one turn under the programmes' names; appendix 4 measures the follower from C to D."""
-    m = motion(lengths)
+    m = truth.motion(lengths)
     l1, l2, l3, l4 = lengths
     th4 = m.theta4 + (np.pi if reversed_follower else 0.0)
     a = 2 * l2 * l4 * np.cos(m.theta2) - 2 * l1 * l4
@@ -48,7 +37,7 @@ def turn(lengths, reversed_follower=False):
     names |= {"e": (b**2 - c**2) / (a**2 + c**2), "pi": np.pi, "omega2": 1.0, "theta": m.theta2}
     for k, angle in ((3, m.theta3), (4, th4)):
         names |= {f"csth{k}": np.cos(angle), f"snth{k}": np.sin(angle), f"theta{k}": angle}
-    return {**named(lengths), **rates(m), **names, "omega2": m.omega2, "theta4": th4}
+    return {**truth.named(lengths), **truth.rates(m), **names, "omega2": m.omega2, "theta4": th4}
 
 
 def scaled(lengths):
@@ -58,7 +47,7 @@ def scaled(lengths):
 
 def deviations(lengths):
     """Return largest errors of omega3, alpha3, omega4, alpha4, theta3 [deg] and theta4 [deg]."""
-    m = motion(lengths, count=720)
+    m = truth.motion(lengths, count=720)
     angles = np.degrees([m.theta3, m.theta4])
     true = np.array([m.omega3, m.alpha3, m.omega4, m.alpha4, *angles])
     worst = np.zeros(6)
@@ -70,12 +59,12 @@ def deviations(lengths):
 
 @row("Appendix 2 formulas", "Appendix 2 quadrants")
 def formulas_and_quadrants(entry):
-    for lengths in (*CRANK_ROCKERS.values(), LONG_CRANK):
+    for lengths in (*truth.CRANK_ROCKERS.values(), truth.LONG_CRANK):
         hold(entry.printed, turn(lengths), tol=1e-7)
         worst = deviations(lengths)
         assert worst[:4].max() < 3.1e-7
         assert worst[4:].max() < 0.5 / 60 + 1e-4
-    quoted([deviations(DRAG_LINK)[2]], "8.3")
+    quoted([deviations(truth.DRAG_LINK)[2]], "8.3")
 
 
 @row("Appendix 2 near sin(theta2) = 0")
@@ -84,14 +73,14 @@ def near_dead_centres(entry):
     theta2 = 9e-4
     A = 2 * l4 * (l2 * np.cos(theta2) - l1)
     B = l3**2 - l1**2 - l2**2 - l4**2 + 2 * l1 * l2 * np.cos(theta2)
-    quoted([abs(-B / A - np.cos(closure(FIVE, theta2)[1][0]))], "2.1e-4")
+    quoted([abs(-B / A - np.cos(truth.closure(FIVE, theta2)[1][0]))], "2.1e-4")
     for angle, small in ((theta2, True), (1.1e-3, False), (2.0, False)):
         c = entry.printed.values(l2=l2, l4=l4, theta2=angle)["c"]
         same(c, 0.0 if small else 2 * l2 * l4 * np.sin(angle))
     kept = np.array(forbar2(*scaled(FIVE), steps=36, repair={"sine"})[1:18])
     assert np.abs(kept - np.array(forbar2(*scaled(FIVE), steps=36)[1:18])).max() == 0
     # At theta2 = 0 and pi of the grid the sine is below 4e-9, and so is what is dropped.
-    omega4 = motion(FIVE, count=720).omega4[360]
+    omega4 = truth.motion(FIVE, count=720).omega4[360]
     assert forbar2(*scaled(FIVE))[18][7] == pytest.approx(omega4, abs=1e-8)
 
 
@@ -106,7 +95,7 @@ def wave(z):
     return 0.7 + np.cos(z) / (1.5 - np.sin(z)) + 0.2 * np.sin(2 * z)
 
 
-TRUE = harmonics(wave(TURN * np.arange(256) / 256))
+TRUE = harmonics(wave(truth.TURN * np.arange(256) / 256))
 
 
 @row("Appendix 3 heading")
@@ -116,7 +105,7 @@ def heading(entry):
     def short(z):
         return 0.7 + np.cos(z) - 0.4 * np.sin(2 * z)
 
-    found = fousim(0.0, TURN, short, 3, 1e-10, MENDED)
+    found = fousim(0.0, truth.TURN, short, 3, 1e-10, MENDED)
     point = {"a": found.a, "b": found.b, "M": 3, "f": short, "z": 1.234}
     hold(entry.corrected, point, tol=1e-8)
     printed = entry.printed.value(**point)
@@ -125,10 +114,10 @@ def heading(entry):
 
 @row("Appendix 3 quadrature")
 def quadrature(entry):
-    found = fousim(0.0, TURN, wave, 6, 1e-10, MENDED)
+    found = fousim(0.0, truth.TURN, wave, 6, 1e-10, MENDED)
     for m in range(7):
         assert [found.a[m], found.b[m]] == pytest.approx([TRUE[0][m], TRUE[1][m]], abs=3e-9)
-    constant = fousim(0.0, TURN, lambda z: 0.7, 2, 1e-10, MENDED)
+    constant = fousim(0.0, truth.TURN, lambda z: 0.7, 2, 1e-10, MENDED)
     assert constant.a[0] == pytest.approx(0.7, abs=1e-8)
     # Exact for a cubic, which no rule of lower order is.
     x = np.linspace(0.0, 2.0, 9)
@@ -139,10 +128,10 @@ def quadrature(entry):
 
 @row("Appendix 3 stopping rule")
 def stopping_rule(_):
-    early = fousim(0.0, TURN, lambda z: np.cos(3 * z), 5, 1e-6)
+    early = fousim(0.0, truth.TURN, lambda z: np.cos(3 * z), 5, 1e-6)
     assert early.intervals == 8
     assert early.a[[1, 3, 5]] == pytest.approx([-1 / 3, 1.0, 1.0], abs=1e-6)
-    full = fousim(0.0, TURN, lambda z: np.cos(3 * z), 5, 1e-6, MENDED)
+    full = fousim(0.0, truth.TURN, lambda z: np.cos(3 * z), 5, 1e-6, MENDED)
     assert full.intervals == 64
     assert full.a == pytest.approx([0, 0, 0, 1, 0, 0], abs=1e-8)
     assert full.b == pytest.approx(np.zeros(6), abs=1e-8)
@@ -153,7 +142,7 @@ def interval(_):
     half = fousim(0.0, np.pi, lambda z: 0.7 + np.cos(2 * z), 4, 1e-8, MENDED)
     assert half.a[0] == pytest.approx(0.35, abs=1e-6)
     assert half.b[1] == pytest.approx(0.2334, abs=1e-4)
-    moved = fousim(-1.0, TURN - 1.0, wave, 3, 1e-10, MENDED)
+    moved = fousim(-1.0, truth.TURN - 1.0, wave, 3, 1e-10, MENDED)
     assert moved.a[1] == pytest.approx(TRUE[0][1], abs=1e-8)
 
 
@@ -161,9 +150,9 @@ def interval(_):
 def statement_after_the_loop(_):
     """It writes beyond the arrays; in longer ones it changes no coefficient."""
     with pytest.raises(IndexError, match="out of bounds"):
-        fousim(0.0, TURN, wave, 3, 1e-9, {"stop"})
-    longer = fousim(0.0, TURN, wave, 3, 1e-9, {"stop"}, room=1)
-    mended = fousim(0.0, TURN, wave, 3, 1e-9, MENDED)
+        fousim(0.0, truth.TURN, wave, 3, 1e-9, {"stop"})
+    longer = fousim(0.0, truth.TURN, wave, 3, 1e-9, {"stop"}, room=1)
+    mended = fousim(0.0, truth.TURN, wave, 3, 1e-9, MENDED)
     assert longer.a[4] == longer.b[4] == 0 and mended.a.size == 4
     assert np.array_equal([longer.a[:4], longer.b[:4]], [mended.a, mended.b])
 
@@ -185,7 +174,7 @@ def form_of_the_equation(entry):
 
 @row("Appendix 4 angles", "Appendix 4 speeds and accelerations", "Appendix 4 quadrants")
 def kinematics_in_the_first_turn(entry):
-    for lengths in (*CRANK_ROCKERS.values(), LONG_CRANK):
+    for lengths in (*truth.CRANK_ROCKERS.values(), truth.LONG_CRANK):
         true = turn(lengths, reversed_follower=True)
         fast = {f"omega{k}": 3 * true[f"omega{k}"] for k in (2, 3, 4)}
         fast |= {f"alpha{k}": 9 * true[f"alpha{k}"] for k in (3, 4)}
@@ -196,21 +185,24 @@ def kinematics_in_the_first_turn(entry):
             found = hill_kinematics(true["theta2"][i], HillData(*lengths, omega2=3.0))
             expected = [3.0**k * true[name][i] for name, k in zip(names, powers, strict=True)]
             assert found == pytest.approx(expected, rel=1e-6, abs=1e-6)
-    found = [hill_kinematics(a, HillData(*DRAG_LINK))[5] for a in motion(DRAG_LINK).theta2[3::7]]
-    assert np.abs(np.array(found) - motion(DRAG_LINK).omega4[3::7]).max() > 1
+    found = [
+        hill_kinematics(a, HillData(*truth.DRAG_LINK))[5]
+        for a in truth.motion(truth.DRAG_LINK).theta2[3::7]
+    ]
+    assert np.abs(np.array(found) - truth.motion(truth.DRAG_LINK).omega4[3::7]).max() > 1
 
 
 @row("Appendix 4 coefficient", "Appendix 4 right-hand side")
 def coefficient_and_right_hand_side(entry):
     for name in ("5,1,5,2", "10,1,10,4", "2,1,2,2"):
-        lengths = CRANK_ROCKERS[name]
-        m, true = motion(lengths), turn(lengths, reversed_follower=True)
+        lengths = truth.CRANK_ROCKERS[name]
+        m, true = truth.motion(lengths), turn(lengths, reversed_follower=True)
         fast = {"omega2": 3.0, "alpha3": 9 * true["alpha3"], "alpha4": 9 * true["alpha4"]}
         for mode in (1, 2, 3):
             data = HillData(*lengths, omega2=3.0, m=mode, lamsq=9.3, mu=0.2)
             given = {"m": mode, "lam": 9.3**0.5, "mu": 0.2}
             value = entry.printed.value(**{**true, **fast, **given})
-            right = forcing(m, lengths, mode), 9.3 + 9.3 * 0.2 * coupler_functions(m)[3]
+            right = forcing(m, lengths, mode), 9.3 + 9.3 * 0.2 * truth.coupler_functions(m)[3]
             same(value, right["coefficient" in entry.label], 1e-8)
             listed = np.array([hill_parts(a, data) for a in m.theta2[3::49]])
             assert listed == pytest.approx(np.array(right[::-1])[:, 3::49].T, abs=1e-7)
@@ -222,7 +214,7 @@ def later_turns(entry):
     angles = np.radians(np.arange(1, 360))
     first, second, mended = (
         np.array([hill_kinematics(angle + shift, data, repair) for angle in angles])
-        for shift, repair in ((0.0, ()), (TURN, ()), (TURN, ("turns",)))
+        for shift, repair in ((0.0, ()), (truth.TURN, ()), (truth.TURN, ("turns",)))
     )
     assert np.abs(second - first)[180:].max() < 1e-9
     quoted(np.abs(second - first)[:179].max(axis=0)[[2, 7]], "0.40", "0.22")
@@ -230,7 +222,7 @@ def later_turns(entry):
     true = turn(FIVE, reversed_follower=True)
     names = {k: v[5:250] for k, v in true.items() if np.ndim(v)}
     hold(entry.printed, names, {k: v[260:-3] for k, v in true.items() if np.ndim(v)}, tol=1e-7)
-    later = entry.printed.sides(**{**names, "theta": names["theta"] + TURN})[0]
+    later = entry.printed.sides(**{**names, "theta": names["theta"] + truth.TURN})[0]
     quoted([np.abs(later[0] - later[1]).max()], "0.40")
 
 
@@ -331,7 +323,7 @@ def end_test(entry):
 def damping_per_turn(half_step_degrees, lam):
     """Return how much of an oscillation y'' = -lam^2 y one crank turn leaves."""
     h = np.radians(half_step_degrees)
-    steps = round(TURN / (2 * h))
+    steps = round(truth.TURN / (2 * h))
     _, values = de_vogelaere(lambda x, y: -(lam**2) * y, 0.0, 1.0, 0.0, h, 12 * steps)
     peaks = [np.abs(values[i * steps : (i + 1) * steps]).max() for i in (2, 10)]
     return (peaks[1] / peaks[0]) ** (1 / 8)
@@ -352,8 +344,8 @@ def step(entry):
 
 @row("Appendix 4 higher modes")
 def higher_modes(entry):
-    m = motion(FIVE)
-    f3 = coupler_functions(m)[3]
+    m = truth.motion(FIVE)
+    f3 = truth.coupler_functions(m)[3]
     lam2, epsilon3 = 9.3, 0.8
     data = entry.corrected.values(m=2, lam=lam2**0.5, eps3=epsilon3)
     printed = HillData(*FIVE, m=2, lamsq=lam2, mu=epsilon3 / lam2)
@@ -366,15 +358,15 @@ def higher_modes(entry):
 
 def series(samples, count=60):
     """Return a function that evaluates the Fourier series of even samples over one turn."""
-    coefficients = 2 * fourier(samples)[:count]
+    coefficients = 2 * truth.fourier(samples)[:count]
     coefficients[0] /= 2
     return lambda angle: float(np.real(coefficients @ np.exp(1j * np.arange(count) * angle)))
 
 
 @row("Appendix 4 repaired listing")
 def whole_programme(_):
-    m = motion(FIVE)
-    f3, g = series(coupler_functions(m)[3]), series(forcing(m, FIVE, 1))
+    m = truth.motion(FIVE)
+    f3, g = series(truth.coupler_functions(m)[3]), series(forcing(m, FIVE, 1))
     data = HillData(*FIVE, lamsq=9.3, mu=0.2)
     worst = []
     for repair in (("slope", "start", "turns", "end", "sine"), ()):

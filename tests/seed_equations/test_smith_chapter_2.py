@@ -3,37 +3,26 @@
 from functools import cache
 
 import numpy as np
+import seed_truth as truth
 import sympy as sp
 from elastolink.runtime.linkages import FourBar
 from seed_ledger import Ledger, hold, holds, is_zero, quoted
-from seed_truth import (
-    CRANK_ROCKERS,
-    DRAG_LINK,
-    LONG_CRANK,
-    TURN,
-    closure,
-    motion,
-    named,
-    rates,
-    turning,
-    vectors,
-)
 
 row = Ledger("Smith", __file__)
-ROCKERS = (*CRANK_ROCKERS.values(), LONG_CRANK)
-FIVE = CRANK_ROCKERS["5,1,5,2"]
+ROCKERS = (*truth.CRANK_ROCKERS.values(), truth.LONG_CRANK)
+FIVE = truth.CRANK_ROCKERS["5,1,5,2"]
 
 
 def placed(lengths, theta2, assembly="open"):
     """Return lengths and angles by search, and the other quantities of both triangles."""
     l1, l2, l3, l4 = lengths
-    theta3, theta4 = closure(lengths, theta2, assembly)
+    theta3, theta4 = truth.closure(lengths, theta2, assembly)
     pin = l2 * np.exp(1j * theta2) - l1
     BD = np.abs(pin)
     half = np.where(np.sin(theta2) > 0, 1.0, -1.0)
     return {
-        **named(lengths),
-        **vectors(lengths, (theta2, theta3, theta4)),
+        **truth.named(lengths),
+        **truth.vectors(lengths, (theta2, theta3, theta4)),
         **{"theta2": theta2, "theta3": theta3, "theta4": theta4, "BD": BD},
         "sin_theta4": np.sin(theta4),
         "A": 2 * l4 * (l2 * np.cos(theta2) - l1),
@@ -49,9 +38,9 @@ def placed(lengths, theta2, assembly="open"):
 
 
 @cache
-def places(kinds=(*ROCKERS, DRAG_LINK), assemblies=("open", "crossed")):
+def places(kinds=(*ROCKERS, truth.DRAG_LINK), assemblies=("open", "crossed")):
     """Return a turn of each linkage."""
-    theta2 = np.linspace(0.05, TURN - 0.04, 61)
+    theta2 = np.linspace(0.05, truth.TURN - 0.04, 61)
     return [placed(lengths, theta2, assembly) for lengths in kinds for assembly in assemblies]
 
 
@@ -62,19 +51,19 @@ def rockers():
 
 def opened():
     """Return a turn of drag links and crank-rockers in the open assembly."""
-    return places((DRAG_LINK, LONG_CRANK, CRANK_ROCKERS["2,1,2,2"]), ("open",))
+    return places((truth.DRAG_LINK, truth.LONG_CRANK, truth.CRANK_ROCKERS["2,1,2,2"]), ("open",))
 
 
 @cache
 def motions():
     """Return lengths, angles, speeds and accelerations at even and uneven crank speed."""
     points = []
-    for lengths in (FIVE, CRANK_ROCKERS["2,1,2,2"], DRAG_LINK):
+    for lengths in (FIVE, truth.CRANK_ROCKERS["2,1,2,2"], truth.DRAG_LINK):
         for assembly in ("open", "crossed"):
             for unsteady in (0.0, 0.3):
-                m = motion(lengths, assembly, unsteady=unsteady)
-                turned = vectors(lengths, (m.theta2, m.theta3, m.theta4))
-                points.append({**turning(lengths, m), **turned})
+                m = truth.motion(lengths, assembly, unsteady=unsteady)
+                turned = truth.vectors(lengths, (m.theta2, m.theta3, m.theta4))
+                points.append({**truth.turning(lengths, m), **turned})
     return points
 
 
@@ -114,7 +103,7 @@ def angles_of_both_triangles(entry):
 @row("2.2.1 crossed angle")
 def crossed_angle(entry):
     point = placed(FIVE, np.array([1.0]), "crossed")
-    point["theta4_p"] = point["theta4"] % TURN
+    point["theta4_p"] = point["theta4"] % truth.TURN
     hold(entry.corrected, point)
     quoted(np.ravel(entry.printed.sides(**point)), "-1.41", "1.41")
 
@@ -122,7 +111,7 @@ def crossed_angle(entry):
 @row("2.2.1 quadrants")
 def follower_stays_on_its_side(_):
     rng = np.random.default_rng(2)
-    theta2 = np.linspace(0.03, TURN - 0.02, 25)
+    theta2 = np.linspace(0.03, truth.TURN - 0.02, 25)
     for _ in range(300):
         others = rng.uniform(1.0, 4.0, 3)
         slack = others.sum() - 2 * others.max()
@@ -131,16 +120,16 @@ def follower_stays_on_its_side(_):
         crank = rng.uniform(0.05, 0.98) * min(others.min(), slack)
         lengths = (others[0], crank, others[1], others[2])
         for assembly, sign in (("open", 1.0), ("crossed", -1.0)):
-            assert np.all(sign * np.sin(closure(lengths, theta2, assembly)) > 0)
-    sine = np.sin(closure(DRAG_LINK, theta2)[1])
+            assert np.all(sign * np.sin(truth.closure(lengths, theta2, assembly)) > 0)
+    sine = np.sin(truth.closure(truth.DRAG_LINK, theta2)[1])
     assert sine.min() < -0.9 and sine.max() > 0.9
 
 
 def same_turn(point):
     """Return the point with theta3 and theta4 in the turn of the document's."""
     nominal = {"theta3": point["lam"] - point["phi"], "theta4": np.pi - point["phi"] - point["psi"]}
-    turns = {k: np.round((v - point[k]) / TURN) for k, v in nominal.items()}
-    return {**point, **{k: point[k] + TURN * turns[k] for k in nominal}}
+    turns = {k: np.round((v - point[k]) / truth.TURN) for k, v in nominal.items()}
+    return {**point, **{k: point[k] + truth.TURN * turns[k] for k in nominal}}
 
 
 row("2.2.2 phi", check=holds(opened, tol=1e-7))
@@ -169,15 +158,15 @@ row("2.8", "2.9", "2.10", check=holds(motions))
 
 @row("2.5 limits of the crank length")
 def limits_of_the_crank_length(entry):
-    short = motion((1.0, 1e-6, 1.0, 1.0))
+    short = truth.motion((1.0, 1e-6, 1.0, 1.0))
     first = {"theta4_0": short.theta4, "omega4_0": short.omega4, "alpha4_0": short.alpha4}
     theta2 = np.linspace(0.5, 2.6, 30)
     rhomb = FourBar(1.0, 1.0 - 1e-9, 1.0, 1.0)
-    second = {**rates(rhomb.motion(theta2)), "alpha2": 0.0}
+    second = {**truth.rates(rhomb.motion(theta2)), "alpha2": 0.0}
     for one, other in entry.printed.sides(**first, **second):
         assert np.abs(one - other).max() < 1e-3
     assert np.abs(short.theta4 - 120 * np.pi / 180).max() < 1.2e-6
-    _, crossed = closure(rhomb.lengths.values(), theta2, "crossed")
+    _, crossed = truth.closure(rhomb.lengths.values(), theta2, "crossed")
     assert np.abs(crossed - theta2).min() > 0.4
 
 

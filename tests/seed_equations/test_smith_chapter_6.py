@@ -5,21 +5,13 @@ from functools import cache
 import numpy as np
 import pytest
 import seed_derivations as machine
+import seed_truth as truth
 import sympy as sp
 from seed_derivations import element_acceleration
 from seed_formula import Formula
 from seed_ledger import Ledger, hold, holds, latex, plain, quoted, same
 from seed_rigid import Link, forces
 from seed_rigs import RIGS, Rig, linkage_function, parts, speeds
-from seed_truth import (
-    CRANK_ROCKERS,
-    LONG_CRANK,
-    TURN,
-    boundaries,
-    coupler_functions,
-    motion,
-    turning,
-)
 
 row = Ledger("Smith", __file__)
 MOTION = dict(l2=1.3, l3=4.0, omega2=1.7, omega3=-0.6, alpha3=0.9, theta2=0.8, theta3=0.3)
@@ -164,7 +156,7 @@ def linear_equation(entry):
     left, right = entry.printed.sides(**point)[0]
     slip = point["x"] * (point["omega3"] ** 2 - point["alpha3"])
     assert left - right - slip == pytest.approx(true, abs=1e-12)
-    m = motion(CRANK_ROCKERS["5,1,5,2"])
+    m = truth.motion(truth.CRANK_ROCKERS["5,1,5,2"])
     quoted([5 * np.abs(m.alpha3 - m.omega3**2).max()], "1.70")
 
 
@@ -227,7 +219,6 @@ row(
 
 
 def pairs(last=4):
-    """Return pairs of modes."""
     return [{**POINT, "m": m, "n": n} for m in range(1, last) for n in range(1, last)]
 
 
@@ -363,15 +354,15 @@ def pin_force(lengths, coupler, inertia4, m, speed=1.0, assembly="open"):
 def newton():
     """Return the true force at C, by Newton and Euler."""
     points = []
-    for lengths in CRANK_ROCKERS.values():
+    for lengths in truth.CRANK_ROCKERS.values():
         for assembly in ("open", "crossed"):
             coupler = Link(1.0, 0.65 * lengths[2], inertia=0.6 * lengths[2] ** 2)
-            m = motion(lengths, assembly)
+            m = truth.motion(lengths, assembly)
             force, turned = pin_force(lengths, coupler, INERTIA4, m, SPEED, assembly)
             point = {"X43": force.real, "Y43": force.imag, "F_x": turned.real, "F_y": turned.imag}
             point |= {"I3": coupler.inertia, "I4": INERTIA4, "m3r3": coupler.along}
             point |= {"m3": 0.7, "r3": coupler.along / 0.7}
-            points.append({**turning(lengths, m, SPEED), **point})
+            points.append({**truth.turning(lengths, m, SPEED), **point})
     return points
 
 
@@ -394,14 +385,14 @@ def rig_points(m=2):
     points = []
     for name, rig in RIGS.items():
         mu, length = rig.mass_per_length, rig.lengths[2]
-        coupler, turn = Link.uniform_bar(mu * length, length), motion(rig.lengths)
+        coupler, turn = Link.uniform_bar(mu * length, length), truth.motion(rig.lengths)
         for inertia4 in rig.inertias:
             along = pin_force(rig.lengths, coupler, inertia4, turn)[1].real
-            functions = coupler_functions(turn)[1:]
+            functions = truth.coupler_functions(turn)[1:]
             term = along * np.pi**2 / (mu * length**2)
             eps, *_ = np.linalg.lstsq(np.array(functions).T, term, rcond=None)
             assert np.abs(eps @ np.array(functions) - term).max() < 1e-8 * np.abs(term).max()
-            point = {**turning(rig.lengths, turn), "F_x": along, "mu": mu, "m": m}
+            point = {**truth.turning(rig.lengths, turn), "F_x": along, "mu": mu, "m": m}
             point |= dict(zip(("eps1", "eps2", "eps3"), eps, strict=True))
             point |= {"I3": coupler.inertia, "r3": length / 2, "k3": length / np.sqrt(3)}
             point |= {"I4": inertia4, "M3": coupler.mass, "M4": 0.02, "rig": name}
@@ -476,8 +467,8 @@ def sizes_of_the_parameters(entry):
 @cache
 def turns():
     """Return a turn of each crank-rocker at unit crank speed, with the coupler speed squared."""
-    kinds = (*CRANK_ROCKERS.values(), LONG_CRANK)
-    points = [turning(lengths, motion(lengths, count=1024)) for lengths in kinds]
+    kinds = (*truth.CRANK_ROCKERS.values(), truth.LONG_CRANK)
+    points = [truth.turning(lengths, truth.motion(lengths, count=1024)) for lengths in kinds]
     return [{**point, "phi": point["omega3"] ** 2} for point in points]
 
 
@@ -493,8 +484,8 @@ def coupler_speed_squared(entry):
         largest[tuple(point[f"l{k}"] for k in (1, 2, 3, 4))] = point["phi"].max()
         assert point["phi"].min() == pytest.approx(entry.printed.values(phi=0)["phi_min"], abs=2e-4)
     names = ("5,1,5,2", "10,1,10,4", "4,1,4,4", "12,6,12,12")
-    sizes = [largest[CRANK_ROCKERS[name]] for name in names]
-    quoted([*sizes, largest[LONG_CRANK]], "0.068", "0.012", "0.13", "1.04", "16.1")
+    sizes = [largest[truth.CRANK_ROCKERS[name]] for name in names]
+    quoted([*sizes, largest[truth.LONG_CRANK]], "0.068", "0.012", "0.13", "1.04", "16.1")
     below = [bool(np.less(*entry.printed[0].sides(phi=size)[0])) for size in sizes]
     assert below == [True, True, True, False] and entry.printed[0].sides(phi=0)[0][1] == 1
 
@@ -591,7 +582,7 @@ def dropped_terms_and_boundaries(entry):
     if short:
         return
     definitions(entry)
-    point, complete = parts(Rig(CRANK_ROCKERS["2,1,2,2"]), 1.0)
+    point, complete = parts(Rig(truth.CRANK_ROCKERS["2,1,2,2"]), 1.0)
     printed = kept(entry, point)
     assert np.abs(printed - point["eps3"] * point["f3"]).max() == pytest.approx(6.6, abs=0.05)
     assert np.abs(complete - printed).max() == pytest.approx(4.5, abs=0.05)
@@ -610,10 +601,10 @@ def steps():
     still = {**names, "omega2": 0, "omega3": 0, "l3": 15}
     for m in (1, 2, 3):
         Omega_m = np.sqrt(projected(m, m, **still)[1])
-        limit = TURN / (20 * Omega_m)
+        limit = truth.TURN / (20 * Omega_m)
         assert np.cos(20 * limit * Omega_m) == pytest.approx(1.0, abs=1e-12)
         point = {"m": m, "l": 15.0, **names, "Omega_m": Omega_m, "Omega": rig.frequency}
-        point |= {"h_max": limit, "omega2": speed, "T": TURN / speed, "lam": first / speed}
+        point |= {"h_max": limit, "omega2": speed, "T": truth.TURN / speed, "lam": first / speed}
         points.append(point | {"Omega1": first, "h_deg": np.degrees(speed * limit)})
     return points
 
@@ -634,7 +625,7 @@ def largest_step(entry, count=3):
 @row("6.2.3.3 places of instability")
 def places_of_instability(entry):
     f3 = linkage_function("5,1,5,2")
-    limits = [boundaries(0.05 * f3, n) for n in (1, 2, 3, 4)]
+    limits = [truth.boundaries(0.05 * f3, n) for n in (1, 2, 3, 4)]
     for n, (low, high) in enumerate(limits, start=1):
         assert low - 1e-12 <= high
         middle, right = entry.corrected.sides(lam=np.sqrt(0.5 * (low + high)), n=n)[0]

@@ -1,7 +1,5 @@
 """Write docs/equations.md from the ledger: run it by hand after a change of rows."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Beam elements and layered sections over the range of doubles: right, or refused in words."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from beam_reference import rigid_field

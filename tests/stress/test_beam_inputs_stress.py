@@ -4,8 +4,6 @@ Each argument in turn becomes nothing, text, a number that is none, an empty row
 another family, and a structure where a system belongs (or the other way round).
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Charts under strain: hidden damping, mass axes, growth, weak resonances, tips, long work."""
 
-from __future__ import annotations
-
 import elastolink as el
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Random lengths: classified or refused, never a wrong class, never NaN."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from fractions import Fraction
@@ -44,10 +42,7 @@ def turns_fully(exact, i, j):
 
 
 @settings(
-    max_examples=300,
-    deadline=None,
-    derandomize=True,
-    suppress_health_check=[HealthCheck.too_slow],
+    max_examples=300, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
 )
 @given(four_lengths())
 def test_classified_as_in_fractions_or_refused(lengths):

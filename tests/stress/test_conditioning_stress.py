@@ -3,8 +3,6 @@
 Each test names its danger and the estimate it guards.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.beams import Section, frame

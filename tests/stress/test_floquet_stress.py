@@ -1,7 +1,5 @@
 """Monodromy matrices and motions under strain: fast waves, growth, defects, jumps, size, units."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy.linalg

@@ -1,7 +1,5 @@
 """Frames under stress: no frequency missed, many modes, tiny and huge members, soft springs."""
 
-from __future__ import annotations
-
 import frame_truth
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """An interrupt at any moment leaves whole files, and a manifest that tells the truth."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import signal

@@ -1,7 +1,5 @@
 """Kinematics where formulas break: adversarial linkages, hairs' breadths, far scales and angles."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.generated import (
@@ -162,10 +160,7 @@ def test_angles_far_out_lose_no_more_than_their_own_digits(linkage, turns):
 
 def test_extreme_ratios_stay_finite():
     theta = np.linspace(-4.0, 4.0, 33)
-    lengths = (
-        (1.0, 1e-100, 1.0, 0.5),
-        (1e-100, 1.0, 1.0, 0.5),
-    )
+    lengths = ((1.0, 1e-100, 1.0, 0.5), (1e-100, 1.0, 1.0, 0.5))
     for linkage in (
         *(FourBar(*each, assembly) for each in lengths for assembly in ("open", "crossed")),
         SliderCrank(1e-100, 1.0, 0.3),

@@ -1,7 +1,5 @@
 """Polynomial bases of the rod far out: many shapes, the block near pin and tip."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.systems.rod import PolynomialBasis, TwoSegmentBasis, overhang_roots

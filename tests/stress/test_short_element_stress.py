@@ -5,8 +5,6 @@ by eps (L/h)^3 of itself, all of it from L/h = 1e5 on.  A structure that is held
 loose for that.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.beams import Section, frame, linear_system, linkage_system

@@ -1,7 +1,5 @@
 """Tolerances of random linkages of any size: finite numbers and held checks, or one clear line."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput

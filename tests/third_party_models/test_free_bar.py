@@ -1,7 +1,5 @@
 """The transcendental family: a bar's dynamic stiffness and its count of frequencies."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import pytest

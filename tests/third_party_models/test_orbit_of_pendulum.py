@@ -1,7 +1,5 @@
 """Periodic orbits of a driven pendulum with multipliers, against its one angle."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.derive.spec import ModelSpec

@@ -1,7 +1,5 @@
 """The closed-form family: a Scotch yoke against its closed form by hand, whole and in part."""
 
-from __future__ import annotations
-
 import numpy as np
 from elastolink.derive.spec import ModelSpec
 

@@ -10,8 +10,6 @@ Without friction its rest is Mathieu's equation, with the main tongue from ``2 w
 to 1e-13.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import elastolink as el

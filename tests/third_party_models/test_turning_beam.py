@@ -12,11 +12,7 @@ from elastolink.runtime.systems import assemble
 RADIUS, LENGTH, STIFFNESS, DENSITY, GRAVITY = 0.12, 0.7, 3.0, 0.4, 9.81
 NUMBERS = {
     "geometry": {"radius": RADIUS, "length": LENGTH},
-    "parameters": {
-        "bending_stiffness": STIFFNESS,
-        "mass_per_length": DENSITY,
-        "gravity": GRAVITY,
-    },
+    "parameters": {"bending_stiffness": STIFFNESS, "mass_per_length": DENSITY, "gravity": GRAVITY},
 }
 
 

@@ -1,7 +1,5 @@
 """Arrays of moving structures of beams against energies by quadrature and complex steps."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 from itertools import product

@@ -1,7 +1,5 @@
 """Beam elements at run time: shapes carry fields exactly, matrices are their energies, refusals."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.beams.elements import (

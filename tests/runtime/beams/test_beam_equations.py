@@ -1,7 +1,5 @@
 """Systems of beams: structure of the equations, frames of closed form, other lengths, copies."""
 
-from __future__ import annotations
-
 import pickle
 from dataclasses import replace
 
@@ -47,11 +45,7 @@ def test_a_torsion_damper_bends_the_end_of_a_beam():
 
 @pytest.mark.parametrize(
     "system",
-    [
-        four_bar(1, VISCOUS, rayleigh=(1.0, 1e-5)),
-        damped_four_bar(form="instantaneous"),
-        sliding(),
-    ],
+    [four_bar(1, VISCOUS, rayleigh=(1.0, 1e-5)), damped_four_bar(form="instantaneous"), sliding()],
 )
 def test_systems_travel_to_other_processes(system):
     theta = np.array([0.3, 4.0])

@@ -1,15 +1,8 @@
 """The quick-return as a structure of beams: the crank pin slides along the bent rod."""
 
-from __future__ import annotations
-
 import numpy as np
 from beam_energies import slope
-from elastolink.runtime.beams import (
-    Section,
-    beam_linkage,
-    frame,
-    linear_system,
-)
+from elastolink.runtime.beams import Section, beam_linkage, frame, linear_system
 from elastolink.runtime.linkages import QuickReturn
 from refusals import refused
 

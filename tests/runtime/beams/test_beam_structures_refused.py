@@ -1,28 +1,15 @@
 """What a structure of beams cannot be: one clear line each."""
 
-from __future__ import annotations
-
+import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.beams import (
-    Beam,
-    Node,
-    Section,
-    Structure,
-    beam_linkage,
-    frame,
-    linear_system,
-    linkage_system,
-)
-from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.frequencies import dynamic_stiffness
-from elastolink.runtime.linkages import FourBar, QuickReturn
+from elastolink.runtime.beams import beam_linkage, linear_system
 from elastolink.runtime.linkages.linkage import LinkMotion
 from refusals import refused
 
-BAR = Section.rectangle(0.02, 0.005, modulus=210e9, density=7850.0)
-FOUR_BAR = FourBar(crank=0.170, coupler=0.328, follower=0.525, frame=0.547)
-ROCKER = FourBar(crank=0.5, coupler=0.328, follower=0.3, frame=0.547)
+BAR = el.Section.rectangle(0.02, 0.005, modulus=210e9, density=7850.0)
+FOUR_BAR = el.FourBar(crank=0.170, coupler=0.328, follower=0.525, frame=0.547)
+ROCKER = el.FourBar(crank=0.5, coupler=0.328, follower=0.3, frame=0.547)
 BARS = dict.fromkeys(("crank", "coupler", "follower"), BAR)
 CLAMP, PIN = ("x", "y", "rotation"), ("x", "y")
 PLACES = {"A": (0.0, 0.0), "B": (0.0, 1.0), "C": (1.0, 1.0), "D": (1.0, 0.0)}
@@ -36,22 +23,22 @@ UNCONNECTED = {"members": FAR, "places": {**PLACES, "E": (3.0, 0.0), "F": (4.0, 
 
 def section(**changes):
     given = {"area": 1e-4, "second_moment": 1e-9, "modulus": 2e11, "density": 7850.0}
-    return Section(**{**given, **changes})
+    return el.Section(**{**given, **changes})
 
 
 def beam(**changes):
     given = {"name": "bar", "start": "A", "end": "B", "section": BAR, "length": 1.0}
-    return Beam(**{**given, **changes})
+    return el.Beam(**{**given, **changes})
 
 
 def node(**values):
-    return Node(name="B", **values)
+    return el.Node(name="B", **values)
 
 
 def portal(**changes):
     given = {"places": PLACES, "members": MEMBERS, "sections": BAR, "supports": SUPPORTS}
     given |= changes
-    return frame(given.pop("places"), given.pop("members"), given.pop("sections"), **given)
+    return el.frame(given.pop("places"), given.pop("members"), given.pop("sections"), **given)
 
 
 def standing_portal(**changes):
@@ -63,7 +50,7 @@ def linkage(linkage=FOUR_BAR, sections=BARS, **changes):
 
 
 def system(**options):
-    return linkage_system(FOUR_BAR, BARS, elements=1, **options)
+    return el.linkage_system(FOUR_BAR, BARS, elements=1, **options)
 
 
 def structure(beams, nodes):
@@ -76,12 +63,14 @@ def structure(beams, nodes):
 
     keys = ("name", "start", "end")
     made = tuple(beam(**dict(zip(keys, text.split(), strict=True))) for text in beams)
-    return Structure(beams=made, nodes=tuple(Node(name=n) for n in nodes), configuration=lying)
+    return el.Structure(
+        beams=made, nodes=tuple(el.Node(name=n) for n in nodes), configuration=lying
+    )
 
 
 def on_a_sliding_pin():
-    made = QuickReturn(frame=0.6, crank=0.13, rod=1.0)
-    return dynamic_stiffness(beam_linkage(made, {"crank": BAR, "rod": BAR}, elements=1))
+    made = el.QuickReturn(frame=0.6, crank=0.13, rod=1.0)
+    return el.dynamic_stiffness(beam_linkage(made, {"crank": BAR, "rod": BAR}, elements=1))
 
 
 # What makes it, from which values, and the words of the refusal.
@@ -147,14 +136,11 @@ REFUSED = [
 ]
 
 
-test_what_cannot_be_is_refused_in_one_line = refused(
-    lambda make, values: make(**values),
-    REFUSED,
-)
+test_what_cannot_be_is_refused_in_one_line = refused(lambda make, values: make(**values), REFUSED)
 
 
 def test_every_problem_of_a_section_is_told_at_once():
-    with pytest.raises(BadInput) as caught:
+    with pytest.raises(el.BadInput) as caught:
         section(area=-1.0, density=np.nan)
     first, second = str(caught.value).splitlines()
     assert "area" in first and "density" in second

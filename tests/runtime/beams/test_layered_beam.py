@@ -1,15 +1,9 @@
 """Three-layer beams with a viscoelastic core: limits, formulas, plane elasticity, refusals."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import pytest
-from elastolink.runtime.beams.layered import (
-    ElasticLayer,
-    ViscoelasticLayer,
-    sandwich_section,
-)
+from elastolink.runtime.beams.layered import ElasticLayer, ViscoelasticLayer, sandwich_section
 from refusals import refused
 
 BASE = ElasticLayer(3e-3, 70e9, 2700.0)
@@ -37,9 +31,6 @@ def geometry(middle, wave):
     return alone, y, g / wave**2
 
 
-# ---------------------------------------------------------------- limits and formulas
-
-
 def test_slack_and_rigid_core():
     alone, y, _ = geometry(core(), WAVE)
     soft, hard = section(core(1e-9)), section(core(1e18))
@@ -62,9 +53,6 @@ def test_the_equation_of_sixth_order(loss, wave):
     assert found.bending_stiffness == pytest.approx(float(stiffness.real), rel=1e-13)
     expected = float(stiffness.imag / stiffness.real)
     assert found.loss_factor == pytest.approx(expected, rel=1e-12, abs=1e-300)
-
-
-# ---------------------------------------------------------------- plane elasticity
 
 
 def elastic(wave, layers, poisson=0.3):
@@ -107,9 +95,6 @@ def test_plane_elasticity_tends_to_the_layer_model():
     np.testing.assert_allclose(orders, 2.0, atol=0.05)
 
 
-# ---------------------------------------------------------------- waves, mass, time
-
-
 @pytest.mark.smoke
 def test_equivalent_section_keeps_stiffness_mass_and_loss():
     found = section(frequency=100.0)
@@ -122,9 +107,6 @@ def test_equivalent_section_keeps_stiffness_mass_and_loss():
     assert same.modulus * same.area == pytest.approx(found.axial_stiffness, rel=1e-14)
     assert same.density * same.area == pytest.approx(found.mass_per_length, rel=1e-14)
     assert same.retardation * 100.0 == pytest.approx(found.loss_factor, rel=1e-14)
-
-
-# ---------------------------------------------------------------- refusals
 
 
 test_unusable_numbers_are_refused = refused(

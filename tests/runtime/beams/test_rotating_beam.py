@@ -1,7 +1,5 @@
 """A beam that turns with its clamp: frequencies against power series and published figures."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from beam_reference import rotating
@@ -53,7 +51,6 @@ def exponents(system, speed):
 
 
 def frequencies(structure, speed):
-    """Return the frequencies that they have."""
     values = exponents(linear_system(structure), speed)
     return np.sort(values.imag[values.imag > 0.0])
 

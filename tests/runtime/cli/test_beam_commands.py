@@ -1,7 +1,5 @@
 """``elastolink stress``, ``running-speed`` and ``critical-speeds`` of a light linkage of beams."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from command_runs import run, shown

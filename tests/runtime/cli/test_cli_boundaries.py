@@ -1,7 +1,5 @@
 """``elastolink boundaries`` and ``elastolink perturb``: numbers, JSON, pictures, refusals."""
 
-from __future__ import annotations
-
 import math
 
 import elastolink as el

@@ -1,7 +1,5 @@
 """``elastolink explain``: each figure against what it claims to count."""
 
-from __future__ import annotations
-
 import json
 from importlib import import_module
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Every command of the README in a folder full of files of others, which must stay as they are."""
 
-from __future__ import annotations
-
 import re
 import shlex
 from pathlib import Path

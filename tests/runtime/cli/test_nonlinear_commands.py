@@ -1,9 +1,9 @@
-"""``elastolink response``: branches, slow sweeps, searches, and what is refused."""
+"""``elastolink response``: branches, slow sweeps, searches."""
 
 from importlib import resources
 
 import pytest
-from command_runs import refused, shown, told
+from command_runs import shown, told
 
 RIG = "smith_1972_101104_thirtysecond_inch"
 RPM = 0.10471975511965977
@@ -91,36 +91,3 @@ def test_a_short_sweep_counts_its_revolutions(capsys):
     arguments = ("response", RIG, "--speed", "300:302rpm", "--sweep", "10 rpm/s", "--kicks", "0")
     out = shown(capsys, *arguments)
     assert "2 revolutions" in out and "no jumps" in out
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (
-            ("slider_crank_example",),
-            "a nonlinear formulation; choose a scene with a flexible coupler",
-        ),
-        (("aannaque_1996_table_4_1",), "choose a scene with a flexible coupler"),
-        (("mathieu",), "choose a scene with a flexible coupler"),
-        ((RIG, "--speed", "360:350rpm"), "--speed: found '360:350rpm'; expected LOW:HIGH"),
-        ((RIG, "--speed", "350 rpm"), "expected LOW:HIGH"),
-        ((RIG, "--turns", "0"), "turns: found 0; expected a whole number from 1 to 64"),
-        ((RIG, "--kicks", "1e-3"), "--kicks: found an option that does nothing here"),
-        ((RIG, "--sweep", "2 rpm"), "--sweep: found '2 rpm', of dimension"),
-        ((RIG, "--sweep", "-2 rpm/s"), "--sweep: found '-2 rpm/s'; expected a positive"),
-        (
-            (RIG, "--sweep", "2 rpm/s", "--search"),
-            "--search: found an option that does nothing here",
-        ),
-        ((RIG, "--sweep", "2 rpm/s", "--in", "bow=0:1"), "--in: found an option that does nothing"),
-        ((RIG, "--speed", "350 rpm", "--in", "foo=1:2"), "--in: found 'foo'; expected one of"),
-        ((RIG, "--speed", "350 rpm", "--in", "bow=1"), "--in bow: found '1'; expected LOW:HIGH"),
-        (
-            (RIG, "--speed", "350 rpm", "--in", "follower.inertia=1"),
-            "--in follower.inertia: found '1'",
-        ),
-        ((RIG, "--speed", "350:360rpm", "--in", "bow=0:1"), "give one value, no range"),
-    ],
-)
-def test_wrong_arguments_are_one_line(capsys, arguments, words):
-    assert words in refused(capsys, "response", *arguments)

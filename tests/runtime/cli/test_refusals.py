@@ -6,6 +6,7 @@ import pytest
 from command_runs import refused
 
 FREE = "--set model.formulation=free_free --set model.modes=1"
+THIN = "smith_1972_101104_thirtysecond_inch"
 WIDTHS = "--tolerance 'crank=0.05 mm' --tolerance 'coupler=0.1 mm'"
 # Command line | words of the complaint.
 REFUSED = """
@@ -98,10 +99,27 @@ balance smith_1972_12_6_12_12 --speed 10 --offset '-1 in' |
 balance smith_1972_12_6_12_12 --speed 10 --offset '3 kg' |
 balance smith_1972_12_6_12_12 --speed 10 --trade-off torque |
 balance smith_1972_12_6_12_12 --speed 10 --trade-off shaking_force,torque --case b |
+response slider_crank_example | a nonlinear formulation; choose a scene with a flexible coupler
+response aannaque_1996_table_4_1 | choose a scene with a flexible coupler
+response mathieu | choose a scene with a flexible coupler
+response {rig} --speed 360:350rpm | --speed: found '360:350rpm'; expected LOW:HIGH
+response {rig} --speed '350 rpm' | expected LOW:HIGH
+response {rig} --turns 0 | turns: found 0; expected a whole number from 1 to 64
+response {rig} --kicks 1e-3 | --kicks: found an option that does nothing here
+response {rig} --sweep '2 rpm' | --sweep: found '2 rpm', of dimension
+response {rig} --sweep '-2 rpm/s' | --sweep: found '-2 rpm/s'; expected a positive
+response {rig} --sweep '2 rpm/s' --search | --search: found an option that does nothing here
+response {rig} --sweep '2 rpm/s' --in bow=0:1 | --in: found an option that does nothing
+response {rig} --speed '350 rpm' --in foo=1:2 | --in: found 'foo'; expected one of
+response {rig} --speed '350 rpm' --in bow=1 | --in bow: found '1'; expected LOW:HIGH
+response {rig} --speed '350 rpm' --in follower.inertia=1 | --in follower.inertia: found '1'
+response {rig} --speed 350:360rpm --in bow=0:1 | give one value, no range
 """
 
 
 @pytest.mark.parametrize("line", REFUSED.strip("\n").splitlines())
 def test_refusal_is_one_line(capsys, line):
-    command, _, words = line.replace("{free}", FREE).replace("{widths}", WIDTHS).rpartition("|")
+    for short, words in {"{free}": FREE, "{widths}": WIDTHS, "{rig}": THIN}.items():
+        line = line.replace(short, words)
+    command, _, words = line.rpartition("|")
     assert words.strip() in refused(capsys, *shlex.split(command))

@@ -1,24 +1,12 @@
 """Commands for rigid linkages beside the functions that they call: text, JSON, pictures, drive."""
 
-from __future__ import annotations
-
 import math
 
+import elastolink as el
 import numpy as np
 import pytest
 from command_runs import run, shown, told
-from elastolink.runtime.linkages import clearance_range, coupler_curve
 from elastolink.runtime.linkages import tolerances as tolerances_of
-from elastolink.runtime.rigid import (
-    Bounds,
-    TorqueLine,
-    balance,
-    flywheel_inertia,
-    rigid_forces,
-    run_up,
-    trade_off,
-)
-from elastolink.runtime.scenes import load_scene
 
 SMITH, ENGINE, SHAPER = "smith_1972_12_6_12_12", "slider_crank_example", "quick_return_example"
 LOOSE = "smith_1972_10_8_10_10"
@@ -33,12 +21,12 @@ COLUMNS = {
 
 
 def machine():
-    return load_scene(SMITH).machine()
+    return el.load_scene(SMITH).machine()
 
 
 def motor():
-    table = load_scene(ENGINE)["motor"]
-    return TorqueLine(table["stall_torque"], table["no_load_speed"])
+    table = el.load_scene(ENGINE)["motor"]
+    return el.TorqueLine(table["stall_torque"], table["no_load_speed"])
 
 
 def line_of(text, start):
@@ -125,21 +113,21 @@ def test_two_ranges_of_the_crank_are_not_one_motion(capsys):
 )
 def test_the_drive_is_that_of_the_option_or_else_of_the_scene(given, drive, capsys):
     forces = told(capsys, "forces", SMITH, *given, *QUARTER)
-    found = rigid_forces(machine(), ANGLES, *drive)
+    found = el.rigid_forces(machine(), ANGLES, *drive)
     np.testing.assert_allclose(forces["torque"], found.torque, rtol=1e-12)
     np.testing.assert_allclose(forces["x23"], found["x23"], rtol=1e-12)
     moved = told(capsys, "kinematics", SMITH, *given, *QUARTER)
-    expected = load_scene(SMITH).mechanism().motion(ANGLES, *drive).alpha4
+    expected = el.load_scene(SMITH).mechanism().motion(ANGLES, *drive).alpha4
     np.testing.assert_allclose(moved["alpha4"], expected, rtol=1e-12)
     if drive[0]:
         balanced = told(capsys, "balance", SMITH, "--case", "b", *given)["unbalanced"]
-        expected = balance(machine(), drive[0], acceleration=drive[1], case="b").unbalanced
+        expected = el.balance(machine(), drive[0], acceleration=drive[1], case="b").unbalanced
         assert balanced == pytest.approx(expected, rel=1e-12)
 
 
 def test_length_of_a_curve_units_of_its_point_and_harmonics(capsys):
-    linkage = load_scene(SMITH).mechanism()
-    curve = coupler_curve(linkage, 0.5 * linkage.coupler, 0.25 * linkage.coupler)
+    linkage = el.load_scene(SMITH).mechanism()
+    curve = el.coupler_curve(linkage, 0.5 * linkage.coupler, 0.25 * linkage.coupler)
     out = shown(capsys, "curve", SMITH, "--point", "0.5,0.25")
     assert f"length {curve.length:.9g} m" in out
     assert out == shown(capsys, "curve", SMITH, "--point", "6 in,3 in")
@@ -152,12 +140,12 @@ def test_the_table_and_the_json_of_forces_give_the_peaks(capsys):
     printed = shown(capsys, "forces", SMITH, "--speed", "10 rad/s", "--fluctuation", "0.05")
     # A million samples miss a peak by less than 1e-11 of it; the crank angle by 2e-4 degrees.
     theta = np.linspace(0.0, 2.0 * np.pi, 1_000_001)
-    found = rigid_forces(machine(), theta, 10.0)
+    found = el.rigid_forces(machine(), theta, 10.0)
     for values in (np.hypot(*found.f12.T), np.hypot(*found.shaking_force.T), found.torque):
         top = int(np.argmax(np.abs(values[:500_000])))
         assert f" {values[top]:.6g} " in printed
         assert f" {np.degrees(theta[top]):.2f}\n" in printed
-    wheel = flywheel_inertia(machine(), 10.0, 0.05)
+    wheel = el.flywheel_inertia(machine(), 10.0, 0.05)
     assert f"{wheel.torque.energy_fluctuation:.6g} J" in printed
     assert f"flywheel {wheel.inertia:.6g}" in printed
     as_json = told(capsys, "forces", SMITH, "--speed", "10", "--fluctuation", "0.05")
@@ -165,10 +153,10 @@ def test_the_table_and_the_json_of_forces_give_the_peaks(capsys):
     assert as_json["energy_fluctuation"] == wheel.torque.energy_fluctuation
     assert as_json["mean_torque"] == 0.0
     sizes = {name: abs(peak["value"]) for name, peak in as_json["peaks"].items()}
-    assert sizes == pytest.approx(balance(machine(), 10.0, case="a").unbalanced, rel=1e-11)
+    assert sizes == pytest.approx(el.balance(machine(), 10.0, case="a").unbalanced, rel=1e-11)
     # And one at the end of a range.
     peak = told(capsys, "forces", SMITH, "--speed", "10", "--angles", "60:90:4deg")["peaks"]["f12"]
-    ends = rigid_forces(machine(), np.radians([60.0, 90.0]), 10.0)
+    ends = el.rigid_forces(machine(), np.radians([60.0, 90.0]), 10.0)
     assert peak["value"] == pytest.approx(np.hypot(*ends.f12.T).max(), rel=1e-12)
 
 
@@ -187,7 +175,7 @@ def test_a_case_of_balancing_before_and_after(capsys):
     assert float(line_of(text, "shaking_force").split()[-1]) == pytest.approx(0.53, abs=0.001)
     assert "crank" in text and "follower" in text
     # In the picture of a trade-off, cases (c) and (d) lie at zero: off the border.
-    left, right = trade_off(machine(), 10.0, points=2).plot().get_xlim()
+    left, right = el.trade_off(machine(), 10.0, points=2).plot().get_xlim()
     assert left < -0.02 * (right - left)
 
 
@@ -196,12 +184,12 @@ def test_the_best_counterweights_are_those_of_the_function(capsys, tmp_path):
     weights = "shaking_force=1,torque=1,f23=1"
     given = ("--offset", "6 in", "--weights", weights, "--links", "crank,follower")
     found = told(capsys, "balance", SMITH, *given, "--plot", picture)
-    expected = balance(
+    expected = el.balance(
         machine(),
         10.0,
         weights=dict.fromkeys(("shaking_force", "torque", "f23"), 1.0),
         links=["crank", "follower"],
-        bounds=Bounds(offset=6 * 0.0254),
+        bounds=el.Bounds(offset=6 * 0.0254),
     )
     assert found["value"] == pytest.approx(expected.value, rel=1e-9)
     assert found["value"] - found["lower_bound"] < 1e-8
@@ -223,10 +211,10 @@ def test_a_trade_off_lists_curve_cases_and_counterweights(capsys):
 def test_the_scene_drives_itself(capsys):
     given = ("--revolutions", "3", "--start-angle", "20 deg")
     printed = shown(capsys, "run-up", ENGINE, *given)
-    scene = load_scene(ENGINE)
+    scene = el.load_scene(ENGINE)
     assert scene.get("motor.flywheel") == 0.05
     start = math.radians(20.0)
-    found = run_up(scene.machine(), motor(), revolutions=3, theta0=start, flywheel=0.05)
+    found = el.run_up(scene.machine(), motor(), revolutions=3, theta0=start, flywheel=0.05)
     assert f"{found.speed[-1]:.6g}" in printed
     assert f"{found.speed[-1] * 60 / (2 * math.pi):.6g}" in printed
     assert f"{found.fluctuation:.4g}" in printed
@@ -239,7 +227,7 @@ def test_the_scene_drives_itself(capsys):
 def test_options_of_the_motor_go_before_the_scene(capsys):
     given = ("--stall-torque", "30 N*m", "--start-speed", "100 rpm", "--duration", "50 ms")
     found = told(capsys, "run-up", ENGINE, *given)
-    line = TorqueLine(30.0, motor().no_load_speed)
+    line = el.TorqueLine(30.0, motor().no_load_speed)
     assert found["speed"][0] == pytest.approx(100.0 * math.pi / 30.0, rel=1e-12)
     assert found["torque"][0] == pytest.approx(line(found["speed"][0]), rel=1e-12)
     # Without --revolutions, the duration alone ends it.
@@ -253,7 +241,7 @@ def test_options_of_the_motor_go_before_the_scene(capsys):
 def test_the_table_of_tolerances_gives_the_worst_and_where(capsys):
     printed = shown(capsys, "tolerances", SMITH, *WIDTHS, "--monte-carlo", "200")
     theta = np.radians(np.linspace(0.0, 360.0, 721))
-    linkage = load_scene(SMITH).mechanism()
+    linkage = el.load_scene(SMITH).mechanism()
     found = tolerances_of(linkage, {"crank": 5e-5, "coupler": 1e-4}, theta)
     for name in ("theta4", "alpha3"):
         row = found.place(name)
@@ -284,7 +272,7 @@ def test_clearance_as_text_and_json(capsys):
     assert float(greatest[1]) == 0.0
     assert float(greatest[2]) == pytest.approx(2.8795, abs=5e-5)
     found = told(capsys, "clearance", LOOSE, "--clearance", "0.1 in", "--joint", "23", *QUARTER)
-    expected = clearance_range(load_scene(LOOSE).mechanism(), 0.00254, ANGLES, joint="23")
+    expected = el.clearance_range(el.load_scene(LOOSE).mechanism(), 0.00254, ANGLES, joint="23")
     assert found["width"] == pytest.approx(expected.width.tolist(), rel=1e-14)
     assert found["clearances"] == {"23": 0.00254}
     both = told(capsys, "clearance", LOOSE, "--at", "23=0.04 in", "--at", "41=0.06 in", *QUARTER)

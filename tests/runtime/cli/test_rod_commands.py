@@ -1,7 +1,5 @@
 """``elastolink steady-state``, and ``simulate`` and ``stability`` of the constrained rod."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from command_runs import run, shown, told

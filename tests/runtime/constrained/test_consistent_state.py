@@ -1,7 +1,5 @@
 """Initial values that meet the constraints."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from constrained_truth import Circle

@@ -1,7 +1,5 @@
 """Motion of constrained systems: methods, constraints, guards, refusals."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 
@@ -18,6 +16,7 @@ from free_free_loads import ROD
 
 CIRCLE = Circle(oblique=np.array([[1.0, 0.3], [0.0, 0.02]]), pivot=np.array([0.4, -0.2]), row=50.0)
 TURNING = Circle(start=7.5)
+SPEED = 6.0
 
 
 @cache
@@ -81,9 +80,6 @@ def test_the_rod_moves_as_by_explicit_steps_and_windows_are_few():
     assert 10 * found.steps < steps
 
 
-# Projection onto the constraints -----------------------------------------------------------------
-
-
 def test_differences_are_the_emitted_variations():
     """Where a system has no variations, against the derivatives of the Lagrangian."""
     motion = constrained_motion(rod(), span=0.02, samples=5, rtol=1e-6)
@@ -100,11 +96,6 @@ def test_differences_are_the_emitted_variations():
         np.testing.assert_allclose(getattr(found, name), getattr(exact, name), atol=1e-5 * size)
     one, other = (constrained_motion(s, span=0.02, samples=5) for s in (rod(), lean))
     assert np.all(np.max(np.abs(one.q - other.q), axis=0) <= one.error + other.error)
-
-
-# Linkages ----------------------------------------------------------------------------------------
-
-SPEED = 6.0
 
 
 def test_a_driven_linkage_moves_as_its_kinematics():
@@ -125,9 +116,6 @@ def test_a_driven_linkage_moves_as_its_kinematics():
         assert np.max(np.abs(np.exp(1j * (found.q[:, place] - angle)) - 1.0)) < 1e-12
         np.testing.assert_allclose(found.qd[:, place], omega, atol=1e-11)
         np.testing.assert_allclose(found.qdd[:, place], alpha, atol=1e-10)
-
-
-# What stops a motion -----------------------------------------------------------------------------
 
 
 def test_a_guard_stops_where_it_is_met():
@@ -222,9 +210,6 @@ def test_an_escape_in_finite_time_ends_with_a_reason():
     assert "diverge" in found.message
     assert 0.99 < found.time[-1] <= 1.001
     assert np.isfinite(found.q).all()
-
-
-# Refusals ------------------------------------------------------------------------------------
 
 
 def test_the_picture_names_the_coordinates():

@@ -1,7 +1,5 @@
 """What constrained motions and their initial values refuse: one line that names the argument."""
 
-from __future__ import annotations
-
 import numpy as np
 from constrained_truth import Circle
 from elastolink.runtime.constrained import consistent_state, constrained_motion

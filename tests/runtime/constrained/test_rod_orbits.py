@@ -1,7 +1,5 @@
 """Periodic motion of the rod in Buckens' frame: against marching, and its refusals."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Solvers given arrays of another namespace convert them."""
 
-from __future__ import annotations
-
 import array_api_strict as xp
 import elastolink as el
 import numpy as np

@@ -1,7 +1,5 @@
 """System families at run time: shapes, hand cases, refusals."""
 
-from __future__ import annotations
-
 import types
 
 import elastolink as el
@@ -9,27 +7,20 @@ import numpy as np
 import pytest
 import scipy.linalg
 from elastolink.generated import hill_plain
-from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.core.families import (
-    MATRICES,
-    VECTORS,
-    Constrained,
-    LinearPeriodic,
-    Term,
-    Transcendental,
-    array_function,
-)
+from elastolink.runtime.core.families import MATRICES, VECTORS, Transcendental, array_function
 from periodic_systems import named, wave
 from refusals import refused
 
+PLACES = {"K": ((2, 2), ((0, 0, 0), (0, 1, 1), (1, 0, 1))), "f": ((2, 1), ())}
 
-def system(**changes) -> LinearPeriodic:
+
+def system(**changes) -> el.LinearPeriodic:
     terms = (
-        Term("M", "mass", np.eye(2)),
-        Term("K", None, np.diag([3.0, 5.0])),
-        Term("Kg", "load", wave([[0.0, 1.0], [1.0, 0.0]])),
-        Term("Kg", "load", np.eye(2), power=2),
-        Term("f", None, wave([1.0, -1.0])),
+        el.Term("M", "mass", np.eye(2)),
+        el.Term("K", None, np.diag([3.0, 5.0])),
+        el.Term("Kg", "load", wave([[0.0, 1.0], [1.0, 0.0]])),
+        el.Term("Kg", "load", np.eye(2), power=2),
+        el.Term("f", None, wave([1.0, -1.0])),
     )
     values = {
         "size": 2,
@@ -38,10 +29,7 @@ def system(**changes) -> LinearPeriodic:
         "scales": named(("mass", "load")),
         **changes,
     }
-    return LinearPeriodic(**values)
-
-
-# Linear periodic -----------------------------------------------------------------------------
+    return el.LinearPeriodic(**values)
 
 
 def test_arrays_are_sums_of_their_terms():
@@ -69,33 +57,30 @@ def test_parameters_and_terms_are_exchanged_by_copy():
     one = system()
     other = one.with_parameters(load=2.0)
     assert (one.parameters["load"], other.parameters["load"]) == (0.5, 2.0)
-    damped = one.with_terms(Term("C", "loss", 2.0 * np.eye(2)), scales={"loss": 0.1})
+    damped = one.with_terms(el.Term("C", "loss", 2.0 * np.eye(2)), scales={"loss": 0.1})
     assert not one.has("C")
     np.testing.assert_array_equal(damped.array("C", 0.0), [0.2 * np.eye(2)])
     np.testing.assert_array_equal(damped.array("C", 0.0, loss=0.3), [0.6 * np.eye(2)])
     np.testing.assert_array_equal(damped.array("M", 0.0), one.array("M", 0.0))
-    again = damped.with_terms(Term("K", "spring", np.eye(2)), scales={"spring": 1.0})
+    again = damped.with_terms(el.Term("K", "spring", np.eye(2)), scales={"spring": 1.0})
     assert set(again.parameters) == {"mass", "load", "loss", "spring"}
     np.testing.assert_array_equal(again.array("C", 0.0), damped.array("C", 0.0))
 
 
 test_unusable_terms_are_refused = refused(
-    lambda term: LinearPeriodic(2, (term,), {}, named(())),
+    lambda term: el.LinearPeriodic(2, (term,), {}, named(())),
     [
-        (Term("G", None, np.eye(2)), "'G'"),
-        (Term("M", None, np.eye(3)), r"\(1, 3, 3\)"),
-        (Term("f", None, np.eye(2)), r"\(1, 2, 2\)"),
-        (Term("K", None, lambda theta: np.cos(theta)), r"shape \(1,\)"),
+        (el.Term("G", None, np.eye(2)), "'G'"),
+        (el.Term("M", None, np.eye(3)), r"\(1, 3, 3\)"),
+        (el.Term("f", None, np.eye(2)), r"\(1, 2, 2\)"),
+        (el.Term("K", None, lambda theta: np.cos(theta)), r"shape \(1,\)"),
     ],
 )
 
 
 def test_unknown_parameters_are_refused():
-    with pytest.raises(BadInput, match="weight"):
+    with pytest.raises(el.BadInput, match="weight"):
         system().with_parameters(weight=1.0)
-
-
-# Transcendental ------------------------------------------------------------------------------
 
 
 def test_count_on_a_chain_whose_answer_is_known():
@@ -111,11 +96,6 @@ def test_count_on_a_chain_whose_answer_is_known():
     found = chain.count(frequency)
     assert found.dtype == np.int64
     np.testing.assert_array_equal(found, np.sum(frequency[..., None] > exact, axis=-1))
-
-
-# Emitted modules -----------------------------------------------------------------------------
-
-PLACES = {"K": ((2, 2), ((0, 0, 0), (0, 1, 1), (1, 0, 1))), "f": ((2, 1), ())}
 
 
 def module(**changes) -> types.SimpleNamespace:
@@ -143,15 +123,15 @@ def test_functions_of_arrays_broadcast_all_their_arguments():
 
 
 def test_unknown_functions_of_arrays_are_refused():
-    with pytest.raises(BadInput, match="dynamics"):
+    with pytest.raises(el.BadInput, match="dynamics"):
         array_function(module(), "dynamics")
-    with pytest.raises(BadInput, match="motion"):
+    with pytest.raises(el.BadInput, match="motion"):
         array_function(types.SimpleNamespace(__name__="closed", FAMILY="closed_form"), "motion")
 
 
 def test_modules_of_another_family_are_refused():
-    for family in (Constrained, Transcendental):
-        with pytest.raises(BadInput, match="family linear_periodic"):
+    for family in (el.Constrained, Transcendental):
+        with pytest.raises(el.BadInput, match="family linear_periodic"):
             family.from_module(hill_plain, {"lam2": 1.0, "mu": 0.0, "damping": 0.0})
 
 
@@ -165,7 +145,7 @@ def test_arguments_beside_the_frequency():
     given = {"m": 1.0, "k": 4.0}
     found = Transcendental.from_module(emitted, given, geometry={"theta": np.array([0.0, 1.5])})
     np.testing.assert_array_equal(found.count(1.0), [0, 1])
-    with pytest.raises(BadInput, match="theta"):
+    with pytest.raises(el.BadInput, match="theta"):
         Transcendental.from_module(emitted, given)
 
 
@@ -185,5 +165,5 @@ def test_parameters_given_at_a_call_obey_the_limits_of_the_scene(scene):
     assert set(system.parameters) == set(system.limits) | (free & set(system.parameters))
     for name, limit in system.limits.items():
         for value in (-1.0, np.nan, *([0.0] if limit == "positive" else [])):
-            with pytest.raises(BadInput, match=f"{name}: found"):
+            with pytest.raises(el.BadInput, match=f"{name}: found"):
                 el.floquet_multipliers(system, 80.0, **{name: [1.0, value]})

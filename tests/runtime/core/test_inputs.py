@@ -1,7 +1,5 @@
 """What functions are given: whole numbers of any integer type, and arrays of real numbers."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput

@@ -1,7 +1,5 @@
 """Finding emitted modules: order of folders, honesty about old and edited ones, the way out."""
 
-from __future__ import annotations
-
 import json
 import os
 import re
@@ -23,6 +21,7 @@ PACKAGED = Path(elastolink.generated.__path__[0])
 HILL = ModelSpec("hill", "plain")
 EXAMPLES = Path(__file__).parents[3] / "docs" / "examples"
 SCENE = "smith_1972_5152_sixteenth_inch"
+MODEL = str(EXAMPLES / "slider_crank_rod.py")
 
 
 @pytest.fixture(autouse=True)
@@ -99,9 +98,6 @@ def test_a_broken_manifest_is_as_good_as_none(tmp_path, monkeypatch):
     (tmp_path / MANIFEST).write_text("{")
     monkeypatch.setenv("ELASTOLINK_GENERATED", str(tmp_path))
     assert find_module(HILL).folder == PACKAGED
-
-
-MODEL = str(EXAMPLES / "slider_crank_rod.py")
 
 
 @pytest.fixture(scope="module")

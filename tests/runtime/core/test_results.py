@@ -1,19 +1,13 @@
 """What every result does: checks, JSON, CSV."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar
 
+import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.core.results import Check, DeferredChecks, Result, provenance
-from elastolink.runtime.hill import discriminant
-from elastolink.runtime.linkages import FourBar
-from elastolink.runtime.periodic import simulate
-from elastolink.runtime.scenes import load_scene
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,7 +80,7 @@ def test_csv_keeps_batches_and_matrices_apart(tmp_path):
 
 
 def test_csv_of_an_empty_axis_is_its_header(tmp_path):
-    empty = discriminant(PeriodicFunction([0.0, 1.0]), np.zeros(0), 1.0)
+    empty = el.discriminant(el.PeriodicFunction([0.0, 1.0]), np.zeros(0), 1.0)
     lines = empty.save(tmp_path / "e.csv").read_text().splitlines()
     assert len(lines) == 1 and "value" in lines[0].split(",")
 
@@ -133,11 +127,11 @@ def test_provenance_names_versions():
 def test_what_comes_after_changes_no_answer():
     """Arrays of a result are its own: not those that were given, and read-only."""
     theta = np.linspace(0.0, 6.0, 7)
-    linkage = FourBar(0.3, 0.1, 0.28, 0.25)
+    linkage = el.FourBar(0.3, 0.1, 0.28, 0.25)
     motion = linkage.motion(theta)
     theta[0] = 9.0
     assert motion.theta2[0] == 0.0
-    run = simulate(load_scene("mathieu").system(), 1.0, 1.0, initial=(np.array([1.0]), 0.0))
+    run = el.simulate(el.load_scene("mathieu").system(), 1.0, 1.0, initial=(np.array([1.0]), 0.0))
     for result in (motion, run):
         held = [value for value in vars(result).values() if isinstance(value, np.ndarray)]
         assert len(held) > 3 and not any(value.flags.writeable for value in held)

@@ -1,7 +1,5 @@
 """Zeros of many functions at once between brackets."""
 
-from __future__ import annotations
-
 import numpy as np
 from elastolink.runtime.core.maxima import bracketed_roots
 

@@ -22,6 +22,7 @@ from hypothesis import strategies as st
 # Exact by definition: the international inch and pound, and standard gravity.
 INCH, POUND, GRAVITY = 0.0254, 0.45359237, 9.80665
 LBF = POUND * GRAVITY
+ALMOST = st.text(alphabet="0123456789.eE+- */()^minskgHzrpadlbf", max_size=25)
 
 
 @pytest.mark.parametrize(
@@ -114,9 +115,6 @@ def test_refusals_say_what_is_wrong(value, dimension, part):
 def test_an_unknown_dimension_is_refused():
     with pytest.raises(BadInput, match="a dimension of"):
         to_si(1.0, "lenght")
-
-
-ALMOST = st.text(alphabet="0123456789.eE+- */()^minskgHzrpadlbf", max_size=25)
 
 
 @given(st.one_of(st.text(max_size=40), ALMOST), st.sampled_from(sorted(DIMENSIONS)))

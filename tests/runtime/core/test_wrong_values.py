@@ -60,6 +60,7 @@ RIGHT = {
     "sweep": {"what": "floquet_multipliers", "subject": SYSTEM, "values": {"speed": [50.0]}}
     | {"options": {}},
     "tolerances": {"linkage_or_machine": FOUR_BAR, "tolerance": {"crank": 1e-4}, "theta": [0.1]},
+    "transmission_angle": {"linkage": FOUR_BAR, "band": (0.7, 2.4)},
     "with_modal_damping": {"system": RIG.system(), "ratio": 0.02},
 }
 NEVER = {
@@ -70,6 +71,7 @@ NEVER = {
     "NaN": np.nan,
     "objects": np.array([None, 1], dtype=object),
     "class": el.FourBar,
+    "lengths": (1.0, "b", 3.0, 4.0),
 }
 ODD = {
     "None": None,

@@ -18,6 +18,8 @@ from periodic_systems import second_order, system_of, wave
 from scipy.integrate import solve_ivp
 
 STIFFNESS = np.array([[30.0, -8.0], [-8.0, 50.0]])
+RIG = "smith_1972_5152_sixteenth_inch"
+LONGER = {"frame": (0.58, 0.547)}
 
 
 def summed(constant, cosine, sine=0.0):
@@ -99,10 +101,6 @@ def test_impossible_profiles_are_refused(values, words):
 @cache
 def system(**more):
     return load_scene(TABLE, overrides={"mesh.elements": 1, **more}).system()
-
-
-RIG = "smith_1972_5152_sixteenth_inch"
-LONGER = {"frame": (0.58, 0.547)}
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,5 @@
 """Campbell's diagram: constant systems by hand, a pair of exponents, the linkage, bad input."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.core.families import LinearPeriodic, Term

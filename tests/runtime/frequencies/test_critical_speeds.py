@@ -1,7 +1,5 @@
 """Critical speeds: constant systems on which every method must agree, varying ones, bad input."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import elastolink as el

@@ -1,7 +1,5 @@
 """Exact frequencies of frames: known roots, shapes, nodes that stand still, refusals."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import pytest

@@ -1,24 +1,14 @@
 """Frequencies against one link's length or section: weight, parameters and geometry stay."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
+import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.beams import Section, linkage_system
-from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.frequencies import (
-    frequency_exponents,
-    link_frequencies,
-    natural_frequencies,
-    pinned_frequency,
-)
-from elastolink.runtime.linkages import FourBar
-from elastolink.runtime.systems import with_modal_damping
+from elastolink.runtime.frequencies import frequency_exponents, link_frequencies, pinned_frequency
 
-LINKS = FourBar(crank=0.170, coupler=0.328, follower=0.525, frame=0.547)
-BAR = Section.rectangle(0.025, 0.003, modulus=210e9, density=7850.0)
+LINKS = el.FourBar(crank=0.170, coupler=0.328, follower=0.525, frame=0.547)
+BAR = el.Section.rectangle(0.025, 0.003, modulus=210e9, density=7850.0)
 BARS = dict.fromkeys(("crank", "coupler", "follower"), BAR)
 # A hundred times the earth's: weight is felt, and the links hang stiff.
 WEIGHT = (0.0, -981.0)
@@ -27,16 +17,16 @@ CHANGES = {"elasticity": 1.7, "distributed_mass": 0.8, "lumped_mass": 2.0}
 
 def _system(sections=None, linkage=LINKS, **options):
     given = {"joint_masses": {"B": 0.1, "C": 0.2}, "elements": 1, "gravity": WEIGHT, **options}
-    return linkage_system(linkage, sections or BARS, **given)
+    return el.linkage_system(linkage, sections or BARS, **given)
 
 
 def _mean(system, count=2):
-    return natural_frequencies(system, [0.0], count).branch_mean
+    return el.natural_frequencies(system, [0.0], count).branch_mean
 
 
 def _agrees(found, system):
     """The study's one mean is that of a system made directly, to the errors of both."""
-    own = natural_frequencies(system, [0.0], 2)
+    own = el.natural_frequencies(system, [0.0], 2)
     allowed = found.error[0] + own.mean_error + 1e-12 * own.mean
     assert np.all(np.abs(found.mean[0] - own.mean) <= allowed)
 
@@ -66,9 +56,9 @@ def test_parameters_stay_and_a_changed_section_is_that_section(quantity, power):
 
 def test_lengths_parameters_damping_and_loads_stay():
     nodes = {"C": {"force": (400.0, 150.0)}}
-    system = with_modal_damping(_system(nodes=nodes), 0.02)
+    system = el.with_modal_damping(_system(nodes=nodes), 0.02)
     system = system.with_geometry(coupler=0.4).with_parameters(elasticity=1.4)
-    longer = FourBar(crank=0.170, coupler=0.4, follower=0.525, frame=0.547)
+    longer = el.FourBar(crank=0.170, coupler=0.4, follower=0.525, frame=0.547)
     other = _system(linkage=longer, nodes=nodes).with_parameters(elasticity=1.4)
     _agrees(link_frequencies(system, "crank", "thickness", [1.0], count=2), other)
     _agrees(link_frequencies(system, "frame", "length", [0.547], count=2), other)
@@ -93,5 +83,5 @@ def test_exponents_are_those_of_the_loaded_system():
 
 def test_a_system_that_cannot_be_made_anew_is_refused():
     alone = replace(_system(), remesh=None)
-    with pytest.raises(BadInput, match="linkage_system"):
+    with pytest.raises(el.BadInput, match="linkage_system"):
         link_frequencies(alone, "coupler", "thickness", [1.1])

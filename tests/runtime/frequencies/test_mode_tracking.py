@@ -1,7 +1,5 @@
 """Modes followed over the crank angle: known crossings, known veerings, turns that permute."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.core.families import LinearPeriodic

@@ -1,7 +1,5 @@
 """What the gallery computes for Beale and Scott's figures, by other routes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.frequencies import natural_frequencies

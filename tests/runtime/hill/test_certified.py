@@ -1,7 +1,5 @@
 """Proved enclosures: many digits, pairs, damping, extremes; and the bounds they rest on."""
 
-from __future__ import annotations
-
 import pickle
 from fractions import Fraction
 
@@ -54,12 +52,7 @@ def assert_enclosed(f, mu, regions, found, harmonic):
 
 @pytest.mark.parametrize(
     ("f", "mu", "harmonic"),
-    [
-        (COSINE, 1.0, 30),
-        (GENERAL, 0.7, 40),
-        (GENERAL, -3.0, 70),
-        (COSINE, 300.0, 90),
-    ],
+    [(COSINE, 1.0, 30), (GENERAL, 0.7, 40), (GENERAL, -3.0, 70), (COSINE, 300.0, 90)],
 )
 def test_intervals_hold_the_eigenvalues_at_60_digits(f, mu, harmonic):
     regions = (0, 1, 2, 3, 4, 5, 6)
@@ -190,6 +183,14 @@ def test_mu_is_large(mu):
     if abs(mu) <= 1e4:
         gap = found.enclosure("lower", 1)[1] - found.enclosure("upper", 0)[0]
         assert gap >= 0
+
+
+@pytest.mark.parametrize(
+    ("mu", "n", "k"), [(150.0, 1, 5.137), (100.0, 3, 6.0), (30.0, 0, 2.0), (-2000.0, 2, 10.9)]
+)
+def test_strong_damping_in_deep_wells(mu, n, k):
+    """The eigenvalues of the matrix are off by many times its round-off, or beyond their slack."""
+    assert np.isfinite(agree(COSINE, mu, (n,), k).upper[0])
 
 
 @pytest.mark.parametrize("b", [0.125, -0.25, 0.5])

@@ -1,7 +1,5 @@
 """Exponents at given lam2 and lam2 of given exponents: half trace, boundaries, mpmath."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
@@ -60,11 +58,8 @@ def test_growth_beyond_doubles_is_said():
 
 
 def test_plot_shapes_and_empty():
-    import matplotlib.pyplot as plt
-
     found = bands_of(COSINE, 1.0, np.linspace(0, 0.5, 5))
     assert len(found.plot().lines) == 3
-    plt.close("all")
     assert bands_of(COSINE, np.zeros((0, 1)), [0.1, 0.2]).lam2.shape == (3, 0, 2)
     assert bands_of(COSINE, 1.0, 0.1, ()).lam2.shape == (0,)
     with pytest.raises(BadInput, match="slice"):

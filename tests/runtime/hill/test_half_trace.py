@@ -1,7 +1,5 @@
 """Half traces: other integrators, closed forms, extremes, shapes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from boundary_cases import rough
@@ -9,20 +7,15 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import discriminant, hill_boundaries
 from half_trace_truth import half_traces
-from hill_functions import COSINE, functions, general
+from hill_functions import COSINE, general
 from honesty import extended
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-FUNCTIONS = functions()
+SHAPES = [(), (1,), (4,), (3, 1), (1, 4), (3, 4), (2, 1, 1), (1, 3, 1), (2, 3, 4)]
 
 
-@given(
-    lam2=st.floats(-100, 1e6),
-    mean=st.floats(-2, 2),
-    mu=st.floats(-5, 5),
-    k=st.floats(0, 1),
-)
+@given(lam2=st.floats(-100, 1e6), mean=st.floats(-2, 2), mu=st.floats(-5, 5), k=st.floats(0, 1))
 def test_a_constant_coefficient_has_its_closed_form(lam2, mean, mu, k):
     f = PeriodicFunction([mean])
     found = discriminant(f, lam2, mu, k)
@@ -31,9 +24,6 @@ def test_a_constant_coefficient_has_its_closed_form(lam2, mean, mu, k):
     # The closed form loses digits itself: the argument's round-off times its size.
     slack = 1e-15 * (1 + 2 * np.pi * abs(root)) * np.exp(2 * np.pi * (abs(root.imag) - k))
     assert abs(found.value - exact) <= found.error + 4 * slack
-
-
-SHAPES = [(), (1,), (4,), (3, 1), (1, 4), (3, 4), (2, 1, 1), (1, 3, 1), (2, 3, 4)]
 
 
 @settings(max_examples=25, deadline=None)
@@ -71,8 +61,6 @@ def test_the_error_of_the_function_enters():
 
 
 def test_plots():
-    import matplotlib.pyplot as plt
-
     f = PeriodicFunction([0.0, 1.0])
     grid = discriminant(f, np.linspace(0, 3, 20)[:, None], np.linspace(0, 1, 10))
     line = discriminant(f, np.linspace(0, 3, 20), 0.3)
@@ -80,7 +68,6 @@ def test_plots():
     assert line.plot().get_ylabel() == "half trace"
     with pytest.raises(BadInput, match="a line or a grid"):
         discriminant(f, 1.0, 1.0).plot()
-    plt.close("all")
 
 
 @extended

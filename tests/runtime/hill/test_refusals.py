@@ -1,43 +1,29 @@
 """What the functions of Hill's equation refuse: one line that names the argument."""
 
-from __future__ import annotations
-
+import elastolink as el
 import numpy as np
-from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.hill import (
-    Mathieu,
-    Meissner,
-    boundary_derivatives,
-    boundary_series,
-    boundary_solution,
-    characteristic_exponents,
-    critical_damping,
-    discriminant,
-    hill_boundaries,
-    perturbation_boundaries,
-)
 from elastolink.runtime.hill.series import boundary_latex
 from hill_functions import COSINE
 from refusals import each_of, refused
 
 TURN = 2.0 * np.pi
-LONG = PeriodicFunction(np.ones(1001))
+LONG = el.PeriodicFunction(np.ones(1001))
 
 
 def certified(**given):
-    return hill_boundaries(**given, certified=True)
+    return el.hill_boundaries(**given, certified=True)
 
 
 def steps(levels=(1.0, -1.0), lengths=(np.pi, np.pi), **given):
-    return hill_boundaries(**given | {"f": Meissner(levels, lengths)})
+    return el.hill_boundaries(**given | {"f": el.Meissner(levels, lengths)})
 
 
 def mathieu(m=1, q=1.0, kind="a"):
-    return Mathieu.characteristic(m, q, kind)
+    return el.Mathieu.characteristic(m, q, kind)
 
 
 def bands(**given):
-    return characteristic_exponents(lam2=None, **given)
+    return el.characteristic_exponents(lam2=None, **given)
 
 
 def latex(order=1, region=None):
@@ -46,16 +32,16 @@ def latex(order=1, region=None):
 
 # What is given where a case does not change it.
 GIVEN = {
-    hill_boundaries: {"f": COSINE, "mu": 0.1},
+    el.hill_boundaries: {"f": COSINE, "mu": 0.1},
     certified: {"f": COSINE, "mu": 0.1},
     steps: {"mu": 0.1},
-    perturbation_boundaries: {"f": COSINE, "mu": 0.1},
-    discriminant: {"f": COSINE, "lam2": 1.0, "mu": 0.1},
+    el.perturbation_boundaries: {"f": COSINE, "mu": 0.1},
+    el.discriminant: {"f": COSINE, "lam2": 1.0, "mu": 0.1},
     bands: {"f": COSINE, "mu": 1.0, "nu": 0.1},
-    boundary_derivatives: {"f": COSINE, "mu": 1.0, "regions": (1,)},
-    boundary_solution: {"f": COSINE, "mu": 0.1, "n": 1},
-    boundary_series: {"f": COSINE, "region": 1},
-    critical_damping: {"f": COSINE},
+    el.boundary_derivatives: {"f": COSINE, "mu": 1.0, "regions": (1,)},
+    el.boundary_solution: {"f": COSINE, "mu": 0.1, "n": 1},
+    el.boundary_series: {"f": COSINE, "region": 1},
+    el.critical_damping: {"f": COSINE},
 }
 
 BOUNDARIES = [
@@ -71,7 +57,7 @@ BOUNDARIES = [
     ({"regions": (5000,)}, "at most 2048"),
 ]
 CASES = {
-    hill_boundaries: [*BOUNDARIES, ({"certified": "no"}, "certified")],
+    el.hill_boundaries: [*BOUNDARIES, ({"certified": "no"}, "certified")],
     certified: BOUNDARIES,
     steps: [
         ({"mu": np.nan}, "mu"),
@@ -84,7 +70,7 @@ CASES = {
         ({"levels": (1.0, np.inf)}, "levels"),
         ({"levels": (1.0, 0.0, 2.0)}, "Meissner"),
     ],
-    perturbation_boundaries: [
+    el.perturbation_boundaries: [
         ({"mu": np.nan}, "mu"),
         ({"mu": 1j}, "mu"),
         ({"mu": [[1.0], [1.0, 2.0]]}, "mu"),
@@ -102,7 +88,7 @@ CASES = {
         ({"regions": (10**9,)}, "regions"),
         ({"outside": None}, "outside"),
     ],
-    discriminant: [
+    el.discriminant: [
         ({"lam2": [np.nan]}, "lam2"),
         ({"lam2": 1e13}, "scale the equation"),
         ({"mu": np.inf}, "mu"),
@@ -117,11 +103,11 @@ CASES = {
         ({"bands": (9999,)}, "bands"),
         ({"damping": -1.0}, "damping"),
     ],
-    boundary_derivatives: [
+    el.boundary_derivatives: [
         ({"directions": (name,)}, r"directions\[0\]")
         for name in ("c2", "b0", "a", "a-1", 3, "lam2", "b5000", "a" + "9" * 5000, "a\u0663")
     ],
-    boundary_solution: [
+    el.boundary_solution: [
         ({"n": 0, "end": "lower"}, "end"),
         ({"end": "middle"}, "end"),
         ({"mu": [0.1, 0.2]}, "mu"),
@@ -133,8 +119,8 @@ CASES = {
         ({"mu": 30.0, "order": 3}, "converge"),
         ({"n": -1}, "regions"),
     ],
-    boundary_series: [({"damping_ratio": 2.0}, "damping")],
-    critical_damping: [
+    el.boundary_series: [({"damping_ratio": 2.0}, "damping")],
+    el.critical_damping: [
         ({}, "mu"),
         ({"mu": np.nan}, "mu"),
         ({"mu": 0.1, "regions": (0, 1)}, "regions"),
@@ -158,6 +144,5 @@ CASES = {
 
 
 test_bad_input_is_refused_in_one_line = refused(
-    lambda call, changes: call(**GIVEN.get(call, {}) | changes),
-    each_of(CASES),
+    lambda call, changes: call(**GIVEN.get(call, {}) | changes), each_of(CASES)
 )

@@ -1,7 +1,5 @@
 """Clearance: exact ranges against trial of the pins and many digits, folds, extremes, refusals."""
 
-from __future__ import annotations
-
 import itertools
 import json
 
@@ -18,14 +16,6 @@ ANGLES = np.linspace(0.0, TURN, 25)
 JOINTS = ("12", "23", "34", "41")
 
 
-def wrapped(angle):
-    return np.angle(np.exp(1j * np.asarray(angle)))
-
-
-def sides(found):
-    return [float(found.below), float(found.above)]
-
-
 def trial_sides(linkage, theta, plays, link, exact, count):
     """How far a link falls and rises with every pin on the rim of its hole or in the middle."""
     l1, l2, l3, l4 = linkage.lengths.values()
@@ -39,7 +29,7 @@ def trial_sides(linkage, theta, plays, link, exact, count):
         angle = np.angle(span) + linkage.branch * np.arccos(cosine)
     if link == "follower":
         angle = np.angle(pin + l3 * np.exp(1j * angle) - pivot)
-    tried = wrapped(angle[np.isfinite(angle)] - exact.nominal)
+    tried = np.angle(np.exp(1j * (angle[np.isfinite(angle)] - exact.nominal)))
     return -tried.min(), tried.max()
 
 
@@ -54,7 +44,7 @@ def test_all_pins_by_trial(lengths, assembly, link):
         exact = clearance_range(linkage, plays, theta, link=link)
         tried = trial_sides(linkage, theta, plays, link, exact, 12)
         # Never beyond; short of it by no more than 12 places of each pin allow, 1 - cos(15 deg).
-        for reached, end in zip(tried, sides(exact), strict=True):
+        for reached, end in zip(tried, (exact.below, exact.above), strict=True):
             assert 0.96 * end <= reached <= end * (1 + 1e-9)
         inner = clearance_range(linkage, {"12": 0.0, "41": 0.0}, theta, link=link)
         assert inner.width == 0.0

@@ -3,8 +3,6 @@
 Their values in 80 digits: ``tests/error_estimates/test_motion.py``.
 """
 
-from __future__ import annotations
-
 import json
 import pickle
 from dataclasses import replace
@@ -43,9 +41,6 @@ def place_rates(linkage):
     return [*zip(places, rates, strict=True), *zip(rates, second, strict=True)]
 
 
-# ---------------------------------------------------------------- positions and rates
-
-
 @pytest.mark.smoke
 @EVERY
 def test_angles_are_continuous_and_periodic_over_many_turns(linkage):
@@ -61,9 +56,6 @@ def test_angles_are_continuous_and_periodic_over_many_turns(linkage):
         assert np.all(jump <= 1.05 * np.abs(getattr(motion, rate)).max() * TURN / steps + 1e-14)
     for name in set(outputs(linkage)) & {"theta3", "theta4"}:
         assert -np.pi < getattr(motion, name)[5 * steps] <= 1.5 * np.pi
-
-
-# ---------------------------------------------------------------- joints, links, drives
 
 
 @EVERY
@@ -86,9 +78,6 @@ def test_shapes_and_scales_do_not_matter(linkage):
         for scale, motion in scaled.items():
             factor = scale if name.startswith(("position", "slide")) else 1.0
             np.testing.assert_array_equal(getattr(motion, name), factor * value)
-
-
-# ---------------------------------------------------------------- ranges and change points
 
 
 @pytest.mark.parametrize(
@@ -211,9 +200,6 @@ def test_round_off_of_sums_decides_nothing():
     assert QuickReturn(0.2, 0.1, 0.3).crank_turns
 
 
-# ---------------------------------------------------------------- refusals
-
-
 test_lengths_that_make_no_linkage_are_refused = refused(
     lambda kind, lengths: kind(*lengths),
     [
@@ -253,9 +239,6 @@ def test_what_is_no_angle_and_no_drive_is_refused(given, word):
         motion.link("rod")
     with pytest.raises(BadInput, match="along, across: found a value that is not finite"):
         motion.point("coupler", np.nan)
-
-
-# ---------------------------------------------------------------- the result
 
 
 @EVERY

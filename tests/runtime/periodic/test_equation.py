@@ -1,7 +1,5 @@
 """The sampled equation: its fields, harmonics and evaluations; masses that are refused."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput

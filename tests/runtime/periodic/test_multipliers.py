@@ -1,7 +1,5 @@
 """Monodromy matrices and multipliers: hand cases, structure, growth, what is hard to see."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -58,9 +56,6 @@ UNDAMPED = {"every kind of term": (_general(), np.linspace(0.5, 9.0, 40), 1e-13)
 }
 
 
-# Hand cases ----------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("damping", [0.0, 0.6])
 def test_whirling_mass_has_the_multipliers_of_the_resting_one(damping):
     k, speed = 7.0, 1.9
@@ -99,9 +94,6 @@ def test_damped_determinant_is_liouvilles():
         assert found.determinant[index] == pytest.approx(expected, rel=1e-12)
     assert found.passed
     assert set(found.checks) == {"converged", "liouville"}
-
-
-# Structure -----------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", UNDAMPED)
@@ -150,28 +142,10 @@ def test_order_of_multipliers():
     np.testing.assert_allclose(found[upper + 1], np.conj(found[upper]), rtol=1e-12)
 
 
-def test_double_multiplier_gets_a_square_root_error():
-    # lam2 = 1/4 - mu/2 ... is only the first-order boundary; the exact one by bisection on the
-    # discriminant makes a defective double multiplier at -1.
-    low, high = 0.0, 0.1
-    for _ in range(60):
-        middle = (low + high) / 2
-        trace = np.trace(monodromy(mathieu(), 1.0, lam2=0.25 - middle, mu=0.1).matrix)
-        low, high = (middle, high) if trace < -2 else (low, middle)
-    found = floquet_multipliers(mathieu(), 1.0, lam2=0.25 - low, mu=0.1)
-    assert np.all(np.abs(found.multipliers + 1) <= found.error)
-    assert np.all(found.error > 1e-9)
-    assert np.all(found.error < 1e-5)
-    assert found.stable
-
-
 def test_semisimple_double_multiplier_keeps_a_small_error():
     found = floquet_multipliers(mathieu(), 1.0, lam2=4.0, mu=0.0)
     assert np.all(np.abs(found.multipliers - 1) <= found.error)
     assert np.all(found.error < 1e-12)
-
-
-# Growth --------------------------------------------------------------------------------------
 
 
 def test_growth_beyond_double_precision():
@@ -186,24 +160,9 @@ def test_growth_beyond_double_precision():
     assert multipliers.passed
 
 
-def test_strong_damping_keeps_the_small_exponent():
-    damping = 50.0
-    found = floquet_multipliers(mathieu(), 1.0, lam2=2.0, mu=0.0, K2=damping)
-    roots = np.roots([1.0, damping, 2.0])
-    expected = 2 * np.pi * np.sort(roots)[::-1]
-    np.testing.assert_allclose(found.exponents.real, expected, rtol=1e-11)
-    assert found.stable
-
-
-# The record ----------------------------------------------------------------------------------
-
-
 def test_picture():
     found = floquet_multipliers(_general(), [1.0, 2.0])
     assert found.plot().get_xlabel() == "real part of multiplier"
-
-
-# What is hard to see --------------------------------------------------------------------------
 
 
 def _single(spring=None) -> LinearPeriodic:

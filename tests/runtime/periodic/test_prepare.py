@@ -1,13 +1,12 @@
 """Systems prepared for a range of speeds: against the solvers that start anew each time."""
 
-from __future__ import annotations
-
 import pickle
 from dataclasses import replace
 
 import elastolink as el
 import numpy as np
 import pytest
+from edge_truth import scene_rod
 from elastolink.runtime.core.errors import BadInput
 from periodic_systems import forced_mathieu, system_of, wave
 
@@ -16,17 +15,11 @@ pytestmark = pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning")
 SCENE = "smith_1972_5152_sixteenth_inch"
 
 
-def _rod():
-    """Beale & Scott's very flexible rod, of three polynomial modes."""
-    overrides = {"model.formulation": "polynomial", "model.modes": 3}
-    return el.load_scene("beale_1992_flexible_rod", overrides=overrides).linear_system()
-
-
 @pytest.fixture(scope="module", params=[1, 2, 3, "rod", "beams"])
 def pair(request):
     """A system and its prepared form, 50 to 200 rad/s (the rod 500 to 2000, beams 20 to 30)."""
     if request.param == "rod":
-        system, span = _rod(), (500.0, 2000.0)
+        system, span = scene_rod(modes=3, **{"model.formulation": "polynomial"}), (500.0, 2000.0)
     elif request.param == "beams":
         # Modes that no segment resolves; a force that is large in the units of the state.
         overrides = {"mesh.elements": 1}

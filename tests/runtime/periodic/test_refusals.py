@@ -1,18 +1,10 @@
 """What the solvers of linear periodic systems refuse: one line that names the argument."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
 from elastolink.runtime.core.families import Term
-from elastolink.runtime.periodic import (
-    monodromy,
-    prepare,
-    reduced_system,
-    simulate,
-    steady_state,
-)
+from elastolink.runtime.periodic import monodromy, prepare, reduced_system, simulate, steady_state
 from periodic_systems import forced_mathieu, system_of, wave
 from refusals import each_of, refused
 

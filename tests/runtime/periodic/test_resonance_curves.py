@@ -1,7 +1,5 @@
 """Peaks over many speeds, and resonances."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -51,10 +49,7 @@ def test_resonances_are_found_and_labelled():
 def test_curves_are_drawn_and_bad_input_is_refused():
     curve = resonance_curve(forced_mathieu(), np.linspace(1.0, 4.0, 30))
     assert curve.plot().get_yscale() == "log"
-    for arguments, word in (
-        (("x",), "speed: found 'x'"),
-        (([1.0, 0.5, 2.0],), "rising"),
-    ):
+    for arguments, word in ((("x",), "speed: found 'x'"), (([1.0, 0.5, 2.0],), "rising")):
         with pytest.raises(BadInput, match=word):
             resonance_curve(forced_mathieu(), *arguments)
     with pytest.raises(BadInput, match="one place"):

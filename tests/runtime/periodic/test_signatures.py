@@ -1,7 +1,5 @@
 """Krein signatures: hand cases, Krein's theorem, and the motion of multipliers on the circle."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy.linalg
@@ -41,9 +39,6 @@ def sign_of(spectrum, value):
     return int(spectrum[1][np.argmin(gap)])
 
 
-# Hand cases ----------------------------------------------------------------------------------
-
-
 def test_multiple_multipliers_are_decided_where_the_form_is_definite():
     """A definite double one stays on the circle under every small Hamiltonian; Gelfand, Lidskii."""
     rng = np.random.default_rng(3)
@@ -68,9 +63,6 @@ def test_at_plus_and_minus_one_and_off_the_circle_there_is_none(value):
     assert sorted(off.tolist()) == [-1, 0, 0, 1]
 
 
-# Krein's theorem -----------------------------------------------------------------------------
-
-
 def test_equal_signatures_pass_and_opposite_ones_leave():
     """Symmetric coupling: the difference w2 - w1 is harmless, the sum w1 + w2 opens a tongue."""
     system = coupled_pair(0.02)
@@ -93,9 +85,6 @@ def test_equal_signatures_pass_and_opposite_ones_leave():
 def test_damped_and_circulatory_systems_have_no_signatures():
     for system in (coupled_pair(0.02, damping=0.1), coupled_pair(0.02, sign=-1.0)):
         assert np.all(floquet_multipliers(system, [2.0, 3.0]).signatures == 0)
-
-
-# An independent route: the motion on the circle --------------------------------------------------
 
 
 def _flow(first, second, push, amount):

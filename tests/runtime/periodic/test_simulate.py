@@ -1,7 +1,5 @@
 """Simulation against hand solutions, heyoka and itself; its warnings, checks and refusals."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import mpmath
@@ -163,9 +161,6 @@ def test_the_size_of_the_force_is_no_matter(size):
     assert np.max(other.error) <= 1e-8
 
 
-# Growth, warnings, checks --------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("method", ["auto", "LSODA"])
 def test_growth_stops_at_the_bound_and_says_so(method):
     system = _driven(stiffness=-800.0)
@@ -210,9 +205,6 @@ def test_progress_is_shown_only_when_wanted(capsys):
         shown = simulate(_driven(), 2.0, 3.0, method, initial=(0.1, 0.0), samples=36, progress=True)
         assert "108/108" in capsys.readouterr().err
         assert shown.q.shape == quiet.q.shape
-
-
-# The record ----------------------------------------------------------------------------------
 
 
 def test_record_plots_and_saves(tmp_path):

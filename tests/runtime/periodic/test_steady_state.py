@@ -1,7 +1,5 @@
 """Steady states: harmonic balance, marching, closed forms, singular speeds, growth, bad input."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -130,9 +128,6 @@ def test_deflections_without_shapes_or_off_the_beam_are_refused():
         steady_state(replace(forced_mathieu(), shape=None), 1.0).deflection()
     with pytest.raises(BadInput, match="places"):
         steady_state(forced_mathieu(), 1.0).deflection(1.5)
-
-
-# Both methods ----------------------------------------------------------------------------------
 
 
 def stiff(damping=0.02, fast=1600.0):

@@ -1,7 +1,5 @@
 """Modal truncation: motions and multipliers of the lowest modes against those of the whole."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.periodic import floquet_multipliers, steady_state

@@ -1,20 +1,10 @@
 """Stresses over the cycle: hand cases, the four-bar of Aannaque's Table 4.1, refusals."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
+import beam_motions as motions
 import numpy as np
 import pytest
-from beam_motions import (
-    SECTIONS,
-    cantilever,
-    damped_four_bar,
-    four_bar,
-    periodic_motion,
-    rocking,
-    turning_bar,
-)
 from command_runs import shown
 from elastolink.runtime.core.errors import BadInput, LinearRangeWarning
 from elastolink.runtime.periodic import simulate, steady_state
@@ -24,15 +14,15 @@ from elastolink.runtime.recovery.stresses import stress_operator
 
 @pytest.fixture(scope="module")
 def at_20():
-    system = damped_four_bar()
-    motion = periodic_motion(system, 20.0, 128)
+    system = motions.damped_four_bar()
+    motion = motions.periodic_motion(system, 20.0, 128)
     return system, motion, stress(system, motion)
 
 
 @pytest.mark.smoke
 def test_cantilever_stress_by_hand():
     # sigma = N/A -+ M c/I: 10 N along and 2 N across the end of 1 m, 20 mm by 10 mm.
-    found = stress(cantilever(force=(10.0, 2.0)))
+    found = stress(motions.cantilever(force=(10.0, 2.0)))
     bending = 2.0 * 0.005 / (0.02 * 0.01**3 / 12)
     axial = 10.0 / 2e-4
     assert found.maximum.value == pytest.approx(axial + bending, rel=1e-7)
@@ -89,8 +79,8 @@ def test_quasi_static_stress_is_that_of_rigid_links(at_20):
     system, _, _ = at_20
     bare = system.without("C").without("Kg")
     stiff = bare.with_parameters(elasticity=1e6)
-    whole = stress(stiff, periodic_motion(stiff, 20.0, 64))
-    still = stress(bare, periodic_motion(bare, 20.0, 64))
+    whole = stress(stiff, motions.periodic_motion(stiff, 20.0, 64))
+    still = stress(bare, motions.periodic_motion(bare, 20.0, 64))
     size = np.max(whole.stress)
     # Elastic displacements turn no force in these equations without the axial forces; what is
     # left is centripetal acceleration of the displacement, some 1e-4 of the rigid one.
@@ -110,8 +100,8 @@ def test_form_of_the_stresses_gives_the_stresses(at_20):
 
 
 def test_steady_state_and_march_agree_with_collocation():
-    system = turning_bar(rocking, elements=1)
-    expected = stress(system, periodic_motion(system, 8.0, 32))
+    system = motions.turning_bar(motions.rocking, elements=1)
+    expected = stress(system, motions.periodic_motion(system, 8.0, 32))
     steady = steady_state(system, 8.0)
     found = stress(system, steady)
     assert found.maximum.value == pytest.approx(expected.maximum.value, rel=1e-6)
@@ -128,16 +118,16 @@ def test_steady_state_and_march_agree_with_collocation():
 
 
 def test_left_linear_range_is_said():
-    system = turning_bar(rocking, modulus=1e8, elements=1)
+    system = motions.turning_bar(motions.rocking, modulus=1e8, elements=1)
     with pytest.warns(LinearRangeWarning):
-        found = stress(system, periodic_motion(system, 8.0, 32))
+        found = stress(system, motions.periodic_motion(system, 8.0, 32))
     assert not found.checks["linear range"].passed
 
 
 def test_unusable_arguments_are_refused(at_20):
     _, motion, found = at_20
-    bar = turning_bar(rocking, elements=1)
-    thin = {name: replace(section, thickness=None) for name, section in SECTIONS.items()}
+    bar = motions.turning_bar(motions.rocking, elements=1)
+    thin = {name: replace(section, thickness=None) for name, section in motions.SECTIONS.items()}
     for call, words in (
         (lambda: found.safety({"crank": 1e8}), "limit"),
         (lambda: found.safety(-1.0), "limit"),
@@ -145,7 +135,7 @@ def test_unusable_arguments_are_refused(at_20):
         (lambda: found.fibre("positive", "half"), None),
         (lambda: found.at("rod", 0.5), None),
         (lambda: stress(bar, steady_state(bar, [7.0, 8.0])), None),
-        (lambda: stress(four_bar(1, thin), motion), "thickness"),
+        (lambda: stress(motions.four_bar(1, thin), motion), "thickness"),
     ):
         with pytest.raises(BadInput, match=words):
             call()

@@ -1,7 +1,5 @@
 """Curves of points of elastic links beside the rigid ones."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from beam_motions import FOUR_BAR, cantilever, four_bar, periodic_motion

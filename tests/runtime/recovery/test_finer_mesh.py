@@ -1,9 +1,8 @@
 """The mesh's part of the error estimates: which finer mesh, what is done where there is none."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
+import elastolink as el
 import numpy as np
 import pytest
 from beam_motions import (
@@ -15,15 +14,7 @@ from beam_motions import (
     steadily,
     turning_bar,
 )
-from elastolink.runtime.beams import linkage_system
-from elastolink.runtime.core.families import Term
-from elastolink.runtime.recovery import (
-    beam_energies,
-    elastic_coupler_curve,
-    pin_reactions,
-    recover,
-    stress,
-)
+from elastolink.runtime.recovery import beam_energies, elastic_coupler_curve
 from elastolink.runtime.recovery.finer_mesh import finer_structure, finer_system, solved
 
 APART = "apart"
@@ -65,7 +56,7 @@ def test_terms_taken_away_are_missing_there_too():
 
 @pytest.mark.parametrize("form", ["full", "instantaneous"])
 def test_another_form_and_geometry_go_along(form):
-    system = linkage_system(FOUR_BAR, SECTIONS, elements=1, form=form, rayleigh=(1.0, 1e-5))
+    system = el.linkage_system(FOUR_BAR, SECTIONS, elements=1, form=form, rayleigh=(1.0, 1e-5))
     found = finer_system(system.with_geometry(frame=0.6))
     assert found.has("A") == (form == "full")
     places = found.structure.places(np.zeros(1))
@@ -74,12 +65,12 @@ def test_another_form_and_geometry_go_along(form):
 
 def test_terms_of_one_mesh_have_no_other_mesh():
     system = turning_bar(rocking, elements=1, drag=1.0)
-    own = system.with_terms(Term("C", None, np.eye(system.size)))
+    own = system.with_terms(el.Term("C", None, np.eye(system.size)))
     assert finer_system(system) is not None
     assert finer_system(own) is None
     assert finer_system(replace(system, terms=own.terms)) is None
     assert finer_system(replace(system, remesh=None)) is None
-    assert APART in stress(own, 8.0).error_norm
+    assert APART in el.stress(own, 8.0).error_norm
 
 
 @pytest.mark.slow
@@ -87,9 +78,9 @@ def test_every_result_counts_the_mesh_where_it_can():
     system = turning_bar(rocking, elements=1, drag=2.0)
     given = periodic_motion(system, 8.0, 32)
     for call in (
-        stress,
-        pin_reactions,
-        recover,
+        el.stress,
+        el.pin_reactions,
+        el.recover,
         beam_energies,
         lambda *args, **more: elastic_coupler_curve(*args, link="bar", **more),
     ):

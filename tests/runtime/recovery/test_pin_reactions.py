@@ -1,39 +1,23 @@
 """Pin forces and driving torque of elastic linkages: the rigid limit, and balances."""
 
-from __future__ import annotations
-
 from itertools import product
 
+import beam_motions as motions
+import elastolink as el
 import numpy as np
 import pytest
-from beam_motions import (
-    BAR,
-    FOUR_BAR,
-    JOINT_MASSES,
-    SECTIONS,
-    damped_four_bar,
-    four_bar,
-    periodic_motion,
-    rigid_machine,
-    rocking,
-    turning_bar,
-)
-from elastolink.runtime.beams import frame, linear_system, linkage_system
-from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.linkages import SliderCrank
-from elastolink.runtime.recovery import pin_reactions
+from elastolink.runtime.beams import linear_system
 from elastolink.runtime.recovery.strain_energy import beam_energies
-from elastolink.runtime.rigid import rigid_forces
 
-SLIDER = SliderCrank(crank=0.1, coupler=0.37, offset=0.06)
+SLIDER = el.SliderCrank(crank=0.1, coupler=0.37, offset=0.06)
 
 
 def gaps_to_rigid(elasticity):
     """Return the largest differences from the rigid machine, over the largest force or torque."""
-    system = damped_four_bar(gravity=(0.0, -9.81)).with_parameters(elasticity=elasticity)
-    found = pin_reactions(system, periodic_motion(system, 30.0))
-    masses = {"crank": JOINT_MASSES["B"], "follower": JOINT_MASSES["C"]}
-    rigid = rigid_forces(rigid_machine(FOUR_BAR, masses), found.theta, 30.0)
+    system = motions.damped_four_bar(gravity=(0.0, -9.81)).with_parameters(elasticity=elasticity)
+    found = el.pin_reactions(system, motions.periodic_motion(system, 30.0))
+    masses = {"crank": motions.JOINT_MASSES["B"], "follower": motions.JOINT_MASSES["C"]}
+    rigid = el.rigid_forces(motions.rigid_machine(motions.FOUR_BAR, masses), found.theta, 30.0)
     pairs = {
         "A": (found.of_ground["A"][:, :2], rigid.f12),
         "B": (found.force("B", "coupler"), rigid.f23),
@@ -54,15 +38,15 @@ def test_rigid_limit_of_the_four_bar():
 
 
 def test_rigid_limit_of_the_slider_crank():
-    system = linkage_system(
+    system = el.linkage_system(
         SLIDER,
-        {name: SECTIONS[name] for name in ("crank", "coupler")},
+        {name: motions.SECTIONS[name] for name in ("crank", "coupler")},
         joint_masses={"C": 0.3},
         elements=2,
         gravity=(0.0, -9.81),
     ).with_parameters(elasticity=1e6)
-    found = pin_reactions(system, periodic_motion(system, 30.0))
-    rigid = rigid_forces(rigid_machine(SLIDER, {"slider": 0.3}), found.theta, 30.0)
+    found = el.pin_reactions(system, motions.periodic_motion(system, 30.0))
+    rigid = el.rigid_forces(motions.rigid_machine(SLIDER, {"slider": 0.3}), found.theta, 30.0)
     size = np.max(np.abs(rigid.f12))
     assert np.max(np.abs(found.force("B", "coupler") - rigid.f23)) <= 1e-5 * size
     # The guide pushes across alone, and the ground there takes nothing along.
@@ -73,28 +57,28 @@ def test_rigid_limit_of_the_slider_crank():
 
 @pytest.mark.parametrize("kind", ["cubic", "internal_node", "curvature"])
 def test_forces_balance_to_round_off(kind):
-    system = damped_four_bar(kind=kind, gravity=(0.0, -9.81))
-    found = pin_reactions(system, periodic_motion(system, 25.0))
+    system = motions.damped_four_bar(kind=kind, gravity=(0.0, -9.81))
+    found = el.pin_reactions(system, motions.periodic_motion(system, 25.0))
     assert found.checks["balance"].value <= 1e-10
     # Action and reaction with the joint's inertia: the coupler's and the follower's pin.
-    lumped = JOINT_MASSES["C"]
+    lumped = motions.JOINT_MASSES["C"]
     total = found.force("C", "coupler") + found.force("C", "follower")
     assert np.max(np.abs(total)) > 0.01 * lumped * 25.0**2
 
 
 def test_reactions_of_a_frame_by_hand():
     # A portal's support forces: weight of 3 bars and a push of 5 N at a corner.
-    structure = frame(
+    structure = el.frame(
         {"A": (0, 0), "B": (0, 1), "C": (1, 1), "D": (1, 0)},
         {"left": ("A", "B"), "beam": ("B", "C"), "right": ("D", "C")},
-        BAR,
+        motions.BAR,
         supports={"A": ("x", "y", "rotation"), "D": ("x", "y", "rotation")},
         nodes={"B": {"force": (5.0, 0.0)}},
     )
     system = linear_system(structure, gravity=(0.0, -9.81), geometric_stiffness=False)
-    found = pin_reactions(system)
+    found = el.pin_reactions(system)
     total = found.of_ground["A"][0] + found.of_ground["D"][0]
-    weight = 3.0 * BAR.mass_per_length * 9.81
+    weight = 3.0 * motions.BAR.mass_per_length * 9.81
     np.testing.assert_allclose(total[:2], [-5.0, weight], rtol=1e-7)
     # Moments about A: the push at height 1, the weight at x = 1/2, the support at D.
     moment = total[2] + found.of_ground["D"][0, 1] * 1.0
@@ -106,9 +90,11 @@ def test_torque_is_that_of_the_energy_to_second_order_with_the_axial_forces():
     # angle differ by squares of the displacement; without it by its first power.
     gaps = {}
     for stiffening, elasticity in product((True, False), (10.0, 100.0)):
-        system = four_bar(geometric_stiffness=stiffening).with_parameters(elasticity=elasticity)
-        motion = periodic_motion(system, 10.0, 96)
-        gap = pin_reactions(system, motion).torque() - beam_energies(system, motion).torque
+        system = motions.four_bar(geometric_stiffness=stiffening).with_parameters(
+            elasticity=elasticity
+        )
+        motion = motions.periodic_motion(system, 10.0, 96)
+        gap = el.pin_reactions(system, motion).torque() - beam_energies(system, motion).torque
         gaps[stiffening, elasticity] = np.max(np.abs(gap))
     assert gaps[True, 10.0] / gaps[True, 100.0] == pytest.approx(100.0, rel=0.5)
     assert gaps[False, 10.0] / gaps[False, 100.0] == pytest.approx(10.0, rel=0.1)
@@ -116,11 +102,11 @@ def test_torque_is_that_of_the_energy_to_second_order_with_the_axial_forces():
 
 
 def test_names_that_are_not_there_are_refused():
-    system = turning_bar(rocking, elements=1)
-    found = pin_reactions(system, periodic_motion(system, 5.0, 16))
-    with pytest.raises(BadInput, match="force"):
+    system = motions.turning_bar(motions.rocking, elements=1)
+    found = el.pin_reactions(system, motions.periodic_motion(system, 5.0, 16))
+    with pytest.raises(el.BadInput, match="force"):
         found.force("P", "rod")
-    with pytest.raises(BadInput, match="node"):
+    with pytest.raises(el.BadInput, match="node"):
         found.torque("P")
     assert "ground on O moment" in found.arrays()
     assert found.plot().get_ylabel() == "force [N]"

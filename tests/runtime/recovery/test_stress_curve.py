@@ -3,9 +3,6 @@
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.recovery import stress_curve
-from elastolink.runtime.recovery.stresses import stress
 
 SPEEDS = np.linspace(18.0, 35.0, 60)
 
@@ -18,7 +15,7 @@ def system():
 
 @pytest.fixture(scope="module")
 def curve(system):
-    return stress_curve(system, SPEEDS, stations=5)
+    return el.stress_curve(system, SPEEDS, stations=5)
 
 
 def test_it_passes_its_own_checks_whatever_the_order(system, curve, tmp_path):
@@ -30,7 +27,7 @@ def test_it_passes_its_own_checks_whatever_the_order(system, curve, tmp_path):
     text = curve.save(tmp_path / "curve.csv").read_text()
     assert text.startswith("link,") and len(text.splitlines()) > 180
     given = [*SPEEDS[::-3], SPEEDS[0], SPEEDS[-1]]
-    turned = stress_curve(system, given, stations=5, stability=False)
+    turned = el.stress_curve(system, given, stations=5, stability=False)
     assert np.array_equal(turned.maximum[0], turned.maximum[-1])
     assert turned.stable is None and turned.unstable_ranges == ()
     gap = np.abs(turned.maximum[:20] / curve.maximum[::-3] - 1.0)
@@ -41,7 +38,7 @@ def test_it_passes_its_own_checks_whatever_the_order(system, curve, tmp_path):
 def test_it_agrees_with_stress_of_a_steady_state(system, curve):
     """Another solver of the motion, and the recovery itself: maxima, places and angles."""
     for k in (3, 50):
-        found = stress(system, el.steady_state(system, float(SPEEDS[k])), stations=5)
+        found = el.stress(system, el.steady_state(system, float(SPEEDS[k])), stations=5)
         for n, link in enumerate(curve.links):
             peak = found.maxima[link]
             # stress() looks at eight times its angles, without a parabola: 1e-5 of a maximum.
@@ -54,7 +51,7 @@ def test_it_agrees_with_stress_of_a_steady_state(system, curve):
 def test_stability_is_that_of_the_multipliers(system):
     """Stable below 86.9 rad/s and unstable above, by the full system's own multipliers."""
     speeds = [80.0, 86.0, 90.0]
-    found = stress_curve(system, speeds, rtol=1e-2, stations=3)
+    found = el.stress_curve(system, speeds, rtol=1e-2, stations=3)
     whole = el.floquet_multipliers(system, speeds, rtol=1e-6)
     largest = np.max(np.abs(whole.multipliers), axis=1)
     assert np.all(np.abs(found.multiplier - largest) <= found.multiplier_error)
@@ -77,7 +74,7 @@ def test_stability_is_that_of_the_multipliers(system):
 )
 def test_bad_input_is_one_clear_line(system, change, match):
     given = {"system": system, "speeds": [20.0, 30.0], **change}
-    with pytest.raises(BadInput, match=match):
-        stress_curve(**given)
-    with pytest.raises(BadInput, match="damping"):
-        stress_curve(system.with_parameters(damping_ratio=0.0), [20.0])
+    with pytest.raises(el.BadInput, match=match):
+        el.stress_curve(**given)
+    with pytest.raises(el.BadInput, match="damping"):
+        el.stress_curve(system.with_parameters(damping_ratio=0.0), [20.0])

@@ -1,7 +1,5 @@
 """Mass distributions: constructors against integrals, sums, and refusals."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,15 +1,10 @@
 """Scenes of the flexible rod: its numbers, its formulations, what is refused before any work."""
 
-from __future__ import annotations
-
 import math
 
+import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.core.families import Constrained, LinearPeriodic
-from elastolink.runtime.periodic import floquet_multipliers
-from elastolink.runtime.scenes import load_scene
 from elastolink.runtime.systems.rod import OverhangBasis, rod_system
 from free_free_loads import ROD
 from refusals import refused
@@ -22,7 +17,7 @@ INCH, POUND, POUND_FORCE = 0.0254, 0.45359237, 4.4482216152605  # exact by defin
 
 
 def test_numbers_of_the_flexible_rod():
-    scene = load_scene(FLEXIBLE)
+    scene = el.load_scene(FLEXIBLE)
     assert scene["rod"]["bending_stiffness"] == pytest.approx(0.7e11 * 0.5208e-6, rel=1e-15)
     # Section 2.1 gives the crank itself, 0.0059997 m.
     assert scene["links"]["crank"] == pytest.approx(0.0059997, rel=1e-15)
@@ -30,7 +25,7 @@ def test_numbers_of_the_flexible_rod():
 
 
 def test_both_readings_of_the_stiff_rods_mass():
-    light, heavy = (load_scene(name)["rod"] for name in (STIFF, f"{STIFF}_heavy"))
+    light, heavy = (el.load_scene(name)["rod"] for name in (STIFF, f"{STIFF}_heavy"))
     assert light["bending_stiffness"] == pytest.approx(2.91992e6 * POUND_FORCE * INCH**2, rel=1e-12)
     assert light["mass_per_length"] == pytest.approx(0.1268 * POUND / INCH, rel=1e-12)
     # The other is that times standard gravity in in/s^2.
@@ -40,11 +35,11 @@ def test_both_readings_of_the_stiff_rods_mass():
 
 @pytest.mark.parametrize("formulation", LINEAR)
 def test_a_linear_formulation_is_its_basis(formulation):
-    scene = load_scene(
+    scene = el.load_scene(
         FLEXIBLE, {"model.formulation": formulation, "model.modes": 2, "links.crank_ratio": 0.15}
     )
     system = scene.system()
-    assert isinstance(system, LinearPeriodic)
+    assert isinstance(system, el.LinearPeriodic)
     direct = rod_system(formulation.removesuffix("_linear"), 2, crank_ratio=0.15, **ROD)
     theta = np.linspace(0.0, 6.0, 7)
     for name in "MABKf":
@@ -55,23 +50,23 @@ def test_a_linear_formulation_is_its_basis(formulation):
 
 
 def test_the_constrained_formulation():
-    scene = load_scene(FLEXIBLE, {"model.formulation": "free_free", "model.modes": 2})
+    scene = el.load_scene(FLEXIBLE, {"model.formulation": "free_free", "model.modes": 2})
     system = scene.system()
-    assert isinstance(system, Constrained)
+    assert isinstance(system, el.Constrained)
     assert (system.size, system.constraints) == (5, 3)
-    with pytest.raises(BadInput, match="constrained; expected a linear formulation"):
+    with pytest.raises(el.BadInput, match="constrained; expected a linear formulation"):
         scene.linear_system()
 
 
 def test_as_printed_is_a_name_for_what_is_dropped():
     printed = {"model.drop": ["as_printed"]}
-    assert load_scene(FLEXIBLE, printed).model_spec().drop == ("frame", "tension")
+    assert el.load_scene(FLEXIBLE, printed).model_spec().drop == ("frame", "tension")
     free = {**printed, "model.formulation": "free_free"}
-    assert load_scene(FLEXIBLE, free).model_spec().drop == ("tension",)
+    assert el.load_scene(FLEXIBLE, free).model_spec().drop == ("tension",)
     # It matters: without the tension the first multipliers are others.
     found = [
-        floquet_multipliers(
-            load_scene(FLEXIBLE, {**drop, "links.crank_ratio": 0.2}).linear_system(), 300.0
+        el.floquet_multipliers(
+            el.load_scene(FLEXIBLE, {**drop, "links.crank_ratio": 0.2}).linear_system(), 300.0
         ).multipliers
         for drop in ({}, printed)
     ]
@@ -81,7 +76,7 @@ def test_as_printed_is_a_name_for_what_is_dropped():
 @pytest.mark.parametrize("law", ["viscous", "internal", "modal"])
 def test_a_damping_ratio_is_that_of_the_first_mode(law):
     """A crank of next to no length leaves the frozen rod: its first decay is the ratio asked."""
-    scene = load_scene(
+    scene = el.load_scene(
         FLEXIBLE,
         {
             "links.crank_ratio": 1e-9,
@@ -91,7 +86,7 @@ def test_a_damping_ratio_is_that_of_the_first_mode(law):
         },
     )
     speed = 3000.0
-    found = floquet_multipliers(scene.linear_system(), speed).multipliers
+    found = el.floquet_multipliers(scene.linear_system(), speed).multipliers
     numbers = {name: value for name, value in ROD.items() if name != "frame"}
     first = OverhangBasis(1).frequencies(ROD["frame"], **numbers).frequencies[0, 0]
     # |rho| = exp(-zeta omega T), T one turn.
@@ -100,7 +95,7 @@ def test_a_damping_ratio_is_that_of_the_first_mode(law):
 
 
 test_impossible_rods_are_refused_in_words = refused(
-    lambda overrides: load_scene(FLEXIBLE, overrides).system(),
+    lambda overrides: el.load_scene(FLEXIBLE, overrides).system(),
     [
         ({"links.crank_ratio": 1.0}, "another length than frame"),
         ({"links.crank_ratio": 0.8}, "the block would leave the rod"),
@@ -120,12 +115,12 @@ test_impossible_rods_are_refused_in_words = refused(
 
 def test_stiffness_and_section_take_each_others_place():
     """What an override replaces goes, so that nothing given is ignored."""
-    stiff = load_scene(FLEXIBLE, {"rod.bending_stiffness": "3e4 N*m**2"})
+    stiff = el.load_scene(FLEXIBLE, {"rod.bending_stiffness": "3e4 N*m**2"})
     assert stiff["rod"]["bending_stiffness"] == 3e4
-    section = load_scene(FLEXIBLE, {"rod.second_moment": "1e-6 m**4"})
+    section = el.load_scene(FLEXIBLE, {"rod.second_moment": "1e-6 m**4"})
     np.testing.assert_allclose(section["rod"]["bending_stiffness"], 0.7e11 * 1e-6, rtol=1e-14)
     both = {"rod.modulus": "2e11 Pa", "rod.second_moment": "1e-6 m**4"}
-    assert load_scene(STIFF, both)["rod"]["bending_stiffness"] == pytest.approx(2e5, rel=1e-14)
+    assert el.load_scene(STIFF, both)["rod"]["bending_stiffness"] == pytest.approx(2e5, rel=1e-14)
     # A section alone says no stiffness.
-    with pytest.raises(BadInput, match="bending_stiffness"):
-        load_scene(STIFF, {"rod.second_moment": "1e-6 m**4"})
+    with pytest.raises(el.BadInput, match="bending_stiffness"):
+        el.load_scene(STIFF, {"rod.second_moment": "1e-6 m**4"})

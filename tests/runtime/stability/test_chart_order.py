@@ -1,21 +1,15 @@
 """Charts: perturbation boundaries of any order, kinds of instability, traced regions, options."""
 
-from __future__ import annotations
-
 import elastolink as el
 import numpy as np
 import pytest
 from edge_truth import RIG, rig
 from elastolink.runtime.cli.application import main
-from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.hill.boundaries import hill_boundaries
-from elastolink.runtime.hill.form import hill_form
-from elastolink.runtime.hill.perturbation import perturbation_boundaries
 from periodic_systems import wave
 
 SPEEDS = ("speed", np.linspace(40.0, 99.0, 31))
 INERTIAS = ("follower_inertia", np.linspace(1e-4, 9e-4, 9))
+LINE = ["chart", "mathieu", "--x", "lam2=0.1:1.4:21", "--y", "mu=0:0.5:9"]
 
 
 def mathieu():
@@ -28,7 +22,7 @@ def test_overlay_along_the_speed_belongs_to_its_own_row_and_damping(order, ratio
     """At a drawn end, lam2 and K of that very speed: the perturbation gives this lam2 again."""
     system = rig(**{"coupler.damping_ratio": ratio})
     chart = el.stability_chart(system, SPEEDS, INERTIAS, order=order)
-    form = hill_form(system)
+    form = el.hill_form(system)
     curves, checked = chart.perturbation, 0
     for j, inertia in enumerate(curves.at):
         f = form.function(1.0, follower_inertia=float(inertia))
@@ -37,7 +31,7 @@ def test_overlay_along_the_speed_belongs_to_its_own_row_and_damping(order, ratio
                 if np.isnan(speed):
                     continue
                 damping = form.damping() / (2 * speed)
-                row = perturbation_boundaries(f, 1.0, (n,), order, damping)
+                row = el.perturbation_boundaries(f, 1.0, (n,), order, damping)
                 lam2 = (row.lower, row.upper)[side][0]
                 assert lam2 == pytest.approx(form.stiffness() / speed**2, rel=rtol)
                 checked += 1
@@ -71,28 +65,25 @@ def test_three_independent_parts_go_row_by_row():
     """More parts than are done together: each row is its own function all the same."""
     values = {"a": 0.02, "k": 1.0}
     names = {"a": 1, "square": 2, "cube": 3}
-    waves = [Term("Kg", name, wave(np.eye(1), m)) for name, m in names.items()]
-    terms = (Term("M", None, np.eye(1)), Term("K", "k", np.eye(1)), *waves)
+    waves = [el.Term("Kg", name, wave(np.eye(1), m)) for name, m in names.items()]
+    terms = (el.Term("M", None, np.eye(1)), el.Term("K", "k", np.eye(1)), *waves)
 
     def scales(given):
         a = np.asarray(given["a"], dtype=float)
         k = np.asarray(given["k"], dtype=float)
         return {"a": a, "square": a**2, "cube": a**3, "k": k}
 
-    system = LinearPeriodic(1, terms, values, scales)
+    system = el.LinearPeriodic(1, terms, values, scales)
     rows = np.array([0.02, 0.05, 0.1])
     chart = el.stability_chart(system, ("k", np.linspace(0.1, 1.3, 9)), ("a", rows), order=3)
     for j, a in enumerate(rows):
-        f = PeriodicFunction(a=[0.0, a, a**2, a**3], b=[0.0] * 4)
-        row = hill_boundaries(f, 1.0, chart.exact.regions)
-        near = perturbation_boundaries(f, 1.0, chart.exact.regions, 3)
+        f = el.PeriodicFunction(a=[0.0, a, a**2, a**3], b=[0.0] * 4)
+        row = el.hill_boundaries(f, 1.0, chart.exact.regions)
+        near = el.perturbation_boundaries(f, 1.0, chart.exact.regions, 3)
         for curves, other in ((chart.exact, row), (chart.perturbation, near)):
             # Region 0 has no lower end.
             lower = np.where(np.isfinite(other.lower), other.lower, np.nan)
             np.testing.assert_allclose(curves.lower[:, j], lower, rtol=1e-10)
-
-
-# Kinds of instability ----------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("ratio", [0.0, 1e-5])
@@ -132,9 +123,6 @@ def test_kind_of_one_mode_is_the_sign_of_the_half_trace():
     assert not any("combination" in label for label in labels)
 
 
-# Traced regions --------------------------------------------------------------------------------
-
-
 @pytest.fixture(scope="module")
 def traced():
     speeds = ("speed", np.linspace(79.0, 83.0, 9))
@@ -163,11 +151,6 @@ def test_picture_labels_combinations(traced):
     assert any(text.get_text() == "1+2, 10" for text in axes.texts)
     table = traced.to_dict()
     assert "sum" in table["edges"]["kind"]
-
-
-# Command line ------------------------------------------------------------------------------------
-
-LINE = ["chart", "mathieu", "--x", "lam2=0.1:1.4:21", "--y", "mu=0:0.5:9"]
 
 
 def test_command_takes_the_order(tmp_path, capsys):

@@ -1,7 +1,5 @@
 """Stability charts: interpolated invariants against direct ones, boundaries against both."""
 
-from __future__ import annotations
-
 import elastolink as el
 import numpy as np
 import pytest

@@ -17,21 +17,14 @@ SPAN = (72.0, 73.0)
 INSIDE, OUTSIDE = 72.5964, 72.9
 
 
-def four_bar(ratio=0.0, elements=1):
-    overrides = {
-        "mesh.elements": elements,
-        "damping.ratio": ratio,
-        "model.drop": ["geometric_stiffness"],
-    }
+def four_bar(ratio=0.0):
+    rigid = {"mesh.elements": 1, "model.drop": ["geometric_stiffness"]}
+    overrides = {"damping.ratio": ratio, **rigid}
     return el.load_scene("aannaque_1996_table_4_1", overrides=overrides).system()
 
 
-@pytest.fixture(scope="module")
-def bands():
-    return stability_edges(four_bar(), SPAN, modes=5, margin=1.02)
-
-
-def test_the_widest_band_is_found_by_reduction_too(bands):
+def test_the_widest_band_is_found_by_reduction_too():
+    bands = stability_edges(four_bar(), SPAN, modes=5, margin=1.02)
     # Its checks: multipliers grow well inside every band, and nowhere else.
     assert bands.passed, bands.checks
     assert "sum" in {bands.kind[i] for i in np.flatnonzero(bands.width > 1e-4)}
@@ -116,11 +109,3 @@ def test_all_nine_freedoms_leave_the_circle_at_the_ends(span):
     turns = float(bands.harmonic[widest]) * width / lower
     allowed = bands.error[widest] + width * (BESIDE * turns) ** 2 + 1e-6 * width
     assert np.max(np.abs(ends - [lower, upper])) <= allowed
-
-
-@pytest.mark.slow
-def test_the_choice_of_modes_is_made_for_three_elements_a_link():
-    lowest = LowestModes(four_bar(elements=3))
-    modes, error = lowest.chosen(84.0)
-    assert modes == 7
-    assert error < 1e-6

@@ -1,7 +1,5 @@
 """Where exponents of the mean system meet: speeds, labels, signatures, refusals."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput

@@ -1,19 +1,11 @@
 """Slow driving: tongues of high order, and the practical range of the rod."""
 
-from __future__ import annotations
-
 import elastolink as el
 import numpy as np
 import pytest
+from edge_truth import scene_rod
 from elastolink.runtime.stability import tongue_curves
 from scipy.integrate import quad
-
-
-def _rod(ratio, **more):
-    return el.load_scene(
-        "beale_1992_flexible_rod",
-        overrides={"links.crank_ratio": ratio, "model.modes": 2, **more},
-    ).linear_system()
 
 
 def relative_widths(system, name, value, orders, frequency):
@@ -90,7 +82,7 @@ def test_the_estimate_lies_above_a_tongue_left_out(mathieu):
 def test_practical_range_of_the_rod():
     """Speeds to 20 rad/s, ratio 0.3: the lowest order is 86, its tongue below 1e-18 rad/s."""
     orders = tuple(range(8, 16))
-    widths = relative_widths(_rod(0.3), "crank_ratio", 0.3, orders, 858.23)
+    widths = relative_widths(scene_rod(0.3), "crank_ratio", 0.3, orders, 858.23)
     assert np.all(np.isfinite(widths))
     assert widths[-1] < 1e-5
     slope, estimate = carried_on(orders, widths, 86)
@@ -106,7 +98,7 @@ def test_practical_range_of_the_rod():
 def test_multipliers_of_the_practical_range_are_on_the_circle(ratio, modes):
     """Every one of a definite signature, which no small change can bring off the circle."""
     speed = np.array([4.1, 7.7, 12.3, 16.9, 20.0])[modes - 2 :]
-    rod = _rod(ratio, **{"model.modes": modes})
+    rod = scene_rod(ratio, modes)
     found = el.floquet_multipliers(rod, speed, rtol=1e-10)
     assert found.signatures is not None
     assert np.all(np.abs(found.signatures) == 1)

@@ -1,10 +1,9 @@
 """Tongues of the rod over the crank ratio: feet, ends, growth, bases, tension, lost ones."""
 
-from __future__ import annotations
-
 import elastolink as el
 import numpy as np
 import pytest
+from edge_truth import scene_rod
 from elastolink.runtime.stability import tongue_curves
 
 SPEEDS = (500.0, 4000.0)
@@ -12,21 +11,9 @@ SPEEDS = (500.0, 4000.0)
 FIRST, SECOND = 858.228, 2630.18
 
 
-def _rod(modes=2, formulation="overhang", drop=()):
-    return el.load_scene(
-        "beale_1992_flexible_rod",
-        overrides={
-            "links.crank_ratio": 0.1,
-            "model.modes": modes,
-            "model.formulation": formulation,
-            "model.drop": list(drop),
-        },
-    ).linear_system()
-
-
 @pytest.fixture(scope="module")
 def rod():
-    return _rod()
+    return scene_rod(0.1)
 
 
 @pytest.fixture(scope="module")
@@ -87,32 +74,16 @@ def test_width_grows_like_the_power_of_the_harmonic(curves):
 
 
 @pytest.mark.slow
-def test_without_tension_the_chart_is_another():
+def test_without_tension_the_chart_is_another(rod):
     """As printed: at ratio 0.1 the first tongue's upper end is 40 rad/s lower, at 0.02 only 2."""
     values = [0.02, 0.1]
     found = [
         tongue_curves(system, "crank_ratio", values, (1400.0, 1800.0), highest=1)
-        for system in (_rod(), _rod(drop=("as_printed",)))
+        for system in (rod, scene_rod(0.1, **{"model.drop": ["as_printed"]}))
     ]
     row = [one.labels.index("2 w1 = w") for one in found]
     upper = [one.upper[i] for one, i in zip(found, row, strict=True)]
     np.testing.assert_allclose(upper[0] - upper[1], [2.24, 42.8], rtol=0.02)
-
-
-@pytest.mark.slow
-def test_three_polynomials_put_the_combination_tongue_too_high():
-    """Beale & Scott's three modes: (w1 + w2) 22 % off, 2 w1 5 %; free-free modes about 1 %."""
-    foot = {}
-    for formulation, modes in (("overhang", 2), ("polynomial", 3), ("free_free_linear", 3)):
-        system = _rod(modes, formulation)
-        found = tongue_curves(system, "crank_ratio", [0.02], (1500.0, 4500.0), highest=1, modes=2)
-        foot[formulation] = dict(zip(found.labels, found.foot.tolist(), strict=True))
-    exact = foot["overhang"]
-    sums = {name: one["w1 + w2 = w"] / exact["w1 + w2 = w"] for name, one in foot.items()}
-    own = {name: one["2 w1 = w"] / exact["2 w1 = w"] for name, one in foot.items()}
-    assert sums["polynomial"] == pytest.approx(1.225, abs=2e-3)
-    assert own["polynomial"] == pytest.approx(1.053, abs=2e-3)
-    assert sums["free_free_linear"] == pytest.approx(1.010, abs=2e-3)
 
 
 @pytest.mark.slow

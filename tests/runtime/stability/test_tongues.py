@@ -1,21 +1,17 @@
 """Tongues of coupled modes as series: orders, damping, checks, random systems, Smith's rig."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import SimpleNamespace
 
-import matplotlib
 import numpy as np
 import pytest
 from edge_truth import rig
 from elastolink.runtime.core.families import Term
 from elastolink.runtime.stability import resonances, stability_edges, tongue
-from periodic_systems import is_growing, system_of, wave
-
-matplotlib.use("Agg")
+from periodic_systems import every_term, is_growing, system_of, wave
 
 W2 = np.sqrt(5.3)
+RANGE = (38.0, 95.0)
 
 
 def _pair(first=((0.0, 1.0), (1.0, 0.0)), second=((0.0, 0.0), (0.0, 0.0)), **changes):
@@ -29,19 +25,6 @@ def _pair(first=((0.0, 1.0), (1.0, 0.0)), second=((0.0, 0.0), (0.0, 0.0)), **cha
 
 
 FULL = _pair(((0.4, 1.0), (1.0, -0.3)), ((0.2, 0.3), (0.3, 0.1)))
-
-
-def _whole(**changes):
-    """Two modes with periodic mass, Coriolis, centrifugal and axial terms, all times eps."""
-    return system_of(
-        {"eps": 0.0, "c": 0.0, **changes},
-        M=[np.array([[2.0, 0.3], [0.3, 1.0]]), ("eps", wave([[0.3, 0.1], [0.1, 0.2]], 1, 0.3))],
-        A=[np.array([[0.1, -0.2], [0.3, 0.0]]), ("eps", wave([[0.1, 0.2], [-0.1, 0.1]], 2, 1.0))],
-        B=[np.array([[0.1, 0.05], [0.05, -0.2]]), ("eps", wave([[0.2, 0.1], [0.1, -0.3]]))],
-        K=np.array([[20.0, 3.0], [3.0, 9.0]]),
-        Kg=("eps", wave([[2.0, 1.0], [1.0, 3.0]], 1, -0.4)),
-        C=("c", np.array([[0.4, 0.1], [0.1, 0.3]])),
-    )
 
 
 def _resonance(system, label, span=(0.3, 12.0), **options):
@@ -78,8 +61,8 @@ CASES = {
     "sum, second harmonic": (FULL, "w1 + w2 = 2 w", {}),
     "principal, damped": (FULL, "2 w1 = w", {"d1": 0.05, "d2": 0.2}),
     "sum, damped": (FULL, "w1 + w2 = w", {"d1": 0.06, "d2": 0.18}),
-    "periodic mass, sum": (_whole(), "w1 + w2 = w", {}),
-    "periodic mass, sum, damped": (_whole(), "w1 + w2 = w", {"c": 0.2}),
+    "periodic mass, sum": (every_term(), "w1 + w2 = w", {}),
+    "periodic mass, sum, damped": (every_term(), "w1 + w2 = w", {"c": 0.2}),
     "difference, not conservative": (_pair(((0.3, 1.0), (-0.8, 0.2))), "w2 - w1 = w", {}),
     "difference, not conservative, damped": (
         _pair(((0.3, 1.0), (-0.8, 0.2)), ((0.2, 0.4), (0.1, -0.3))),
@@ -127,7 +110,7 @@ def test_the_error_falls_with_the_first_power_left_out(name):
 
 
 def test_checks_pass_and_say_what_was_compared():
-    system = _whole()
+    system = every_term()
     resonance = _resonance(system, "w1 + w2 = w", (0.3, 20.0))
     found = tongue(system, resonance, parameter=("eps", EPS), c=0.005)
     assert found.passed, dict(found.checks)
@@ -339,12 +322,6 @@ def test_a_series_out_of_its_depth_does_not_pass_a_closed_range():
     assert np.isnan(found.lower)
     assert is_growing(system, 1 + np.sqrt(5.3), 1e-3, eps=5.0)
     assert not found.passed
-
-
-# ---------------------------------------------------------------- Smith's 1/16 inch rig
-
-
-RANGE = (38.0, 95.0)
 
 
 @pytest.fixture(scope="module", name="rig")

@@ -1,20 +1,15 @@
 """Unstable regions along the speed: first-order widths, labels, damping, random systems."""
 
-from __future__ import annotations
-
 import elastolink as el
 import numpy as np
 import pytest
 from edge_truth import contradictions, region_of, rig
-from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.periodic import floquet_multipliers
-from elastolink.runtime.stability import stability_edges
 from periodic_systems import system_of, wave
 
 LOW, HIGH = 1.0, 2.3
 
 
-def _pair(pull=0.02, own=0.0, damping=(0.0, 0.0)) -> LinearPeriodic:
+def _pair(pull=0.02, own=0.0, damping=(0.0, 0.0)) -> el.LinearPeriodic:
     """Two oscillators, 1 and 2.3 rad/s, coupled (and each pulled, by ``own``) by pull cos."""
     matrix = np.array([[own, 1.0], [1.0, own]])
     return system_of(
@@ -26,24 +21,21 @@ def _pair(pull=0.02, own=0.0, damping=(0.0, 0.0)) -> LinearPeriodic:
     )
 
 
-# First order ---------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     ("system", "span", "least"),
     [(_pair(0.3, own=1.0), (1.3, 6.0), 4), (rig(**{"model.modes": 2}), (81.0, 81.7), 1)],
 )
 def test_the_edges_are_where_multipliers_leave_the_circle(system, span, least):
     """Multipliers from another tolerance, a hair on either side of each end."""
-    found = stability_edges(system, span)
+    found = el.stability_edges(system, span)
     checked = 0
     for i in range(len(found.kind)):
         if not found.width[i] > 1e-5:
             continue
         step = 1e-4 * found.width[i]
         ends = np.array([found.lower[i], found.upper[i]])
-        outside = floquet_multipliers(system, ends + step * np.array([-1, 1]), rtol=1e-13)
-        inside = floquet_multipliers(system, ends + step * np.array([1, -1]), rtol=1e-13)
+        outside = el.floquet_multipliers(system, ends + step * np.array([-1, 1]), rtol=1e-13)
+        inside = el.floquet_multipliers(system, ends + step * np.array([1, -1]), rtol=1e-13)
         assert outside.stable.tolist() == [True, True]
         assert inside.stable.tolist() == [False, False]
         checked += 1
@@ -53,7 +45,7 @@ def test_the_edges_are_where_multipliers_leave_the_circle(system, span, least):
 
 def test_closed_meetings_are_listed_and_labelled():
     """Second and third sum resonances of a pull of one harmonic are of higher order, not lost."""
-    found = stability_edges(_pair(0.02), (1.05, 3.6))
+    found = el.stability_edges(_pair(0.02), (1.05, 3.6))
     for harmonic in (1, 2, 3):
         at = region_of(found, "sum", harmonic)
         middle = 0.5 * (found.lower[at] + found.upper[at])
@@ -66,7 +58,7 @@ def test_closed_meetings_are_listed_and_labelled():
 
 
 def test_uncoupled_oscillators_have_only_closed_regions():
-    found = stability_edges(_pair(0.0), (0.9, 5.0))
+    found = el.stability_edges(_pair(0.0), (0.9, 5.0))
     assert np.all(found.width <= 2 * found.error)
     expected = sorted(
         [2 * w / n for w in (LOW, HIGH) for n in range(1, 8)] + [3.3 / n for n in range(1, 8)]
@@ -77,9 +69,6 @@ def test_uncoupled_oscillators_have_only_closed_regions():
     assert np.all(found.detuning < 1e-9)
 
 
-# Damping -------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(("first", "second"), [(0.004, 0.004), (0.004, 0.0004)])
 def test_damping_draws_a_sum_region_in_and_if_unequal_widens_it(first, second):
     """Mettler; Schmidt and Weidenhammer.
@@ -87,18 +76,18 @@ def test_damping_draws_a_sum_region_in_and_if_unequal_widens_it(first, second):
     |speed - w1 - w2| < (c1 + c2)/(2 sqrt(c1 c2)) sqrt(e^2/(4 w1 w2) - c1 c2).
     """
     pull, system = 0.02, _pair(0.02, damping=(first, second))
-    found = stability_edges(system, (3.2, 3.4))
+    found = el.stability_edges(system, (3.2, 3.4))
     at = region_of(found, "sum", 1)
     sharp = pull / (2 * np.sqrt(LOW * HIGH))
     half = 0.5 * (first + second) / np.sqrt(first * second) * np.sqrt(sharp**2 - first * second)
     assert 0.5 * found.width[at] == pytest.approx(half, rel=0.02)
     assert found.passed, found.checks
-    ends = floquet_multipliers(system, [found.lower[at], found.upper[at]]).multipliers
+    ends = el.floquet_multipliers(system, [found.lower[at], found.upper[at]]).multipliers
     np.testing.assert_allclose(np.max(np.abs(ends), axis=-1), 1.0, rtol=0, atol=1e-11)
 
 
 def test_strong_damping_closes_every_region():
-    found = stability_edges(_pair(0.02, damping=(0.05, 0.05)), (1.3, 5.0))
+    found = el.stability_edges(_pair(0.02, damping=(0.05, 0.05)), (1.3, 5.0))
     assert len(found.kind) == 0
     assert found.passed, found.checks
 
@@ -109,7 +98,7 @@ def test_narrow_regions_within_wide_ones(damping):
     """The thinnest coupler, the heaviest follower: regions of mode 2 within those of mode 1."""
     name = "smith_1972_5152_thirtysecond_inch"
     scene = el.load_scene(name, overrides={"model.modes": 2, "coupler.damping_ratio": damping})
-    found = stability_edges(scene.system(), (23.56, 47.12), follower_inertia=2.14671e-3)
+    found = el.stability_edges(scene.system(), (23.56, 47.12), follower_inertia=2.14671e-3)
     assert found.passed, found.checks
     wide = found.labels.index("region 3 of mode 1")
     assert found.lower[wide] == pytest.approx(40.328, abs=1e-3)
@@ -121,10 +110,7 @@ def test_narrow_regions_within_wide_ones(damping):
     assert "region 15 of mode 2" in found.labels
 
 
-# Random systems against a dense line of multipliers ---------------------------------------------
-
-
-def _random(seed, strength) -> LinearPeriodic:
+def _random(seed, strength) -> el.LinearPeriodic:
     """Two modes with gyroscopic terms, a periodic mass and two harmonics of stiffness."""
     rng = np.random.default_rng(seed)
 
@@ -142,7 +128,7 @@ def _random(seed, strength) -> LinearPeriodic:
     )
 
 
-def _whirl(pull) -> LinearPeriodic:
+def _whirl(pull) -> el.LinearPeriodic:
     """Return a mass on a spring seen from the crank, of negative energy above sqrt(2) rad/s."""
     matrix = pull * np.array([[1.0, 0.3], [0.3, -0.5]])
     return system_of(
@@ -165,13 +151,13 @@ def _whirl(pull) -> LinearPeriodic:
     ],
 )
 def test_every_unstable_speed_is_in_a_region_and_no_other(system):
-    found = stability_edges(system, (1.2, 9.0))
+    found = el.stability_edges(system, (1.2, 9.0))
     assert contradictions(system, found, np.linspace(1.2, 9.0, 1501)) == 0
     assert np.nansum(found.width) > 0.15
     assert found.passed, found.checks
 
 
-def _pulled(frequencies, matrix) -> LinearPeriodic:
+def _pulled(frequencies, matrix) -> el.LinearPeriodic:
     return system_of(M=np.eye(len(matrix)), K=np.diag(frequencies) ** 2, Kg=wave(matrix))
 
 
@@ -193,7 +179,7 @@ def _pulled(frequencies, matrix) -> LinearPeriodic:
     ],
 )
 def test_a_region_wider_than_the_search_is_found(system, span, label):
-    found = stability_edges(system, span)
+    found = el.stability_edges(system, span)
     assert label in found.labels
     assert found.passed, found.checks
     speeds = np.linspace(*span, 101)
@@ -206,9 +192,9 @@ def test_four_multipliers_that_leave_at_minus_one_are_a_sum_of_their_modes():
     matrix = rng.normal(size=(3, 3))
     phase, turned = rng.uniform(0, 6), rng.normal(size=(3, 3))
     system = _pulled([2.546, 3.415, 3.424], (matrix + matrix.T) / 2).with_terms(
-        Term("K", None, wave((turned + turned.T) / 2, 1, phase))
+        el.Term("K", None, wave((turned + turned.T) / 2, 1, phase))
     )
-    found = stability_edges(system, (6.5, 7.2))
+    found = el.stability_edges(system, (6.5, 7.2))
     assert found.passed, found.checks
     at = region_of(found, "sum", 1)
     assert found.modes[at].tolist() == [2, 3]
@@ -225,13 +211,13 @@ def test_a_mode_of_negative_energy_makes_a_difference_region():
     gyro, whirl = np.zeros((3, 3)), np.diag([1.0, 1.0, 0.0])
     gyro[0, 1], gyro[1, 0] = -1.0, 1.0
     system = system_of(M=np.eye(3), A=gyro, B=whirl, K=stiff, Kg=wave(cross))
-    found = stability_edges(system, (2.6, 2.8))
+    found = el.stability_edges(system, (2.6, 2.8))
     assert found.passed, found.checks
     at = region_of(found, "difference", 1)
     assert 0.5 * (found.lower[at] + found.upper[at]) == pytest.approx(
         (np.sqrt(2) + 4) / 2, rel=1e-3
     )
-    inside = floquet_multipliers(system, 0.5 * (found.lower[at] + found.upper[at]))
+    inside = el.floquet_multipliers(system, 0.5 * (found.lower[at] + found.upper[at]))
     assert not inside.stable
     assert abs(inside.multipliers[0].imag) > 0.1
     assert found.width[at] > 1e-3
@@ -239,8 +225,8 @@ def test_a_mode_of_negative_energy_makes_a_difference_region():
 
 def test_boundaries_without_modes_are_paired():
     """The averaged whirl diverges between its two natural frequencies, 1.41 and 1.52 rad/s."""
-    split = Term("K", None, np.diag([0.3, 0.0]))
-    found = stability_edges(_whirl(0.0).with_terms(split), (1.3, 1.7))
+    split = el.Term("K", None, np.diag([0.3, 0.0]))
+    found = el.stability_edges(_whirl(0.0).with_terms(split), (1.3, 1.7))
     at = int(np.argmin(found.modes[:, 0]))
     assert found.modes[at].tolist() == [0, 0]
     assert found.lower[at] == pytest.approx(np.sqrt(2.0), rel=1e-12)

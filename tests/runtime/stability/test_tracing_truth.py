@@ -1,7 +1,5 @@
 """Unstable regions beside a dense line of multipliers where regions touch, nest and meet."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from edge_truth import contradictions, rig

@@ -1,7 +1,5 @@
 """Executors of the solvers themselves, Dask, the command line, a chart of 1e7 points."""
 
-from __future__ import annotations
-
 import json
 import sys
 from concurrent.futures import ThreadPoolExecutor

@@ -1,7 +1,5 @@
 """Sweeps: the same bytes by any workers and order, stores, refusals, estimates."""
 
-from __future__ import annotations
-
 import io
 import json
 import os
@@ -26,6 +24,7 @@ from fresh_process import python
 
 MU, LAM2 = np.linspace(0.0, 3.0, 23), np.linspace(-0.5, 6.0, 31)
 VALUES = {"mu": MU, "lam2": LAM2}
+CHART = "stability_chart"
 
 
 def square_sum(subject, a, b=1.0):
@@ -81,8 +80,7 @@ def contents(path: Path) -> dict[str, bytes]:
 
 @pytest.mark.parametrize("chunk", [1, 2, 5, 7, 12, 40, 1000])
 @pytest.mark.parametrize(
-    ("shape", "rows"),
-    [*product([(4, 5), (3, 2), (7, 3)], [False, True]), ((3, 4, 5), False)],
+    ("shape", "rows"), [*product([(4, 5), (3, 2), (7, 3)], [False, True]), ((3, 4, 5), False)]
 )
 def test_pieces_are_runs_that_cover_the_grid_once(chunk, shape, rows):
     axes = {name: np.arange(float(n)) for name, n in zip("abc", shape, strict=False)}
@@ -517,9 +515,6 @@ def test_digests_tell_content_and_nothing_else(mathieu):
     code += "print(digest((el.load_scene('mathieu').system(), {'a', 'b', 'c'}, el.load_scene)))"
     seen = {python(code, PYTHONHASHSEED=seed) for seed in ("1", "2")}
     assert seen == {digest((mathieu, {"a", "b", "c"}, el.load_scene)) + "\n"}
-
-
-CHART = "stability_chart"
 
 
 @pytest.mark.parametrize(

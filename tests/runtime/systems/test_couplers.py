@@ -1,7 +1,5 @@
 """From a scene to the system of the flexible coupler."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput

@@ -1,7 +1,5 @@
 """Free-free modes to number 60, and the moving basis that the paper's conjecture makes of them."""
 
-from __future__ import annotations
-
 import free_free_truth as truth
 import mpmath
 import numpy as np
@@ -69,9 +67,6 @@ def test_integrals_of_slopes_against_quadrature():
         assert np.max(np.abs(found - exact)) < 1e-12 * np.max(np.abs(exact))
     exact = slope.T @ ((weights * (1 - eta**2) / 2)[:, None] * slope)
     assert np.max(np.abs(modes.tension() - exact)) < 1e-12 * np.max(np.abs(exact))
-
-
-# ---------------------------------------------------------------- the basis
 
 
 def drifts(basis, eta, place, derivative):

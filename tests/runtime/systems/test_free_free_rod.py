@@ -1,7 +1,5 @@
 """The rod in Buckens' frame: constraints, balances by quadrature, and the linear formulation."""
 
-from __future__ import annotations
-
 import free_free_loads
 import numpy as np
 import pytest
@@ -49,9 +47,6 @@ def test_the_undeformed_rod_meets_the_constraints(modes, drop):
     assert rod.period == pytest.approx(2 * np.pi / SPEED)
 
 
-# ---------------------------------------------------------------- the functions of the state
-
-
 @pytest.mark.parametrize("drop", DROPS)
 def test_the_modes_follow_the_block(drop):
     """Jacobians and variations against differences through the modes at the moving block.
@@ -70,7 +65,8 @@ def test_the_modes_follow_the_block(drop):
     def close(found, exact):
         assert np.max(np.abs(found - exact)) < 1e-7 * np.max(np.abs(exact))
 
-    close(rod.dynamics(q, qd, t)["jacobian"], slopes(constraints_of(rod, t), q))
+    constraints = slopes(lambda x: rod.violation(x, t)["constraints"][:, 0], q)
+    close(rod.dynamics(q, qd, t)["jacobian"], constraints)
     found = rod.variations(q, qd, qdd, lam, t)
     close(found["stiffness"], slopes(lambda x: residual(rod, x, qd, qdd, lam, t), q))
     # Quadratic in the velocities: differences are exact at any step.
@@ -87,10 +83,6 @@ def test_the_modes_follow_the_block(drop):
 
     close(found["jacobian_rate"], slopes(rate, q))
     close(found["jacobian_acceleration"], slopes(acceleration, q))
-
-
-def constraints_of(rod, t):
-    return lambda x: rod.violation(x, t)["constraints"][:, 0]
 
 
 def residual(rod, q, qd, qdd, lam, t):
@@ -113,9 +105,6 @@ def test_batches_and_single_states_agree():
         alone = rod.accelerations(q[i], qd[i], t[i])[0]
         np.testing.assert_allclose(alone, together[i], rtol=1e-9)
         np.testing.assert_allclose(other, together[::-1, ::-1][i], rtol=1e-9)
-
-
-# ---------------------------------------------------------------- balances
 
 
 class ByQuadrature:
@@ -195,9 +184,6 @@ def test_the_crank_gives_the_energy(drop):
         exact = ByQuadrature(rod).energy(q, qd)
         assert rod.energy(q, qd) == pytest.approx(exact, rel=1e-12)
     assert rod.energy(np.stack([q, q]), np.stack([qd, 0 * qd]), np.array([t, t])).shape == (2,)
-
-
-# ---------------------------------------------------------------- deflections and refusals
 
 
 def test_deflection_is_measured_from_the_line_of_the_block():

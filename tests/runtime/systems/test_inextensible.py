@@ -1,13 +1,11 @@
 """The inextensible coupler: another derivation, its linear limit, energy, exact derivatives."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import elastolink as el
 import numpy as np
 import pytest
-from bent_rigs import BENT, REFERENCE, SLIDER_CRANK, Shape, rig
+from bent_rigs import BENT, REFERENCE, Shape, rig, slider_crank
 from elastolink.runtime.core.errors import BadInput, SelfCheckFailed
 from elastolink.runtime.core.families import LinearPeriodic
 from elastolink.runtime.core.families.nonlinear import Drive
@@ -24,19 +22,6 @@ def accelerations(system, q, qd, drive):
     return -np.linalg.solve(left.mass, left.residual[..., None])[..., 0]
 
 
-@pytest.fixture(scope="module")
-def slider_crank(tmp_path_factory):
-    """Return a function from modes and changes to the system of a slider-crank."""
-    file = tmp_path_factory.mktemp("scene") / "slider_crank.toml"
-    file.write_text(SLIDER_CRANK)
-
-    def made(modes=2, **changes):
-        system = el.load_scene(file, {"model.modes": modes}).system()
-        return system.with_parameters(**changes)
-
-    return made
-
-
 @pytest.fixture
 def many_stations(monkeypatch):
     """Return a function from modes to rig A58 with as many stations as leave no error."""
@@ -44,9 +29,6 @@ def many_stations(monkeypatch):
     coupler_stations.cache_clear()
     yield rig.__wrapped__
     coupler_stations.cache_clear()
-
-
-# ---------------------------------------------------------------- another derivation
 
 
 def test_accelerations_are_those_of_another_lagrangian(many_stations):
@@ -99,9 +81,6 @@ def test_stations_are_as_many_as_large_motions_need(modes):
     assert np.max(np.abs(found - exact)) <= 5e-12 * np.max(np.abs(exact))
 
 
-# ---------------------------------------------------------------- no deflection
-
-
 @pytest.mark.parametrize("modes", range(1, 6))
 def test_about_no_deflection_it_is_the_complete_equation(modes):
     """All powers of speed and acceleration, entry by entry: slopes q_k are k pi Y_k / l3."""
@@ -142,8 +121,8 @@ def assert_linear(system, linear: LinearPeriodic, theta, speed, acceleration) ->
 
 
 @pytest.mark.parametrize(("modes", "slider"), [(1, 0.01), (3, 0.2), (6, 3.0)])
-def test_a_straight_rod_is_that_of_the_hand_derivation(slider_crank, modes, slider):
-    system = slider_crank(modes, slider_mass=slider)
+def test_a_straight_rod_is_that_of_the_hand_derivation(modes, slider):
+    system = slider_crank(modes).with_parameters(slider_mass=slider)
     numbers = system.parameters
     theta = np.random.default_rng(6).uniform(-7.0, 7.0, 20)
     still = np.zeros((len(theta), modes))
@@ -162,9 +141,6 @@ def test_a_straight_rod_is_that_of_the_hand_derivation(slider_crank, modes, slid
     assert stiffness / speed**2 == pytest.approx(softening, rel=0, abs=1e-14 * size)
     force = -rise * found.residual / modal_mass / speed**2
     assert force == pytest.approx(load, rel=0, abs=16 * EPS * size)
-
-
-# ---------------------------------------------------------------- energy
 
 
 def assert_balanced(system, q, qd, qdd, drive) -> None:
@@ -210,12 +186,12 @@ def assert_balanced(system, q, qd, qdd, drive) -> None:
 
 
 @pytest.mark.parametrize("modes", [1, 3])
-def test_the_power_of_the_crank_balances(slider_crank, modes):
+def test_the_power_of_the_crank_balances(modes):
     more = {"bow": 2e-3, "gravity_x": 3.0, "gravity_y": -9.0}
     follower = {"follower_first_moment": 0.01}
     four_bar = rig("B58", modes).with_parameters(**more, **follower)
     random = np.random.default_rng(modes)
-    for system in (four_bar, slider_crank(modes, **more)):
+    for system in (four_bar, slider_crank(modes).with_parameters(**more)):
         for _ in range(4):
             q, qd = random.uniform(-0.5, 0.5, (2, modes)) / np.arange(1, modes + 1) ** 1.5
             drive = Drive(random.uniform(-7, 7), 60.0, random.choice([0.0, 900.0]))
@@ -223,14 +199,11 @@ def test_the_power_of_the_crank_balances(slider_crank, modes):
             assert_balanced(system, q, qd, accelerations(system, q, qd, drive), drive)
 
 
-# ---------------------------------------------------------------- derivatives
-
-
-def test_derivatives_are_exact(slider_crank):
+def test_derivatives_are_exact():
     """Residuals are linear in accelerations, quadratic in rates: differences of these round."""
     more = {"bow": 2e-3, "gravity_x": 3.0, "gravity_y": -9.0}
     random = np.random.default_rng(3)
-    for system in (rig("A58", 2).with_parameters(**more), slider_crank(3, **more)):
+    for system in (rig("A58", 2).with_parameters(**more), slider_crank(3).with_parameters(**more)):
         n = system.size
         state = 0.2 * random.normal(size=(3, n)) * np.array([1.0, 60.0, 3600.0])[:, None]
         drive = Drive(2.2, 50.0, 300.0)
@@ -260,9 +233,6 @@ def test_derivatives_are_exact(slider_crank):
                     (expected,) = rows
                 size = np.max(np.abs(matrix))
                 assert matrix[:, j] == pytest.approx(expected, rel=0, abs=2e-11 * size), place
-
-
-# ---------------------------------------------------------------- what is refused
 
 
 def test_a_loop_that_cannot_close_is_told():

@@ -1,25 +1,18 @@
 """Damping by modal ratios: the mechanism held still, other geometry, and what it refuses."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import elastolink as el
 import numpy as np
 import pytest
+from edge_truth import scene_rod
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.systems import with_modal_damping
 from periodic_systems import system_of
 from scipy.linalg import eig
 
 RATIO = 0.02
-
-
-def _rod(crank_ratio=0.2, **more):
-    return el.load_scene(
-        "beale_1992_flexible_rod",
-        overrides={"links.crank_ratio": crank_ratio, "model.modes": 3, **more},
-    ).linear_system()
+POLYNOMIAL = scene_rod(0.2, 3, **{"model.formulation": "polynomial"})
 
 
 def _ratios(system, theta):
@@ -38,20 +31,19 @@ def _ratios(system, theta):
 
 @pytest.mark.parametrize("theta", [0.0, 1.1, 2.9])
 def test_every_mode_has_the_ratio_at_every_angle(theta):
-    damped = with_modal_damping(_rod(**{"model.formulation": "polynomial"}), RATIO)
+    damped = with_modal_damping(POLYNOMIAL, RATIO)
     np.testing.assert_allclose(_ratios(damped, theta), RATIO, rtol=1e-9)
-    stiff = _rod(**{"model.formulation": "polynomial"})
-    assert not np.any(stiff.array("C", np.array([theta])))
+    assert not np.any(POLYNOMIAL.array("C", np.array([theta])))
 
 
 def test_another_geometry_damps_the_modes_that_it_has():
     """The same as made there from the start; the old matrices would be far off."""
     theta = np.linspace(0.0, 6.0, 7)
-    moved = with_modal_damping(_rod(0.05), RATIO).with_geometry(crank_ratio=0.3)
-    fresh = with_modal_damping(_rod(0.3), RATIO)
+    moved = with_modal_damping(scene_rod(0.05, 3), RATIO).with_geometry(crank_ratio=0.3)
+    fresh = with_modal_damping(scene_rod(0.3, 3), RATIO)
     expected = fresh.array("C", theta)
     np.testing.assert_allclose(moved.array("C", theta), expected, rtol=1e-13)
-    old = with_modal_damping(_rod(0.05), RATIO).array("C", theta)
+    old = with_modal_damping(scene_rod(0.05, 3), RATIO).array("C", theta)
     assert np.max(np.abs(old - expected)) > 0.1 * np.max(np.abs(expected))
     np.testing.assert_allclose(_ratios(moved, 0.7), RATIO, rtol=1e-9)
     assert moved.geometry["crank_ratio"] == 0.3
@@ -60,7 +52,7 @@ def test_another_geometry_damps_the_modes_that_it_has():
 
 def test_a_ratio_changed_as_a_parameter_stays_so():
     doubled = (
-        with_modal_damping(_rod(0.1), RATIO)
+        with_modal_damping(scene_rod(0.1, 3), RATIO)
         .with_parameters(damping_ratio=2 * RATIO)
         .with_geometry(crank_ratio=0.3)
     )
@@ -87,9 +79,7 @@ def test_the_damping_does_not_depend_on_the_basis():
         [
             np.max(np.abs(el.floquet_multipliers(change(system), 300.0).multipliers))
             for system in (
-                with_modal_damping(
-                    _rod(0.3, **{"model.formulation": name, "model.modes": modes}), RATIO
-                )
+                with_modal_damping(scene_rod(0.3, modes, **{"model.formulation": name}), RATIO)
                 for name, modes in formulations.items()
             )
         ]
@@ -102,11 +92,11 @@ def test_the_damping_does_not_depend_on_the_basis():
 def test_a_bad_ratio_and_damping_twice_are_refused():
     for ratio in (-0.1, np.nan, np.inf, "a", None, np.ones(2)):
         with pytest.raises(BadInput, match="ratio"):
-            with_modal_damping(_rod(), ratio)
-    damped = with_modal_damping(_rod(), RATIO)
+            with_modal_damping(scene_rod(), ratio)
+    damped = with_modal_damping(scene_rod(), RATIO)
     with pytest.raises(BadInput, match="modal damping already"):
         with_modal_damping(damped, RATIO)
     # A copy without geometry to rebuild works as well.
-    fixed = with_modal_damping(replace(_rod(), rebuild=None, geometry={}), RATIO)
+    fixed = with_modal_damping(replace(scene_rod(), rebuild=None, geometry={}), RATIO)
     with pytest.raises(BadInput, match="one geometry"):
         fixed.with_geometry(crank_ratio=0.1)

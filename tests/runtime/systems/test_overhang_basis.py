@@ -1,14 +1,9 @@
 """The rod's overhang modes: every root, orthonormality to mode 60, drift, integrals."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import pytest
-from elastolink.runtime.systems.rod import (
-    OverhangBasis,
-    overhang_roots,
-)
+from elastolink.runtime.systems.rod import OverhangBasis, overhang_roots
 from elastolink.runtime.systems.rod.overhang import root_count
 from overhang_reference import DIGITS, Drift, gauss
 from overhang_truth import NAMED
@@ -23,9 +18,6 @@ def defect(modes, weights):
     """Return the largest entry of each mode's row of the Gram matrix less the identity."""
     gram = (modes.T * weights) @ modes
     return np.max(np.abs(gram - np.eye(gram.shape[0])), axis=1)
-
-
-# ---------------------------------------------------------------- roots
 
 
 def test_every_root_is_found_and_counted():
@@ -50,9 +42,6 @@ def test_roots_at_the_ends_of_the_rod():
 def test_roots_do_not_depend_on_their_company():
     alone = np.concatenate([overhang_roots(place, 9) for place in PLACES])
     np.testing.assert_allclose(overhang_roots(PLACES, 30)[:, :9], alone, rtol=4 * EPS)
-
-
-# ---------------------------------------------------------------- shapes
 
 
 @pytest.mark.parametrize("place", PLACES[::2])
@@ -86,8 +75,6 @@ def test_drift_against_differences_in_many_digits():
             np.testing.assert_allclose(found[:, mode], exact, rtol=0, atol=1e-13 * size)
 
 
-# ---------------------------------------------------------------- integrals
-
 PRODUCTS = {
     "overlap": (("e", 0), ("e", 0)),
     "drift": (("e", 0), ("f", 0)),
@@ -96,11 +83,6 @@ PRODUCTS = {
     "bending_drift": (("e", 2), ("f", 2)),
     "tension": (("e", 1), ("e", 1)),
 }
-
-
-def power_of_root(name):
-    """Return what an array grows with: each derivative of a mode along eta or xi."""
-    return sum(order + (kind == "f") for kind, order in PRODUCTS.get(name, ()))
 
 
 def by_quadrature(basis, name, place, count):
@@ -125,7 +107,8 @@ def test_closed_forms_against_quadrature(place):
     for name in (*PRODUCTS, "moment", "mean"):
         found = basis.array(name, xi)[0]
         exact = by_quadrature(basis, name, place, 230)
-        power = power_of_root(name) / 2
+        # Each derivative of a mode along eta or xi makes an array grow by beta.
+        power = sum(order + (kind == "f") for kind, order in PRODUCTS.get(name, ())) / 2
         size = np.outer(beta**power, beta**power) if found.ndim == 2 else np.ones_like(beta)
         assert np.max(np.abs(found - exact) / size) < 1e-12, name
 
@@ -159,9 +142,7 @@ def test_frequencies_of_the_flexible_rod():
     expected = (np.arange(1, 4) * np.pi) ** 2 * speed
     np.testing.assert_allclose(found.frequencies[1], expected, rtol=1e-14)
     assert found.passed and found.frequencies.shape == found.error.shape == (2, 3)
-    import matplotlib.pyplot as plt
-
-    plt.close(found.plot().figure)
+    found.plot()
 
 
 def test_modes_so_high_that_exponentials_underflow():

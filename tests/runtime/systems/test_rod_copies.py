@@ -1,7 +1,5 @@
 """Copies of the rod's system: deep ones, pickled ones, and those with terms replaced."""
 
-from __future__ import annotations
-
 import copy
 import pickle
 from dataclasses import replace

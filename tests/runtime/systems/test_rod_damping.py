@@ -1,12 +1,11 @@
 """What "0.2 percent proportional damping" can mean for the stiff rod: docs/rod_damping.md."""
 
-from __future__ import annotations
-
 import warnings
 
 import elastolink as el
 import numpy as np
 import pytest
+from edge_truth import scene_rod
 from elastolink.runtime.periodic import steady_state
 from elastolink.runtime.systems.rod import OverhangBasis
 from scipy.interpolate import CubicSpline
@@ -101,11 +100,8 @@ def test_viscous_damping_shifts_every_growth_rate_by_its_own():
     speed = np.linspace(1450.0, 1640.0, 7)
     rates = []
     for damping in ({}, READINGS["viscous"]):
-        system = el.load_scene(
-            "beale_1992_flexible_rod",
-            overrides={"links.crank_ratio": 0.2, "model.modes": 2, **damping},
-        ).linear_system()
-        values = np.max(np.abs(el.floquet_multipliers(system, speed).multipliers), axis=-1)
+        found = el.floquet_multipliers(scene_rod(**damping), speed)
+        values = np.max(np.abs(found.multipliers), axis=-1)
         rates.append(np.log(values) * speed / (2 * np.pi))
     assert np.min(rates[0]) > 50.0
     np.testing.assert_allclose(rates[0] - rates[1], 0.002 * 858.228, rtol=2e-3)
@@ -116,10 +112,7 @@ def test_no_reading_in_per_cent_closes_the_wide_tongues():
     """Crank ratio 0.2, damping ratio 0.002: of eight tongues only 2 w1 = 3 w closes."""
     narrow, next_one = np.linspace(567.1, 568.2, 23), np.linspace(819.0, 825.6, 23)
     for reading, left in (("viscous", 2.11), ("internal", 0.745), ("modal", 1.72)):
-        system = el.load_scene(
-            "beale_1992_flexible_rod",
-            overrides={"links.crank_ratio": 0.2, "model.modes": 2, **READINGS[reading]},
-        ).linear_system()
+        system = scene_rod(**READINGS[reading])
         growth = [
             np.max(
                 np.log(np.max(np.abs(el.floquet_multipliers(system, at).multipliers), axis=-1))

@@ -1,27 +1,16 @@
 """What the flexible rod's functions refuse: one clear line, and never a traceback or NaN."""
 
-from __future__ import annotations
-
 import elastolink as el
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.systems.rod import (
-    FreeFreeBasis,
-    FreeFreeModes,
-    OverhangBasis,
-    PolynomialBasis,
-    TwoSegmentBasis,
-    free_free_rod,
-    overhang_roots,
-    rod_system,
-)
+from elastolink.runtime.systems import rod as rods
 from elastolink.runtime.systems.rod.basis import MATRIX_ARRAYS, VECTOR_ARRAYS
 from free_free_loads import ROD
 from refusals import each_of, refused
 
 NUMBERS = {"crank_ratio": 0.2, **ROD}
-BASES = [OverhangBasis, PolynomialBasis, TwoSegmentBasis, FreeFreeBasis]
+BASES = [rods.OverhangBasis, rods.PolynomialBasis, rods.TwoSegmentBasis, rods.FreeFreeBasis]
 HALF = np.array([0.5])
 
 
@@ -45,11 +34,11 @@ def test_points_and_places_off_the_rod(basis):
         assert np.all(np.isfinite(basis(12).array(name, np.array([1e-12]))))
 
 
-@pytest.mark.parametrize("basis", [*BASES, FreeFreeModes])
+@pytest.mark.parametrize("basis", [*BASES, rods.FreeFreeModes])
 def test_number_of_modes(basis):
     assert basis(np.int64(3)).size == 3
     assert type(basis(np.int32(3)).size) is int
-    most = {TwoSegmentBasis: 40, PolynomialBasis: 400}.get(basis, 1000)
+    most = {rods.TwoSegmentBasis: 40, rods.PolynomialBasis: 400}.get(basis, 1000)
     assert basis(most).size == most
     for modes in (0, -1, 2.0, np.float64(3.0), True, np.True_, "3", None, most + 1):
         with pytest.raises(BadInput, match=f"modes: found .* whole number from 1 to {most}"):
@@ -57,27 +46,27 @@ def test_number_of_modes(basis):
 
 
 def linear(**given):
-    return rod_system("overhang", 1, **NUMBERS | given)
+    return rods.rod_system("overhang", 1, **NUMBERS | given)
 
 
 def buckens(**given):
-    return free_free_rod(1, **NUMBERS | {"speed": 10.0} | given)
+    return rods.free_free_rod(1, **NUMBERS | {"speed": 10.0} | given)
 
 
 def frequencies(place=0.5, **given):
     numbers = {"length": 1.0, "bending_stiffness": 1.0, "mass_per_length": 1.0}
-    return OverhangBasis(2).frequencies(place, **numbers | given)
+    return rods.OverhangBasis(2).frequencies(place, **numbers | given)
 
 
 def roots(place=0.5, modes=2):
-    return overhang_roots(place, modes)
+    return rods.overhang_roots(place, modes)
 
 
 def deflection(places=1.0, size=5):
     return BENT.deflection(UNDEFORMED[:size], 0.0, places)
 
 
-BENT = free_free_rod(2, **NUMBERS, speed=100.0)
+BENT = rods.free_free_rod(2, **NUMBERS, speed=100.0)
 UNDEFORMED, _ = BENT.undeformed(0.0)
 DROPS = [({"drop": d}, "drop: found") for d in (None, (1, "x"), [["tension"]], "tension", ("a",))]
 VALUES = [
@@ -117,11 +106,11 @@ test_arguments = refused(lambda call, given: call(**given), each_of(CASES))
 
 def test_places_without_a_side_and_names_of_bases():
     with pytest.raises(BadInput, match="lengthen the rod"):
-        TwoSegmentBasis(2).array("overlap", np.array([1.0]))
+        rods.TwoSegmentBasis(2).array("overlap", np.array([1.0]))
     with pytest.raises(BadInput, match="derivative: found 3"):
-        OverhangBasis(2).drift(HALF, HALF, 3)
+        rods.OverhangBasis(2).drift(HALF, HALF, 3)
     with pytest.raises(BadInput, match="basis: found 'hermite'"):
-        rod_system("hermite", **NUMBERS)
+        rods.rod_system("hermite", **NUMBERS)
 
 
 @pytest.mark.parametrize(
@@ -137,7 +126,7 @@ def test_places_without_a_side_and_names_of_bases():
 )
 def test_parameters_changed_later(name, value):
     """As strict as when the system is made: nothing else sees a mass that is divided out."""
-    system = rod_system("overhang", 2, **NUMBERS)
+    system = rods.rod_system("overhang", 2, **NUMBERS)
     added = system.without("D").with_geometry(crank_ratio=0.1)
     for changed in (system, added):
         with pytest.raises(BadInput, match=f"{name}: found"):

@@ -1,7 +1,5 @@
 """The linear system of the flexible rod: Newton's law, tension and frame, damping, geometry."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import elastolink as el
@@ -28,9 +26,6 @@ NUMBERS = {
     "internal_damping": 0.07,
 }
 FLEXIBLE = {"crank_ratio": 0.2, **ROD}
-
-
-# ---------------------------------------------------------------- against Newton's law
 
 
 LONG_CRANK = {**NUMBERS, "crank_ratio": 1.5, "frame": 0.4}  # the rod turns round
@@ -85,9 +80,6 @@ def test_equations_are_newtons_law(numbers, theta, rates, drop):
         np.testing.assert_allclose(matrix[0], expected / unit, rtol=0, atol=1e-11 * size)
 
 
-# ---------------------------------------------------------------- tension and frame
-
-
 def tension_from_frame(basis, place):
     """Return ``int (1 - eta^2)/2 u_i' u_j'``, u from the straight line of least squares."""
     nodes, weights = leggauss(basis.size + 4)
@@ -124,9 +116,6 @@ def test_tension_is_that_from_the_frame_and_the_frames_own():
     assert np.max(np.abs(from_line - from_frame)) > 0.1 * size
 
 
-# ---------------------------------------------------------------- damping through D
-
-
 def test_damping_through_d_alone_counts_as_damping():
     system = rod_system(PlainBasis(2), **{**FLEXIBLE, "damping": 1.0}).without("C")
     assert system.is_damped()
@@ -135,9 +124,6 @@ def test_damping_through_d_alone_counts_as_damping():
     constant = Term("M", None, np.ones((1, 1)))
     still = replace(one.without("A", "M", "C", "K"), terms=(constant, *one.without("M").terms))
     assert not is_hill(still)
-
-
-# ---------------------------------------------------------------- geometry and arguments
 
 
 def test_geometry_that_cannot_be_changed():
@@ -170,9 +156,6 @@ def test_a_rod_that_just_reaches_the_block():
     assert 0.5 * 0.2 + 0.2 > 0.3
     system = rod_system("overhang", 2, **numbers)
     assert np.all(np.isfinite(system.array("K", np.zeros(1))))
-
-
-# ---------------------------------------------------------------- other ways to the exponents
 
 
 def test_a_tongue_sees_internal_damping():

@@ -10,16 +10,16 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.errors import BadInput, bad
+from ..core.errors import bad
 from ..core.families import DAMPING, Array, LinearPeriodic, require_system
 from ..core.inputs import require_whole, speed_span
 from ..core.maxima import local_maxima
 from ..core.plotting import Axes, axes_or_new
-from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
 from .held import buckling_speed, held_frequencies, mean_frequencies
 from .multiplier_maxima import Maxima, meissner_maxima, multiplier_maxima
+from .response_maxima import response_maxima, scanned_deflections
 
 Indices = NDArray[np.int64]
 
@@ -262,12 +262,28 @@ def by_multipliers(request: Request) -> CriticalSpeeds:
     return _marked(request, maxima, "real part of the multiplier")
 
 
+# Of the fastest mode's motion at the lowest speed an interval of Meissner's is to hold so much at
+# most [rad]: of longer ones the steps throw waves back.
+_INTERVAL = 0.4
+_MOST_INTERVALS = 2**13
+
+
 def by_meissner(request: Request) -> CriticalSpeeds:
-    """Return the local maxima of J_N of each mode by itself, N = 64 (Aannaque 7.11)."""
+    """Return the local maxima of J_N of each mode by itself, N = 256 or more (Aannaque 7.11)."""
     period = request.system.period
-    # Intervals of Meissner's functions.
-    frequency = held_frequencies(request.system, even_angles(period, 64), {})[0]
-    maxima = meissner_maxima(frequency[:, : request.count], period, (request.low, request.high))
+    turned = float(np.max(request.mean)) * period / request.low
+    intervals = 2 ** max(8, int(np.ceil(np.log2(turned / _INTERVAL))))
+    if intervals > _MOST_INTERVALS:
+        least = request.low * intervals / _MOST_INTERVALS
+        raise bad(
+            "speed_range",
+            f"a lowest speed of {request.low:.4g} rad/s, which needs {intervals} intervals",
+            f"at most {_MOST_INTERVALS}",
+            f"raise the lowest speed to {least:.4g} rad/s or ask for fewer modes",
+        )
+    held = held_frequencies(request.system, even_angles(period, intervals), {})
+    frequency, rounding = (part[:, : request.count] for part in held)
+    maxima = meissner_maxima(frequency, rounding, period, (request.low, request.high))
     return _marked(request, maxima, "J_N")
 
 
@@ -286,24 +302,8 @@ def _marked(request: Request, maxima: Maxima, quantity: str) -> CriticalSpeeds:
     )
 
 
-# Errors of the motions: maxima of a structure on its lowest modes are looked for, not reported.
-_RTOL, _FINE = 1e-6, 1e-9
-# Angles of a revolution at which it is truncated to those modes.
-_ANGLES = 64
-# Speeds solved together, and speeds within the bracket of a maximum.
-_TOGETHER = 16
-_WITHIN = 7
-# The second look spans this part of the first bracket.
-_CLOSER = 0.25
-
-
 def by_response(request: Request) -> CriticalSpeeds:
-    """Return the speeds of the local maxima of a measure of the periodic motion.
-
-    About a maximum one over the square of the measure is nearly a parabola of the speed; a
-    polynomial through seven speeds gives its least value, and one through seven closer speeds
-    gives it again.
-    """
+    """Return the speeds of the local maxima of a measure of the periodic motion."""
     system = request.system
     if not any(system.has(name) for name in DAMPING) or not system.is_damped():
         raise bad(
@@ -313,13 +313,9 @@ def by_response(request: Request) -> CriticalSpeeds:
             "add some with with_modal_damping",
         )
     speeds = np.linspace(request.low, request.high, request.speeds)
-    values = _scanned(system, speeds)
-    if values is None:
-        values, _ = _deflections(system, speeds, request.progress)
+    values = scanned_deflections(system, speeds, request.progress)
     top = local_maxima(values)
-    speed = height = error = np.zeros(0)
-    if len(top):
-        speed, height, error = _maxima(system, speeds[top - 1], speeds[top + 1])
+    speed, height, error = response_maxima(system, speeds[top - 1], speeds[top + 1])
     return request.answered(
         f"local maxima of the steady state, {len(speeds)} speeds scanned",
         speed,
@@ -330,112 +326,6 @@ def by_response(request: Request) -> CriticalSpeeds:
         quantity="r.m.s. deflection over length",
         checks={"placed": Check(float(np.max(error / speed, initial=0.0)), 1e-3)},
     )
-
-
-def _scanned(system: LinearPeriodic, speeds: Array) -> Array | None:
-    """Return how far a structure of beams bends over rising speeds, on its lowest modes.
-
-    None where the system has no slow modes apart from fast ones.
-    """
-    from ..periodic.swept_motions import Truncations, speed_ranges
-
-    if system.structure is None or system.relative_deflection is None:
-        return None
-    try:
-        truncations = Truncations(system)
-        modes = truncations.usable(0, _ANGLES)[-1]
-    except (BadInput, IndexError):
-        # No subspace is smooth: the steady states themselves are computed.
-        return None
-    out = np.empty(len(speeds))
-    for piece in speed_ranges(speeds):
-        span = float(speeds[piece][0]), float(speeds[piece][-1])
-        moving = truncations.motions(modes, _ANGLES, span, _RTOL)
-        rows = system.relative_deflection(moving.truncated.theta)
-        for part, q, *_ in moving.blocks(speeds[piece]):
-            bent = rows @ np.moveaxis(q, 0, -1)
-            out[piece][part] = np.sqrt(np.max(np.mean(bent**2, axis=0), axis=0))
-    return out
-
-
-def _deflections(
-    system: LinearPeriodic, speeds: Array, progress: bool = False
-) -> tuple[Array, Array]:
-    """Return the largest r.m.s. deflection over the length, and the motions' relative error."""
-    from ..periodic.periodic_motion import quiet_state
-
-    rtol = _FINE if system.structure is None else _RTOL
-    out, error = np.empty((2, len(speeds)))
-    with bar(progress, len(speeds)) as tick:
-        for begin in range(0, len(speeds), _TOGETHER):
-            part = slice(begin, min(begin + _TOGETHER, len(speeds)))
-            state = quiet_state(system, speeds[part], rtol)
-            rows = system.deflection_rows(state.theta, np.linspace(0.0, 1.0, 21))
-            if rows is None:
-                raise bad(
-                    "system",
-                    "deflections that are not known",
-                    "mode shapes or relative_deflection",
-                    "choose another method",
-                )
-            # One speed at a time: deflections of all would fill the memory.
-            squares = [np.mean(np.einsum("tkn,tn->tk", rows, q) ** 2, axis=0) for q in state.q]
-            out[part] = np.sqrt(np.max(squares, axis=1))
-            error[part] = np.max(np.reshape(state.error, (len(state.q), -1)), axis=1)
-            if tick is not None:
-                tick(part.stop)
-    if not np.all(np.isfinite(out)):
-        worst = float(speeds[int(np.argmin(np.isfinite(out)))])
-        raise bad(
-            "speed_range",
-            f"no single periodic motion at {worst:.6g} rad/s",
-            "speeds with one each",
-            "move the range or add damping",
-        )
-    return out, error
-
-
-def _maxima(system: LinearPeriodic, low: Array, high: Array) -> tuple[Array, Array, Array]:
-    """Return place, height and error of the place of the maxima within brackets."""
-    node = np.cos(np.pi * (np.arange(_WITHIN) + 0.5) / _WITHIN)
-    first = np.zeros(len(low))
-    for closer in (False, True):
-        middle, half = 0.5 * (low + high), 0.5 * (high - low)
-        inside = middle[:, None] + half[:, None] * node
-        values, error = (
-            part.reshape(inside.shape) for part in _deflections(system, inside.ravel())
-        )
-        fitted = [_least(node, 1.0 / row**2, off) for row, off in zip(values, error, strict=True)]
-        shift, square, doubt = (np.array(column) for column in zip(*fitted, strict=True))
-        place = middle + half * shift
-        if not closer:
-            first = place
-            low, high = place - _CLOSER * half, place + _CLOSER * half
-    # None has a bound where one over its square is 0 or below.
-    height = np.where(square > 0.0, np.maximum(square, 5e-324) ** -0.5, np.inf)
-    # The first place is off by the fifth power of its bracket and more.
-    return place, height, np.abs(place - first) * _CLOSER**3 + half * doubt
-
-
-def _least(node: Array, values: Array, error: Array) -> tuple[float, float, float]:
-    """Return place in [-1, 1], value and doubt of the place of the least value of a polynomial.
-
-    ``error`` is the relative error of the motions that the values come from.
-    """
-    curve = np.polynomial.Chebyshev.fit(node, values, len(node) - 1, domain=[-1, 1])
-    slope = curve.deriv()
-    roots = slope.roots()
-    inner = roots[(np.abs(roots.imag) < 1e-9) & (np.abs(roots.real) <= 1.0)].real
-    places = np.concatenate([inner, [-1.0, 1.0]])
-    best = float(places[int(np.argmin(curve(places)))])
-    bend = abs(float(slope.deriv()(best)))
-    # What the next terms, as they fall, and the error of the motions tilt the curve by.
-    sizes = [float(np.sum(np.abs(curve.coef[k : k + 2]))) for k in (-4, -2)]
-    fall = min(1.0, (sizes[1] / sizes[0]) ** 0.5) if sizes[0] > 0.0 else 1.0
-    tilt = sizes[1] * fall * len(node)
-    tilt += 2.0 * float(np.max(error * np.abs(values))) * len(node)
-    doubt = min(tilt / bend, 1.0) if bend > 0.0 else 1.0
-    return best, float(curve(best)), doubt
 
 
 METHODS: Mapping[str, Callable[[Request], CriticalSpeeds]] = MappingProxyType(

@@ -30,6 +30,10 @@ _ANGLES = 256
 _RTOL = 1e-9
 # Step beside a maximum, over the speed: of its fourth power the place is off.
 _BESIDE = 1e-4
+# The same of J_N as a part of a half turn of the mode, and how often a maximum is moved by it.
+_TURNED, _POLISHED = 3e-3, 2
+# Maxima of fewer intervals are looked for beyond the range, by this factor at either end.
+_ASIDE = 0.9
 
 
 class Maxima(NamedTuple):
@@ -93,7 +97,9 @@ def multiplier_maxima(
         method += f", on {truncated.size} natural modes"
     checks = {"truncated": Check(change, 1e-3), "converged": Check(noise, 100 * _RTOL)}
     # A multiplier's turn is its frequency over the speed: what it is off by, the speed is.
-    error = width + _missed(value, at, mode, best) + np.minimum(blur, span) + change * at
+    # Steps of parabolas become small on one side of a maximum before they have reached it.
+    missed = np.abs(_quartic(value, at, _BESIDE * at, mode, best)[0])
+    error = width + missed + np.minimum(blur, span) + change * at
     return Maxima(at, mode + 1, best, error, method, checks)
 
 
@@ -119,19 +125,20 @@ def _peaks(values: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     return row + 1, column
 
 
-def _missed(call: Callable[[Array, Whole], Array], at: Array, which: Whole, best: Array) -> Array:
-    """Return how far the quartic through five values has its maximum from places ``(k,)``.
+def _quartic(
+    call: Callable[[Array, Whole], Array], at: Array, step: Array, which: Whole, best: Array
+) -> tuple[Array, Array]:
+    """Return how far the maximum is off places ``(k,)`` by the quartic through five values.
 
-    Steps of parabolas become small on one side of a maximum before they have reached it.
+    With it the second difference there.  At a corner, where a mode's multipliers become real, there
+    is no parabola, and nothing is moved.
     """
-    step = _BESIDE * at
     first, low, high, last = (call(at + k * step, which) for k in (-2, -1, 1, 2))
     slope = (first - 8.0 * low + 8.0 * high - last) / 12.0
     bend = (-first + 16.0 * low - 30.0 * best + 16.0 * high - last) / 12.0
     with np.errstate(divide="ignore", invalid="ignore"):
-        moved = np.abs(slope / bend)
-    # At a corner, where a mode's multipliers become real, there is no parabola.
-    return np.asarray(step * np.where(bend < 0.0, np.minimum(moved, 1.0), 0.0))
+        moved = np.clip(-slope / bend, -1.0, 1.0)
+    return step * np.where(bend < 0.0, moved, 0.0), bend
 
 
 def refined_maxima(
@@ -177,23 +184,32 @@ def refined_maxima(
     return x[1], f[1], moved
 
 
-def meissner_maxima(frequencies: Array, period: float, speed_range: tuple[float, float]) -> Maxima:
+def meissner_maxima(
+    frequencies: Array, rounding: Array, period: float, speed_range: tuple[float, float]
+) -> Maxima:
     """Return the local maxima over the speed of Meissner's J_N, each mode by itself.
 
-    Its frequency, in a column of ``(N, m)`` at even angles with N even, is constant in each of N
-    intervals: ``y'' + (v_i/w)^2 y = 0``, as in Aannaque's Fig. 7.3.  What modes exchange, and the
-    change of their shapes, is not in it.  The error is the distance to the maximum of half the
-    intervals.
+    Its frequency, in a column of ``(N, m)`` at even angles with N a multiple of 4, is constant in
+    each of N intervals: ``y'' + (v_i/w)^2 y = 0``, as in Aannaque's Fig. 7.3.  What modes exchange,
+    and the change of their shapes, is not in it.  The error is that of the intervals and of the
+    ``rounding`` of the frequencies, ``(N, m)``: from N to N/2 intervals a maximum moves by three
+    times the former, and by a quarter of what it moves from N/2 to N/4.
     """
     count = len(frequencies)
-    halved = frequencies.reshape(count // 2, 2, -1).mean(axis=1)
+    low, high = speed_range
     parts = []
     for mode, levels in enumerate(frequencies.T):
         place, value, width = _meissner_maxima(levels, period, speed_range)
-        compared = _meissner_maxima(halved[:, mode], period, speed_range)[0]
-        gap = np.min(np.abs(place[:, None] - compared), axis=1, initial=np.inf)
-        # A maximum that half the intervals do not have is not known at all.
-        error = width + np.minimum(gap, place)
+        # Maxima that fewer intervals put beyond the ends, too.
+        aside = _ASIDE * low, high / _ASIDE
+        half, quarter = (
+            _nearest(_meissner_maxima(levels[::share], period, aside)[0], place) for share in (2, 4)
+        )
+        # One of both may vanish by chance.
+        gap = np.maximum(np.abs(place - half), np.abs(half - quarter) / 4.0)
+        # A maximum that fewer intervals do not have is not known at all.
+        error = width + np.fmin(gap, place)
+        error += place * float(np.max(rounding[:, mode] / levels))
         parts.append((place, np.full(len(place), mode + 1), value, error))
     speed, number, value, error = (np.concatenate(column) for column in zip(*parts, strict=True))
     return Maxima(
@@ -206,6 +222,13 @@ def meissner_maxima(frequencies: Array, period: float, speed_range: tuple[float,
     )
 
 
+def _nearest(places: Array, to: Array) -> Array:
+    """Return the nearest of some places to each of others; NaN where there is none."""
+    if not len(places):
+        return np.full(len(to), np.nan)
+    return np.asarray(places[np.argmin(np.abs(to[:, None] - places), axis=1)])
+
+
 def _meissner_maxima(
     levels: Array, period: float, span: tuple[float, float]
 ) -> tuple[Array, Array, Array]:
@@ -216,13 +239,24 @@ def _meissner_maxima(
     def half_trace(at: Array, _: Whole | None = None) -> Array:
         return discriminant(steps, 0.0, 1.0 / at**2).value
 
-    number = int(np.ceil(period * np.mean(levels) * (1 / span[0] - 1 / span[1]) / 0.05)) + 8
+    # Half turns of the mode's motion in a period are so many times the inverse of the speed.
+    waves = period * float(np.mean(levels))
+    number = int(np.ceil(waves * (1 / span[0] - 1 / span[1]) / 0.05)) + 8
     speed = 1.0 / np.linspace(1 / span[1], 1 / span[0], number)
     values = half_trace(speed)
     row, mode = _peaks(values[:, None])
+    which = mode.astype(np.int64)
     brackets = speed[row - 1], speed[row], speed[row + 1]
     around = values[row - 1], values[row], values[row + 1]
-    return refined_maxima(half_trace, mode.astype(np.int64), brackets, around)
+    at, best, _ = refined_maxima(half_trace, which, brackets, around)
+    step = _TURNED * at**2 / waves
+    for _ in range(_POLISHED):
+        moved, bend = _quartic(half_trace, at, step, which, best)
+        at = at + moved
+        answer = discriminant(steps, 0.0, 1.0 / at**2)
+        best = answer.value
+    noise = 2.0 * answer.error * step / np.maximum(-bend, np.finfo(float).tiny)
+    return at, best, np.abs(moved) + np.minimum(noise, step)
 
 
 def _multipliers(few: MatricesOverSpeed, speed: Array, count: int) -> ComplexArray:

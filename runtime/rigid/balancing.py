@@ -30,8 +30,8 @@ from .peaks import TERMS
 # The force in the crank pin, the driving torque and the moment on the frame, equally weighted.
 DEFAULT_WEIGHTS: Mapping[str, float] = {"f23": 1.0, "torque": 1.0, "shaking_moment": 1.0}
 
-# Error of relative peaks of a case, a hundred roundings; gap or KKT residual counted as optimal.
-_ROUND_OFF, _OPTIMAL = 2e-14, 1e-5
+# Gap or KKT residual counted as optimal; what a sum may hang on the places of its samples.
+_OPTIMAL, _SAMPLED = 1e-5, 1e-6
 # Last digits of a sum of relative peaks; by a quarter of them, with these signs, lengths are moved.
 _DIGITS = 16.0 * float(np.finfo(float).eps)
 _SIGNS = ((0, 0, 0, 0), (1, -1, 1, -1), (-1, -1, 1, 1))
@@ -152,7 +152,8 @@ def balance(
     Returns
     -------
     Balancing
-        With the check "gap or KKT residual": proved the best, or at least stationary.  Of cases (c)
+        With the check "gap or KKT residual": proved the best, or at least stationary.  Of root mean
+        squares the check "samples" is what they hang on the places of the samples.  Of cases (c)
         and (d) the check "shaking force left" is the peak that is left, over the unbalanced one.
 
     Raises
@@ -189,9 +190,15 @@ def _compared(
     unbalanced, _ = _turn_peaks(machine, speed, acceleration, angles)
     after, where = _turn_peaks(balanced, speed, acceleration, angles)
     relative = _relative(after, unbalanced)
+    moved = []
+    for linkage in _all_but_equal(machine.linkage):
+        pair = (replace(each, linkage=linkage) for each in (machine, balanced))
+        before, then = (_turn_peaks(each, speed, acceleration, angles)[0] for each in pair)
+        moved.append([then[term] / before[term] for term in relative])
     checks = {}
     if case in ("c", "d") and "shaking_force" in relative:
         checks["shaking force left"] = Check(relative["shaking_force"], 1e-10)
+    spread = float(np.max(np.ptp(moved, axis=0), initial=0.0))
     return Balancing(
         counterweights=added,
         machine=balanced,
@@ -199,11 +206,23 @@ def _compared(
         relative=relative,
         peak_angles=where,
         method=f"case ({case}) in closed form",
-        error=_ROUND_OFF,
+        error=2.0 * spread / max(relative.values(), default=1.0) + _DIGITS,
         error_norm="relative peaks, over the largest of them",
         checks=checks,
         provenance=provenance({"speed": repr(float(speed))}),
     )
+
+
+def _all_but_equal(linkage: Any) -> list[Any]:
+    """Return linkages whose lengths are a few last digits away from one's."""
+    made = []
+    for signs in _SIGNS:
+        moved = {
+            name: getattr(linkage, name) * (1.0 + 0.25 * sign * _DIGITS)
+            for name, sign in zip(linkage.names, signs, strict=False)
+        }
+        made.append(replace(linkage, **moved))
+    return made
 
 
 def _searched(
@@ -230,11 +249,11 @@ def _searched(
     masses, lengths, stiffness = _units(machine, chosen, bounds)
     basis = ForceBasis(machine, chosen, speed, acceleration, masses, lengths)
     design = Design(stiffness)
-    theta, between = _angles(basis, angles)
+    theta, whole = _angles(basis, angles, measure)
     # A mean over the samples has no peaks between them.
-    between = between and measure == "peak"
+    between = whole and measure == "peak"
     peaks, _ = _sizes(basis, theta, np.zeros(design.count), between, measure)
-    search = Search(basis, theta, between, peaks, design, wanted, tops, measure)
+    search = Search(basis, theta, between, peaks, design, wanted, tops, measure, whole)
     zero = _zero_forces(peaks)
     for term in search.terms:
         if term in zero:
@@ -249,6 +268,13 @@ def _described(search: Search, best: Candidate) -> Balancing:
     relative = _relative(balanced, search.unbalanced)
     gap = (best.value - best.bound) / search.unit
     over = max((relative[term] / top - 1.0 for term, top in search.limits.items()), default=0.0)
+    sampling = _sampling(search, p) / search.unit
+    checks = {
+        "gap or KKT residual": Check(min(gap, best.residual), _OPTIMAL),
+        "limits passed, relative": Check(max(over, 0.0), 1e-7),
+    }
+    if search.measure == "rms":
+        checks["samples"] = Check(sampling, _SAMPLED)
     return Balancing(
         counterweights=added,
         machine=with_counterweights(search.basis.machine, added.values()),
@@ -261,13 +287,10 @@ def _described(search: Search, best: Candidate) -> Balancing:
         relative=relative,
         peak_angles=where,
         method="second-order cone programme over the convex hull, SLSQP within",
-        error=gap + _rounding(search, p) / search.unit,
+        error=gap + _rounding(search, p) / search.unit + sampling,
         error_norm="weighted sum above the least possible one, over the unbalanced linkage's",
         error_kind="bound",
-        checks={
-            "gap or KKT residual": Check(min(gap, best.residual), _OPTIMAL),
-            "limits passed, relative": Check(max(over, 0.0), 1e-7),
-        },
+        checks=checks,
         provenance=provenance({"speed": repr(search.basis.speed)}),
     )
 
@@ -278,25 +301,36 @@ def _rounding(search: Search, p: Array) -> float:
     Some last digits; and near a change point, where forces hang on the last digits of the lengths,
     twice what some of these change.
     """
-    linkage = search.basis.machine.linkage
-    angles, between, measure, values = search.theta, search.between, search.measure, []
-    for signs in _SIGNS:
-        moved = {
-            name: getattr(linkage, name) * (1.0 + 0.25 * sign * _DIGITS)
-            for name, sign in zip(linkage.names, signs, strict=False)
-        }
-        changed: Any = replace(linkage, **moved)  # type: ignore[type-var]
-        machine = replace(search.basis.machine, linkage=changed)
-        basis = replace(search.basis, machine=machine)
-        before, after = (
-            basis.sizes(angles, masses, between, measure, tuple(search.weights))
-            for masses in (np.zeros_like(p), p)
-        )
-        peaks = {name: float(size.max()) for name, (_, size) in before.items()}
-        values.append(
-            sum(w * float(after[name][1].max()) / peaks[name] for name, w in search.weights.items())
-        )
+    values = []
+    for linkage in _all_but_equal(search.basis.machine.linkage):
+        machine = replace(search.basis.machine, linkage=linkage)
+        values.append(_weighted(search, replace(search.basis, machine=machine), search.theta, p))
     return 2.0 * float(np.ptp(values)) + _DIGITS * search.unit
+
+
+def _sampling(search: Search, p: Array) -> float:
+    """Return what the weighted sum of root mean squares of a turn hangs on where its samples lie.
+
+    Samples between the given ones are off by as much to the other side where they resolve the
+    motion; where they do not, no two of four rows of samples agree.
+    """
+    if not search.whole or search.measure != "rms":
+        return 0.0
+    step = float(search.theta[1] - search.theta[0])
+    rows = [search.theta + share * step for share in (0.0, 0.25, 0.5, 0.75)]
+    return float(np.ptp([_weighted(search, search.basis, theta, p) for theta in rows]))
+
+
+def _weighted(search: Search, basis: ForceBasis, theta: Array, p: Array) -> float:
+    """Return the weighted sum of relative sizes at angles, both sizes with the same basis."""
+    before, after = (
+        basis.sizes(theta, masses, search.between, search.measure, tuple(search.weights))
+        for masses in (np.zeros_like(p), p)
+    )
+    return sum(
+        weight * float(after[name][1].max()) / float(before[name][1].max())
+        for name, weight in search.weights.items()
+    )
 
 
 def _sizes(
@@ -401,8 +435,10 @@ def _units(
     return masses, offsets, stiff
 
 
-def _angles(basis: ForceBasis, angles: ArrayLike | None) -> tuple[Array, bool]:
-    """Return the angles that count, and whether the peaks between them count too."""
+def _angles(
+    basis: ForceBasis, angles: ArrayLike | None, measure: Measure = "peak"
+) -> tuple[Array, bool]:
+    """Return the angles that count, and whether they stand for a whole turn."""
     if angles is not None:
         theta = finite_array("angles", angles, "angles [rad]").ravel()
         if theta.size == 0:
@@ -411,7 +447,7 @@ def _angles(basis: ForceBasis, angles: ArrayLike | None) -> tuple[Array, bool]:
     if not basis.machine.linkage.crank_turns:
         fix = "give angles that the crank can reach"
         raise bad("angles", "a crank that cannot turn fully", "angles [rad]", fix)
-    return basis.grid(), True
+    return basis.grid(measure), True
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -527,8 +563,7 @@ def trade_off(
     bests.append(high)
     results = tuple(_described(search, one) for one in bests)
     values = [np.array([one.relative[term] for one in results]) for term in (first, second)]
-    # The second peak has the weight 1, and is relative already.
-    gaps = np.array([max(one.value - one.bound, 1e-13) for one in bests])
+    gaps = [one.value - one.bound for one in bests]
     worst = max(min(gap, one.residual) for gap, one in zip(gaps, bests, strict=True))
     return TradeOff(
         first=first,
@@ -538,7 +573,8 @@ def trade_off(
         points=results,
         cases=_cases(machine, search.basis.speed, acceleration, offsets, angles, (first, second)),
         method="limits to the first peak; second-order cone programmes, SLSQP within",
-        error=gaps,
+        # Of points on which both peaks count: the second has the weight 1, and is relative already.
+        error=np.array([search.unit * one.error for one in results]),
         error_norm="second peak above the least possible one, absolute, entrywise",
         error_kind="bound",
         checks={"gap or KKT residual": Check(worst, _OPTIMAL)},

@@ -35,6 +35,8 @@ Peaks: TypeAlias = Mapping[str, tuple[Array, Array]]  # angles (k,) and sizes (k
 PER_LINK = 4  # parameters: mass, two first moments, inertia
 _PLACES = 3  # variables of a design: mass, place along and across
 _ROUNDS = 12
+# Every sample of a peak is a cone of the programme, all those of a mean are one.
+_MOST_SAMPLES = {"peak": 2**13, "rms": 2**16}
 # What a peak may be above its bound: of the hull as Clarabel solves, of the descent near round-off.
 _HULL_EXCESS, _EXCESS = 1e-9, 1e-11
 _GAP = 1e-7  # other starts are tried where more than this is unproved, over the unit
@@ -463,10 +465,12 @@ class ForceBasis:
         moment = mass * length
         return MassDistribution(m * mass, a * moment, b * moment, j * moment * length)
 
-    def grid(self) -> Array:
-        """Return equally spaced angles of a turn, dense enough for the peaks between them."""
-        for count in (256, 512, 1024, 2048, 4096, 8192):
+    def grid(self, measure: Measure) -> Array:
+        """Return equally spaced angles of a turn, dense enough for peaks between them, or means."""
+        count, most = 256, _MOST_SAMPLES[measure]
+        while count <= most:
             theta = even_angles(TURN, count)
+            count *= 2
             # The tail of the forces' spectrum at which the peaks between samples are safe.
             if max(map(tail, self.forces(theta).values())) < 1e-10:
                 break
@@ -487,6 +491,7 @@ class Search:
     limits: Mapping[str, float]
     # what counts of each force: its peak, or its root mean square over the sampled angles
     measure: Measure = "peak"
+    whole: bool = False  # True where the sampled angles stand for a whole turn
 
     @property
     def terms(self) -> tuple[str, ...]:

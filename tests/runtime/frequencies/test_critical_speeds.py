@@ -100,7 +100,7 @@ def test_a_varying_frequency_parts_the_methods():
     assert by_mean.speed == pytest.approx([np.mean(np.sqrt(900 + 400 * np.cos(even)))], rel=1e-12)
     # Second order of the modulation moves the multiplier's maximum, not the mean.
     assert len(by_step.speed) and abs(by_step.speed[0] - by_mean.speed[0]) > 0.05
-    # 64 intervals leave out little; the damping, which Meissner's way leaves out, moves it more.
+    # Intervals leave out little; the damping, which Meissner's way leaves out, moves it more.
     assert by_step.speed == pytest.approx(by_multiplier.speed, rel=2e-3)
 
 

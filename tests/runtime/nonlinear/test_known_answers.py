@@ -7,16 +7,19 @@ else is said.  What is allowed is that and the error estimate that the curve tel
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import elastolink as el
 import numpy as np
 import pytest
 from elastolink.runtime.core.families import Drive, Nonlinear, Varied
+from elastolink.runtime.nonlinear.branch import special_points
 from elastolink.runtime.systems import free_free_rod
 from elastolink.runtime.systems.rod import FreeFreeBasis, rod_system
 from elastolink.runtime.systems.rod.driven import driven_rod
 from free_free_loads import ROD
 from orders import slope
-from oscillators import extremes, marched, oscillators, shot, shot_fold, shot_where
+from oscillators import extremes, marched, oscillators, shot, shot_special, shot_where
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk, j1, mathieu_a, mathieu_b
 
@@ -72,7 +75,7 @@ def test_folds_of_duffings_equation(duffing):
     shown = np.stack([curve.special_lowest, curve.special_highest], axis=1)
     rows = zip(curve.special_value, curve.special_error, curve.special_orbits, shown, strict=True)
     for value, error, orbit, tops in rows:
-        exact, state = shot_fold(system, 1.001 * value, 1.01 * orbit.motion.states[0])
+        exact, state = shot_special(system, "fold", 1.001 * value, 1.01 * orbit.motion.states[0])
         assert abs(value - exact) <= error + KNOWN
         # Along the branch a fold is known to 1e-9 only, where its speed no longer changes.
         off = extremes(marched(system, exact, state, 1, samples=2048), 1) - tops
@@ -322,17 +325,20 @@ def test_a_pitchfork_at_zero():
     assert curve.special == ("branch point",)
     assert abs(curve.special_value[0]) <= curve.special_error[0] < 1e-9
     for number in (1, 2):
-        # But for the first, 4e-10 from the branch point, whose estimate is short by a quarter.
-        at = np.flatnonzero(curve.branch == number)[1:]
+        at = np.flatnonzero(curve.branch == number)
         size, value = curve.highest[at], curve.value[at]
         slack = 2.0 * np.abs(size) * curve.peak_error[at] + curve.error[at] * curve.source.span
         assert np.all(np.abs(size**2 + value) <= slack)
-    straight = curve.orbits[0]
-    here, _ = curve.source.corrected(
-        0.0, straight.motion, curve.source.along_parameter(straight.motion)
-    )
+    solver, rest = curve.source, curve.orbits[0].motion
+    upwards = solver.along_parameter(rest)
+    below, here, above = (solver.corrected(v, rest, upwards)[0] for v in (-0.1, 0.0, 0.1))
     assert here.value == here.border == 0.0
-    assert here.tangent.value == pytest.approx(curve.source.span, rel=1e-15)
+    assert here.tangent.value == pytest.approx(solver.span, rel=1e-15)
+    # A step that ends there, and the next one: one of both has the branch point.
+    for ends in (below, here, above), (above.turned(), here.turned(), below.turned()):
+        points = [point for step in pairwise(ends) for point in special_points(solver, *step)]
+        assert [point.kind for point in points] == ["branch point"]
+        assert abs(points[0].orbit.value) <= points[0].value_error
 
 
 # ---------------------------------------------------------------- the rod of a quick return

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.families import Drive, Nonlinear, Varied
 from elastolink.runtime.nonlinear.branch import special_points
+from elastolink.runtime.nonlinear.response import tops
 from elastolink.runtime.systems import free_free_rod
 from elastolink.runtime.systems.rod import FreeFreeBasis, rod_system
 from elastolink.runtime.systems.rod.driven import driven_rod
@@ -74,11 +75,11 @@ def test_folds_of_duffings_equation(duffing):
     assert curve.special == ("fold", "fold")
     shown = np.stack([curve.special_lowest, curve.special_highest], axis=1)
     rows = zip(curve.special_value, curve.special_error, curve.special_orbits, shown, strict=True)
-    for value, error, orbit, tops in rows:
+    for value, error, orbit, both in rows:
         exact, state = shot_special(system, "fold", 1.001 * value, 1.01 * orbit.motion.states[0])
         assert abs(value - exact) <= error + KNOWN
         # Along the branch a fold is known to 1e-9 only, where its speed no longer changes.
-        off = extremes(marched(system, exact, state, 1, samples=2048), 1) - tops
+        off = extremes(marched(system, exact, state, 1, samples=2048), 1) - both
         assert np.max(np.abs(off)) <= 1e-9
 
 
@@ -215,6 +216,24 @@ def test_two_coupled_ones_lose_their_rest_by_a_torus_at_the_sum_of_frequencies()
     inside = (curve.value > values[0] + 1e-9) & (curve.value < values[1] - 1e-9)
     at_edge = np.min(np.abs(curve.value[:, None] - values), axis=1) < 1e-9
     assert np.array_equal(curve.stable[~at_edge], ~inside[~at_edge])
+
+
+# ---------------------------------------------------------------- extremes
+
+
+@pytest.mark.parametrize("count", [10, 13, 24])
+def test_extremes_are_right_from_a_few_samples_on(count):
+    """Of ``exp(sin) cos``, whose tops lean: where ``sin = cos^2``, wherever the samples are."""
+    sine = (np.sqrt(5.0) - 1.0) / 2.0
+    top, width = np.exp(sine) * np.sqrt(1.0 - sine**2), 2.0 * np.pi / count
+
+    def deflection(angle):
+        return np.exp(np.sin(angle)) * np.cos(angle)
+
+    for begin in np.linspace(0.0, width, 21):
+        angles = begin + width * np.arange(count)
+        values = deflection(np.concatenate([angles[:1] - width, angles, angles[-1:] + width]))
+        assert tops(deflection, angles, values, width) == pytest.approx((-top, top), rel=1e-11)
 
 
 # ---------------------------------------------------------------- the elastica

@@ -220,7 +220,9 @@ def _fewer_turns(before: Motion, after: Motion) -> bool:
 def special_points(solver: Solver, before: Orbit, after: Orbit) -> Iterator[Special]:
     """Yield the special points between two motions, located."""
     for kind, test in TESTS.items():
-        if not test(before) * test(after) < 0.0:
+        values = test(before), test(after)
+        # A value that is zero to the last digit belongs to one of the two steps that meet there.
+        if not min(values) < 0.0 <= max(values):
             continue
         if kind == "torus" and not _leaves(solver, before, after):
             continue

@@ -236,15 +236,15 @@ class _Plane:
         first = last.orbit.value + step * way[0] * self.curve.source.span
         second = last.second + step * way[1] * span
         if abs(way[1]) >= abs(way[0]):
-            return _Point(_special(self.solver(second), last.orbit, first, self.kind), second)
-        found = _special(self.across(first), last.orbit, second, self.kind)
+            return _Point(special_near(self.solver(second), last.orbit, first, self.kind), second)
+        found = special_near(self.across(first), last.orbit, second, self.kind)
         # The same motion as one over the first parameter.
         solver = self.solver(found.value)
         orbit, _ = solver.corrected(first, found.motion, last.orbit.tangent)
         return _Point(orbit, found.value)
 
 
-def _special(solver: Solver, near: Orbit, value: float, kind: str) -> Orbit:
+def special_near(solver: Solver, near: Orbit, value: float, kind: str) -> Orbit:
     """Return the motion at which a test vanishes, near one at another parameter."""
     test = TESTS[kind]
     direction = replace(near.tangent, span=solver.span)

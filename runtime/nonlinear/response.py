@@ -35,7 +35,7 @@ from .segments import Motion, Problem, sweep
 _POINTS = 2000  # of one branch
 _BRANCHES = 24
 SAMPLES = 128  # of a revolution, for extremes
-_POLISHED = 4  # parabolas about the highest sample, each a tenth as wide
+_POLISHED = 5  # parabolas about the highest sample, each a tenth as wide where it holds the top
 # Relative distance within which motions are one: within its steps a motion is right to 1e-5 or so.
 _SAME = 1e-4
 _DRAWN = 8  # places drawn between two points of a branch
@@ -464,15 +464,17 @@ def tops(
     inner = signed[:, 1:-1]
     which, samples = np.nonzero((inner >= signed[:, :-2]) & (inner >= signed[:, 2:]))
     places, signs = angles[samples], 2.0 * which - 1.0
+    widths = np.full(places.shape, width)
     for _ in range(_POLISHED):
-        around = places[:, None] + width * np.array([-1.0, 0.0, 1.0])
+        around = places[:, None] + np.multiply.outer(widths, [-1.0, 0.0, 1.0])
         left, middle, right = (signs[:, None] * deflection(around.ravel()).reshape(-1, 3)).T
         bend = left - 2.0 * middle + right
         shift = np.divide(left - right, 2.0 * bend, out=np.zeros_like(bend), where=bend < 0.0)
-        least, most = ((end - places) / width for end in ends)
+        least, most = ((end - places) / widths for end in ends)
         shift = np.clip(shift, np.maximum(least, -1.0), np.minimum(most, 1.0))
-        places = places + shift * width
-        width *= 0.1
+        places = places + shift * widths
+        # One that may lie beyond is looked for as widely again.
+        widths = np.where(np.abs(shift) < 1.0, 0.1 * widths, widths)
     # Of the last parabolas.
     found = signs * (middle - 0.5 * (left - right) * shift + 0.5 * bend * shift**2)
     return float(np.min(found[which == 0])), float(np.max(found[which == 1]))

@@ -22,8 +22,13 @@ from .segments import Motion, Problem, chained, sweep
 
 # Amplitudes of the starts in the first coordinate that suits, over its largest trial; phases.
 _AMPLITUDES, _PHASES = (0.1, 0.2, 0.35, 0.5), 6
+# Starts of random harmonics, and how many of these a turn: one in fifty reaches an unstable motion
+# of large amplitude that all other starts have missed.
+_RANDOM, _HARMONICS = 192, 4
 # Marched starts, revolutions of each at the most, and how near a state has to come back.
 _MARCHED, _SETTLING, _NEAR = 12, 120, 1e-2
+# Their relative error, and steps of a revolution: one that takes more is lost.
+_ROUGHLY, _MARCHED_STEPS = 1e-4, 96
 _ITERATIONS = 40
 _ARRIVED = 1e-6  # correction, relative, of what is worth to be settled
 _AT_ONCE = 24  # starts that are iterated together
@@ -85,7 +90,8 @@ def coexisting_motions(
 
     Newton's iteration from many starts, motions that are known deflated (a step towards one of
     them is turned away): from rest; from harmonics of each mode at frozen frequencies, as large as
-    a softened resonance would have them; and from motions that were marched from random states.
+    a softened resonance would have them; from motions that were marched from random states; and
+    from sums of random harmonics.
 
     Parameters
     ----------
@@ -213,8 +219,10 @@ def _solved(matrices: Array, right: Array) -> Array:
     try:
         return np.asarray(np.linalg.solve(matrices, right))
     except np.linalg.LinAlgError:
-        shaken = matrices + 1e-13 * np.eye(matrices.shape[-1])
-        return np.asarray(np.linalg.solve(shaken, right))
+        if len(matrices) == 1:
+            return np.full_like(right, np.nan)
+        each = zip(matrices[:, None], right[:, None], strict=True)
+        return np.concatenate([_solved(*one) for one in each])
 
 
 def _starts(
@@ -232,9 +240,11 @@ def _starts(
                     continue
                 for amplitude in _AMPLITUDES:
                     for phase in 2.0 * np.pi * np.arange(_PHASES) / _PHASES:
-                        wave = _wave(problem, mode, order, k, amplitude * largest, phase)
+                        harmonics = np.zeros((problem.system.size, order), dtype=complex)
+                        harmonics[mode, -1] = amplitude * largest * np.exp(1j * phase)
+                        wave = _wave(problem, harmonics, k)
                         starts.setdefault(f"mode {mode + 1}", []).append(wave)
-    marcher = Marcher(problem, 1e-6)
+    marcher = Marcher(problem, _ROUGHLY, _MARCHED_STEPS)
     speed, _ = problem.at(value)
     if problem.name == "speed":
         for _ in range(_MARCHED):
@@ -242,6 +252,12 @@ def _starts(
             marched = _marched(marcher, speed, state, turns)
             if marched is not None:
                 starts.setdefault("marched", []).append(marched)
+    for k in range(1, turns + 1):
+        real, imaginary = random.normal(size=(2, _RANDOM, problem.system.size, _HARMONICS * k))
+        harmonics = (real + 1j * imaginary) / np.arange(1, _HARMONICS * k + 1)
+        sizes = np.linalg.norm(harmonics, axis=(1, 2)) / (largest * random.uniform(size=_RANDOM))
+        waves = (_wave(problem, each, k) for each in harmonics / sizes[:, None, None])
+        starts.setdefault("random", []).extend(waves)
     return starts
 
 
@@ -256,17 +272,15 @@ def _frequencies(problem: Problem, value: float) -> Array:
     return np.sort(np.sqrt(np.maximum(squares, 0.0)))
 
 
-def _wave(
-    problem: Problem, mode: int, order: int, turns: int, amplitude: float, phase: float
-) -> Motion:
-    """Return the motion ``amplitude cos(order theta / turns + phase)`` of one coordinate."""
+def _wave(problem: Problem, harmonics: Array, turns: int) -> Motion:
+    """Return the motion with such harmonics ``(n, h)``, the first of so many turns."""
     rest = first_motion(problem, turns)
-    rate = order / turns
+    rates = 1j * np.arange(1, harmonics.shape[1] + 1) / turns
     begins = rest.step * np.arange(len(rest.x))
-    x, v, a = rest.x.copy(), rest.v.copy(), rest.a.copy()
-    x[:, mode] = amplitude * np.cos(rate * begins + phase)
-    v[:, mode] = -amplitude * rate * np.sin(rate * begins + phase)
-    a[..., mode] = -amplitude * rate**2 * np.cos(rate * rest.angles + phase)
+    x, v, a = (
+        np.real((rates**k * np.exp(np.multiply.outer(angles, rates))) @ harmonics.T)
+        for k, angles in enumerate((begins, begins, rest.angles))
+    )
     return Motion(turns, x, v, a)
 
 

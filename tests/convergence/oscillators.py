@@ -70,7 +70,7 @@ def marched(
     def rates(theta, y):
         q, v = np.split(y.reshape(begin.shape), 2, axis=1)
         now = np.sqrt(np.asarray(speed) ** 2 + 2.0 * rise * theta)
-        drive = Drive(np.full(len(q), theta), now, rise)
+        drive = Drive(*(np.broadcast_to(each, (len(q), 1))[:, 0] for each in (theta, now, rise)))
         found = system.equations(q, now * v, rise * v, drive, system.parameters)
         a = -np.linalg.solve(found.mass, found.residual[..., None])[..., 0] / now**2
         return np.concatenate([v, a], axis=1).ravel()
@@ -127,27 +127,27 @@ def shot_where(test, system, speed: float, state, turns: int = 1):
     return newton(tested, speed, x1=speed * (1.0 + 1e-4), tol=1e-13 * speed), state
 
 
-def shot_fold(system, speed: float, state, turns: int = 1):
-    """Return speed and state where a multiplier is 1, by the secant rule from a guess.
+def shot_special(system, kind: str, speed: float, state, turns: int = 1, rtol: float = 3e-14):
+    """Return the speed and the periodic state at a fold or doubling near a guess, by DOP853.
 
-    The first coordinate is held, and the speed free: beyond a fold there is no motion.
+    Steps along the branch by the secant rule for the determinant that vanishes there, each with
+    Newton's correction across it; the guess may be off by some thousandths.
     """
-    speed, state, one = float(speed), np.array(state, dtype=float), np.eye(len(state))
-
-    def tested(place):
-        nonlocal speed, state
-        state[0] = place
-        for _ in range(20):
-            end, matrix, by_speed = returned(system, speed, state, turns)
-            slopes = np.column_stack([by_speed, (matrix - one)[:, 1:]])
-            change = np.linalg.solve(slopes, state - end)
-            speed, state[1:] = speed + change[0], state[1:] + change[1:]
-            if np.max(np.abs(change)) < 1e-12:
-                return np.linalg.det(matrix - one)
-        raise ArithmeticError("no periodic motion is near the guess")
-
-    newton(tested, state[0], x1=state[0] * (1.0 + 1e-3), tol=1e-9)  # its square is rounding
-    return speed, state
+    state, multiplier = np.array(state, dtype=float), {"fold": 1.0, "doubling": -1.0}[kind]
+    one, step, before, way = np.eye(len(state)), 1e-3, None, None
+    for _ in range(12):
+        end, matrix, by_speed = returned(system, speed, state, turns, rtol)
+        test = np.linalg.det(matrix - multiplier * one)
+        equations = np.column_stack([matrix - one, speed * by_speed])
+        last, way = way, np.linalg.svd(equations)[2][-1]
+        way = way if last is None or last @ way > 0.0 else -way
+        if before is not None:
+            step = float(np.clip(-test * step / (test - before), -0.02, 0.02))
+        change = np.linalg.lstsq(equations, state - end)[0] + step * way
+        state, speed, before = state + change[:-1], speed * (1.0 + change[-1]), test
+        if np.max(np.abs(change)) < 1e-8:
+            return speed, state
+    raise ArithmeticError(f"no {kind} is near the guess")
 
 
 def extremes(path, turns: int):

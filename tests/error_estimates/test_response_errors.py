@@ -28,8 +28,11 @@ def finer(solver, orbit):
     """Return the motion opposite to one on the branch, on twice the steps."""
     motion = orbit.motion.resampled(2 * len(orbit.motion.x), STAGES)
     exact, _ = solver.corrected(orbit.value, motion, orbit.tangent)
-    for _ in range(2):
+    for _ in range(8):
+        # The tangent on other steps is not the same to the last digit: some times, then.
         along = orbit.tangent.dot(difference(orbit, exact))
+        if abs(along) <= FLOOR:
+            break
         exact, _ = solver.corrected(*changed(exact, exact.tangent, -along), exact.tangent)
     return exact
 

@@ -7,16 +7,20 @@ else is said.  What is allowed is that and the error estimate that the curve tel
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import elastolink as el
 import numpy as np
 import pytest
 from elastolink.runtime.core.families import Drive, Nonlinear, Varied
+from elastolink.runtime.nonlinear.branch import special_points
+from elastolink.runtime.nonlinear.response import tops
 from elastolink.runtime.systems import free_free_rod
 from elastolink.runtime.systems.rod import FreeFreeBasis, rod_system
 from elastolink.runtime.systems.rod.driven import driven_rod
 from free_free_loads import ROD
 from orders import slope
-from oscillators import extremes, marched, oscillators, shot, shot_fold, shot_where
+from oscillators import extremes, marched, oscillators, shot, shot_special, shot_where
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk, j1, mathieu_a, mathieu_b
 
@@ -71,11 +75,11 @@ def test_folds_of_duffings_equation(duffing):
     assert curve.special == ("fold", "fold")
     shown = np.stack([curve.special_lowest, curve.special_highest], axis=1)
     rows = zip(curve.special_value, curve.special_error, curve.special_orbits, shown, strict=True)
-    for value, error, orbit, tops in rows:
-        exact, state = shot_fold(system, 1.001 * value, 1.01 * orbit.motion.states[0])
+    for value, error, orbit, both in rows:
+        exact, state = shot_special(system, "fold", 1.001 * value, 1.01 * orbit.motion.states[0])
         assert abs(value - exact) <= error + KNOWN
         # Along the branch a fold is known to 1e-9 only, where its speed no longer changes.
-        off = extremes(marched(system, exact, state, 1, samples=2048), 1) - tops
+        off = extremes(marched(system, exact, state, 1, samples=2048), 1) - both
         assert np.max(np.abs(off)) <= 1e-9
 
 
@@ -214,6 +218,24 @@ def test_two_coupled_ones_lose_their_rest_by_a_torus_at_the_sum_of_frequencies()
     assert np.array_equal(curve.stable[~at_edge], ~inside[~at_edge])
 
 
+# ---------------------------------------------------------------- extremes
+
+
+@pytest.mark.parametrize("count", [10, 13, 24])
+def test_extremes_are_right_from_a_few_samples_on(count):
+    """Of ``exp(sin) cos``, whose tops lean: where ``sin = cos^2``, wherever the samples are."""
+    sine = (np.sqrt(5.0) - 1.0) / 2.0
+    top, width = np.exp(sine) * np.sqrt(1.0 - sine**2), 2.0 * np.pi / count
+
+    def deflection(angle):
+        return np.exp(np.sin(angle)) * np.cos(angle)
+
+    for begin in np.linspace(0.0, width, 21):
+        angles = begin + width * np.arange(count)
+        values = deflection(np.concatenate([angles[:1] - width, angles, angles[-1:] + width]))
+        assert tops(deflection, angles, values, width) == pytest.approx((-top, top), rel=1e-11)
+
+
 # ---------------------------------------------------------------- the elastica
 
 EULER = np.pi**2  # of a column with EI = l = 1
@@ -322,17 +344,20 @@ def test_a_pitchfork_at_zero():
     assert curve.special == ("branch point",)
     assert abs(curve.special_value[0]) <= curve.special_error[0] < 1e-9
     for number in (1, 2):
-        # But for the first, 4e-10 from the branch point, whose estimate is short by a quarter.
-        at = np.flatnonzero(curve.branch == number)[1:]
+        at = np.flatnonzero(curve.branch == number)
         size, value = curve.highest[at], curve.value[at]
         slack = 2.0 * np.abs(size) * curve.peak_error[at] + curve.error[at] * curve.source.span
         assert np.all(np.abs(size**2 + value) <= slack)
-    straight = curve.orbits[0]
-    here, _ = curve.source.corrected(
-        0.0, straight.motion, curve.source.along_parameter(straight.motion)
-    )
+    solver, rest = curve.source, curve.orbits[0].motion
+    upwards = solver.along_parameter(rest)
+    below, here, above = (solver.corrected(v, rest, upwards)[0] for v in (-0.1, 0.0, 0.1))
     assert here.value == here.border == 0.0
-    assert here.tangent.value == pytest.approx(curve.source.span, rel=1e-15)
+    assert here.tangent.value == pytest.approx(solver.span, rel=1e-15)
+    # A step that ends there, and the next one: one of both has the branch point.
+    for ends in (below, here, above), (above.turned(), here.turned(), below.turned()):
+        points = [point for step in pairwise(ends) for point in special_points(solver, *step)]
+        assert [point.kind for point in points] == ["branch point"]
+        assert abs(points[0].orbit.value) <= points[0].value_error
 
 
 # ---------------------------------------------------------------- the rod of a quick return

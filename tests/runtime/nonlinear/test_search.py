@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.nonlinear import coexisting_motions
+from elastolink.runtime.nonlinear.search import _solved
 from planted import duffing, planted_system
 from random_systems import random_rig
 
@@ -36,6 +37,14 @@ def test_nearly_all_planted_motions_are_found():
     assert found(1, 20) >= 0.95
 
 
+def test_a_start_without_a_correction_stops_no_other():
+    # Of three starts the second is at a motion with a multiplier of 1.
+    matrices = np.stack([np.eye(2), np.zeros((2, 2)), 2.0 * np.eye(2)])
+    found = _solved(matrices, np.ones((3, 2, 1)))[..., 0]
+    assert found[[0, 2]].tolist() == [[1.0, 1.0], [0.5, 0.5]]
+    assert np.all(np.isnan(found[1]))
+
+
 def test_the_three_motions_of_a_hardened_resonance():
     # Between its folds, 1.1292 and 1.3315, Duffing's equation has three motions, the middle one
     # unstable; their multipliers multiply to exp(-2 pi damping / speed).
@@ -44,7 +53,7 @@ def test_the_three_motions_of_a_hardened_resonance():
     assert motions.stable.tolist() == [True, False, True]
     assert np.all(np.diff(motions.highest) > 0.1)
     assert motions.error.max() < 1e-8
-    assert set(motions.searched) >= {"rest", "mode 1", "marched"}
+    assert set(motions.searched) >= {"rest", "mode 1", "marched", "random"}
 
 
 def test_motions_are_starts_of_branches():

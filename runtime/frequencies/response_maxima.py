@@ -143,11 +143,11 @@ def response_maxima(system: LinearPeriodic, low: Array, high: Array) -> tuple[Ar
         ends = np.array([peaks[k][:2] for k in rest])
         inside = ends.mean(axis=1)[:, None] + 0.5 * np.diff(ends, axis=1) * _NODES
         squares, error = _mean_squares(system, inside.ravel())
-        looks = inside, squares.reshape(*inside.shape, -1), error.reshape(inside.shape).max(axis=1)
-        for k, *seen in zip(rest, *looks, strict=True):
-            peaks[k] = _closer(peaks[k], *seen, _rtol(system))
-    columns = np.array([peak[2:5] for peak in peaks]).reshape(-1, 3).T
-    place, height, error = columns
+        squares, error = squares.reshape(*inside.shape, -1), error.reshape(inside.shape)
+        for i, k in enumerate(rest):
+            worst = float(np.max(error[i]))
+            peaks[k] = _closer(peaks[k], inside[i], squares[i], worst, _rtol(system))
+    place, height, error = np.array([peak[2:5] for peak in peaks]).reshape(-1, 3).T
     return place, height, error
 
 

@@ -263,9 +263,8 @@ def by_multipliers(request: Request) -> CriticalSpeeds:
 
 
 # Of the fastest mode's motion at the lowest speed an interval of Meissner's is to hold so much at
-# most [rad]: of longer ones the steps throw waves back.
-_INTERVAL = 0.4
-_MOST_INTERVALS = 2**13
+# most [rad], of longer ones the steps throw waves back; and so many intervals at the most.
+_INTERVAL, _MOST_INTERVALS = 0.4, 2**13
 
 
 def by_meissner(request: Request) -> CriticalSpeeds:

@@ -28,10 +28,9 @@ _MOST_SAMPLES = 4000
 _ANGLES = 256
 # Error of the transition matrices: the place of a maximum is open by the root of it.
 _RTOL = 1e-9
-# Step beside a maximum, over the speed: of its fourth power the place is off.
-_BESIDE = 1e-4
-# The same of J_N as a part of a half turn of the mode, and how often a maximum is moved by it.
-_TURNED, _POLISHED = 3e-3, 2
+# Step beside a maximum, over the speed: of its fourth power the place is off; the same of J_N as a
+# part of a half turn of the mode, and how often a maximum is moved by it.
+_BESIDE, _TURNED, _POLISHED = 1e-4, 3e-3, 2
 # Maxima of fewer intervals are looked for beyond the range, by this factor at either end.
 _ASIDE = 0.9
 

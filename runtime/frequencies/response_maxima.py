@@ -20,16 +20,12 @@ _TOGETHER = 16
 # Places along the link at which its deflection is watched.
 _PLACES = np.linspace(0.0, 1.0, 21)
 # Speeds within a bracket, its ends among them: each look at one leaves a third of it about.
-_WITHIN = 9
-_NODES = -np.cos(np.pi * np.arange(_WITHIN) / (_WITHIN - 1))
+_NODES = -np.cos(np.pi * np.arange(9) / 8)
 # Values at them to the coefficients of their Chebyshev series.
-_TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, _WITHIN - 1))
+_TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, len(_NODES) - 1))
 # Looks at a bracket: a peak a millionth as wide as the first one is resolved by them.
 _LOOKS = 16
-# Round-off of a series of nine terms, and of a place.
-_ROUNDED = 2.0 * float(np.finfo(float).eps)
-# Times that another place along the link may turn out to move most.
-_CHANGES = 4
+_EPS = float(np.finfo(float).eps)
 
 
 def scanned_deflections(system: LinearPeriodic, speeds: Array, progress: bool) -> Array:
@@ -160,13 +156,13 @@ def _closer(peak: _Peak, speeds: Array, squares: Array, error: float, wanted: fl
     values = 1.0 / np.maximum(squares, np.finfo(float).tiny)
     middle, half = speeds.mean(), 0.5 * float(speeds[-1] - speeds[0])
     # The place along the link that moves most there, alone: where two change roles is a corner.
-    for _ in range(_CHANGES):
+    for _ in values.T:
         shift, least, doubt, doubt_of_place = _least(values[:, place], error, best)
         before, place = place, int(np.argmin(chebyshev.chebval(shift, _TO_SERIES @ values)))
         if place == before:
             break
     at = float(middle + half * shift)
-    off = half * min(doubt_of_place, 1.0) + _ROUNDED * at
+    off = half * min(doubt_of_place, 1.0) + 2.0 * _EPS * at
     apart = abs(at - peak.place)
     # It has no bound where one over its square is no more than what that is off by.
     height = least**-0.5 if least > doubt else np.inf
@@ -190,7 +186,7 @@ def _least(values: Array, error: float, best: int) -> tuple[float, float, float,
     series = _TO_SERIES @ values
     roots = chebyshev.chebroots(chebyshev.chebder(series))
     # Between the neighbours of the lowest node.
-    low, high = _NODES[max(best - 1, 0)], _NODES[min(best + 1, _WITHIN - 1)]
+    low, high = _NODES[max(best - 1, 0)], _NODES[min(best + 1, len(_NODES) - 1)]
     inner = roots[(np.abs(roots.imag) < 1e-9) & (roots.real >= low) & (roots.real <= high)].real
     if not len(inner):
         return float(_NODES[best]), float(values[best]), np.inf, np.inf
@@ -203,12 +199,12 @@ def _least(values: Array, error: float, best: int) -> tuple[float, float, float,
     early, before, last = (float(np.sum(np.abs(series[k : k + 2]))) for k in (3, 5, 7))
     falling = last * early < before**2
     following = last * (last / before) ** 0.5 if falling else last
-    following += _ROUNDED * float(np.sum(np.abs(series)))
+    following += 2.0 * _EPS * float(np.sum(np.abs(series)))
     # An error that varies as the motions do moves the peak by this part of its half width.
     width = (2.0 * max(least, 0.0) / curve) ** 0.5
     return (
         at,
         least,
         following + 2.0 * error * abs(least),
-        (2.0 * _WITHIN * following / curve + error * width),
+        (2.0 * len(_NODES) * following / curve + error * width),
     )

@@ -21,11 +21,10 @@ _FIRST, _LEAST, _LARGEST = 0.02, 1e-7, 0.5
 _WIDEST = 1.0 / 60.0  # part of the range that a step may change the parameter by
 # Relative amplitude at which a crossing branch is entered.
 _ENTERED = 0.02
-_FINER = 1.4  # steps of a special point over those of the motions about it
-_BEYOND = 1e-3  # part of a step that it may lie beyond it by
-_FRESH = 1e-13  # last correction after which a test is what it is
+# Steps of a special point over those of the motions about it, the part of a step that it may lie
+# beyond it by, and to which it is located; last correction after which a test is what it is.
+_FINER, _BEYOND, _LOCATED, _FRESH = 1.4, 1e-3, 1e-12, 1e-13
 _ROUNDING = 64 * EPS  # of a test, over the size of the matrix
-_LOCATED = 1e-12  # part of a step to which a special point is located
 # Part of a test's value to which the parabola through three has to fall for a pair to be sought.
 _DIP = 0.3
 

@@ -32,14 +32,13 @@ from .orbit import (
 )
 from .segments import Motion, Problem, sweep
 
-_POINTS = 2000  # of one branch
-_BRANCHES = 24
+_POINTS, _BRANCHES = 2000, 24  # points of one branch, and branches
 SAMPLES = 128  # of a revolution, for extremes
 _POLISHED = 5  # parabolas about the highest sample, each a tenth as wide where it holds the top
 # Relative distance within which motions are one: within its steps a motion is right to 1e-5 or so.
 _SAME = 1e-4
-_DRAWN = 8  # places drawn between two points of a branch
-_LINEAR = 120  # values at which the linear answer is computed
+# Places drawn between two points of a branch, and values of the linear answer.
+_DRAWN, _LINEAR = 8, 120
 _STYLE = {"fold": "o", "doubling": "s", "branch point": "D", "torus": "^"}
 
 

@@ -29,9 +29,8 @@ _RANDOM, _HARMONICS = 192, 4
 _MARCHED, _SETTLING, _NEAR = 12, 120, 1e-2
 # Their relative error, and steps of a revolution: one that takes more is lost.
 _ROUGHLY, _MARCHED_STEPS = 1e-4, 96
-_ITERATIONS = 40
-_ARRIVED = 1e-6  # correction, relative, of what is worth to be settled
-_AT_ONCE = 24  # starts that are iterated together
+# Corrections of a start, relative correction of what is worth to be settled, starts together.
+_ITERATIONS, _ARRIVED, _AT_ONCE = 40, 1e-6, 24
 _LARGEST = 50.0  # size of a motion over that of the largest start beyond which a search is given up
 
 

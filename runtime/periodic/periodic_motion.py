@@ -56,7 +56,9 @@ _ROUNDED = 48.0
 _LOST = 1.0 / 16.0
 
 # Fields that are computed when they are first looked at.
-_LATER = {name: DeferredField() for name in ("multipliers", "stable", "distance")}
+_LATER = {
+    name: DeferredField() for name in ("multipliers", "multiplier_error", "stable", "distance")
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,6 +78,8 @@ class SteadyState(Result):
         Largest error of each coordinate over its peak, shape ``(*batch, n)``; inf where q is NaN.
     multipliers : ndarray of complex
         Floquet multipliers, shape ``(*batch, 2n)``, by falling modulus.
+    multiplier_error : ndarray
+        Absolute error of each multiplier, shape ``(*batch, 2n)``.
     stable : ndarray of bool
         Whether nearby motions stay near: no multiplier outside the unit circle by more than its
         error; shape ``batch``.  Without it the motion exists, and no machine would show it.
@@ -97,7 +101,8 @@ class SteadyState(Result):
 
     Notes
     -----
-    ``multipliers``, ``stable`` and ``distance`` are computed when one of them is first looked at.
+    ``multipliers``, ``multiplier_error``, ``stable`` and ``distance`` are computed when one of them
+    is first looked at.
     """
 
     speed: Array
@@ -105,6 +110,7 @@ class SteadyState(Result):
     q: Array
     qd: Array
     multipliers: Any = _LATER["multipliers"]
+    multiplier_error: Any = _LATER["multiplier_error"]
     stable: Any = _LATER["stable"]
     distance: Any = _LATER["distance"]
     sensitivity: Array
@@ -302,6 +308,7 @@ def steady_state(
         q=q.reshape(*batch, samples, n),
         qd=(slope * equation.speed[:, None, None]).reshape(*batch, samples, n),
         multipliers=later.later("multipliers"),
+        multiplier_error=later.later("multiplier_error"),
         stable=later.later("stable"),
         distance=later.later("distance"),
         sensitivity=sensitivity.reshape(batch),
@@ -412,6 +419,7 @@ def _stability(
     result = floquet_multipliers(system, speed, **parameters)
     return {
         "multipliers": result.multipliers,
+        "multiplier_error": result.error,
         "stable": np.asarray(result.stable),
         "distance": np.min(np.abs(result.multipliers - 1.0), axis=-1),
     }

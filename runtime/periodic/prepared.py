@@ -20,7 +20,7 @@ from ..core.results import Check, DeferredChecks, provenance
 from .compiled import CompiledTable, require_numba
 from .equation import SPEED_POWER, Equation, SampledSystem, at_geometry, equation_of, sampled
 from .motion import Trajectory, simulate, start_values
-from .multipliers import Monodromy, conditions, rounding_error
+from .multipliers import Monodromy, eigenvalues, rounding_error
 from .periodic_motion import SteadyState, peaks
 from .tables import Table, flows_at, next_rung, table_of
 from .transition import cheapest
@@ -245,6 +245,7 @@ class Prepared:
             q=q.reshape(*batch, -1, n),
             qd=(flat[:, None, None] * slope).reshape(*batch, -1, n),
             multipliers=later.later("multipliers"),
+            multiplier_error=later.later("multiplier_error"),
             stable=later.later("stable"),
             distance=later.later("distance"),
             sensitivity=sensitivity.reshape(batch),
@@ -257,19 +258,22 @@ class Prepared:
     def _stability(
         self, speeds: Array, whole: Array, batch: tuple[int, ...]
     ) -> Mapping[str, NDArray[Any]]:
-        """Return multipliers, whether all are inside the unit circle, and their distance from 1."""
+        """Return multipliers with their errors, whether all are inside, and their distance from 1.
+
+        The last is the distance of the nearest of them.
+        """
         m = 2 * self.system.size
-        values, vectors = np.linalg.eig(whole[:, :m, :m])
-        values = values.astype(complex)
-        size = self.errors.of_matrices(speeds) * np.max(np.abs(whole[:, :m, :m]), axis=(1, 2))
-        error = conditions(vectors) * size[:, None]
+        matrices = whole[:, :m, :m]
+        size = self.errors.of_matrices(speeds) * np.max(np.abs(matrices), axis=(1, 2))
+        values, error, _ = eigenvalues(matrices, size)
         # An error that says nothing leaves stability unproved.
         slack = np.where(error < 0.1, error, -error)
         stable = np.all(np.abs(values) <= 1.0 + slack, axis=-1)
         order = np.argsort(-np.abs(values), axis=-1, kind="stable")
-        values = np.take_along_axis(values, order, axis=-1)
+        values, error = (np.take_along_axis(part, order, axis=-1) for part in (values, error))
         return {
             "multipliers": values.reshape(*batch, m),
+            "multiplier_error": error.reshape(*batch, m),
             "stable": stable.reshape(batch),
             "distance": np.min(np.abs(values - 1.0), axis=-1).reshape(batch),
         }

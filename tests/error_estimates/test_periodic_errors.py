@@ -12,7 +12,7 @@ import taylor_truth
 from honesty import over_scenes
 from manufactured import manufactured
 from periodic_systems import system_of, wave
-from wavy_springs import Wavy, tame
+from wavy_springs import Wavy, WavyCoordinates, tame
 
 pytestmark = pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning")
 EPS = float(np.finfo(float).eps)
@@ -120,6 +120,44 @@ def test_prepared_for_any_tolerance(rng):
     run = ready.simulate(speed, turns, start)
     moved = _of_motion(run, truth.coordinates(np.array(states)))
     return {"matrix": (estimate, np.maximum(actual, EPS / 4)), "motion": moved}
+
+
+def _on_the_circle(rng):
+    """Return two or three undamped springs in coordinates that wave thrice a turn, and rates."""
+    n = int(rng.integers(2, 4))
+    # Products of few digits are exact: rounding of K would move the rates.
+    squares = np.rint(rng.uniform(1.0, 5.0, n) ** 2 * 256.0) / 256.0
+    fixed = np.eye(n) + np.rint(150.0 * rng.standard_normal((n, n))) / 1024.0
+    waves = WavyCoordinates(fixed, 0.03 * rng.standard_normal((2, 3, n, n)))
+    return waves.arrays(squares), np.sqrt(squares)
+
+
+def _nearest(values, rates, speed):
+    """Return how far multipliers are from the nearest ``exp(+-2 pi i rate/speed)``."""
+    turns = np.concatenate([rates, -rates]) / speed
+    return np.min(np.abs(values[:, None] - np.exp(2j * np.pi * turns)), axis=1)
+
+
+@over_scenes(7, few=30, many=250, floor=EPS, median=100.0)
+def test_multipliers_on_the_circle_at_a_coarse_tolerance(rng):
+    """Where the waves, not the rates, make the error: it cancels by chance on one rung."""
+    arrays, rates = _on_the_circle(rng)
+    speed = float(np.max(rates) * 10.0 ** rng.uniform(-0.3, 1.0))
+    found = floquet_multipliers(system_of(**arrays), speed, rtol=1e-4)
+    return found.error, _nearest(found.multipliers, rates, speed)
+
+
+@over_scenes(8, few=15, many=150, floor=EPS)
+def test_multipliers_of_a_prepared_system(rng):
+    """The tables are good to the last digits here, and the error is the round-off allowed them."""
+    arrays, rates = _on_the_circle(rng)
+    low = float(np.max(rates) * 10.0 ** rng.uniform(-0.5, 0.5))
+    rtol = float(10.0 ** rng.uniform(-12.0, -4.0))
+    system = system_of(**arrays, f=wave(rng.standard_normal(len(rates))))
+    ready = prepare(system, (low, 1.5 * low), samples=SAMPLES, rtol=rtol)
+    speed = low * rng.uniform(1.0, 1.5)
+    motion = ready.steady_state(speed)
+    return motion.multiplier_error, _nearest(motion.multipliers, rates, speed)
 
 
 @over_scenes(4, few=15, many=150, median=100.0)

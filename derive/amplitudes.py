@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping
+from functools import cache
 from typing import TypeAlias
 
 import sympy as sp
@@ -14,9 +15,13 @@ ORDER = 4  # of energies; their equations of motion are of one order less
 Harmonics: TypeAlias = Mapping[sp.Expr, sp.Expr]
 
 
+@cache
 def _by_order(expression: sp.Expr) -> list[sp.Expr]:
-    powers = sp.collect(sp.expand(expression), SMALL, evaluate=False)
-    return [powers.get(SMALL**n, sp.S.Zero) for n in range(ORDER + 1)]
+    terms: dict[sp.Expr, list[sp.Expr]] = defaultdict(list)
+    for term in sp.Add.make_args(sp.expand(expression)):
+        value, power = term.as_independent(SMALL, as_Add=False)
+        terms[power].append(value)
+    return [sp.Add(*terms[SMALL**n]) for n in range(ORDER + 1)]
 
 
 def kept(expression: sp.Expr) -> sp.Expr:

@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 81 operations
-Content hash b570787436b566f9eff1d9426165082b; derived with SymPy 1.14.0.
+Content hash d6c6e07f4ef327cd7622c477f0f6cdf3; derived with SymPy 1.14.0.
 """
 
 __all__ = ["element"]
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"cubic","mechanism":"beam_element","mode'
     's":null,"outputs":[]}'
 )
-CONTENT = "b570787436b566f9eff1d9426165082b"
+CONTENT = "d6c6e07f4ef327cd7622c477f0f6cdf3"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

@@ -9,7 +9,7 @@ The caller supplies f as a function of the angle, by the name 'f'.
 
 Cost per evaluation:
     scales: 0 operations
-Content hash 531ff9f275c8420fd5f3a67189d56670; derived with SymPy 1.14.0.
+Content hash 6d96fa60558ccd15f6e41ad9637b9427; derived with SymPy 1.14.0.
 """
 
 __all__ = ["scales"]
@@ -18,7 +18,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"plain","mechanism":"hill","modes":null,'
     '"outputs":[]}'
 )
-CONTENT = "531ff9f275c8420fd5f3a67189d56670"
+CONTENT = "6d96fa60558ccd15f6e41ad9637b9427"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

@@ -18,7 +18,7 @@ Cost per evaluation:
     drift_beyond: 251 operations
     pair_integrals: 72 operations
     own_integrals: 127 operations
-Content hash 8191715fd790651d8f15ceba22cc1b30; derived with SymPy 1.14.0.
+Content hash 843f562107b87444544a0a42a5811650; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"overhang_modes","mechanism":"quick_retu'
     'rn","modes":null,"outputs":[]}'
 )
-CONTENT = "8191715fd790651d8f15ceba22cc1b30"
+CONTENT = "843f562107b87444544a0a42a5811650"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

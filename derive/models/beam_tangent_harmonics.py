@@ -10,8 +10,8 @@ from __future__ import annotations
 from functools import cache
 
 import sympy as sp
-from sympy.simplify.fu import TR8
 
+from ..integrals import antiderivative, definite
 from ..ir import Argument, Description, Result
 from ..pipeline import Model
 from ..safe import UnsafeRewriting
@@ -29,16 +29,16 @@ _RESULTS = {
 
 
 def _along(integrand: sp.Expr) -> sp.Expr:
-    return sp.simplify(sp.integrate(integrand, (_S, 0, 1)))
+    return sp.simplify(definite(integrand, _S))
 
 
 @cache
 def integrals() -> dict[str, sp.Expr]:
     """Return the integrals of the harmonic n, by name."""
     one, other = (sp.cos(n * sp.pi * _S) for n in (_N, _N + _MORE))
-    place, beside = (sp.integrate(p, (_S, 0, _S)) for p in (one, other))
+    place, beside = (antiderivative(p, _S) for p in (one, other))
     for pair in (place * beside, one.diff(_S) * other.diff(_S)):
-        if (met := _along(TR8(sp.expand(pair)))) != 0:
+        if (met := _along(pair)) != 0:
             raise UnsafeRewriting(f"two harmonics meet in an integral: {met}")
     return {
         "moment": _along((1 - _S) * one),

@@ -143,7 +143,7 @@ def test_multipliers_on_the_circle_at_a_coarse_tolerance(rng):
     """Where the waves, not the rates, make the error: it cancels by chance on one rung."""
     arrays, rates = _on_the_circle(rng)
     speed = float(np.max(rates) * 10.0 ** rng.uniform(-0.3, 1.0))
-    found = floquet_multipliers(system_of(**arrays), speed, rtol=1e-4)
+    found = el.floquet_multipliers(system_of(**arrays), speed, rtol=1e-4)
     return found.error, _nearest(found.multipliers, rates, speed)
 
 
@@ -154,7 +154,7 @@ def test_multipliers_of_a_prepared_system(rng):
     low = float(np.max(rates) * 10.0 ** rng.uniform(-0.5, 0.5))
     rtol = float(10.0 ** rng.uniform(-12.0, -4.0))
     system = system_of(**arrays, f=wave(rng.standard_normal(len(rates))))
-    ready = prepare(system, (low, 1.5 * low), samples=SAMPLES, rtol=rtol)
+    ready = el.prepare(system, (low, 1.5 * low), samples=SAMPLES, rtol=rtol)
     speed = low * rng.uniform(1.0, 1.5)
     motion = ready.steady_state(speed)
     return motion.multiplier_error, _nearest(motion.multipliers, rates, speed)

@@ -47,9 +47,11 @@ def rows(rig: Rig, shooting: bool) -> list[list[str]]:
     """Return the rows of a rig."""
     few, lines = {n: found(rig, n) for n in (1, 2, 3)}, []
     for point in sorted(few[3], key=lambda point: point.speed):
-        all_of_it = {n: [p for p in few[n] if p.is_like(point)] for n in (1, 2)}
-        same = {n: points[0] for n, points in all_of_it.items() if points}
-        same |= {3: point}
+        same = {3: point}
+        for n in (1, 2):
+            alike = [other for other in few[n] if other.is_like(point)]
+            gaps = [abs(other.speed - point.speed) for other in alike]
+            same |= {n: alike[gaps.index(min(gaps))]} if alike else {}
         same |= {more.orbit.motion.x.shape[1]: more for more in with_more(rig, point, MOST)}
         speeds = {n: p.speed for n, p in same.items()}
         sizes = {n: 1e3 * p.size for n, p in same.items()}
@@ -69,7 +71,7 @@ def main() -> None:
         lines = rows(rig, "--shooting" in options)
         for line in (head, ["---"] * len(head), *lines):
             print("|", " | ".join(line), "|", flush=True)
-        sizes = {n: 1e3 * third(rig, n) for n in range(1, MOST + 1)}
+        sizes = {n: 1e3 * size for n, size in enumerate(third(rig, MOST), 1)}
         words = f"at a third, {rig.third:g} rpm, peak to peak [mm]:", *cells(sizes, 5)
         print(*words, "settled to 1e-4 from", settled(sizes, SIZES), flush=True)
 

@@ -15,7 +15,7 @@ import numpy as np
 from bent_rigs import RPM
 from elastolink.runtime.nonlinear.branch import value_error
 from elastolink.runtime.nonlinear.loci import special_near
-from elastolink.runtime.nonlinear.orbit import STAGES, Direction, Orbit, Solver
+from elastolink.runtime.nonlinear.orbit import FIRST_STEPS, STAGES, Direction, Orbit, Solver
 from elastolink.runtime.nonlinear.response import extremes
 from elastolink.runtime.nonlinear.segments import Motion, Problem
 
@@ -77,7 +77,7 @@ class Found(NamedTuple):
     def is_like(self, other: Found) -> bool:
         """Return True for the same special point with other modes."""
         same = (self.kind, self.turns) == (other.kind, other.turns)
-        near = abs(self.speed - other.speed) < 2e-3 * self.speed
+        near = abs(self.speed - other.speed) < 5e-3 * self.speed
         return same and near and abs(self.size - other.size) < 0.02 * self.size
 
 
@@ -120,11 +120,22 @@ def with_more(rig: Rig, point: Found, modes: int) -> Iterator[Found]:
         yield point
 
 
-def third(rig: Rig, modes: int) -> float:
-    """Return the peak-to-peak deflection [m] in the resonance at a third of the frequency."""
+def third(rig: Rig, modes: int) -> Iterator[float]:
+    """Yield the peak-to-peak deflection [m] in the resonance at a third of the frequency.
+
+    With one mode, and one more each time.
+    """
     speed = rig.third * RPM
-    curve = el.response_curve(rig.system(modes), "speed", (0.999 * speed, speed))
-    return float(curve.peak_to_peak[np.argmax(curve.value)])
+    curve = el.response_curve(rig.system(1), "speed", (0.85 * speed, speed))
+    motion = curve.orbits[np.flatnonzero(curve.branch == 0)[-1]].motion
+    for n in range(1, modes + 1):
+        if n > 1:
+            motion = _wider(motion).resampled(len(motion.x) + FIRST_STEPS, STAGES)
+        solver = Solver(Problem(rig.system(n), "speed", 0.0), speed)
+        motion = solver.settled(speed, motion)
+        orbit, _ = solver.fine(speed, motion, solver.along_parameter(motion))
+        motion = orbit.motion
+        yield float(np.ptp(extremes(solver.problem, orbit)))
 
 
 def _wider(motion: Motion) -> Motion:

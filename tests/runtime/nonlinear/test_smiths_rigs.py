@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -11,6 +11,9 @@ from elastolink.runtime.constrained import orbit_multipliers, periodic_orbit
 from elastolink.runtime.core.families.nonlinear import Drive
 from elastolink.runtime.nonlinear import response_curve
 from elastolink.runtime.nonlinear.response import extremes
+from elastolink.runtime.systems import inextensible
+from more_modes import RIGS, found, with_more
+from oscillators import shot_special
 
 # To what the reference is known: special points, relative; multipliers by the number of modes, for
 # the control of steps looks at the motion, not at its derivatives.
@@ -127,6 +130,36 @@ def assert_known(known, curve) -> None:
     assert high - low == pytest.approx(known["peak_to_peak"], rel=1e-7)
 
 
+@pytest.mark.slow
+def test_the_first_fold_of_the_rig_without_a_reference_is_that_of_dop853():
+    rig = replace(RIGS["C"], ranges=((490, 510, 1),))
+    (point,) = found(rig, 1)
+    guess = 1.0001 * point.speed * RPM, 1.001 * point.orbit.motion.states[0]
+    speed, _ = shot_special(rig.system(1), "fold", *guess, rtol=1e-10)
+    assert abs(speed / RPM - point.speed) <= point.error + 1e-11 * point.speed
+
+
+# ---------------------------------------------------------------- modes and stations
+
+
+@pytest.mark.slow
+def test_folds_are_settled_with_five_modes(monkeypatch):
+    """To 1e-6 in the speed and 1e-4 in the deflection; on twice the stations to 1e-10."""
+    rig = replace(RIGS["A"], ranges=((350, 360, 1),))
+    for point in found(rig, 3):
+        four, five, *_, eight = with_more(rig, point, 8)
+        assert any(abs(four.speed - other.speed) <= 1e-8 for other in found(rig, 4))
+        assert five.speed == pytest.approx(eight.speed, rel=1e-6)
+        assert five.size == pytest.approx(eight.size, rel=1e-4)
+        with monkeypatch.context() as patch:
+            patch.setattr(inextensible, "_LEAST", 16)
+            patch.setattr(inextensible, "_PER_MODE", 8)
+            inextensible.coupler_stations.cache_clear()
+            (dense,) = with_more(replace(rig, title="more stations"), point, 4)
+        inextensible.coupler_stations.cache_clear()
+        assert dense.speed == pytest.approx(four.speed, rel=1e-10)
+
+
 # ---------------------------------------------------------------- energy
 
 
@@ -211,12 +244,11 @@ def test_the_constrained_form_gives_the_same_motion_and_multipliers(name, modes,
 def turned(system, numbers, turning):
     """Return the constrained system of a rig whose crank turns."""
     from elastolink.runtime.core.families import Constrained
-    from elastolink.runtime.systems.inextensible import coupler_stations
 
     module = system.equations.make.__self__.emitted.module
     return Constrained.at_stations(
         module,
         {name: numbers[name] for name in module.PARAMETERS},
-        coupler_stations(system.size),
+        inextensible.coupler_stations(system.size),
         {name: turning(order) for order, name in enumerate(module.EXTERNAL)},
     )

@@ -143,9 +143,10 @@ def response_maxima(system: LinearPeriodic, low: Array, high: Array) -> tuple[Ar
         ends = np.array([peaks[k][:2] for k in rest])
         inside = ends.mean(axis=1)[:, None] + 0.5 * np.diff(ends, axis=1) * _NODES
         squares, error = _mean_squares(system, inside.ravel())
-        looks = inside, squares.reshape(*inside.shape, -1), error.reshape(inside.shape).max(axis=1)
-        for k, *seen in zip(rest, *looks, strict=True):
-            peaks[k] = _closer(peaks[k], *seen, _rtol(system))
+        largest = error.reshape(inside.shape).max(axis=1).tolist()
+        looks = zip(rest, inside, squares.reshape(*inside.shape, -1), largest, strict=True)
+        for k, speeds, seen, off in looks:
+            peaks[k] = _closer(peaks[k], speeds, seen, off, _rtol(system))
     columns = np.array([peak[2:5] for peak in peaks]).reshape(-1, 3).T
     place, height, error = columns
     return place, height, error

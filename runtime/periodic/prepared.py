@@ -270,10 +270,10 @@ class Prepared:
         slack = np.where(error < 0.1, error, -error)
         stable = np.all(np.abs(values) <= 1.0 + slack, axis=-1)
         order = np.argsort(-np.abs(values), axis=-1, kind="stable")
-        values, error = (np.take_along_axis(part, order, axis=-1) for part in (values, error))
+        values = np.take_along_axis(values, order, axis=-1)
         return {
             "multipliers": values.reshape(*batch, m),
-            "multiplier_error": error.reshape(*batch, m),
+            "multiplier_error": np.take_along_axis(error, order, axis=-1).reshape(*batch, m),
             "stable": stable.reshape(batch),
             "distance": np.min(np.abs(values - 1.0), axis=-1).reshape(batch),
         }

@@ -71,7 +71,7 @@ def system(scene):
 def by_hand(q, qd, qdd, drive, parameters, derivatives=True):
     """Return what is left of the equation above."""
     turn, numbers = np.asarray(drive.angle)[..., None], parameters
-    speed, rise = np.asarray(drive.speed), np.asarray(drive.acceleration)
+    speed, rise = np.asarray(drive.speed)[..., None], np.asarray(drive.acceleration)[..., None]
     lift = numbers["stroke"] * (speed**2 * np.cos(turn) + rise * np.sin(turn))
     pull = numbers["bob"] * numbers["rod"] * (numbers["gravity"] - lift)
     mass = numbers["bob"] * numbers["rod"] ** 2

@@ -26,6 +26,8 @@ _NODES = -np.cos(np.pi * np.arange(_WITHIN) / (_WITHIN - 1))
 _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, _WITHIN - 1))
 # Looks at a bracket: a peak a millionth as wide as the first one is resolved by them.
 _LOOKS = 16
+# By how much of a speed two looks at a structure may differ: a motion of one takes seconds.
+_AGREED = 1e-4
 # Round-off of a series of nine terms, and of a place.
 _ROUNDED = 2.0 * float(np.finfo(float).eps)
 # Times that another place along the link may turn out to move most.
@@ -133,9 +135,11 @@ def response_maxima(system: LinearPeriodic, low: Array, high: Array) -> tuple[Ar
     until two looks agree.
     """
     peaks = [
-        _Peak(a, b, 0.5 * (a + b), np.inf, 0.5 * (b - a), settled=False)
+        # At an end of its bracket no maximum is: the first look agrees with nothing.
+        _Peak(a, b, a, np.inf, b - a, settled=False)
         for a, b in zip(low.tolist(), high.tolist(), strict=True)
     ]
+    agreed = 0.0 if system.structure is None else _AGREED
     for _ in range(_LOOKS):
         rest = [k for k, peak in enumerate(peaks) if not peak.settled]
         if not rest:
@@ -146,16 +150,19 @@ def response_maxima(system: LinearPeriodic, low: Array, high: Array) -> tuple[Ar
         largest = error.reshape(inside.shape).max(axis=1).tolist()
         looks = zip(rest, inside, squares.reshape(*inside.shape, -1), largest, strict=True)
         for k, speeds, seen, off in looks:
-            peaks[k] = _closer(peaks[k], speeds, seen, off, _rtol(system))
+            peaks[k] = _closer(peaks[k], speeds, seen, off, _rtol(system), agreed)
     columns = np.array([peak[2:5] for peak in peaks]).reshape(-1, 3).T
     place, height, error = columns
     return place, height, error
 
 
-def _closer(peak: _Peak, speeds: Array, squares: Array, error: float, wanted: float) -> _Peak:
+def _closer(
+    peak: _Peak, speeds: Array, squares: Array, error: float, wanted: float, enough: float
+) -> _Peak:
     """Return what is known of a maximum after a look at speeds ``(9,)`` of its bracket.
 
-    ``squares`` of the deflection are ``(9, places)``; ``error`` is that of the motions.
+    ``squares`` of the deflection are ``(9, places)``; ``error`` is that of the motions.  Of the
+    place an error ``wanted`` is asked for, and that two looks agree to ``enough``.
     """
     best, place = (int(k) for k in np.unravel_index(np.argmax(squares), squares.shape))
     values = 1.0 / np.maximum(squares, np.finfo(float).tiny)
@@ -172,7 +179,10 @@ def _closer(peak: _Peak, speeds: Array, squares: Array, error: float, wanted: fl
     # It has no bound where one over its square is no more than what that is off by.
     height = least**-0.5 if least > doubt else np.inf
     # A narrow resonance beside shows in how two looks differ, not in either.
-    settled = max(apart, off) <= wanted * at
+    settled = off <= wanted * at and apart <= max(wanted, enough) * at
+    if settled and apart > wanted * at:
+        # The look before is off by the fifth power of its bracket and more.
+        off = max(off, apart / 64.0)
     ends = max(best - 1, 0), min(best + 1, len(speeds) - 1)
     low, high = (float(speeds[end]) for end in ends)
     if best in (0, len(speeds) - 1):

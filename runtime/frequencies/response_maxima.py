@@ -24,7 +24,8 @@ _NODES = -np.cos(np.pi * np.arange(9) / 8)
 # Values at them to the coefficients of their Chebyshev series.
 _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, len(_NODES) - 1))
 # Looks at a bracket: a peak a millionth as wide as the first one is resolved by them.
-_LOOKS = 16
+# By how much of a speed two looks at a structure may differ: a motion of one takes seconds.
+_LOOKS, _AGREED = 16, 1e-4
 _EPS = float(np.finfo(float).eps)
 
 
@@ -129,9 +130,11 @@ def response_maxima(system: LinearPeriodic, low: Array, high: Array) -> tuple[Ar
     until two looks agree.
     """
     peaks = [
-        _Peak(a, b, 0.5 * (a + b), np.inf, 0.5 * (b - a), settled=False)
+        # At an end of its bracket no maximum is: the first look agrees with nothing.
+        _Peak(a, b, a, np.inf, b - a, settled=False)
         for a, b in zip(low.tolist(), high.tolist(), strict=True)
     ]
+    agreed = 0.0 if system.structure is None else _AGREED
     for _ in range(_LOOKS):
         rest = [k for k, peak in enumerate(peaks) if not peak.settled]
         if not rest:
@@ -142,15 +145,18 @@ def response_maxima(system: LinearPeriodic, low: Array, high: Array) -> tuple[Ar
         squares, error = squares.reshape(*inside.shape, -1), error.reshape(inside.shape)
         for i, k in enumerate(rest):
             worst = float(np.max(error[i]))
-            peaks[k] = _closer(peaks[k], inside[i], squares[i], worst, _rtol(system))
+            peaks[k] = _closer(peaks[k], inside[i], squares[i], worst, _rtol(system), agreed)
     place, height, error = np.array([peak[2:5] for peak in peaks]).reshape(-1, 3).T
     return place, height, error
 
 
-def _closer(peak: _Peak, speeds: Array, squares: Array, error: float, wanted: float) -> _Peak:
+def _closer(
+    peak: _Peak, speeds: Array, squares: Array, error: float, wanted: float, enough: float
+) -> _Peak:
     """Return what is known of a maximum after a look at speeds ``(9,)`` of its bracket.
 
-    ``squares`` of the deflection are ``(9, places)``; ``error`` is that of the motions.
+    ``squares`` of the deflection are ``(9, places)``; ``error`` is that of the motions.  Of the
+    place an error ``wanted`` is asked for, and that two looks agree to ``enough``.
     """
     best, place = (int(k) for k in np.unravel_index(np.argmax(squares), squares.shape))
     values = 1.0 / np.maximum(squares, np.finfo(float).tiny)
@@ -167,7 +173,10 @@ def _closer(peak: _Peak, speeds: Array, squares: Array, error: float, wanted: fl
     # It has no bound where one over its square is no more than what that is off by.
     height = least**-0.5 if least > doubt else np.inf
     # A narrow resonance beside shows in how two looks differ, not in either.
-    settled = max(apart, off) <= wanted * at
+    settled = off <= wanted * at and apart <= max(wanted, enough) * at
+    if settled and apart > wanted * at:
+        # The look before is off by the fifth power of its bracket and more.
+        off = max(off, apart / 64.0)
     ends = max(best - 1, 0), min(best + 1, len(speeds) - 1)
     low, high = (float(speeds[end]) for end in ends)
     if best in (0, len(speeds) - 1):

@@ -13,18 +13,16 @@ from ..core.progress import bar
 
 # Errors of the motions: maxima of a structure on its lowest modes are looked for, not reported.
 _RTOL, _FINE = 1e-6, 1e-9
-# Angles of a revolution at which it is truncated to those modes.
-_ANGLES = 64
-# Speeds solved together.
-_TOGETHER = 16
+# Angles of a revolution at which it is truncated to those modes, and speeds solved together.
+_ANGLES, _TOGETHER = 64, 16
 # Places along the link at which its deflection is watched.
 _PLACES = np.linspace(0.0, 1.0, 21)
 # Speeds within a bracket, its ends among them: each look at one leaves a third of it about.
 _NODES = -np.cos(np.pi * np.arange(9) / 8)
 # Values at them to the coefficients of their Chebyshev series.
 _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, len(_NODES) - 1))
-# Looks at a bracket: a peak a millionth as wide as the first one is resolved by them.
-# By how much of a speed two looks at a structure may differ: a motion of one takes seconds.
+# Looks at a bracket, by which a peak a millionth as wide as the first one is resolved; and by how
+# much of a speed two looks at a structure may differ: a motion of one takes seconds.
 _LOOKS, _AGREED = 16, 1e-4
 _EPS = float(np.finfo(float).eps)
 

@@ -12,9 +12,8 @@ from ..core.families import Array, LinearPeriodic
 from ..core.progress import bar
 
 # Errors of the motions: maxima of a structure on its lowest modes are looked for, not reported.
-_RTOL, _FINE = 1e-6, 1e-9
 # Angles of a revolution at which it is truncated to those modes, and speeds solved together.
-_ANGLES, _TOGETHER = 64, 16
+_RTOL, _FINE, _ANGLES, _TOGETHER = 1e-6, 1e-9, 64, 16
 # Places along the link at which its deflection is watched.
 _PLACES = np.linspace(0.0, 1.0, 21)
 # Speeds within a bracket, its ends among them: each look at one leaves a third of it about.
@@ -28,7 +27,7 @@ _LOOKS, _AGREED, _ROUGHLY = 16, 5e-11, 1e-4
 _EPS = float(np.finfo(float).eps)
 # Round-off of a motion over its sensitivity, another at each speed: of 215 places of two constant
 # oscillators 191 are covered with 2, 211 with 8 and all with 12 and more.
-_NOISE = 10.0 * _EPS
+_NOISE = 12.0 * _EPS
 
 
 def scanned_deflections(system: LinearPeriodic, speeds: Array, progress: bool) -> Array:

@@ -26,8 +26,8 @@ _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, len(_NODES) - 1))
 _LOOKS, _AGREED, _ROUGHLY = 16, 5e-11, 1e-4
 _EPS = float(np.finfo(float).eps)
 # Round-off of a motion over its sensitivity, another at each speed: of 215 places of two constant
-# oscillators 191 are covered with 2, 211 with 8 and all with 12 and more.
-_NOISE = 12.0 * _EPS
+# oscillators 191 are covered with 2, 211 with 8 and all with 12; ten cover all of waving ones.
+_NOISE = 10.0 * _EPS
 
 
 def scanned_deflections(system: LinearPeriodic, speeds: Array, progress: bool) -> Array:

@@ -485,7 +485,7 @@ class TableErrors:
         return np.maximum(self.flow[before], self.flow[after])
 
     def _beside(self, speeds: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        after = np.clip(np.searchsorted(self.speed, speeds), 0, len(self.speed) - 1)
+        after = np.searchsorted(self.speed[1:-1], speeds) + min(len(self.speed) - 1, 1)
         return np.maximum(after - 1, 0), after
 
 

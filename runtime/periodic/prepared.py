@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
-from math import ceil, log
 from typing import Any
 
 import numpy as np
@@ -22,11 +21,9 @@ from .equation import SPEED_POWER, Equation, SampledSystem, at_geometry, equatio
 from .motion import Trajectory, simulate, start_values
 from .multipliers import Monodromy, eigenvalues, rounding_error
 from .periodic_motion import SteadyState, peaks
-from .tables import Table, flows_at, next_rung, table_of
+from .tables import Table, flows_at, next_rung, octaves, table_of
 from .transition import cheapest
 
-# Ratio of the speeds of one table: nodes for an octave cost two thirds of those for its halves.
-_RATIO = 2.0
 # Error of a motion over its peak, from which it is integrated step by step.
 _TRANSIENT = 1e-6
 # Places of each table at which other segments tell its error, and the margin.
@@ -410,10 +407,8 @@ def prepare(
     _check_inertia(made)
     maker = TableMaker(sampled(made, forcing=forcing), (low * high) ** 0.5, inside)
     middle = maker.middle
-    count = max(1, ceil(log(high / low) / log(_RATIO) - 1e-9))
-    edges = low * (high / low) ** (np.arange(count + 1) / count)
-    edges[[0, -1]] = low, high
-    tables = [maker.table(1.0 / b, 1.0 / a, samples, rtol) for a, b in pairwise(edges.tolist())]
+    ranges = pairwise(octaves(low, high).tolist())
+    tables = [maker.table(1.0 / b, 1.0 / a, samples, rtol) for a, b in ranges]
     theta, m = middle.period * np.arange(float(samples)) / samples, len(maker.scale)
     return Prepared(
         made.with_parameters(**{name: plain[name] for name in inside}) if inside else made,

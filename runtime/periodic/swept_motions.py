@@ -10,7 +10,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from itertools import pairwise
-from math import ceil, log
 
 import numpy as np
 
@@ -21,13 +20,11 @@ from .equation import SampledSystem, sampled
 from .moving_basis import smooth_basis, still_modes
 from .multipliers import conditions
 from .prepared import TableMaker, closed
-from .tables import Table, flows_at
+from .tables import Table, flows_at, octaves
 from .transition import cheapest
 from .truncation import TruncatedSystem, arrays_at, modes_offered, truncated_on
 
-# Ratio of the ends of a range of speeds: tables of 16 nodes follow it to 1e-8.
-_RATIO = 2.0
-# Nodes of a table to begin with: at errors of 1e-7 most ranges need no more.
+# Nodes of the table of an octave to begin with: at errors of 1e-7 most need no more.
 _NODES = 16
 # Speeds whose motions are lifted together.
 _TOGETHER = 64
@@ -211,7 +208,6 @@ class Truncations:
 def speed_ranges(speeds: Array) -> list[slice]:
     """Return parts of rising speeds, the ends of each within a fixed ratio."""
     low, high = float(speeds[0]), float(speeds[-1])
-    count = max(1, ceil(log(high / low) / log(_RATIO) - 1e-9))
-    edges = low * (high / low) ** (np.arange(1, count) / count)
-    places = [0, *np.searchsorted(speeds, edges).tolist(), len(speeds)]
+    inner = octaves(low, high)[1:-1]
+    places = [0, *np.searchsorted(speeds, inner).tolist(), len(speeds)]
     return [slice(a, b) for a, b in pairwise(places) if b > a]

@@ -11,8 +11,8 @@ from ..core.errors import BadInput, bad
 from ..core.families import Array, LinearPeriodic
 from ..core.progress import bar
 
-# Errors of the motions: maxima of a structure on its lowest modes are looked for, not reported.
-# Angles of a revolution at which it is truncated to those modes, and speeds solved together.
+# Errors of the motions, of a structure and of matrices; angles of a revolution at which a structure is
+# truncated to its lowest modes, and speeds solved together.
 _RTOL, _FINE, _ANGLES, _TOGETHER = 1e-6, 1e-9, 64, 16
 # Places along the link at which its deflection is watched.
 _PLACES = np.linspace(0.0, 1.0, 21)
@@ -26,7 +26,8 @@ _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, len(_NODES) - 1))
 _LOOKS, _AGREED, _ROUGHLY = 16, 5e-11, 1e-4
 _EPS = float(np.finfo(float).eps)
 # Round-off of a motion over its sensitivity, another at each speed: of 215 places of two constant
-# oscillators 191 are covered with 2, 211 with 8 and all with 12; ten cover all of waving ones.
+# oscillators 191 are covered with 2, 211 with 8 and all with 12; with 10, of four times 60 waving
+# systems, 487 of 489, medians of estimate over error 84 to 146.
 _NOISE = 10.0 * _EPS
 
 

@@ -11,8 +11,8 @@ from ..core.errors import BadInput, bad
 from ..core.families import Array, LinearPeriodic
 from ..core.progress import bar
 
-# Errors of the motions, of a structure and of matrices; angles of a revolution at which a structure is
-# truncated to its lowest modes, and speeds solved together.
+# Errors of the motions, of a structure and of matrices; angles of a revolution at which a structure
+# is truncated to its lowest modes, and speeds solved together.
 _RTOL, _FINE, _ANGLES, _TOGETHER = 1e-6, 1e-9, 64, 16
 # Places along the link at which its deflection is watched.
 _PLACES = np.linspace(0.0, 1.0, 21)

@@ -111,15 +111,13 @@ class Prepared:
         scale = self.scale[:m]
         scaled = self._whole(speeds.reshape(-1))[:, :m, :m]
         error = self.errors.of_matrices(speeds.reshape(-1))
-        # Of what has decayed the absolute error is wanted, not its last digits.
-        absolute = error * np.minimum(1.0, np.max(np.abs(scaled), axis=(1, 2)))
         matrix = scaled * scale[:, None] / scale
         return Monodromy(
             method=_METHOD,
             error=error.reshape(speeds.shape),
             error_norm="largest entry of the error, relative to the largest entry of the matrix, "
             "both in scaled variables",
-            checks={"converged": Check(float(np.max(absolute, initial=0.0)), self.wanted)},
+            checks=DeferredChecks(partial(_converged, error, scaled, self.wanted)),
             provenance=self.provenance,
             speed=speeds,
             matrix=matrix.reshape(*speeds.shape, m, m),
@@ -580,6 +578,13 @@ def _check_inertia(system: LinearPeriodic) -> None:
         if term.array in ("M", "A") and term.power and term.array in SPEED_POWER:
             found, fix = f"a term {term.array} with a power of the speed", "use simulate"
             raise bad("prepare", found, "inertia that does not depend on the speed", fix)
+
+
+def _converged(error: Array, scaled: Array, wanted: float) -> Mapping[str, Check]:
+    """Return the check of matrices ``(ns, m, m)`` whose errors are over their largest entries."""
+    # Of what has decayed the absolute error is wanted, not its last digits.
+    absolute = error * np.minimum(1.0, np.max(np.abs(scaled), axis=(1, 2)))
+    return {"converged": Check(float(np.max(absolute, initial=0.0)), wanted)}
 
 
 def _checks(

@@ -129,10 +129,10 @@ def reading(one: Bench, kind: str, order: int = 0) -> float:
 
 
 def _peak(one: Bench, order: int) -> float:
-    curve, turn = branches(one), np.linspace(0.0, 2 * pi, 65)[:-1]
+    curve, shown, turn = branches(one), one.system.shown, np.linspace(0.0, 2 * pi, 65)[:-1]
     first = np.flatnonzero(curve.branch == 0)
     lower = first[: np.argmin(np.append(curve.stable[first], False))]
-    bent = [one.system.shown(curve.orbits[i].motion.at(turn)[0]) for i in lower]
+    bent = [shown(curve.orbits[i].motion.at(turn)[0]) for i in lower]
     sizes, speed = np.abs(np.fft.rfft(bent, axis=-1))[:, order], curve.value[lower]
     size = CubicSpline(speed, sizes)
     flat = size.derivative().roots(extrapolate=False)

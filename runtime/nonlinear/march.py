@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..core.families import Array
-from .orbit import STAGES, Lost
+from .orbit import STAGES, Lost, arrived
 from .segments import Motion, NotFinite, Problem, Ramp, chained, sweep
 
-# Newton's iteration of a revolution: the last correction, and how many.
-_LAST, _ITERATIONS, _PATIENCE = 1e-9, 12, 5
+# Newton's iteration of a revolution: how many corrections, and after how many none may be large.
+_ITERATIONS, _PATIENCE = 12, 5
+_LEFT = 0.03  # what the iteration may leave, over the wanted error of a revolution
 _SETTLING = 30  # revolutions from rest to a motion that Newton's iteration does not find from there
 _FIRST = 6  # steps of a revolution at first, for each coordinate
 
@@ -89,7 +90,7 @@ class Marcher:
             part = 1.0 if large <= 1.0 else max(1.0 / large, 0.1)
             a = swept.stage_loads[..., 0] + (swept.response @ change[:, None, :, None])[..., 0]
             motion = motion.moved(part * change, part * a)
-            if large <= _LAST or (large <= 1e-7 and large >= 0.5 * before):
+            if arrived(large, before, _LEFT * self.rtol):
                 return motion
             before = large
         return None

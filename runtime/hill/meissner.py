@@ -27,6 +27,7 @@ _interval: Callable[..., tuple[Array, Array]] = hill_meissner.interval
 
 # cosh of more leaves the range of doubles; longer intervals are cut.
 _STEEPEST = 300.0
+_HELD = 256  # powers of two that products may gather, 2 _HELD + log2(cosh(_STEEPEST)) < 1024
 _MOST_INTERVALS = 2**16
 
 
@@ -104,19 +105,14 @@ class Meissner:
         m, error = _matrices(q, t[:, None], noise)
         # Once for the product of matrices, of two terms each.
         error += 2.0 * EPS * np.abs(m)
-        power: Exponents = np.zeros(lam2.shape, dtype=np.int64)
-        one = np.eye(2)[:, :, None] * np.ones(lam2.size)
-        before = [(one, power)]
-        for i in range(len(t)):
-            before.append(normalised(product(m[:, :, i], before[-1][0]), before[-1][1]))
-        whole, exponent = before[-1]
+        before, exponents = _running(m)
+        whole, exponent = before[:, :, -1], exponents[-1]
         # What the error of each matrix does to the trace: |after| error |before|.
-        after, total = one, np.zeros(lam2.size)
-        for i in range(len(t) - 1, -1, -1):
-            first, scale = before[i]
-            lost = product(product(np.abs(after), error[:, :, i]), np.abs(first))
-            total += np.ldexp(lost[0, 0] + lost[1, 1], np.minimum(scale + power - exponent, 1000))
-            after, power = normalised(product(after, m[:, :, i]), power)
+        after, powers = _running(m.swapaxes(0, 1)[:, :, ::-1])
+        last = np.abs(after[:, :, -2::-1].swapaxes(0, 1))
+        lost = product(product(last, error), np.abs(before[:, :, :-1]))
+        shift = np.minimum(exponents[:-1] + powers[-2::-1] - exponent, 1000)
+        total = np.sum(np.ldexp(lost[0, 0] + lost[1, 1], shift), axis=0)
         # The determinant of the whole is 1.
         ahead, aside = whole[0, 0] * whole[1, 1], whole[0, 1] * whole[1, 0]
         unit = np.ldexp(1.0, np.maximum(-2 * exponent, -1074))
@@ -136,6 +132,22 @@ class Meissner:
             raise bad("levels", f"{parts.sum():.3g} intervals", expected, "take smaller ones")
         times = parts.astype(int)
         return np.repeat(q, times, axis=0), np.repeat(t / parts, times), np.repeat(noise, times, 0)
+
+
+def _running(m: Array) -> tuple[Array, Exponents]:
+    """Return the products of the first 0 to N of matrices ``(2, 2, N, n)``, and their exponents."""
+    _, _, count, points = m.shape
+    parts, exponents = np.empty((2, 2, count + 1, points)), np.zeros((count + 1, points), np.int64)
+    parts[:, :, 0] = part = np.eye(2)[:, :, None] * np.ones(points)
+    # Powers of two are taken out before three such factors could overflow.
+    sizes = np.frexp(np.abs(m).max(axis=(0, 1, 3)))[1].tolist()
+    exponent, held = exponents[0], 0
+    for i, size in enumerate(sizes):
+        part, held = product(m[:, :, i], part), held + max(size, 0) + 1
+        if held > _HELD:
+            (part, exponent), held = normalised(part, exponent), 0
+        parts[:, :, i + 1], exponents[i + 1] = part, exponent
+    return parts, exponents
 
 
 def _matrices(q: Array, t: Array, noise: Array) -> tuple[Array, Array]:

@@ -124,9 +124,30 @@ def at_places(part: Array, count: int) -> Array:
 
     Their twofold integral from 0, their integral and their value.
     """
+    twice_x = 4.0 * part - 2.0
+    # Chebyshev polynomials, whose recurrence is the shortest: most of the time is overhead.
+    values = np.empty((count + 2, len(part)))
+    values[0], values[1] = 1.0, 0.5 * twice_x
+    for k in range(2, count + 2):
+        np.multiply(twice_x, values[k - 1], out=values[k])
+        values[k] -= values[k - 2]
+    return (values.T @ _by_chebyshev(count)).reshape(-1, 3, count)
+
+
+@lru_cache(maxsize=64)
+def _by_chebyshev(count: int) -> Array:
+    """Return twofold integrals, integrals and values of Legendre terms, side by side.
+
+    By Chebyshev polynomials, ``(count + 2, 3 count)``.
+    """
     once, twice = _integrals(count)
-    values = np.polynomial.legendre.legvander(2.0 * part - 1.0, count + 1)
-    return np.stack([values @ twice, values[:, :-1] @ once, values[:, :count]], axis=1)
+    terms = np.concatenate(
+        [twice, np.pad(once, ((0, 1), (0, 0))), np.eye(count + 2, count)], axis=1
+    )
+    found: Array = np.polynomial.chebyshev.chebinterpolate(
+        lambda x: np.polynomial.legendre.legvander(x, count + 1) @ terms, count + 1
+    )
+    return found
 
 
 @dataclass(frozen=True)

@@ -155,17 +155,25 @@ class InextensibleCoupler:
     def shape(self, q: Array, places: Array) -> Array:
         """Return deflections from the chord over the length at places s, ``(*batch, ns)``."""
         tangent = np.exp(1j * (q @ self._straight.shapes[:, 1:].T))
-        count = tangent.shape[-1]
-        n = np.arange(1.0, count)
-        middles = (np.arange(count) + 0.5) / count
-        harmonics = 2.0 / count * tangent @ np.cos(np.pi * np.multiply.outer(middles, n))
         mean = np.mean(tangent, axis=-1, keepdims=True)
-        rise = np.sin(np.pi * np.multiply.outer(n, places)) / (n * np.pi)[:, None]
-        place = mean * places + harmonics @ rise
+        place = tangent @ _integrals(tangent.shape[-1], tuple(places.tolist()))
         return np.asarray(np.imag(place * np.conj(mean)) / np.abs(mean))
 
 
 _PLACES = np.linspace(0.0, 1.0, 41)
+
+
+@lru_cache(maxsize=64)
+def _integrals(count: int, places: tuple[float, ...]) -> Array:
+    """Return the integrals from 0 to places s of a function by its values at stations.
+
+    Of as many cosines as there are stations in the middles of equal intervals, ``(count, ns)``.
+    """
+    n, middles = np.arange(1.0, count), (np.arange(count) + 0.5) / count
+    harmonics = 2.0 / count * np.cos(np.pi * np.multiply.outer(middles, n))
+    rise = np.sin(np.pi * np.multiply.outer(n, places)) / (n * np.pi)[:, None]
+    whole: Array = np.array(places) / count + harmonics @ rise
+    return whole
 
 
 def inextensible_system(scene: Scene) -> Nonlinear:

@@ -6,9 +6,7 @@ Standard library only until a model is loaded.
 from __future__ import annotations
 
 import importlib
-import importlib.util
 import json
-import sys
 import tomllib
 import traceback
 from collections import Counter
@@ -18,6 +16,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
+from .._files import run_module
 from .catalogue import CATALOGUE, find
 from .manifest import content_hash
 from .spec import ModelSpec
@@ -178,22 +177,14 @@ def _spec_of_text(text: str) -> ModelSpec:
 
 
 def _load_file(file: Path) -> ModuleType:
-    name = f"elastolink_user_{file.stem}"
-    spec = importlib.util.spec_from_file_location(name, file)
-    if spec is None or spec.loader is None:
+    if file.suffix != ".py":
         raise UsageError(f"model file {file}: not a Python file")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
     try:
-        spec.loader.exec_module(module)
+        return run_module(f"elastolink_user_{file.stem}", file)
     except (SyntaxError, ImportError, NameError, AttributeError, TypeError, ValueError) as problem:
-        del sys.modules[name]
-        kind = type(problem).__name__
-        message = (
-            f"model file {file}: {kind}: {_one_line(problem)}{_where(problem, str(spec.origin))}"
-        )
+        kind, line = type(problem).__name__, _where(problem, str(file))
+        message = f"model file {file}: {kind}: {_one_line(problem)}{line}"
         raise UsageError(message) from problem
-    return module
 
 
 def _one_line(problem: Exception) -> str:

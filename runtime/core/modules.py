@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import importlib
-import importlib.util
 import json
 import os
 import shlex
@@ -15,6 +14,7 @@ from pathlib import Path
 from types import ModuleType
 
 from ... import generated
+from ..._files import run_module
 from ...derive.spec import Entry, ModelSpec, cache_folder, read_manifest
 from .errors import bad
 
@@ -144,10 +144,4 @@ def _load(folder: Path, entry: Entry) -> ModuleType:
     name = f"elastolink_emitted_{entry.module}_{entry.text[:16]}"  # equal texts load once
     if name in sys.modules:
         return sys.modules[name]
-    spec = importlib.util.spec_from_file_location(name, folder / f"{entry.module}.py")
-    if spec is None or spec.loader is None:
-        raise bad(str(folder), entry.module, "a Python module", "regenerate it")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    sys.modules[name] = module  # not before: what fails to load is not kept
-    return module
+    return run_module(name, folder / f"{entry.module}.py")

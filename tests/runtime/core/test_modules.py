@@ -13,6 +13,7 @@ import elastolink as el
 import elastolink.generated
 import numpy as np
 import pytest
+from elastolink._files import run_module
 from elastolink.derive.regenerate import main
 from elastolink.derive.spec import MANIFEST, ModelSpec, read_manifest
 from elastolink.runtime.core.modules import find_module
@@ -92,6 +93,23 @@ def test_an_edited_module_is_refused(empty_cache):
     assert str(path) in str(caught.value)
     assert main(["hill_plain"]) == 0
     assert find_module(HILL).folder == empty_cache
+
+
+def test_a_file_is_run_as_it_is_now_and_leaves_nothing_beside_it(tmp_path, monkeypatch):
+    """Bytecode is taken for that of another text which is as old, to the second, and as long."""
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)
+    monkeypatch.setattr(sys, "pycache_prefix", None)
+    path = tmp_path / "made.py"
+    for text in ("cos", "sin"):
+        path.write_text(f'word = "{text}"\n')
+        os.utime(path, (0, 0))
+        made = run_module("made", path)
+        assert made.word == text
+        assert sys.modules.pop("made").__file__ == str(path)
+    path.write_text("word = 1 / 0\n")
+    with pytest.raises(ZeroDivisionError):
+        run_module("made", path)
+    assert "made" not in sys.modules and [*tmp_path.iterdir()] == [path]
 
 
 def test_a_broken_manifest_is_as_good_as_none(tmp_path, monkeypatch):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..core.families import Array
-from .orbit import STAGES, Lost, arrived
+from .orbit import STAGES, Lost, remaining
 from .segments import Motion, NotFinite, Problem, Ramp, chained, sweep
 
 # Newton's iteration of a revolution: how many corrections, and after how many none may be large.
@@ -90,8 +90,9 @@ class Marcher:
             part = 1.0 if large <= 1.0 else max(1.0 / large, 0.1)
             a = swept.stage_loads[..., 0] + (swept.response @ change[:, None, :, None])[..., 0]
             motion = motion.moved(part * change, part * a)
-            if arrived(large, before, _LEFT * self.rtol):
-                return motion
+            left = remaining(large, before, _LEFT * self.rtol)
+            if np.isfinite(left):
+                return replace(motion, left=left)
             before = large
         return None
 
@@ -130,14 +131,14 @@ def _sizes_of(states: Array) -> Array:
 
 
 def unresolved(motion: Motion) -> float:
-    """Return what the series of the accelerations lack, as a share of the motion."""
+    """Return what series of the accelerations and iteration lack, as a share of the motion."""
     h, s = motion.step, motion.a.shape[1]
     terms = np.abs(motion.points.series @ motion.a)
     left = float(np.max(terms[:, -2:]))
     # Integrated twice over a step, and the square of what falls: Gauss points integrate it away.
     rate = max(float(np.max(np.abs(motion.v))), 1e-300)
     largest = max(float(np.max(terms[:, 0])), 1e-300)
-    return float((h * left / s / rate) * min(left / largest, 1.0))
+    return float((h * left / s / rate) * min(left / largest, 1.0)) + motion.left
 
 
 def _finer(motion: Motion, steps: int) -> Motion:

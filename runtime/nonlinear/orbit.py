@@ -18,7 +18,8 @@ EPS = float(np.finfo(float).eps)
 # Newton has arrived where its correction, relative to the motion, is below the first: its square
 # is round-off; or where it no longer falls below the second.
 _LAST, _SMALL = 3e-10, 1e-8
-_SQUARED = 1e-4  # correction from which on errors fall as their squares
+# Correction from which on errors fall as their squares, and the margin of what it then leaves.
+_SQUARED, _MORE = 1e-4, 4.0
 _ITERATIONS, _MOST_ITERATIONS = 10, 40
 _NEAR = 1e-5  # correction after which the derivative by the parameter is kept
 # First correction beyond which a guess is refused, relative.
@@ -169,13 +170,17 @@ class Measure:
     rough: Array  # (2n, 2n): monodromy matrix of the other motion
 
 
-def arrived(size: float, before: float, last: float = _LAST) -> bool:
-    """Return True where a correction leaves no more than ``last``: by its square, or as it stays.
+def remaining(size: float, before: float, last: float = _LAST) -> float:
+    """Return what a correction leaves, infinite where another one is wanted.
 
-    ``before``: the correction before, infinite for the first one.
+    ``before``: the correction before, infinite for the first one; ``last``: what may be left.
     """
-    squared = size <= _SQUARED and np.isfinite(before) and size * (size / before) ** 2 <= last
-    return bool(size <= last or squared or (size <= _SMALL and size >= 0.5 * before))
+    if size <= _LAST:
+        return 0.0  # but for round-off
+    if size <= _SMALL and size >= 0.5 * before:
+        return size  # it falls no more
+    left = _MORE * size * (size / before) ** 2 if size <= _SQUARED else np.inf
+    return left if 0.0 < left <= last else np.inf
 
 
 def share(difference: Any, level: float) -> Any:
@@ -225,7 +230,7 @@ class Solver:
                 break
             part = 1.0 if size <= 1.0 or np.all(scale == self.problem.system.small) else 1.0 / size
             motion = taken(motion, swept, change, 0.0, part)
-            if arrived(size, before):
+            if np.isfinite(remaining(size, before)):
                 return motion
             before = size
         raise Lost("no periodic motion was found near the guess")

@@ -56,6 +56,7 @@ class Motion:
     a: Array  # (m, s, n): accelerations at the Gauss points of each step
     begin: float = 0.0  # angle of the drive at the beginning [rad]
     runs: int = 1
+    left: float = 0.0  # what its iteration may have left, relative
 
     @property
     def span(self) -> float:

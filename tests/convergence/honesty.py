@@ -2,6 +2,7 @@
 
 import functools
 import inspect
+import os
 
 import numpy as np
 import pytest
@@ -28,10 +29,12 @@ def over_scenes(seed, few=20, many=200, *, floor=1e-300, median=1e3):
 
     ``scene(rng, ...)`` returns estimates and actual errors that broadcast, or by name several such
     pairs; None where the scene does not do and another is to be drawn.  ``few`` scenes stand in the
-    first stage of the tests, ``many`` in the second; None for neither.
+    first stage of the tests, ``many`` in the second (times ``ELASTOLINK_SCENES``, where that is in
+    the environment); None for neither.
     """
     counts = [few] if few else []
-    counts += [pytest.param(many, marks=pytest.mark.slow)] if many else []
+    more = max(int(os.environ.get("ELASTOLINK_SCENES", "1")), 1)
+    counts += [pytest.param(more * many, marks=pytest.mark.slow)] if many else []
 
     def made(scene):
         @functools.wraps(scene)

@@ -75,7 +75,7 @@ class HillPair:
 
 pytestmark = [pytest.mark.slow, extended]
 SPAN = (3.5, 9.5)
-ENDS = 60
+ENDS = 48
 
 
 def compared(scene, mode, harmonic, found, error, factor=1.0):
@@ -108,13 +108,13 @@ def test_ends_of_all_regions(rng, drag):
     return of_regions(scene, stability_edges(scene.system, SPAN))
 
 
-@over_scenes(42, few=None, many=ENDS, floor=1e-18)
+@over_scenes(42, few=None, many=36, floor=1e-18)
 def test_bands_of_a_truncated_system(rng):
     scene = HillPair(rng, drag=float(rng.choice([0.0, 0.01])), stiff=True)
     return of_regions(scene, stability_edges(scene.system, SPAN, modes=2))
 
 
-@over_scenes(44, few=None, many=ENDS // 5, floor=1e-18)
+@over_scenes(44, few=None, many=8, floor=1e-18)
 def test_curves_from_their_feet(rng):
     scene, factors, pairs = HillPair(rng, wavy=False), np.linspace(0.1, 1.0, 7), []
     found = tongue_curves(scene.system, "pull", factors, SPAN, highest=2)

@@ -58,7 +58,7 @@ def test_stiff_rods(rng, rtol):
     return estimate, actual
 
 
-@over_scenes(9, few=5, many=60, median=100.0)
+@over_scenes(9, few=5, many=40, median=100.0)
 def test_forces_that_jump(rng):
     """A mass on a spring with a force of constant size towards the middle: arcs of cosines."""
     force, span = rng.uniform(0.1, 2.0), rng.uniform(2.0, 12.0)

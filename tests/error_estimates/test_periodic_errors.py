@@ -160,7 +160,7 @@ def test_multipliers_of_a_prepared_system(rng):
     return motion.multiplier_error, _nearest(motion.multipliers, rates, speed)
 
 
-@over_scenes(4, few=15, many=150, median=100.0)
+@over_scenes(4, few=15, many=100, median=100.0)
 def test_motions_of_fast_modes_that_live(rng):
     """From a state in which all of them ring, up to a thousand radians between given angles."""
     n, samples, turns = int(rng.integers(2, 5)), int(rng.choice([8, 24, 60])), rng.uniform(0.2, 1.5)

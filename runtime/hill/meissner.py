@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import pi
+from math import log, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -27,7 +27,8 @@ _interval: Callable[..., tuple[Array, Array]] = hill_meissner.interval
 
 # cosh of more leaves the range of doubles; longer intervals are cut.
 _STEEPEST = 300.0
-_HELD = 256  # powers of two that products may gather, 2 _HELD + log2(cosh(_STEEPEST)) < 1024
+# Powers of two that either of two products may gather beside such a matrix.
+_HELD = int(1023.0 - _STEEPEST / log(2.0)) // 2
 _MOST_INTERVALS = 2**16
 
 

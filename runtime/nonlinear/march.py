@@ -10,9 +10,9 @@ from ..core.families import Array
 from .orbit import STAGES, Lost, remaining
 from .segments import Motion, NotFinite, Problem, Ramp, chained, sweep
 
-# Newton's iteration of a revolution: how many corrections, and after how many none may be large.
-_ITERATIONS, _PATIENCE = 12, 5
-_LEFT = 0.03  # what the iteration may leave, over the wanted error of a revolution
+# Newton's iteration of a revolution: how many corrections, after how many none may be large, and
+# what it may leave, over the wanted error.
+_ITERATIONS, _PATIENCE, _LEFT = 12, 5, 0.03
 _SETTLING = 30  # revolutions from rest to a motion that Newton's iteration does not find from there
 _FIRST = 6  # steps of a revolution at first, for each coordinate
 

@@ -16,10 +16,9 @@ from .segments import Motion, NotFinite, Problem, Sweep, chained, sweep
 
 EPS = float(np.finfo(float).eps)
 # Newton has arrived where its correction, relative to the motion, is below the first: its square
-# is round-off; or where it no longer falls below the second.
-_LAST, _SMALL = 3e-10, 1e-8
-# Correction from which on errors fall as their squares, and the margin of what it then leaves.
-_SQUARED, _MORE = 1e-4, 4.0
+# is round-off; or where it no longer falls below the second.  Below the third errors fall by their
+# squares, the fourth being a margin of what is left then.
+_LAST, _SMALL, _SQUARED, _MORE = 3e-10, 1e-8, 1e-4, 4.0
 _ITERATIONS, _MOST_ITERATIONS = 10, 40
 _NEAR = 1e-5  # correction after which the derivative by the parameter is kept
 # First correction beyond which a guess is refused, relative.

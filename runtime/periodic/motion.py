@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 from math import ceil, factorial, fmod
@@ -338,9 +338,13 @@ def _predicted(equation: Equation, grid: _Grid, kind: str, level: _Level) -> flo
     stages, fineness = level
     way, h = method(kind, stages), grid.step
     parts = np.maximum(1.0, fineness * equation.frequency[0] * h / _PHASE)
+    # Of the two rates of an overdamped mode the larger is the harder.
+    slow, loss = equation.frequency[0], equation.decay[0] / equation.period
+    rates = np.maximum(slow, loss + np.sqrt(np.maximum(loss**2 - slow**2, 0.0)))
+    quick = replace(equation, frequency=rates[None])
     error = [
-        predicted_error(equation.with_slow_modes(rate), way, np.array([equation.period / h * r]))[0]
-        for rate, r in zip(equation.frequency[0], parts, strict=True)
+        predicted_error(quick.with_slow_modes(rate), way, np.array([equation.period / h * r]))[0]
+        for rate, r in zip(rates, parts, strict=True)
     ]
     return float(np.max(error, initial=0.0))
 

@@ -185,6 +185,34 @@ def test_motions_of_fast_modes_that_live(rng):
     return _of_motion(found, exact)
 
 
+@over_scenes(9, few=20, many=200, floor=16 * EPS, median=100.0)
+def test_motions_of_overdamped_modes(rng):
+    """Each has a rate far above its frequency, which dies within a step, and one far below."""
+    n, samples, turns = int(rng.integers(1, 4)), int(rng.choice([8, 24])), rng.uniform(0.2, 4.0)
+    natural = 10.0 ** rng.uniform(-0.5, 1.5, n)
+    loss = natural * 10.0 ** rng.uniform(0.02, 2.5, n)
+    system = system_of(
+        M=np.eye(n),
+        C=np.diag(2.0 * loss),
+        K=np.diag(natural**2),
+        f=wave(rng.standard_normal(n)),
+    )
+    force = system.array("f", np.zeros(1))[0]
+    steady = force / (natural**2 - 1.0 + 2j * loss)
+    fast = loss + np.sqrt(loss**2 - natural**2)
+    slow = natural**2 / fast
+    place, rate = rng.standard_normal((2, n)) * np.array([[1.0], [10.0 ** rng.uniform(-1.0, 2.0)]])
+    rtol = float(10.0 ** rng.uniform(-9.0, -2.0))
+    found = el.simulate(system, 1.0, turns, initial=(place, rate), samples=samples, rtol=rtol)
+    # Of place and rate less those of the steady motion: q = a exp(-slow t) + b exp(-fast t).
+    free, moved = place - steady.real, rate - (1j * steady).real
+    b = -(moved + slow * free) / (fast - slow)
+    time = found.theta[:, None]
+    exact = (steady * np.exp(1j * time)).real
+    exact += (free - b) * np.exp(-slow * time) + b * np.exp(-fast * time)
+    return _of_motion(found, exact)
+
+
 @over_scenes(2)
 @pytest.mark.parametrize("repelling", [False, True])
 def test_estimates_of_multipliers(rng, repelling):

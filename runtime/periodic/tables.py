@@ -253,7 +253,8 @@ def _grouped(maps: Array, ends: tuple[float, float], samples: int, tail: float) 
     series = [_series(merged), _series(inner)]
     sizes = np.maximum(*(_sizes(part) for part in series))
     used = chebyshev.length(sizes, _EPS * float(np.max(sizes)))
-    return Table(*ends, series[0][:used], series[1][:used], within, tail * (count // size))
+    left = _tail(merged) * (count // size)
+    return Table(*ends, series[0][:used], series[1][:used], within, left)
 
 
 def next_rung(count: int) -> int:

@@ -147,9 +147,9 @@ def test_multipliers_on_the_circle_at_a_coarse_tolerance(rng):
     return found.error, _nearest(found.multipliers, rates, speed)
 
 
-@over_scenes(8, few=15, many=150, floor=EPS)
+@over_scenes(8, few=15, many=150, floor=EPS, median=100.0)
 def test_multipliers_of_a_prepared_system(rng):
-    """The tables are good to the last digits here, and the error is the round-off allowed them."""
+    """The tables are good to the last digits here, and the error is that of their round-off."""
     arrays, rates = _on_the_circle(rng)
     low = float(np.max(rates) * 10.0 ** rng.uniform(-0.5, 0.5))
     rtol = float(10.0 ** rng.uniform(-12.0, -4.0))

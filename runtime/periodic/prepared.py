@@ -19,16 +19,15 @@ from ..core.results import Check, DeferredChecks, provenance
 from .compiled import CompiledTable, require_numba
 from .equation import SPEED_POWER, Equation, SampledSystem, at_geometry, equation_of, sampled
 from .motion import Trajectory, simulate, start_values
-from .multipliers import Monodromy, eigenvalues, rounding_error
+from .multipliers import ROUNDED, Monodromy, eigenvalues, rounding_error
 from .periodic_motion import SteadyState, peaks
 from .tables import Table, flows_at, next_rung, octaves, table_of
 from .transition import cheapest
 
 # Error of a motion over its peak, from which it is integrated step by step.
 _TRANSIENT = 1e-6
-# Places of each table at which other segments tell its error, the margin, and the share that counts
-# of what a matrix is allowed for round-off: it is in the difference of two ways, too.
-_TRIED, _MARGIN, _ROUNDED = (0.0, 0.382, 1.0), 4.0, 0.125
+# Places of each table at which other segments tell its error, and the margin.
+_TRIED, _MARGIN = (0.0, 0.382, 1.0), 4.0
 _TINY = float(np.finfo(float).tiny)
 # Largest state for which compiled loops win over NumPy's products.
 _COMPILED = 12
@@ -533,7 +532,7 @@ class TableMaker:
         size = np.max(np.abs(theirs[1][:, : 2 * n, : 2 * n]), axis=(1, 2))
         gap = np.max(np.abs(ours[1] - theirs[1])[:, : 2 * n, : 2 * n], axis=(1, 2))
         # Round-off of what has decayed is that of what is left, as each segment keeps its digits.
-        whole = _ROUNDED * rounding + table.tail + _MARGIN * gap / np.maximum(size, _TINY)
+        whole = ROUNDED * rounding + table.tail + _MARGIN * gap / np.maximum(size, _TINY)
         gaps = np.max(np.abs(ours[0] - theirs[0])[..., :n, :], axis=1)
         errors = TableErrors(
             1.0 / tried, whole, size, np.maximum(rounding, _MARGIN * gaps), rounding

@@ -32,8 +32,9 @@ _TELLING = 0.1
 # it, 982 with a tenth and 996 with 0.3, the medians of estimate over error 11, 11 and 14.
 _CANCELLED = 0.3
 # What counts of the round-off that a matrix is allowed: a part is in the difference of two of them
-# too, and all entries seldom err for the same multiplier.  With 1 the estimates of 700 multipliers
-# good to the last digits are 13 times the error at the least, and 275 in the middle.
+# too, and all entries seldom err for the same multiplier, but where two have all but met.  With 1
+# the estimates of 700 multipliers good to the last digits are 13 times the error at the least, and
+# 275 in the middle.
 ROUNDED = 0.125
 # Powers of two from which growth hides the symplectic form in round-off.
 _GROWTH = 50
@@ -356,12 +357,17 @@ def _spectra(way: Method, equation: Equation, segments: int) -> tuple[Array, ...
     matrix, exponent, rounding = _matrices(way, equation, segments)
     _, extra = np.frexp(np.max(np.abs(matrix), axis=(-2, -1)))
     matrix, exponent = np.ldexp(matrix, -extra[:, None, None]), exponent + extra
-    found: tuple[Any, ...] = (matrix, exponent, *eigenvalues(matrix, ROUNDED * rounding))
+    found: tuple[Any, ...] = (matrix, exponent, *eigenvalues(matrix, rounding, ROUNDED))
     return found
 
 
-def eigenvalues(matrices: Array, shift: Array) -> tuple[ComplexArray, Array, ComplexArray]:
-    """Return eigenvalues, how far errors of the matrices ``(nb,)`` may move them, eigenvectors."""
+def eigenvalues(
+    matrices: Array, shift: Array, lone: float = 1.0
+) -> tuple[ComplexArray, Array, ComplexArray]:
+    """Return eigenvalues, how far errors of the matrices ``(nb,)`` may move them, eigenvectors.
+
+    ``lone``: the share of the errors that counts for an eigenvalue far from all others.
+    """
     values, vectors = np.linalg.eig(matrices)
     values, shift = values.astype(complex), shift[:, None]
     norm = np.linalg.norm(matrices, axis=(-2, -1))[:, None]
@@ -370,7 +376,8 @@ def eigenvalues(matrices: Array, shift: Array) -> tuple[ComplexArray, Array, Com
     distance = np.abs(values[:, :, None] - values[:, None, :])
     near = np.sum(distance <= 2.0 * np.sqrt(norm * shift)[..., None], axis=-1)
     root = 2.0 * norm * (shift / norm) ** (1.0 / np.maximum(near, 2))
-    return values, np.minimum(conditions(vectors) * shift, root), vectors.astype(complex)
+    moved = conditions(vectors) * shift * np.where(near > 1, 1.0, lone)
+    return values, np.minimum(moved, root), vectors.astype(complex)
 
 
 def conditions(vectors: ComplexArray) -> Array:

@@ -7,7 +7,6 @@ import importlib
 import json
 import os
 import shlex
-import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -142,6 +141,10 @@ def _load(folder: Path, entry: Entry) -> ModuleType:
     if folder == packaged:
         return importlib.import_module(f"{generated.__name__}.{entry.module}")
     name = f"elastolink_emitted_{entry.module}_{entry.text[:16]}"  # equal texts load once
-    if name in sys.modules:
-        return sys.modules[name]
-    return run_module(name, folder / f"{entry.module}.py")
+    # Not those of sys.modules: another thread's may not be whole yet.
+    if name not in _LOADED:
+        _LOADED[name] = run_module(name, folder / f"{entry.module}.py")
+    return _LOADED[name]
+
+
+_LOADED: dict[str, ModuleType] = {}

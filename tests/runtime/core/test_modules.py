@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from types import ModuleType
 
 import elastolink as el
 import elastolink.generated
@@ -16,6 +17,7 @@ import pytest
 from elastolink._files import run_module
 from elastolink.derive.regenerate import main
 from elastolink.derive.spec import MANIFEST, ModelSpec, read_manifest
+from elastolink.runtime.core import modules
 from elastolink.runtime.core.modules import find_module
 
 PACKAGED = Path(elastolink.generated.__path__[0])
@@ -93,6 +95,14 @@ def test_an_edited_module_is_refused(empty_cache):
     assert str(path) in str(caught.value)
     assert main(["hill_plain"]) == 0
     assert find_module(HILL).folder == empty_cache
+
+
+def test_a_module_that_another_thread_has_but_begun_is_not_taken(empty_cache, monkeypatch):
+    assert main(["hill_plain"]) == 0
+    name = find_module(HILL).module.__name__
+    monkeypatch.setattr(modules, "_LOADED", {})
+    monkeypatch.setitem(sys.modules, name, ModuleType(name))
+    assert hasattr(find_module(HILL).module, "PARAMETERS")
 
 
 def test_a_file_is_run_as_it_is_now_and_leaves_nothing_beside_it(tmp_path, monkeypatch):

@@ -6,7 +6,7 @@ found once; the angles, and how the rigid beams move, are shared by all arrays.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
 
@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.sampling import Remembered
+from ..linkages.linkage import PointMotion
 from .elements import ElementArrays, element_arrays
 from .structure import Beam, PlacedElement, Structure
 
@@ -84,7 +85,9 @@ TURNING = {
     "retarded": 0,
     "retarded slope": 1,
 }
-Kernel = tuple[PlacedElement, Array]
+# Of a beam: its name, places of its entries in a flat matrix of the free coordinates, and these as
+# factors of the six products, ``(6, entries)``.
+Kernel = tuple[str, NDArray[np.int64], Array]
 
 
 @dataclass(frozen=True)
@@ -107,7 +110,9 @@ class AngleArrays:
         self.count = len(structure.freedoms.all)
         # The rigid motion at crank angles (nt,).
         self.motion = Remembered(partial(rigid_motion, structure))
-        self._made: dict[str, tuple[Kernel, ...]] = {}
+        # The array that elastic, axial and damping forces share.
+        self.stiffness = Remembered(self._stiffness)
+        self._kernels: dict[str, tuple[Kernel, ...]] = {}
 
     @cached_property
     def local(self) -> tuple[tuple[PlacedElement, ElementArrays], ...]:
@@ -125,33 +130,58 @@ class AngleArrays:
         """Return the distributed mass times values of all coordinates ``(nt, N)``: ``(nt, n)``."""
         motion = self.motion(theta)
         total = np.zeros((len(theta), self.count))
-        for placed, kernel in self._kernels("mass"):
-            values = field[:, placed.indices]
+        for placed, kernel in self._mass_of_elements:
             weights = motion.products[placed.beam.name]
-            total[:, placed.indices] += np.einsum("tk,kij,tj->ti", weights, kernel, values)
+            values = weights[:, :, None] * field[:, None, placed.indices]
+            total[:, placed.indices] += values.reshape(len(theta), -1) @ kernel
         return total[:, self.free]
 
-    def _kernels(self, name: str) -> tuple[Kernel, ...]:
-        """Return an array of each element by the fixed axes, factors of the six products."""
-        if name not in self._made:
-            self._made[name] = tuple((p, _kernel(name, p, own)) for p, own in self.local)
-        return self._made[name]
+    @cached_property
+    def _mass_of_elements(self) -> tuple[tuple[PlacedElement, Array], ...]:
+        """Every element with its mass: from products times values to forces, ``(6 m, m)``."""
+        made = ((placed, _kernel("mass", placed, own)) for placed, own in self.local)
+        return tuple(
+            (placed, np.swapaxes(kernel, 1, 2).reshape(-1, kernel.shape[1]))
+            for placed, kernel in made
+        )
+
+    def _stiffness(self, theta: Array) -> Array:
+        found = self.sum("stiffness", theta)
+        found.flags.writeable = False  # it is shared
+        return found
 
     def sum(self, name: str, theta: Array) -> Array:
         """Return an array of ``TURNING``, summed over the elements, at angles: ``(nt, n, n)``.
 
         Rows and columns are those of the free coordinates.
         """
-        motion, turning = self.motion(theta), TURNING[name]
-        total = np.zeros((len(theta), self.count, self.count))
-        for placed, kernel in self._kernels(name):
-            weights = motion.products[placed.beam.name]
+        motion, turning, n = self.motion(theta), TURNING[name], len(self.free)
+        total = np.zeros((len(theta), n * n))
+        if name not in self._kernels:
+            self._kernels[name] = tuple(self._kernels_of_beams(name))
+        for beam, places, kernel in self._kernels[name]:
+            weights = motion.products[beam]
             if turning:
-                weights = weights * motion.turning[placed.beam.name][:, None] ** turning
-            rows, columns = np.ix_(placed.indices, placed.indices)
-            total[:, rows, columns] += np.tensordot(weights, kernel, axes=1)
-        rows, columns = np.ix_(self.free, self.free)
-        return np.ascontiguousarray(total[:, rows, columns])
+                weights = weights * motion.turning[beam][:, None] ** turning
+            total[:, places] += weights @ kernel
+        return total.reshape(-1, n, n)
+
+    def _kernels_of_beams(self, name: str) -> Iterator[Kernel]:
+        """Yield an array of each beam by the fixed axes."""
+        free = np.full(self.count, -1)
+        free[self.free] = np.arange(len(self.free))
+        for beam in self.structure.beams:
+            places, factors = [], []
+            for placed, own in self.local:
+                if placed.beam is beam:
+                    row, column = np.meshgrid(*[free[placed.indices]] * 2, indexing="ij")
+                    there = (row >= 0) & (column >= 0)
+                    places.append((row * len(self.free) + column)[there])
+                    factors.append(_kernel(name, placed, own)[:, there])
+            found, which = np.unique(np.concatenate(places), return_inverse=True)
+            kernel = np.zeros((len(PRODUCTS), len(found)))
+            np.add.at(kernel.T, which, np.concatenate(factors, axis=1).T)
+            yield beam.name, found, kernel
 
 
 def _kernel(name: str, placed: PlacedElement, own: ElementArrays) -> Array:
@@ -192,7 +222,7 @@ def rigid_motion(structure: Structure, theta: Array) -> RigidMotion:
     first = np.zeros((len(theta), len(freedoms)))
     second = np.zeros_like(first)
     for beam in structure.beams:
-        own = moving[beam.name]
+        own, points = moving[beam.name], dict[float, PointMotion]()
         across = np.stack([-np.sin(own.angle), np.cos(own.angle)], axis=-1)
         for i, freedom in enumerate(freedoms):
             if freedom.beam != beam.name or freedom.part == "curvature":
@@ -200,7 +230,9 @@ def rigid_motion(structure: Structure, theta: Array) -> RigidMotion:
             if freedom.part == "rotation":
                 first[:, i], second[:, i] = own.speed, own.angular_acceleration
                 continue
-            point = own.point(freedom.along)
+            if freedom.along not in points:
+                points[freedom.along] = own.point(freedom.along)
+            point = points[freedom.along]
             for target, rates in ((first, point.velocity), (second, point.acceleration)):
                 if freedom.part == "across":
                     target[:, i] = np.sum(rates * across, axis=-1)

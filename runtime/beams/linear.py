@@ -116,7 +116,7 @@ class AxialForces:
 
     def _at_rest(self, source: str, theta: Array) -> tuple[Array, Array]:
         """Return displacements under the loads, and what is left of elastic forces less loads."""
-        stiffness = self.arrays.sum("stiffness", theta) + self.springs
+        stiffness = self.arrays.stiffness(theta) + self.springs
         loads = self.force(source, theta)[..., None]
         if self.slide is None:
             solved: Array = np.asarray(np.linalg.solve(stiffness, loads), dtype=float)
@@ -323,7 +323,7 @@ def linear_system(
     acting = _sources(structure, lumped, gravity)
     terms = [
         Term("M", "distributed_mass", partial(arrays.sum, "mass")),
-        Term("K", "elasticity", partial(arrays.sum, "stiffness")),
+        Term("K", "elasticity", arrays.stiffness),
         Term("f", "distributed_mass", arrays.inertia_force),
         Term("g", "distributed_mass", partial(arrays.inertia_force, derivative=1)),
     ]
@@ -476,7 +476,7 @@ def _damping_terms(
         found += [
             Term("C", "rayleigh distributed", partial(arrays.sum, "mass")),
             Term("C", "rayleigh lumped", mass),
-            Term("C", "rayleigh elastic", partial(arrays.sum, "stiffness")),
+            Term("C", "rayleigh elastic", arrays.stiffness),
             Term("C", "rayleigh springs", springs),
         ]
     if any(beam.section.retardation for beam in arrays.structure.beams):

@@ -40,7 +40,7 @@ _FIELD = {
 # Even angles to begin with, by the number of coordinates up to which, so that a narrow wave of a
 # small system is seen; and at the most.  A Fourier series has ended where its last quarter is
 # below the first bound, or as large as the quarter before and below the second: round-off.
-_FIRST, _MOST = {4: 256, 12: 128}, 4096
+_FIRST, _MOST = {4: 256, 12: 192}, 4096
 _FEWEST = 64
 _ENDED, _ROUNDING = 16.0 * float(np.finfo(float).eps), 1e-12
 # Amplitude over the largest from which the nodes of a method have to see a harmonic.
@@ -426,7 +426,9 @@ def equation_of(
             continue
         scale = 1.0 if term.scale is None else scales[term.scale]
         power = SPEED_POWER[term.array] + term.power
-        factor = np.broadcast_to(scale, batch).reshape(-1) * flat**power
+        if np.ndim(scale):
+            scale = np.broadcast_to(scale, batch).reshape(-1)
+        factor = scale * flat**power
         if np.any(factor):
             factors[place] = _FIELD[term.array][1] * factor
     if not any(plain.terms[place].array == "M" for place in factors):

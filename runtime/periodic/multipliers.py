@@ -334,14 +334,13 @@ def _matrices(way: Method, equation: Equation, segments: int) -> tuple[NDArray[A
     return matrix, exponent, rounding_error(equation, segments)
 
 
-def _gap(coarse: tuple[Array, ...], fine: tuple[Array, ...], part: Array) -> Array:
-    """Return the error of the finer matrices, over their largest entries, ``(nb, 1)``."""
+def _gap(coarse: tuple[Array, ...], fine: tuple[Array, ...]) -> tuple[Array, Array]:
+    """Return the difference of matrices and round-off, over their largest entries, ``(nb, 1)``."""
     aligned = np.ldexp(coarse[0], _shift(coarse[1], fine[1])[:, None, None])
     top = np.max(np.abs(fine[0]), axis=(-2, -1))
     with np.errstate(over="ignore", invalid="ignore"):
         gap = np.max(np.abs(aligned - fine[0]), axis=(-2, -1)) / top
-    error: Array = np.where(np.isfinite(gap), part * gap, 1.0) + fine[2]
-    return error[:, None]
+    return gap[:, None], fine[2][:, None]
 
 
 def _shift(coarse: Array, fine: Array) -> NDArray[np.int64]:
@@ -390,11 +389,11 @@ def conditions(vectors: ComplexArray) -> Array:
         return np.concatenate([conditions(row[None]) for row in vectors])
 
 
-def _shifts(way: Method, coarse: tuple[Array, ...], fine: tuple[Array, ...], part: Array) -> Array:
-    """Return the error of each finer multiplier, over the larger of 1 and its size, ``(nb, m)``.
+def _shifts(way: Method, coarse: tuple[Array, ...], fine: tuple[Array, ...]) -> tuple[Array, Array]:
+    """Return how far multipliers differ, and round-off, over the larger of 1 and their sizes.
 
-    Each multiplier is compared with the nearest of the other rung; one of the coarser rung that is
-    left over counts for the finer one that is nearest to it.
+    Of shape ``(nb, m)`` each.  Each multiplier is compared with the nearest of the other rung; one
+    of the coarser rung that is left over counts for the finer one that is nearest to it.
     """
     other = coarse[2] * np.ldexp(1.0, _shift(coarse[1], fine[1]))[:, None]
     gaps = np.abs(fine[2][:, :, None] - other[:, None, :])
@@ -406,8 +405,7 @@ def _shifts(way: Method, coarse: tuple[Array, ...], fine: tuple[Array, ...], par
         error = np.maximum(error, _CANCELLED * _exchanged(coarse, fine))
     with np.errstate(over="ignore", divide="ignore"):
         size = np.maximum(np.abs(fine[2]), np.ldexp(1.0, -np.clip(fine[1], -1000, 1000))[:, None])
-    relative: Array = (part[:, None] * error + fine[3]) / size
-    return np.where(np.isfinite(relative), relative, 1.0)
+    return error / size, fine[3] / size
 
 
 def _exchanged(coarse: tuple[Array, ...], fine: tuple[Array, ...]) -> Array:

@@ -379,13 +379,12 @@ def _dense_output(way: Method, count: int, samples: int) -> tuple[NDArray[np.int
     return places, rise, values
 
 
-def _change(coarse: tuple[Array, ...], fine: tuple[Array, ...], part: Array) -> Array:
-    """Return the difference of two motions and rates over the finer's peaks, with round-off."""
+def _change(coarse: tuple[Array, ...], fine: tuple[Array, ...]) -> tuple[Array, Array]:
+    """Return the difference of two motions and rates over the finer's peaks, and round-off."""
     with np.errstate(invalid="ignore"):
         gap, rate = (np.max(np.abs(coarse[k] - fine[k]), axis=1) / peaks(fine[k]) for k in (0, 1))
-    gap = np.maximum(gap, rate / _RATES)
-    error = part[:, None] * gap + _ROUNDED * _EPS * np.minimum(fine[2], 1.0 / _EPS)[:, None]
-    return np.where(np.isfinite(error), error, 1.0)
+    rounding = _ROUNDED * _EPS * np.minimum(fine[2], 1.0 / _EPS)[:, None]
+    return np.maximum(gap, rate / _RATES), rounding
 
 
 def peaks(q: Array) -> Array:

@@ -194,8 +194,10 @@ def _solved(
     stack = np.empty((nb, ns, n, len(fields), s, n))
     at_nodes = {}
     for place, (name, field) in enumerate(fields.items()):
-        values = np.broadcast_to(field, (nb, ns * s, n, n)).reshape(nb, ns, s, n, n)
-        np.multiply(np.moveaxis(values, 4, 2), h ** _POWER[name], out=stack[:, :, :, place])
+        # A constant field has one angle.
+        values = field.reshape(nb, ns, s, n, n) if field.shape[1] > 1 else field[:, :, None]
+        turned = values.transpose(0, 1, 4, 2, 3)
+        np.multiply(turned, h ** _POWER[name], out=stack[:, :, :, place])
         at_nodes[name] = stack[:, :, :, place]
     columns = way.weights(tuple(fields)) @ stack.reshape(nb, ns, n, len(fields) * s, n)
     # Indices: member, segment, column, node, row.
@@ -269,8 +271,8 @@ def product(maps: Array) -> tuple[Array, Whole]:
         pairs = maps[:, 1:even:2] @ maps[:, 0:even:2]
         maps = np.concatenate([pairs, maps[:, even:]], axis=1) if even < maps.shape[1] else pairs
         top = np.max(np.abs(maps), axis=(-2, -1))
-        extreme = ((top > 1e60) | (top < 1e-60)) & (top > 0) & np.isfinite(top)
-        if np.any(extreme):
+        if not (np.max(top) <= 1e60 and np.min(top) >= 1e-60):
+            extreme = ((top > 1e60) | (top < 1e-60)) & (top > 0) & np.isfinite(top)
             _, power = np.frexp(np.where(extreme, top, 0.5))
             maps = np.ldexp(maps, -power[..., None, None])
             exponent += power.sum(axis=1)
@@ -317,29 +319,35 @@ def least_share(way: Method, coarse: Any, fine: Any, order: Any) -> Any:
     return np.minimum(_STIFF * (coarse / fine) ** order, 1.0)
 
 
-def share(equation: Equation, way: Method, coarse: int, fine: int, order: Array) -> Array:
-    """Return which part of the difference of two rungs the error of the finer one is, ``(nb,)``.
+def share(equation: Equation, way: Method, level: int, predicted: Array, order: Array) -> Array:
+    """Return which part of the difference to the rung below the error of a rung is, ``(nb,)``.
 
-    Twelve times what is predicted, between the least and one; of coefficients that are not smooth
-    four times the difference.
+    ``predicted`` are errors of all rungs, ``(nb, rungs)``.  Twelve times what they say, between the
+    least and one; of coefficients that are not smooth four times the difference.
     """
     if equation.harmonics < 0:
-        return np.full(len(equation.speed), 4.0)
-    count = len(equation.speed)
-    first, second = (
-        predicted_error(equation, way, np.full(count, number)) for number in (coarse, fine)
-    )
-    least = least_share(way, coarse, fine, order)
-    return np.clip(_MARGIN * second / np.maximum(first, 1e-300), least, 1.0)
+        return np.full(len(predicted), 4.0)
+    least = least_share(way, rung(level - 1), rung(level), order)
+    ratio = predicted[:, level] / np.maximum(predicted[:, level - 1], 1e-300)
+    return np.clip(_MARGIN * ratio, least, 1.0)
 
 
-def levels_for(equation: Equation, way: Method, rtol: float) -> NDArray[np.intp]:
+def errors_of_rungs(equation: Equation, way: Method) -> Array:
+    """Return the error that each rung of the ladder is likely to leave, ``(nb, rungs)``."""
+    counts = np.array([rung(level) for level in range(_RUNGS)])
+    return predicted_error(equation, way, np.tile(counts, (len(equation.speed), 1)))
+
+
+def levels_for(
+    equation: Equation, way: Method, rtol: float, errors: Array | None = None
+) -> NDArray[np.intp]:
     """Return the rung on which each member is likely solved, and known to be, to a wanted error.
 
-    A mode that asks for more than a million segments is refused.
+    ``errors`` are those of :func:`errors_of_rungs`, where they are at hand.  A mode that asks for
+    more than a million segments is refused.
     """
     counts = np.array([rung(level) for level in range(_RUNGS)])
-    errors = predicted_error(equation, way, np.tile(counts, (len(equation.speed), 1)))
+    errors = errors_of_rungs(equation, way) if errors is None else errors
     enough = _MARGIN * errors[:, 1:] <= rtol
     part = least_share(way, counts[:-1], counts[1:], 0.5 * way.stages)
     enough &= part * errors[:, :-1] <= rtol
@@ -399,22 +407,24 @@ def refined(
     way: Method,
     rtol: float,
     solve: Callable[[Equation, int], tuple[Array, ...]],
-    distance: Callable[[tuple[Array, ...], tuple[Array, ...], Array], Array],
+    distance: Callable[[tuple[Array, ...], tuple[Array, ...]], tuple[Array, Array]],
     *,
     tick: Callable[[int], None] | None = None,
 ) -> tuple[list[tuple[Array, ...]], Array, Whole]:
     """Solve every member on two neighbouring rungs, and on finer ones until they agree.
 
     ``solve`` goes from the equation of some members and a number of segments to arrays with one row
-    each; ``distance`` from two solutions of some members, coarse and fine, and the :func:`share` of
-    their difference, to the errors of the fine ones, ``(nb, k)``; ``tick`` is called with how many
-    members are done.  Returned are one solution for each member, the errors, ``(nb, k)``, and the
-    number of segments that each solution has, ``(nb,)``.
+    each; ``distance`` from two solutions of some members, coarse and fine, to their difference and
+    to what round-off adds to the errors of the fine ones, ``(nb, k)`` each; ``tick`` is called with
+    how many members are done.  Returned are one solution for each member, the errors, ``(nb, k)``:
+    the :func:`share` of the difference, and round-off, 1 where that is no number; and the number of
+    segments that each solution has, ``(nb,)``.
     """
     nb = len(equation.speed)
     solutions: list[tuple[Array, ...]] = [()] * nb
     error: list[Array] = [np.zeros(0)] * nb
-    segments, level = np.zeros(nb, dtype=np.int64), levels_for(equation, way, rtol)
+    segments, predicted = np.zeros(nb, dtype=np.int64), errors_of_rungs(equation, way)
+    level = levels_for(equation, way, rtol, predicted)
     together = max(1, _BLOCK // (way.stages * equation.size) ** 2)
     finished, most = 0, _MOST_SEGMENTS if equation.harmonics >= 0 else _ROUGH_SEGMENTS
     for first in np.unique(level):
@@ -426,16 +436,16 @@ def refined(
             before = earlier = np.full(len(members), np.inf)
             order = np.full(len(members), 0.5 * way.stages)
             while len(members):
-                fine = solve(part, rung(at))
-                whole = np.max(distance(coarse, fine, np.ones(len(members))), axis=1)
+                fine, likely = solve(part, rung(at)), predicted[members]
+                change, rounding = distance(coarse, fine)
+                whole = np.max(_finite(change + rounding), axis=1)
                 if at > first:
                     fall = np.log(before / whole) / np.log(rung(at - 1) / rung(at - 2))
                     order = np.clip(fall, 0.0, way.stages)
-                gaps = distance(coarse, fine, share(part, way, rung(at - 1), rung(at), order))
+                gaps = _finite(share(part, way, at, likely, order)[:, None] * change + rounding)
                 gap = np.max(gaps, axis=1)
                 # Round-off, where all modes are resolved and two rungs gained nothing.
-                likely = predicted_error(part, way, np.full(len(gap), rung(at)))
-                stuck = (whole > 0.5 * np.minimum(before, earlier)) & (likely < rtol)
+                stuck = (whole > 0.5 * np.minimum(before, earlier)) & (likely[:, at] < rtol)
                 stuck &= before > 0.5 * earlier
                 done = (gap <= rtol) | (stuck & (equation.harmonics >= 0))
                 done |= at + 1 >= _RUNGS or rung(at + 1) > most
@@ -445,10 +455,15 @@ def refined(
                 finished += int(np.count_nonzero(done))
                 if tick is not None:
                     tick(finished)
+                if np.all(done):
+                    break
                 keep = np.flatnonzero(~done)
                 members, before, earlier = members[keep], whole[keep], before[keep]
-                order, at = order[keep], at + 1
-                if len(members):
-                    part = part.take(keep)
-                    coarse = tuple(array[keep] for array in fine)
+                order, at, part = order[keep], at + 1, part.take(keep)
+                coarse = tuple(array[keep] for array in fine)
     return solutions, np.array(error), segments
+
+
+def _finite(error: Array) -> Array:
+    """Return errors; 1 where they are no numbers."""
+    return np.where(np.isfinite(error), error, 1.0)

@@ -46,8 +46,8 @@ _ENDED, _ROUNDING = 16.0 * float(np.finfo(float).eps), 1e-12
 # Amplitude over the largest from which the nodes of a method have to see a harmonic.
 _SEEN = 1e-6
 # Places of the period at which frozen modes are computed, and the most members times modes cubed
-# for which each member has its own.
-_PLACES, _EACH = 8, 2_000_000
+# for which each member has its own; angles whose waves are kept.
+_PLACES, _EACH, _KEPT = 8, 2_000_000, 1024
 
 
 @dataclass(frozen=True)
@@ -560,7 +560,23 @@ def _extended(series: Array, harmonics: int) -> Array:
 
 
 def waves(harmonics: int, phase: Array) -> Array:
-    """Return ``1, cos k phase ..., sin k phase ...``, shape ``(nt, 2 harmonics + 1)``."""
+    """Return ``1, cos k phase ..., sin k phase ...``, shape ``(nt, 2 harmonics + 1)``.
+
+    Those of the last few sets of at most ``_KEPT`` angles are kept.
+    """
+    if len(phase) > _KEPT:
+        return _waves(harmonics, phase)
+    return _kept_waves(harmonics, phase.tobytes())
+
+
+@lru_cache(maxsize=24)
+def _kept_waves(harmonics: int, phase: bytes) -> Array:
+    table = _waves(harmonics, np.frombuffer(phase))
+    table.flags.writeable = False
+    return table
+
+
+def _waves(harmonics: int, phase: Array) -> Array:
     powers = np.empty((len(phase), harmonics), dtype=complex)
     powers[:, :1] = np.exp(1j * phase)[:, None]
     known = 1
@@ -570,15 +586,6 @@ def waves(harmonics: int, phase: Array) -> Array:
         np.multiply(powers[:, : part.shape[1]], powers[:, known - 1 : known], out=part)
         known *= 2
     return np.concatenate([np.ones((len(phase), 1)), powers.real, powers.imag], axis=1)
-
-
-@lru_cache(maxsize=24)
-def segment_waves(harmonics: int, segments: int, nodes: tuple[float, ...]) -> Array:
-    """Return :func:`waves` at nodes in [0, 1] of each of equal segments of the period."""
-    places = (np.arange(float(segments))[:, None] + np.array(nodes)) / segments
-    table = waves(harmonics, 2 * np.pi * places.ravel())
-    table.flags.writeable = False
-    return table
 
 
 def _rows(system: LinearPeriodic, terms: Sequence[Term], angles: Array) -> Array:

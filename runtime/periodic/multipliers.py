@@ -257,11 +257,8 @@ def floquet_multipliers(
         _second_from_determinant(logarithm, angle, error, divergence)
     else:
         _grade_hidden(equation, way, rtol, segments, exponent, (logarithm, angle, error))
-    order = multiplier_order(logarithm, angle)
-    logarithm, angle, error = (
-        np.take_along_axis(value, order, axis=-1) for value in (logarithm, angle, error)
-    )
-    vectors = np.take_along_axis(vectors, order[:, None, :], axis=-1)
+    row, order = np.arange(len(angle))[:, None], multiplier_order(logarithm, angle)
+    logarithm, angle, error = (value[row, order] for value in (logarithm, angle, error))
     with np.errstate(over="ignore"):
         modulus, absolute = np.exp(logarithm), np.exp(error)
     turning: ComplexArray = np.cos(angle) + 1j * np.where(
@@ -271,6 +268,7 @@ def floquet_multipliers(
     values: ComplexArray = np.where(finite, np.where(finite, modulus, 0.0) * turning, np.inf)
     signs = np.zeros(values.shape, dtype=np.int8)
     if not equation.damped:
+        vectors = np.take_along_axis(vectors, order[:, None, :], axis=-1)
         signs = signatures_of(vectors.astype(np.complex128), values, absolute)
         signs[exponent >= _GROWTH] = 0
     # What round-off allows, over the larger of 1 and the multiplier.

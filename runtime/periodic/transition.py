@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from ..core.collocation import gauss_tableau, radau_tableau
 from ..core.errors import BadInput, bad
-from .equation import Equation, segment_waves, waves
+from .equation import Equation, waves
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -134,10 +134,7 @@ class Segments:
 def segments_of(equation: Equation, count: int, way: Method, *, slopes: bool = False) -> Segments:
     """Return the transition matrices of equal segments of the period."""
     h = equation.period / count
-    table: Array | None = None
-    if equation.harmonics >= 0:
-        table = segment_waves(equation.harmonics, count, tuple(way.c.tolist()))
-    return segments_from(equation, h * np.arange(float(count)), h, way, table, slopes=slopes)
+    return segments_from(equation, h * np.arange(float(count)), h, way, slopes=slopes)
 
 
 def segments_from(
@@ -145,14 +142,12 @@ def segments_from(
     left: Array,
     h: float,
     way: Method,
-    table: Array | None = None,
     *,
     slopes: bool = False,
 ) -> Segments:
     """Return the transition matrices of segments of one length h [rad].
 
-    ``left`` has their left ends [rad], ``(ns,)``; ``table`` :func:`~.equation.waves` at all nodes,
-    ``(ns s, 2 H + 1)``, where it is at hand; ``slopes`` asks for the slopes at the nodes too.
+    ``left`` has their left ends [rad], ``(ns,)``; ``slopes`` asks for the slopes at the nodes too.
     """
     s = way.stages
     nb, n, ns = len(equation.speed), equation.size, len(left)
@@ -161,17 +156,14 @@ def segments_from(
     together = max(1, _BLOCK // ((s * n) ** 2 * nb))
     for begin in range(0, ns, together):
         part = slice(begin, begin + together)
-        rows = None if table is None else table[begin * s : (begin + together) * s]
-        ends, unknown = _solved(equation, left[part], h, way, rows)
+        ends, unknown = _solved(equation, left[part], h, way)
         whole.maps[:, part] = ends
         if whole.slopes is not None:
             whole.slopes[:, part] = unknown
     return whole
 
 
-def _solved(
-    equation: Equation, left: Array, h: float, way: Method, table: Array | None
-) -> tuple[Array, Array]:
+def _solved(equation: Equation, left: Array, h: float, way: Method) -> tuple[Array, Array]:
     """Return maps and slopes of segments that are solved in one batch of linear equations.
 
     The matrix is one product: the weights of the method times the fields at the nodes.  It is made
@@ -179,7 +171,8 @@ def _solved(
     """
     n, s = equation.size, way.stages
     angles = (left[:, None] + way.c * h).ravel()
-    if table is None and equation.harmonics >= 0:
+    table: Array | None = None
+    if equation.harmonics >= 0:
         table = waves(equation.harmonics, angles * (2 * np.pi / equation.period))
     nb, ns, m = len(equation.speed), len(left), 2 * n + equation.forced
     fields = {

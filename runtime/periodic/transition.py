@@ -60,6 +60,9 @@ def rung(level: int) -> int:
     return int((2 + level % 2) << (level // 2 + 2))
 
 
+_LADDER = np.array([rung(level) for level in range(_RUNGS)])
+
+
 @dataclass(frozen=True, eq=False)
 class Method:
     """Collocation in the slopes.
@@ -285,18 +288,16 @@ def predicted_error(equation: Equation, way: Method, segments: NDArray[Any]) -> 
     A mode of frequency w, whose amplitude falls by exp(-d) in a period, gets over S segments of
     phase x = 2 pi w/S a relative error of S k x^(order + 1), ``k = (s!)^2/((2s)! (2s+1)!)`` being
     the constant of Pade's approximation of the exponential, at most 1; it enters a multiplier with
-    exp(-d).  The segments are ``(nb,)``, or ``(nb, k)`` for several numbers at once, and so is the
-    error.
+    exp(-d).  The segments are ``(nb,)``, and so is the error; or ``(1, k)``, for several numbers at
+    once, and the error is ``(nb, k)``.
     """
     s, power = way.stages, way.order + 1
     constant = 2 * lgamma(s + 1) - lgamma(2 * s + 1) - lgamma(2 * s + 2)
     # The coefficients' waves turn the state too: about one radian per radian.
     phase = np.log((equation.frequency + 1.0) * equation.period)
-    number = np.log(segments)
-    if number.ndim == 1:
-        phase, decay = phase, equation.decay
-    else:
-        phase, decay = phase[:, None], equation.decay[:, None]
+    number, decay = np.log(segments), equation.decay
+    if number.ndim > 1:
+        phase, decay = phase[:, None], decay[:, None]
     size = constant + power * phase - (power - 1) * number[..., None]
     value: Array = np.exp(np.max(np.minimum(size, 0.0) - decay, axis=-1))
     return value
@@ -327,8 +328,7 @@ def share(equation: Equation, way: Method, level: int, predicted: Array, order: 
 
 def errors_of_rungs(equation: Equation, way: Method) -> Array:
     """Return the error that each rung of the ladder is likely to leave, ``(nb, rungs)``."""
-    counts = np.array([rung(level) for level in range(_RUNGS)])
-    return predicted_error(equation, way, np.tile(counts, (len(equation.speed), 1)))
+    return predicted_error(equation, way, _LADDER[None])
 
 
 def levels_for(
@@ -339,14 +339,13 @@ def levels_for(
     ``errors`` are those of :func:`errors_of_rungs`, where they are at hand.  A mode that asks for
     more than a million segments is refused.
     """
-    counts = np.array([rung(level) for level in range(_RUNGS)])
+    coarse, fine = _LADDER[:-1], _LADDER[1:]
     errors = errors_of_rungs(equation, way) if errors is None else errors
     enough = _MARGIN * errors[:, 1:] <= rtol
-    part = least_share(way, counts[:-1], counts[1:], 0.5 * way.stages)
-    enough &= part * errors[:, :-1] <= rtol
-    enough &= counts[1:] <= _MOST_SEGMENTS
+    enough &= least_share(way, coarse, fine, 0.5 * way.stages) * errors[:, :-1] <= rtol
+    enough &= fine <= _MOST_SEGMENTS
     # The nodes of the rung below too have to see every wave of the coefficients twice.
-    enough &= way.stages * counts[:-1] >= 2 * equation.reach
+    enough &= way.stages * coarse >= 2 * equation.reach
     if not np.all(np.any(enough, axis=1)):
         raise _too_fast(equation, int(np.argmin(np.any(enough, axis=1))))
     return np.asarray(1 + np.argmax(enough, axis=1), dtype=np.intp)
@@ -363,13 +362,12 @@ def cheapest(
     more than a million segments is refused.
     """
     kind = "radau" if equation.damped else "gauss"
-    counts = multiple * np.array([1, *(rung(level) // 4 for level in range(_RUNGS))])
+    counts = multiple * np.array([1, *(_LADDER // 4)])
     counts = counts[counts <= max(_MOST_SEGMENTS, multiple)]
-    everywhere = np.tile(counts, (len(equation.speed), 1))
     best, least = None, np.inf
     for stages in range(4, 13):
         way = method(kind, stages)
-        errors = np.max(predicted_error(equation, way, everywhere), axis=0)
+        errors = np.max(predicted_error(equation, way, counts[None]), axis=0)
         wave = 0.25 * equation.reach * equation.period / counts
         missed = 2.0 * np.exp(stages * np.log(np.maximum(wave, 1e-9)) - lgamma(stages + 1))
         enough = (_MARGIN * errors <= rtol) & (missed <= rtol if stiff else True)

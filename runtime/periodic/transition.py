@@ -352,18 +352,18 @@ def levels_for(
 
 
 def cheapest(
-    equation: Equation, rtol: float, multiple: int, *, stiff: bool = True
+    equation: Equation, rtol: float, multiple: int, *, fewest: int = 1, stiff: bool = True
 ) -> tuple[Method, int]:
     """Return method and number of segments that likely solve all members with the least work.
 
-    The number is a multiple of a given one.  Modes that no segment resolves follow what the
-    polynomial through the s nodes makes of their load: of its highest wave R that misses ``2 (R
-    h/4)^s / s!``.  Of a truncated system, ``stiff`` False, there are none.  A mode that asks for
-    more than a million segments is refused.
+    The number is a multiple of a given one, and at least ``fewest``.  Modes that no segment
+    resolves follow what the polynomial through the s nodes makes of their load: of its highest wave
+    R that misses ``2 (R h/4)^s / s!``.  Of a truncated system, ``stiff`` False, there are none.  A
+    mode that asks for more than a million segments is refused.
     """
     kind = "radau" if equation.damped else "gauss"
     counts = multiple * np.array([1, *(_LADDER // 4)])
-    counts = counts[counts <= max(_MOST_SEGMENTS, multiple)]
+    counts = counts[(counts >= fewest) & (counts <= max(_MOST_SEGMENTS, multiple, fewest))]
     best, least = None, np.inf
     for stages in range(4, 13):
         way = method(kind, stages)

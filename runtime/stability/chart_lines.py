@@ -23,7 +23,7 @@ from ..hill import HillForm, discriminant, hill_form
 from ..hill.form import is_hill
 from ..periodic.equation import Equation, at_geometry, equation_of, sampled
 from ..periodic.tables import Table, places, table_of
-from ..periodic.transition import levels_for, method, rung
+from ..periodic.transition import cheapest
 from .chart_axes import (
     Axes,
     Names,
@@ -310,15 +310,9 @@ class Lines:
         ends, nodes = (low, high), _NODES if high > low else 1
         judged = plain(places(ends, nodes))
         unit = judged.scale[len(judged.scale) // 2]
-        # Stages among which the cheapest are taken.  transition.cheapest, which bounds what modes
-        # that no segment resolves make of waves, doubles a chart's time for no smaller error.
-        kind = "radau" if judged.damped else "gauss"
-        choices = [
-            (rung(int(np.max(levels_for(judged, way, _RTOL)))), way)
-            for way in (method(kind, stages) for stages in (4, 5, 6, 8, 10))
-        ]
-        # Solving the stages of a segment: between the square and the cube of their number.
-        count, way = min(choices, key=lambda choice: choice[0] * choice[1].stages ** 2.5)
+        # A bound of what modes that no segment resolves make of waves doubles a chart's time, for
+        # no smaller error.
+        way, count = cheapest(judged, _RTOL, 16, fewest=48, stiff=False)
         # A multiple of 16 can be multiplied by pairs, of half a period too.
         count = 16 * int(np.ceil(fineness * count / 16))
 

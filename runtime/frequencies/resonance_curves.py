@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from numbers import Real
-from typing import ClassVar
+from typing import ClassVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic, require_system
 from ..core.inputs import numbers
-from ..core.maxima import local_maxima, narrowed
+from ..core.maxima import largest_size, local_maxima, narrowed
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Result, provenance
 from ..periodic.periodic_motion import SteadyState, quiet_state
@@ -35,8 +35,8 @@ class ResonanceCurve(Result):
     stable : ndarray of bool
         Whether that motion is stable, shape ``(ns,)``.
     error : ndarray
-        Error of ``peak`` over itself, shape ``(ns,)``: of the periodic motion; between two of the
-        given angles a peak is missed by far less than 1 % where it is not narrower than they are.
+        Error of ``peak`` over itself, shape ``(ns,)``: of the periodic motion, and of what
+        lies between its angles.
     maxima : ndarray
         Speeds of the local maxima within the range [rad/s], refined, shape ``(nm,)``.
     maxima_peak : ndarray
@@ -152,11 +152,11 @@ def resonance_curve(
         raise bad("resonance_curve", "a system without mode shapes", "one with them", fix)
     mean, _ = mean_frequencies(system, min(6, system.size), 1e-12, parameters=parameters)
     state = quiet_state(system, speeds, rtol, parameters)
-    peak = state.peak(x)
+    peak, error = _peaks(state, float(x))
     tops = local_maxima(peak)
 
     def peaks(at: Array) -> Array:
-        return quiet_state(system, at, rtol, parameters).peak(x)
+        return _peaks(quiet_state(system, at, rtol, parameters), float(x))[0]
 
     low, high = narrowed(peaks, speeds[tops - 1], speeds[tops + 1], 4)
     maxima = 0.5 * (low + high)
@@ -165,7 +165,7 @@ def resonance_curve(
     mode, order = label_speeds(mean[:3], maxima)
     return ResonanceCurve(
         method=state.method,
-        error=_peak_error(state, float(x)),
+        error=error,
         error_norm="of the largest deflection, over itself",
         checks={name: state.checks[name] for name in sorted(state.checks)},
         provenance=provenance(system.changed_provenance(**parameters)),
@@ -183,20 +183,19 @@ def resonance_curve(
     )
 
 
-def _peak_error(state: SteadyState, x: float) -> Array:
-    """Return the error of the peak deflection at a place x/length over itself, of each motion."""
-    out = np.full(len(state.speed), np.inf)
-    shapes = None if state.shapes is None else state.shapes(np.array([x]), state.theta)
-    if shapes is None:
-        return np.full(len(state.speed), np.nan)
-    shape = shapes[:, 0]
-    for k, (q, error) in enumerate(zip(state.q, state.error, strict=True)):
-        bent = np.einsum("tn,tn->t", shape, q)
-        top = np.max(np.abs(bent))
-        if np.isfinite(top) and top > 0:
-            error_here = float((np.max(np.abs(q), axis=0) * error) @ np.max(np.abs(shape), axis=0))
-            # Between even angles, a wave of harmonic k is lower at the nearest by (k step/2)^2/2.
-            waves = np.abs(np.fft.rfft(bent))
-            turn = float(np.sum(waves * np.arange(len(waves)) ** 2) / np.max(waves))
-            out[k] = error_here / top + turn * (np.pi / len(state.theta)) ** 2 / 2
-    return out
+def _peaks(state: SteadyState, x: float) -> tuple[Array, Array]:
+    """Return the largest deflection at a place x/length of each motion, and its error over itself.
+
+    It lies between the angles too.
+    """
+    shape = cast("Callable[..., Array]", state.shapes)(np.array([x]), state.theta)[:, 0]
+    motions, errors = (
+        part.reshape(-1, *part.shape[state.speed.ndim :]) for part in (state.q, state.error)
+    )
+    peak, off = np.full(len(motions), np.nan), np.full(len(motions), np.inf)
+    for k, (q, error) in enumerate(zip(motions, errors, strict=True)):
+        peak[k], between = largest_size(np.einsum("tn,tn->t", shape, q))
+        if peak[k] > 0.0:
+            moved = (np.max(np.abs(q), axis=0) * error) @ np.max(np.abs(shape), axis=0)
+            off[k] = (moved + between) / peak[k]
+    return state.reference_length * peak.reshape(state.speed.shape), off.reshape(state.speed.shape)

@@ -26,6 +26,7 @@ from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import LINEAR_RANGE, LinearRangeWarning, bad, warn_of_large_deflection
 from ..core.families import Array, LinearPeriodic
 from ..core.inputs import is_one_of, numbers, require_between
+from ..core.maxima import largest_size
 from ..core.progress import bar
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .equation import Equation, equation_of
@@ -162,8 +163,8 @@ class SteadyState(Result):
     def peak(self, x: ArrayLike = 1.0) -> Array:
         """Return the largest size of the deflection [m] over the period, at places x/length.
 
-        Shape ``(*batch, nx)``, or ``batch`` where ``x`` is one number; it is taken at the given
-        angles.
+        Shape ``(*batch, nx)``, or ``batch`` where ``x`` is one number; between the given angles
+        too, by their trigonometric series.
 
         Raises
         ------
@@ -174,7 +175,8 @@ class SteadyState(Result):
         shapes = self._shapes_at(np.atleast_1d(places))
         flat = self.q.reshape(-1, *self.q.shape[-2:])
         # One motion at a time: all of them at all places would fill the memory.
-        peaks = [np.max(np.abs(np.einsum("txn,tn->tx", shapes, one)), axis=0) for one in flat]
+        bent = (np.einsum("txn,tn->xt", shapes, one) for one in flat)
+        peaks = [[largest_size(row)[0] for row in rows] for rows in bent]
         value: Array = self.reference_length * np.reshape(peaks, (*self.q.shape[:-2], -1))
         return value[..., 0] if places.ndim == 0 else value
 
@@ -202,7 +204,8 @@ class SteadyState(Result):
         return ax
 
     def _plot_peaks(self, ax: Axes) -> Axes:
-        peaks = np.max(self.peak(np.linspace(0.0, 1.0, 41)), axis=1)
+        bent = self.deflection(np.linspace(0.0, 1.0, 41))
+        peaks = np.max(np.abs(bent), axis=(1, 2))
         ax.semilogy(self.speed, peaks, linewidth=0.9)
         unstable = ~self.stable
         if np.any(unstable):

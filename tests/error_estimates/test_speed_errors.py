@@ -150,7 +150,7 @@ def _largest(motion, weights):
 
 
 @pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning")
-@over_scenes(75, few=None)
+@over_scenes(75, few=None, median=100.0)
 def test_peaks_of_steady_motions(rng):
     system, speed, motion = manufactured(int(rng.integers(2**32)))
     powers = np.arange(1, system.size + 1)

@@ -198,15 +198,14 @@ class _Slice:
         self.harmonic = self.cut.harmonic + odd
         whole = stacked(f, odd, self.harmonic, np.array([mu]), k)[0]
         self.squares = layout(odd, self.harmonic).squares
-        # Vectors of norm 1 and their residuals, as columns.
+        # Vectors of norm 1, and the residuals of the right and the left one together, as columns.
         if k:
             self.values, self.rights, self.lefts = real_pairs(whole)
         else:
             self.values, self.rights = np.linalg.eigh(whole)
             self.lefts = self.rights
         self.residual = np.abs(whole @ self.rights - self.rights * self.values)
-        if k:
-            self.residual += np.abs(whole.T @ self.lefts - self.lefts * self.values)
+        self.residual += np.abs(whole.T @ self.lefts - self.lefts * self.values)
 
     def derivatives(
         self, wanted: Sequence[_Direction], n: int, ends: tuple[float, float], error: float

@@ -267,6 +267,8 @@ def _described(search: Search, best: Candidate) -> Balancing:
     balanced, where = _sizes(search.basis, search.theta, p, search.between, search.measure)
     relative = _relative(balanced, search.unbalanced)
     gap = (best.value - best.bound) / search.unit
+    # Of forces that have limits the last digits count by what the limits are worth.
+    rounding = (_rounding(search, p) + _DIGITS * best.slope) / search.unit
     over = max((relative[term] / top - 1.0 for term, top in search.limits.items()), default=0.0)
     sampling = _sampling(search, p) / search.unit
     checks = {
@@ -287,7 +289,7 @@ def _described(search: Search, best: Candidate) -> Balancing:
         relative=relative,
         peak_angles=where,
         method="second-order cone programme over the convex hull, SLSQP within",
-        error=gap + _rounding(search, p) / search.unit + sampling,
+        error=gap + rounding + sampling,
         error_norm="weighted sum above the least possible one, over the unbalanced linkage's",
         error_kind="bound",
         checks=checks,

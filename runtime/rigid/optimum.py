@@ -267,12 +267,16 @@ def _within(stiffness: Array, p: Array) -> Array:
 
 @dataclass(frozen=True)
 class Candidate:
-    """Counterweights: variables of the design, value, proved lower bound, KKT residual."""
+    """Counterweights: variables of the design, value, proved lower bound, KKT residual.
+
+    ``slope`` is by how much the value falls over a relative rise of the limits.
+    """
 
     x: Array
     value: float
     bound: float
     residual: float
+    slope: float
 
 
 class _Epigraph:
@@ -371,8 +375,11 @@ class _Epigraph:
                 best, least = z, residual
         return np.asarray(np.clip(best, self.low, self.high)[: self.n])
 
-    def proof(self, x: Array) -> tuple[float, float]:
-        """Return the residual of the KKT conditions, and the lower bound of their multipliers."""
+    def proof(self, x: Array) -> tuple[float, float, float]:
+        """Return the residual of the KKT conditions, and the lower bound of their multipliers.
+
+        With them the slope of the least value over a relative rise of the ceilings.
+        """
         p = self.design.parameters(x)
         prices, residual = self._multipliers(np.concatenate([x, self.problem.bounds(p)]))
         pulls, place = [], 0
@@ -380,9 +387,10 @@ class _Epigraph:
             price = prices[place : place + len(cone.fixed)]
             pulls.append(2.0 * price[:, np.newaxis] * cone.values(p))
             place += len(cone.fixed)
-        return residual, self.problem.lower_bound(
-            pulls, prices[len(prices) - len(self.problem.cost) :]
-        )
+        ceiling_prices = prices[len(prices) - len(self.problem.cost) :]
+        capped = np.isfinite(self.problem.ceilings)
+        slope = float(ceiling_prices[capped] @ self.problem.ceilings[capped])
+        return residual, self.problem.lower_bound(pulls, ceiling_prices), slope
 
 
 @dataclass(frozen=True)
@@ -587,7 +595,7 @@ def best_counterweights(search: Search) -> Candidate:
     bound = max(each.bound for each in candidates)
     x = _lightened(search, problem, chosen, unfelt)
     value = search.value(search.peaks(design.parameters(x)))
-    return Candidate(x, value, min(bound, value), chosen.residual)
+    return Candidate(x, value, min(bound, value), chosen.residual, chosen.slope)
 
 
 def _hull(search: Search) -> tuple[PeakProblem, Array, float]:
@@ -660,8 +668,8 @@ def _descended(search: Search, problem: PeakProblem, bound: float, start: Array)
             least = search.penalised(design.parameters(other))
             if least < value:
                 value, best = least, other
-    residual, proved = epigraph.proof(best)
-    return Candidate(best, value, max(bound, proved), residual)
+    residual, proved, slope = epigraph.proof(best)
+    return Candidate(best, value, max(bound, proved), residual, slope)
 
 
 def _unfelt(problem: PeakProblem) -> list[bool]:

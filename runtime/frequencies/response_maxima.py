@@ -211,12 +211,13 @@ def _least(values: Array, error: Array, best: int) -> tuple[float, float, float,
     # The next terms fall as the last ones, unless those fall ever more slowly.
     early, before, last = (float(np.sum(np.abs(series[k : k + 2]))) for k in (3, 5, 7))
     following = last * (last / before) ** 0.5 if last * early < before**2 else last
-    following += noise * float(np.sum(np.abs(series)))
+    noise *= float(np.sum(np.abs(series)))
     # An error that varies as the motions do moves the peak by this part of its half width.
     width = (2.0 * max(least, 0.0) / curve) ** 0.5
     return (
         at,
         least,
-        following + 2.0 * whole * abs(least),
-        (2.0 * len(_NODES) * following / curve + whole * width),
+        following + noise + 2.0 * whole * abs(least),
+        # Round-off at the nodes does not add up whole in the slope.
+        (2.0 * len(_NODES) * following + 12.0 * noise) / curve + whole * width,
     )

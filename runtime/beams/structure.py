@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import Problem, bad, refuse, shown
-from ..core.inputs import are_finite, is_finite, names_problems, require_kind
+from ..core.inputs import are_finite, is_finite, names_problems, require_kind, text_problems
 from ..linkages.linkage import LinkMotion
 from .elements import KINDS
 from .section import Section
@@ -205,6 +205,7 @@ class Beam:
     kind: str = "cubic"
 
     def __post_init__(self) -> None:
+        refuse(text_problems("Beam", name=self.name, start=self.start, end=self.end))
         where = f"beam {self.name}"
         problems = []
         if not (is_finite(self.length) and self.length > 0):
@@ -280,6 +281,7 @@ class Node:
     slides_on: str | None = None
 
     def __post_init__(self) -> None:
+        refuse(text_problems("Node", name=self.name))
         where = f"node {self.name}"
         values = {"mass": self.mass, "inertia": self.inertia}
         for group in ("stiffness", "damping"):

@@ -83,6 +83,12 @@ def are_finite(value: object, count: int) -> bool:
     return len(value) == count and all(is_finite(part) for part in value)
 
 
+def require_flag(where: str, value: object) -> None:
+    """Refuse what is neither True nor False."""
+    if not isinstance(value, bool | np.bool_):
+        raise bad(where, shown(value), "True or False", "choose one")
+
+
 def require_between(where: str, value: object, least: float, most: float, fix: str) -> None:
     """Refuse what is no number within bounds, both allowed."""
     if not (is_finite(value) and least <= value <= most):  # type: ignore[operator]
@@ -103,6 +109,15 @@ def number_problems(
         Problem(f"{where}.{name}", shown(value), expected, fix)
         for name, value in given.items()
         if not (is_finite(value) and value >= least)
+    ]
+
+
+def text_problems(where: str, **values: object) -> list[Problem]:
+    """Return what is wrong with names: each has to be a text that is not empty."""
+    return [
+        Problem(f"{where}.{name}", shown(value), "a name in quotes", "name it")
+        for name, value in values.items()
+        if not (isinstance(value, str) and value)
     ]
 
 

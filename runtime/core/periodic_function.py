@@ -16,8 +16,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import bad
-from .inputs import numbers_in_a_row
+from .errors import bad, shown
+from .inputs import is_finite, numbers_in_a_row
 from .sampling import finite_angles, irregular_angles, values_at
 
 Array = NDArray[np.float64]
@@ -66,8 +66,8 @@ class PeriodicFunction:
         sin = numbers_in_a_row("PeriodicFunction.b", b)
         if sin[0] != 0.0:
             raise bad("PeriodicFunction.b[0]", sin[0], "0", "b[m] belongs to sin m theta")
-        if not (np.isfinite(error) and error >= 0.0):
-            raise bad("PeriodicFunction.error", error, "a finite number >= 0", "correct it")
+        if not (is_finite(error) and error >= 0.0):
+            raise bad("PeriodicFunction.error", shown(error), "a finite number >= 0", "correct it")
         size = max(len(cos), len(sin))
         object.__setattr__(self, "a", _filled(cos, size))
         object.__setattr__(self, "b", _filled(sin, size))

@@ -21,6 +21,9 @@ def bar(
 
     What was ``begun`` of the ``total`` beforehand does not count in the time left.
     """
+    from .inputs import require_flag
+
+    require_flag("progress", wanted)
     if not wanted:
         yield None
         return

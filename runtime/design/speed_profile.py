@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import Problem, refuse
+from ..core.inputs import require_mapping
 
 Array = NDArray[np.float64]
 
@@ -44,6 +45,7 @@ class SpeedProfile:
 
     def __post_init__(self) -> None:
         """Check the values, and hold copies that do not change."""
+        require_mapping("SpeedProfile.geometry", self.geometry, 'say {"coupler": (0.3, 0.31)}')
         problems = _problems(self.times, self.speeds, self.geometry)
         refuse(problems)
         object.__setattr__(self, "times", tuple(float(t) for t in self.times))
@@ -111,7 +113,7 @@ def _numbers(values: object) -> Array:
     """Return values as numbers; none where they are something else."""
     try:
         return np.asarray(values, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return np.zeros(0)
 
 

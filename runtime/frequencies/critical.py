@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families import DAMPING, Array, LinearPeriodic, require_system
-from ..core.inputs import require_whole, speed_span
+from ..core.inputs import require_flag, require_whole, speed_span
 from ..core.maxima import local_maxima
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
@@ -383,6 +383,7 @@ def critical_speeds(
         deflections are not known.
     """
     require_system(system)
+    require_flag("progress", progress)
     if all(term.constant for term in system.terms):
         found, fix = "a frame: no crank moves it", "take natural_frequencies of it"
         raise bad("system", found, "a system that depends on a crank angle", fix)

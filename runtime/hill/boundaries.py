@@ -29,6 +29,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.chebyshev import analysis, nodes
 from ..core.errors import BadInput, bad
+from ..core.inputs import require_flag
 from ..core.maxima import bracketed_roots
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, DeferredChecks, Result, provenance
@@ -186,12 +187,11 @@ def hill_boundaries(
     root, and the error grows accordingly.  The eigenvalues lose digits as K grows; beyond K = 0.5
     the ends are roots of the half trace, a hundred times slower for a single slice.
     """
+    require_flag("certified", certified)
     if certified or not isinstance(f, Meissner):
         check_function(f)
     numbers = check_regions(regions)
     (flat, friction), shape = points(mu=mu, damping=damping)
-    if not isinstance(certified, bool | np.bool_):
-        raise bad("certified", repr(certified), "True or False", "choose one")
     if certified and isinstance(f, PeriodicFunction):
         from .certified import certified_boundaries
 

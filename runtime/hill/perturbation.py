@@ -16,8 +16,8 @@ from typing import ClassVar, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.errors import bad
-from ..core.inputs import is_whole
+from ..core.errors import bad, shown
+from ..core.inputs import is_one_of, is_whole
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, provenance
 from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
@@ -125,8 +125,8 @@ def perturbation_boundaries(
     functions, flat, shape = parameters_of(f, mu, damping)
     numbers = check_regions(regions)
     check_order(order)
-    if outside not in ("nan", "value"):
-        raise bad("outside", repr(outside), "'nan' or 'value'", "choose one")
+    if not is_one_of(outside, ("nan", "value")):
+        raise bad("outside", shown(outside), "'nan' or 'value'", "choose one")
     count = flat.shape[1]
     lower, upper, error = np.empty((3, len(numbers), count))
     flagged, closed, undecided = np.empty((3, len(numbers), count), dtype=bool)

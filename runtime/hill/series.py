@@ -22,8 +22,8 @@ from numpy.polynomial.polynomial import polyval
 from numpy.typing import ArrayLike
 
 from ...generated import hill_recursion
-from ..core.errors import bad
-from ..core.inputs import is_whole
+from ..core.errors import bad, shown
+from ..core.inputs import is_finite, is_whole
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, Result, provenance
 from .bloch import HIGHEST_ORDER, effective_operator, level_distance
@@ -174,9 +174,8 @@ def boundary_series(
     (n,) = check_regions((region,))
     if not is_whole(order, 1, HIGHEST_ORDER):
         raise bad("order", repr(order), f"a whole number from 1 to {HIGHEST_ORDER}", "choose one")
-    real = isinstance(damping_ratio, int | float | np.integer | np.floating)
-    if not real or not 0.0 <= damping_ratio < np.inf:
-        raise bad("damping_ratio", repr(damping_ratio), "a finite number >= 0", "correct it")
+    if not (is_finite(damping_ratio) and damping_ratio >= 0.0):
+        raise bad("damping_ratio", shown(damping_ratio), "a finite number >= 0", "correct it")
     # The boundaries do not depend on the origin of theta: other ones show the round-off.
     runs = [_alphas(_turned(f, float(k)), n, order, damping_ratio) for k in range(5)]
     (middle, half), splitting, doubt = runs[0]

@@ -17,7 +17,8 @@ from math import factorial, pi, sqrt
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.errors import bad
+from ..core.errors import bad, shown
+from ..core.inputs import is_whole
 from .linkage import Array, Limits, Linkage
 
 Complex = NDArray[np.complex128]
@@ -172,9 +173,9 @@ class Circuit:
                 "a linkage whose circuits do not meet",
                 "change a length by a little",
             )
-        if self.number not in range(self.count):
+        if not is_whole(self.number, 0, self.count - 1):
             has = f"0 to {self.count - 1}" if self.count > 1 else "0, the only one"
-            raise bad("circuit", self.number, has, "choose another circuit")
+            raise bad("circuit", shown(self.number), has, "choose another circuit")
 
     @property
     def _branch(self) -> float:

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import Problem, bad, refuse, shown
-from ..core.inputs import is_finite, require_kind
+from ..core.inputs import is_finite, is_one_of, require_kind
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .four_bar import FourBar
@@ -551,7 +551,7 @@ def clearance_range(
     require_linkage(linkage)
     outputs = next(of for kind, of in OUTPUTS.items() if isinstance(linkage, kind))
     link = outputs.links[0] if link is None else link
-    if link not in outputs.links:
+    if not is_one_of(link, outputs.links):
         raise bad("link", shown(link), f"one of {', '.join(outputs.links)}", "choose one")
     plays = _checked(linkage, clearances, joint)
     if theta is None and linkage.crank_turns:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import LINEAR_RANGE, bad, warn_of_large_deflection
 from ..core.families import Array, LinearPeriodic
-from ..core.inputs import is_one_of, numbers
+from ..core.inputs import is_one_of, numbers, require_flag
 from ..core.progress import bar
 from ..core.results import FAIR, Check, DeferredChecks, Result, provenance
 from .equation import Equation, equation_of
@@ -192,6 +192,7 @@ def simulate(
     ``p' = A^T q' + B q - (K + Kg) q/w^2 - C q'/w - D q/w + f + h/w + p_ext/w^2``.
     """
     _check_arguments(method, revolutions, rtol, samples, bound, start)
+    require_flag("forcing", forcing)
     equation = equation_of(system, _number("speed", speed), parameters, forcing=forcing)
     begin = _within(equation.period, float(start))
     state = _start(equation, initial, begin)

@@ -9,8 +9,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.errors import BadInput, bad
-from ..core.inputs import names_in_a_row, require_mapping, require_whole
+from ..core.errors import BadInput, bad, shown
+from ..core.inputs import is_one_of, names_in_a_row, require_mapping, require_whole
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..linkages.linkage import Array, finite_array
@@ -548,8 +548,8 @@ def trade_off(
         As :func:`balance`, and for equal or unknown forces, or another number of points.
     """
     for name, term in (("first", first), ("second", second)):
-        if term not in TERMS:
-            raise bad(name, repr(term), f"one of {', '.join(TERMS)}", "correct the name")
+        if not is_one_of(term, TERMS):
+            raise bad(name, shown(term), f"one of {', '.join(TERMS)}", "correct the name")
     if first == second:
         raise bad("second", repr(second), "another force than the first", "choose another")
     require_whole("points", points, 2, 1000)

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
-from ..core.errors import Problem, bad, refuse
-from ..core.inputs import number_problems
+from ..core.errors import Problem, bad, refuse, shown
+from ..core.inputs import is_one_of, number_problems
 from .machine import Machine, finite_number, require_link, require_machine
 from .masses import MassDistribution
 
@@ -199,8 +199,8 @@ def case_counterweights(
         finite.
     """
     known = (*CASES, "reciprocating")
-    if case not in known:
-        raise bad("case", repr(case), f"one of {', '.join(known)}", "choose one")
+    if not is_one_of(case, known):
+        raise bad("case", shown(case), f"one of {', '.join(known)}", "choose one")
     require_machine(machine)
     links = tuple(machine.linkage.links)
     if isinstance(offsets, Mapping):

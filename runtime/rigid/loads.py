@@ -9,7 +9,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from ..core.errors import BadInput, Problem, bad, refuse, shown
-from ..core.inputs import are_finite, names_problems, number_problems
+from ..core.inputs import are_finite, is_one_of, names_problems, number_problems, text_problems
 from ..linkages.linkage import Array, LinkMotion, PointMotion
 
 End: TypeAlias = tuple[str, float, float]
@@ -95,12 +95,12 @@ class Load:
         numbers: dict[str, Any] = {"along": self.along, "across": self.across}
         if not callable(self.couple):
             numbers["couple"] = self.couple
-        problems = number_problems("Load", numbers)
+        problems = text_problems("Load", link=self.link) + number_problems("Load", numbers)
         if not (callable(self.force) or are_finite(self.force, 2)):
             expected = "a pair of finite numbers"
             problems.append(Problem("Load.force", shown(self.force), expected, "give (fx, fy)"))
         for name, choices in (("axes", ("fixed", "link")), ("given", ("angle", "motion"))):
-            if getattr(self, name) not in choices:
+            if not is_one_of(getattr(self, name), choices):
                 given = shown(getattr(self, name))
                 problems.append(Problem(f"Load.{name}", given, f"one of {choices}", "choose one"))
         refuse(problems)

@@ -528,7 +528,10 @@ def _result(
 
 
 def _wanted(multiplier: int | Sequence[int]) -> tuple[int, ...]:
-    values = np.atleast_1d(np.asarray(multiplier))
+    try:
+        values = np.atleast_1d(np.asarray(multiplier))
+    except ValueError:
+        values = np.zeros(0)
     if values.ndim != 1 or not len(values) or not np.all(np.isin(values, (1, -1))):
         raise bad("multiplier", multiplier, "+1, -1 or both", "correct it")
     return tuple(sorted({int(value) for value in values}, reverse=True))

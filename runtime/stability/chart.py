@@ -10,9 +10,16 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.errors import bad
+from ..core.errors import bad, refuse
 from ..core.families import Array, LinearPeriodic, require_system
-from ..core.inputs import is_one_of, numbers_in_a_row, require_between
+from ..core.inputs import (
+    is_one_of,
+    numbers_in_a_row,
+    require_between,
+    require_flag,
+    require_mapping,
+    text_problems,
+)
 from ..core.plotting import RPM, axes_or_new
 from ..core.results import Check, Result
 from ..hill.form import is_hill
@@ -257,7 +264,11 @@ def stability_chart(
     require_system(system)
     names, axes = _axes(system, x, y)
     _check_options(system, rtol, order, edges, names)
-    named = {k: tuple(float(v) for v in vs) for k, vs in (marks or {}).items()}
+    require_flag("boundaries", boundaries)
+    refuse(text_problems("stability_chart", frequency_name=frequency_name))
+    if marks is not None:
+        require_mapping("marks", marks, 'say {"as built": [0.001]}')
+    named = {k: tuple(numbers_in_a_row(f"marks[{k!r}]", v)) for k, v in (marks or {}).items()}
     if not callable(workers):
         raise bad("workers", repr(workers), "a callable like map", "give pool.map, or leave it out")
     sampler = Sampler(system, names, axes, speed, float(rtol))
@@ -311,6 +322,7 @@ def _check_options(
             "one mode, which alone has boundaries by perturbation in a chart",
             "leave it out; tongue has the series of several modes",
         )
+    require_flag("edges", edges)
     if edges and "speed" not in names:
         raise bad("edges", edges, "a chart with the speed as an axis", "leave it out")
 

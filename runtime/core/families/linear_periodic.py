@@ -159,6 +159,7 @@ class LinearPeriodic:
                 raise bad(
                     "Term.array", repr(term.array), f"one of {MATRICES + VECTORS}", "rename it"
                 )
+            require_whole("Term.power", term.power, -10, 10, "leave it out")
             sample = term(np.zeros(1))
             expected = (1,) + (self.size,) * (2 if term.array in MATRICES else 1)
             if sample.shape != expected:

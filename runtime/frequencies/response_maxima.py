@@ -218,6 +218,6 @@ def _least(values: Array, error: Array, best: int) -> tuple[float, float, float,
         at,
         least,
         following + noise + 2.0 * whole * abs(least),
-        # Round-off at the nodes does not add up whole in the slope.
-        (2.0 * len(_NODES) * following + 12.0 * noise) / curve + whole * width,
+        # The slope of what follows is that of few terms; round-off has it of any degree.
+        2.0 * len(_NODES) * (following / 3.0 + noise) / curve + whole * width,
     )

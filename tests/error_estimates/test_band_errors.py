@@ -108,7 +108,7 @@ def test_ends_of_all_regions(rng, drag):
     return of_regions(scene, stability_edges(scene.system, SPAN))
 
 
-@over_scenes(42, few=None, many=36, floor=1e-18, median=100.0)
+@over_scenes(42, few=None, many=24, floor=1e-18, median=100.0)
 def test_bands_of_a_truncated_system(rng):
     scene = HillPair(rng, drag=float(rng.choice([0.0, 0.01])), stiff=True)
     return of_regions(scene, stability_edges(scene.system, SPAN, modes=2))

@@ -93,7 +93,7 @@ def pairs_along(system, steady, true, motion, every):
     return out
 
 
-@over_scenes(1996, few=2, many=36, median=30.0)
+@over_scenes(1996, few=2, many=24, median=30.0)
 def test_rocking_bars(rng):
     return pairs_of(rng, None, int(rng.integers(1, 4)))
 

@@ -141,7 +141,7 @@ def half_trace(levels, speed):
     return 0.5 * np.trace(whole[0])
 
 
-@over_scenes(78, few=4, many=45, median=100.0)
+@over_scenes(78, few=4, many=30, median=100.0)
 def test_maxima_of_meissners_way(rng):
     """The error is that of the intervals: 1024 and 2048 of them, extrapolated, are the truth."""
     scene = Waving(rng, int(rng.integers(1, 4)), 0.0)

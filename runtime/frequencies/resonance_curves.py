@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from numbers import Real
-from typing import ClassVar, cast
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,10 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic, require_system
 from ..core.inputs import numbers
-from ..core.maxima import largest_size, local_maxima, narrowed
+from ..core.maxima import local_maxima, narrowed
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Result, provenance
-from ..periodic.periodic_motion import SteadyState, quiet_state
+from ..periodic.periodic_motion import quiet_state
 from .critical import label_speeds
 from .held import mean_frequencies
 
@@ -152,11 +152,11 @@ def resonance_curve(
         raise bad("resonance_curve", "a system without mode shapes", "one with them", fix)
     mean, _ = mean_frequencies(system, min(6, system.size), 1e-12, parameters=parameters)
     state = quiet_state(system, speeds, rtol, parameters)
-    peak, error = _peaks(state, float(x))
+    peak = state.peak(x)
     tops = local_maxima(peak)
 
     def peaks(at: Array) -> Array:
-        return _peaks(quiet_state(system, at, rtol, parameters), float(x))[0]
+        return quiet_state(system, at, rtol, parameters).peak(x)
 
     low, high = narrowed(peaks, speeds[tops - 1], speeds[tops + 1], 4)
     maxima = 0.5 * (low + high)
@@ -165,7 +165,7 @@ def resonance_curve(
     mode, order = label_speeds(mean[:3], maxima)
     return ResonanceCurve(
         method=state.method,
-        error=error,
+        error=state.peak_error(x),
         error_norm="of the largest deflection, over itself",
         checks={name: state.checks[name] for name in sorted(state.checks)},
         provenance=provenance(system.changed_provenance(**parameters)),
@@ -181,21 +181,3 @@ def resonance_curve(
         mean_frequency=mean,
         x=float(x),
     )
-
-
-def _peaks(state: SteadyState, x: float) -> tuple[Array, Array]:
-    """Return the largest deflection at a place x/length of each motion, and its error over itself.
-
-    It lies between the angles too.
-    """
-    shape = cast("Callable[..., Array]", state.shapes)(np.array([x]), state.theta)[:, 0]
-    motions, errors = (
-        part.reshape(-1, *part.shape[state.speed.ndim :]) for part in (state.q, state.error)
-    )
-    peak, off = np.full(len(motions), np.nan), np.full(len(motions), np.inf)
-    for k, (q, error) in enumerate(zip(motions, errors, strict=True)):
-        peak[k], between = largest_size(np.einsum("tn,tn->t", shape, q))
-        if peak[k] > 0.0:
-            moved = (np.max(np.abs(q), axis=0) * error) @ np.max(np.abs(shape), axis=0)
-            off[k] = (moved + between) / peak[k]
-    return state.reference_length * peak.reshape(state.speed.shape), off.reshape(state.speed.shape)

@@ -163,22 +163,36 @@ class SteadyState(Result):
     def peak(self, x: ArrayLike = 1.0) -> Array:
         """Return the largest size of the deflection [m] over the period, at places x/length.
 
-        Shape ``(*batch, nx)``, or ``batch`` where ``x`` is one number; between the given angles
-        too, by their trigonometric series.
+        Shape ``(*batch, nx)``, or ``batch`` where ``x`` is one number.  It may lie between the given
+        angles; :meth:`peak_error` tells how well it is known.
 
         Raises
         ------
         BadInput
             As :meth:`deflection`.
         """
+        return self.reference_length * self._peaks(x)[0]
+
+    def peak_error(self, x: ArrayLike = 1.0) -> Array:
+        """Return the error of :meth:`peak` over itself: of the motion, and between the angles.
+
+        Of its shape; infinite where nothing moves or there is no single motion.
+        """
+        return self._peaks(x)[1]
+
+    def _peaks(self, x: ArrayLike) -> tuple[Array, Array]:
+        """Return the largest sizes of the shapes' sums, and their errors over themselves."""
         places = numbers("x", x)
         shapes = self._shapes_at(np.atleast_1d(places))
-        flat = self.q.reshape(-1, *self.q.shape[-2:])
+        moved = np.max(np.abs(self.q), axis=-2) * self.error @ np.max(np.abs(shapes), axis=0).T
         # One motion at a time: all of them at all places would fill the memory.
-        bent = (np.einsum("txn,tn->xt", shapes, one) for one in flat)
-        peaks = [[largest_size(row)[0] for row in rows] for rows in bent]
-        value: Array = self.reference_length * np.reshape(peaks, (*self.q.shape[:-2], -1))
-        return value[..., 0] if places.ndim == 0 else value
+        bent = (
+            np.einsum("txn,tn->xt", shapes, one) for one in self.q.reshape(-1, *self.q.shape[-2:])
+        )
+        found = np.array([[largest_size(row) for row in rows] for rows in bent])
+        top, between = np.moveaxis(found.reshape(*self.speed.shape, places.size, 2), -1, 0)
+        error = np.divide(moved + between, top, out=np.full(top.shape, np.inf), where=top > 0.0)
+        return (top[..., 0], error[..., 0]) if places.ndim == 0 else (top, error)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the coordinates over the crank angle and return the axes.
@@ -204,8 +218,9 @@ class SteadyState(Result):
         return ax
 
     def _plot_peaks(self, ax: Axes) -> Axes:
-        bent = self.deflection(np.linspace(0.0, 1.0, 41))
-        peaks = np.max(np.abs(bent), axis=(1, 2))
+        shapes = self.reference_length * self._shapes_at(np.linspace(0.0, 1.0, 41))
+        bent = (np.einsum("txn,tn->tx", shapes, one) for one in self.q)
+        peaks = np.array([np.max(np.abs(one)) for one in bent])
         ax.semilogy(self.speed, peaks, linewidth=0.9)
         unstable = ~self.stable
         if np.any(unstable):

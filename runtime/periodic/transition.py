@@ -326,21 +326,14 @@ def share(equation: Equation, way: Method, level: int, predicted: Array, order: 
     return np.clip(_MARGIN * ratio, least, 1.0)
 
 
-def errors_of_rungs(equation: Equation, way: Method) -> Array:
-    """Return the error that each rung of the ladder is likely to leave, ``(nb, rungs)``."""
-    return predicted_error(equation, way, _LADDER[None])
-
-
-def levels_for(
-    equation: Equation, way: Method, rtol: float, errors: Array | None = None
-) -> NDArray[np.intp]:
+def levels_for(equation: Equation, way: Method, rtol: float) -> tuple[NDArray[np.intp], Array]:
     """Return the rung on which each member is likely solved, and known to be, to a wanted error.
 
-    ``errors`` are those of :func:`errors_of_rungs`, where they are at hand.  A mode that asks for
-    more than a million segments is refused.
+    With it the error that each rung of the ladder is likely to leave, ``(nb, rungs)``.  A mode that
+    asks for more than a million segments is refused.
     """
     coarse, fine = _LADDER[:-1], _LADDER[1:]
-    errors = errors_of_rungs(equation, way) if errors is None else errors
+    errors = predicted_error(equation, way, _LADDER[None])
     enough = _MARGIN * errors[:, 1:] <= rtol
     enough &= least_share(way, coarse, fine, 0.5 * way.stages) * errors[:, :-1] <= rtol
     enough &= fine <= _MOST_SEGMENTS
@@ -348,7 +341,7 @@ def levels_for(
     enough &= way.stages * coarse >= 2 * equation.reach
     if not np.all(np.any(enough, axis=1)):
         raise _too_fast(equation, int(np.argmin(np.any(enough, axis=1))))
-    return np.asarray(1 + np.argmax(enough, axis=1), dtype=np.intp)
+    return 1 + np.argmax(enough, axis=1), errors
 
 
 def cheapest(
@@ -414,8 +407,8 @@ def refined(
     nb = len(equation.speed)
     solutions: list[tuple[Array, ...]] = [()] * nb
     error: list[Array] = [np.zeros(0)] * nb
-    segments, predicted = np.zeros(nb, dtype=np.int64), errors_of_rungs(equation, way)
-    level = levels_for(equation, way, rtol, predicted)
+    segments = np.zeros(nb, dtype=np.int64)
+    level, predicted = levels_for(equation, way, rtol)
     together = max(1, _BLOCK // (way.stages * equation.size) ** 2)
     finished, most = 0, _MOST_SEGMENTS if equation.harmonics >= 0 else _ROUGH_SEGMENTS
     for first in np.unique(level):

@@ -89,7 +89,7 @@ def test_growth_within_the_period_costs_no_digits(k):
 def test_strong_damping_asks_for_no_more_segments(c):
     # What dies away within a segment follows its load: no more of them than without damping.
     equation = equation_of(forced_mathieu(c=c), 0.3, forcing=True).with_slow_modes(12.0)
-    assert levels_for(equation, method("radau", 7), 1e-6)[0] <= 6
+    assert levels_for(equation, method("radau", 7), 1e-6)[0][0] <= 6
     state = steady_state(forced_mathieu(c=c), [0.3, 1.0, 3.0])
     assert state.passed and np.all(state.stable)
     for index, speed in enumerate(state.speed):

@@ -222,7 +222,8 @@ def rigid_motion(structure: Structure, theta: Array) -> RigidMotion:
     first = np.zeros((len(theta), len(freedoms)))
     second = np.zeros_like(first)
     for beam in structure.beams:
-        own, points = moving[beam.name], dict[float, PointMotion]()
+        own = moving[beam.name]
+        points: dict[float, PointMotion] = {}
         across = np.stack([-np.sin(own.angle), np.cos(own.angle)], axis=-1)
         for i, freedom in enumerate(freedoms):
             if freedom.beam != beam.name or freedom.part == "curvature":

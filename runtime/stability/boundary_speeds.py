@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic
-from ..core.inputs import require_between, speed_span
+from ..core.inputs import numbers_in_a_row, require_between, speed_span
 from ..core.results import Check, Result, provenance
 from ..periodic import Monodromy, monodromy
 from ..periodic.equation import SPEED_POWER, equation_of, sampled
@@ -528,11 +528,8 @@ def _result(
 
 
 def _wanted(multiplier: int | Sequence[int]) -> tuple[int, ...]:
-    try:
-        values = np.atleast_1d(np.asarray(multiplier))
-    except ValueError:
-        values = np.zeros(0)
-    if values.ndim != 1 or not len(values) or not np.all(np.isin(values, (1, -1))):
+    values = numbers_in_a_row("multiplier", multiplier)
+    if not np.all(np.isin(values, (1, -1))):
         raise bad("multiplier", multiplier, "+1, -1 or both", "correct it")
     return tuple(sorted({int(value) for value in values}, reverse=True))
 

@@ -163,8 +163,8 @@ class SteadyState(Result):
     def peak(self, x: ArrayLike = 1.0) -> Array:
         """Return the largest size of the deflection [m] over the period, at places x/length.
 
-        Shape ``(*batch, nx)``, or ``batch`` where ``x`` is one number.  It may lie between the given
-        angles; :meth:`peak_error` tells how well it is known.
+        Shape ``(*batch, nx)``, or ``batch`` where ``x`` is one number.  It may lie between the
+        given angles; :meth:`peak_error` tells how well it is known.
 
         Raises
         ------

@@ -18,6 +18,7 @@ from ..core.results import Check
 from ..hill import Meissner, discriminant
 from ..periodic.lowest_modes import LowestModes
 from ..periodic.moving_basis import still_modes
+from ..periodic.multipliers import ROUNDED
 from ..periodic.over_speed import MatricesOverSpeed
 
 ComplexArray = NDArray[np.complex128]
@@ -90,15 +91,22 @@ def multiplier_maxima(
     span = np.abs(brackets[2] - brackets[0])
     matrices, relative = few(speed[row])
     noise = float(np.max(relative, initial=0.0))
-    blur = _blur(around, span, noise * float(np.max(np.abs(matrices), initial=1.0)))
+    size = float(np.max(np.abs(matrices), initial=1.0))
+    blur = _blur(around, span, noise * size)
     method = "local maxima of the real parts of the multipliers"
     if truncated.size < system.size:
         method += f", on {truncated.size} natural modes"
     checks = {"truncated": Check(change, 1e-3), "converged": Check(noise, 100 * _RTOL)}
-    # A multiplier's turn is its frequency over the speed: what it is off by, the speed is.
     # Steps of parabolas become small on one side of a maximum before they have reached it.
-    missed = np.abs(_quartic(value, at, _BESIDE * at, mode, best)[0])
-    error = width + missed + np.minimum(blur, span) + change * at
+    moved, bend, smooth = _quartic(value, at, _BESIDE * at, mode, best)
+    rough = width + np.abs(moved) + np.minimum(blur, span)
+    for _ in range(_POLISHED):
+        at = np.where(smooth, at + moved, at)
+        best = value(at, mode)
+        moved, bend, _ = _quartic(value, at, _BESIDE * at, mode, best)
+    sharp = 2.0 * np.abs(moved) + ROUNDED * noise * size * _BESIDE * at / np.abs(bend)
+    # A multiplier's turn is its frequency over the speed: what it is off by, the speed is.
+    error = np.where(smooth, np.minimum(sharp, rough), rough) + change * at
     return Maxima(at, mode + 1, best, error, method, checks)
 
 
@@ -113,7 +121,8 @@ def _blur(values: tuple[Array, Array, Array], across: Array, noise: float) -> Ar
 
 def _larger(values: ComplexArray) -> Array:
     """Return the larger real part of each mode's two multipliers, ``(ns, m)``."""
-    return np.asarray(np.max(values.real.reshape(len(values), -1, 2), axis=-1))
+    pairs = values.real.reshape(len(values), values.shape[-1] // 2, 2)
+    return np.asarray(np.max(pairs, axis=-1))
 
 
 def _peaks(values: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
@@ -126,18 +135,19 @@ def _peaks(values: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
 
 def _quartic(
     call: Callable[[Array, Whole], Array], at: Array, step: Array, which: Whole, best: Array
-) -> tuple[Array, Array]:
+) -> tuple[Array, Array, NDArray[np.bool_]]:
     """Return how far the maximum is off places ``(k,)`` by the quartic through five values.
 
-    With it the second difference there.  At a corner, where a mode's multipliers become real, there
-    is no parabola, and nothing is moved.
+    With it the second difference there, and whether it is smooth: at a corner, where a mode's
+    multipliers become real, second differences grow with the step, not with its square.
     """
     first, low, high, last = (call(at + k * step, which) for k in (-2, -1, 1, 2))
     slope = (first - 8.0 * low + 8.0 * high - last) / 12.0
     bend = (-first + 16.0 * low - 30.0 * best + 16.0 * high - last) / 12.0
     with np.errstate(divide="ignore", invalid="ignore"):
         moved = np.clip(-slope / bend, -1.0, 1.0)
-    return step * np.where(bend < 0.0, moved, 0.0), bend
+    smooth = (bend < 0.0) & (first - 2.0 * best + last < 3.5 * (low - 2.0 * best + high))
+    return step * np.where(bend < 0.0, moved, 0.0), bend, smooth
 
 
 def refined_maxima(
@@ -250,7 +260,7 @@ def _meissner_maxima(
     at, best, _ = refined_maxima(half_trace, which, brackets, around)
     step = _TURNED * at**2 / waves
     for _ in range(_POLISHED):
-        moved, bend = _quartic(half_trace, at, step, which, best)
+        moved, bend, _ = _quartic(half_trace, at, step, which, best)
         at = at + moved
         answer = discriminant(steps, 0.0, 1.0 / at**2)
         best = answer.value

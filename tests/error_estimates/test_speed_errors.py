@@ -74,7 +74,7 @@ def test_running_means(rng):
     return found.error[place], np.maximum(np.abs(gap), 4e-16 * exact)
 
 
-@over_scenes(73, few=None, many=100)
+@over_scenes(73, few=None, many=100, median=100.0)
 def test_maxima_of_multipliers(rng):
     """exp(-c t/2) cos(w t) over the period t is greatest where tan(w t) = -c/(2 w)."""
     drag = float(rng.choice([0.0, rng.uniform(0.1, 3.0)]))

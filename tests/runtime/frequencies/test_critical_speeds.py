@@ -89,6 +89,13 @@ def test_all_methods_agree_on_a_constant_system():
         assert speeds == pytest.approx(expected, rel=2e-3)
 
 
+@pytest.mark.parametrize("method", ["running_mean", "response", "multipliers", "meissner"])
+def test_a_range_without_any(method):
+    """Between 30 and 71/2 rad/s lies no fraction of a frequency."""
+    found = critical_speeds(_system(0.2), (31.0, 34.0), method=method, speeds=40)
+    assert found.labels == () and len(found.speed) == len(found.error) == 0 and found.passed
+
+
 def test_a_varying_frequency_parts_the_methods():
     """Frequency of sqrt(900 + 400 cos): its mean is 29.23.. but the resonance is a Mathieu one."""
     system = _system(0.4, 0.0, 400.0)

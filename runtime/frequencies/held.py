@@ -181,7 +181,7 @@ def _even(values: Values, period: float, count: int) -> tuple[Array, Array]:
     value, error = values(even_angles(period, count))
     # Row by row a plain sum would add a round-off for every angle.
     found = np.array([math.fsum(column) for column in value.T]) / count
-    return found, error.mean(axis=0) + 4 * _EPS * np.abs(found)
+    return found, error.mean(axis=0) + _EPS * np.abs(found)
 
 
 def _by_panels(

@@ -112,7 +112,7 @@ def _slope(modes: Modes, angle: float, reach: float, rank: int) -> tuple[float, 
     around = modes(angle + reach * np.array([-1.0, 0.0, 1.0]))
     gap = around.frequency[:, rank + 1] - around.frequency[:, rank]
     # Gaps smaller than so many round-offs are none.
-    error = 16.0 * float(np.max(around.error[:, rank : rank + 2]))
+    error = 8.0 * float(np.max(around.error[:, rank : rank + 2]))
     bend = (gap[0] ** 2 + gap[2] ** 2) / 2.0 - gap[1] ** 2
     return float(np.sqrt(max(bend, 0.0)) / reach), error
 

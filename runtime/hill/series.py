@@ -180,7 +180,7 @@ def boundary_series(
     runs = [_alphas(_turned(f, float(k)), n, order, damping_ratio) for k in range(5)]
     (middle, half), splitting, doubt = runs[0]
     spread = np.max([np.abs(other - runs[0][0]) for other, *_ in runs[1:]], axis=0).sum(axis=0)
-    error = 8.0 * spread + 2.0 * EPS * (np.abs(middle) + np.abs(half)) + doubt
+    error = 3.0 * spread + EPS * (np.abs(middle) + np.abs(half)) + doubt
     disagreeing = float(sum(other != splitting for _, other, _ in runs))
     return BoundarySeries(
         method=f"Bloch's recursion, order {order}",

@@ -32,8 +32,8 @@ DEFAULT_WEIGHTS: Mapping[str, float] = {"f23": 1.0, "torque": 1.0, "shaking_mome
 
 # Gap or KKT residual counted as optimal; what a sum may hang on the places of its samples.
 _OPTIMAL, _SAMPLED = 1e-5, 1e-6
-# Last digits of a sum of relative peaks; by a quarter of them, with these signs, lengths are moved.
-_DIGITS = 16.0 * float(np.finfo(float).eps)
+# Last digits of a sum of relative peaks; by half of them, with these signs, lengths are moved.
+_DIGITS = 8.0 * float(np.finfo(float).eps)
 _SIGNS = ((0, 0, 0, 0), (1, -1, 1, -1), (-1, -1, 1, 1))
 # At the ends of a trade-off one peak is the least possible; so much more is allowed, in units of
 # the unbalanced one, in order to choose between counterweights that are equal in it.
@@ -206,7 +206,7 @@ def _compared(
         relative=relative,
         peak_angles=where,
         method=f"case ({case}) in closed form",
-        error=2.0 * spread / max(relative.values(), default=1.0) + _DIGITS,
+        error=1.2 * spread / max(relative.values(), default=1.0) + _DIGITS,
         error_norm="relative peaks, over the largest of them",
         checks=checks,
         provenance=provenance({"speed": repr(float(speed))}),
@@ -218,7 +218,7 @@ def _all_but_equal(linkage: Any) -> list[Any]:
     made = []
     for signs in _SIGNS:
         moved = {
-            name: getattr(linkage, name) * (1.0 + 0.25 * sign * _DIGITS)
+            name: getattr(linkage, name) * (1.0 + 0.5 * sign * _DIGITS)
             for name, sign in zip(linkage.names, signs, strict=False)
         }
         made.append(replace(linkage, **moved))
@@ -301,13 +301,13 @@ def _rounding(search: Search, p: Array) -> float:
     """Return what round-off does to the weighted sum of the relative peaks.
 
     Some last digits; and near a change point, where forces hang on the last digits of the lengths,
-    twice what some of these change.
+    somewhat more than what some of these change.
     """
     values = []
     for linkage in _all_but_equal(search.basis.machine.linkage):
         machine = replace(search.basis.machine, linkage=linkage)
         values.append(_weighted(search, replace(search.basis, machine=machine), search.theta, p))
-    return 2.0 * float(np.ptp(values)) + _DIGITS * search.unit
+    return 1.8 * float(np.ptp(values)) + _DIGITS * search.unit
 
 
 def _sampling(search: Search, p: Array) -> float:

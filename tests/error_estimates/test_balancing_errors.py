@@ -25,7 +25,7 @@ def exact(machine):
     return float(np.sqrt(np.sum(left**2) / np.sum(force**2)))
 
 
-@over_scenes(0, few=4, many=80, floor=np.finfo(float).eps / 2.0)
+@over_scenes(0, few=4, many=80, floor=np.finfo(float).eps)
 def test_error_bounds_the_distance_from_the_optimum_and_is_not_idle(rng):
     """Both are of the order of 1: no difference below its round-off means anything."""
     machine = random_machine(rng)
@@ -50,7 +50,7 @@ def near_change_point(rng):
     return made if made(1.0).linkage.crank_turns else None
 
 
-@over_scenes(1, few=10, many=70, floor=np.finfo(float).eps / 2.0)
+@over_scenes(1, few=10, many=70, floor=np.finfo(float).eps)
 def test_values_do_not_hang_on_the_unit_of_length_beyond_the_error(rng):
     """Where the last digits of the lengths change forces by much more than their own."""
     made = near_change_point(rng)
@@ -123,7 +123,7 @@ def test_samples_that_miss_the_motion_are_told():
     assert found.error > found.checks["samples"].value > 1e-6 and not found.passed
 
 
-@over_scenes(3, few=10, many=70, floor=np.finfo(float).eps / 2.0)
+@over_scenes(3, few=10, many=70, floor=np.finfo(float).eps)
 def test_cases_do_not_hang_on_the_unit_of_length_beyond_the_error(rng):
     made = near_change_point(rng)
     if made is None:

@@ -33,14 +33,14 @@ def test_errors_of_held_frequencies(rng):
     return error[0], np.maximum(gaps, frequency[0] * 2.0**-60)
 
 
-@over_scenes(12, floor=1e-17)
+@over_scenes(12, floor=1e-16)
 def test_errors_of_means(rng):
     depth, harmonic = rng.uniform(0.05, 0.95), int(rng.integers(1, 4))
     phase = rng.uniform(0, 2 * np.pi)
 
     def values(theta):
         found = 1.0 / (1.0 - depth * np.cos(harmonic * theta - phase))[:, None]
-        return found, 1e-15 * found
+        return found, 5e-16 * found
 
     mean, error = cycle_mean(values, 2 * np.pi, enough=1e-7)
     # The mean of 1/(1 - a cos x) is 1/sqrt(1 - a^2).
@@ -53,7 +53,7 @@ def test_errors_of_means_with_a_kink(rng):
 
     def values(theta):
         found = np.abs(np.cos((theta - at) / 2))[:, None] + 2.0
-        return found, 1e-15 * found
+        return found, 5e-16 * found
 
     mean, error = cycle_mean(values, 2 * np.pi, [at + np.pi], enough=1e-9)
     return error, mean - 2.0 - 2.0 / np.pi

@@ -92,8 +92,8 @@ def test_arrays_and_squared_frequencies(rng):
     ).real
     largest = scene.natural[small.size - 1] ** 2
     off = np.max(np.abs(np.sort(squares, axis=1) - scene.natural[: small.size] ** 2)) / largest
-    # Each entry of M and of K may be off, and the basis rounds what it was made from.
-    allowed = 2 * small.size * small.error + 1e-14 * scene.condition()
+    # Entries of M and of K are off, and the basis rounds what it was made from.
+    allowed = 2 * np.sqrt(small.size) * small.error + 1e-15 * scene.condition()
     return {"arrays": (small.error, worst), "squares": (allowed, off)}
 
 

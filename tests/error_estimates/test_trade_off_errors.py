@@ -84,7 +84,7 @@ def scene(rng):
     return machine, theta, speed, acceleration, bounds
 
 
-@over_scenes(34, few=4, many=24, floor=np.finfo(float).eps / 2.0)
+@over_scenes(34, few=4, many=24, floor=np.finfo(float).eps)
 def test_bounds_of_points_hold_and_are_not_idle(rng):
     """All are of the order of 1: no difference below its round-off means anything."""
     machine, theta, speed, acceleration, bounds = scene(rng)

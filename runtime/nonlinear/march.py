@@ -132,13 +132,27 @@ def _sizes_of(states: Array) -> Array:
 
 def unresolved(motion: Motion) -> float:
     """Return what series of the accelerations and iteration lack, as a share of the motion."""
-    h, s = motion.step, motion.a.shape[1]
-    terms = np.abs(motion.points.series @ motion.a)
-    left = float(np.max(terms[:, -2:]))
+    h, left, falls = _series_ends(motion)
     # Integrated twice over a step, and the square of what falls: Gauss points integrate it away.
     rate = max(float(np.max(np.abs(motion.v))), 1e-300)
-    largest = max(float(np.max(terms[:, 0])), 1e-300)
-    return float((h * left / s / rate) * min(left / largest, 1.0)) + motion.left
+    return float((h * left / STAGES / rate) * min(falls, 1.0)) + motion.left
+
+
+def between_ends(motion: Motion) -> float:
+    """Return what coordinates within the steps lack beside :func:`unresolved`, as a share.
+
+    There the terms beyond the series' last ones, that fall on as these do, are not integrated away.
+    """
+    h, left, falls = _series_ends(motion)
+    size = max(float(np.max(np.abs(motion.x))), 1e-300)
+    return float((h / STAGES) ** 2 * left / size * min(falls, 1.0) ** (2.0 / (STAGES - 2)))
+
+
+def _series_ends(motion: Motion) -> tuple[float, float, float]:
+    """Return the step, the largest of the last terms of the accelerations, and how they fell."""
+    terms = np.abs(motion.points.series @ motion.a)
+    left = float(np.max(terms[:, -2:]))
+    return motion.step, left, left / max(float(np.max(terms[:, 0])), 1e-300)
 
 
 def _finer(motion: Motion, steps: int) -> Motion:

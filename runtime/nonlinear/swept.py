@@ -17,7 +17,7 @@ from ..core.inputs import is_finite, numbers_in_a_row, require_between, require_
 from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
-from .march import Marcher, end, from_rest, unresolved
+from .march import Marcher, between_ends, end, from_rest, unresolved
 from .orbit import EPS, Lost, Solver
 from .response import SAMPLES, checked_problem, first_motion, tops
 from .segments import Motion, NotFinite, Problem, Ramp
@@ -237,7 +237,7 @@ def _swept(
         state = state + kicks * random.normal(size=state.shape)
         before = marcher.revolution(speed, state, before, Ramp(rise))
         # Rates by the angle stay what they are when the speed changes.
-        error = unresolved(before) + 256 * EPS
+        error = unresolved(before) + between_ends(before) + 256 * EPS
         yield speed + np.pi * rise / speed, _extremes(system, before, angles), error, end(before)
         state, speed = end(before), float(np.sqrt(after))
 

@@ -125,7 +125,7 @@ def test_estimates_of_special_points_hold_and_are_not_idle(rng):
     return special_ratios(curve) if curve and curve.special else None
 
 
-@over_scenes(184, few=2, many=12, floor=1e-13)
+@over_scenes(9184, few=2, many=12, floor=1e-13)
 def test_estimates_of_sweeps_hold_and_are_not_idle(rng):
     system, (low, high) = random_oscillators(rng)
     speed, n = rng.uniform(low, high) / rng.choice([1.0, 3.0]), system.size

@@ -318,15 +318,18 @@ def _converged(
     rtol: float,
 ) -> _Roots:
     """Raise the truncation until no root moves and none appears."""
-    coarse = _roots(matrices(harmonics), sign, harmonics, span)
+    coarse, before = _roots(matrices(harmonics), sign, harmonics, span), np.inf
     while True:
         harmonics = harmonics + max(6, harmonics // 4)
         fine = _roots(matrices(harmonics), sign, harmonics, span)
         if len(fine.speed) == len(coarse.speed):
             change = np.abs(fine.speed - coarse.speed)
-            if np.all(change <= rtol * fine.speed):
-                moved = float(np.max(change / fine.speed, initial=0.0))
-                return replace(fine, error=fine.error + change, truncation=moved)
+            moved = float(np.max(change / fine.speed, initial=0.0))
+            if moved <= rtol:
+                # The change is the coarse truncation's error; the fine one's falls on as it fell.
+                left = min(max(moved / before, 0.1), 1.0) if before > 0.0 else 1.0
+                return replace(fine, error=fine.error + left * change, truncation=moved)
+            before = moved
         coarse = fine
 
 

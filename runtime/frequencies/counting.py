@@ -260,9 +260,9 @@ def _together(finer: DynamicStiffness, rough: list[float], before: int) -> list[
     values, vectors = projected(finer.assembly, omega, chosen)
     places = np.sqrt(np.maximum(omega**2 + values, 0.0))
     _, mass, sizes = quadratic_forms(finer.assembly, omega, vectors)
-    # To first order: an entry of a local matrix is off by 8 u of its size, functions, products
+    # To first order: an entry of a local matrix is off by 6 u of its size, functions, products
     # and turn together.
-    spread = 8.0 * UNIT * sizes / (2.0 * omega * np.diagonal(mass))
+    spread = 6.0 * UNIT * sizes / (2.0 * omega * np.diagonal(mass))
     width, certified = _confirmed(finer, places, before, np.max(spread))
     return [
         Mode(float(place), float(width + own), finer, _signed(vector), certified)
@@ -274,7 +274,7 @@ def _confirmed(
     finer: DynamicStiffness, places: Array, before: int, least: float
 ) -> tuple[float, bool]:
     """Return the smallest distance on either side of frequencies that counts confirm."""
-    width = max(4.0 * UNIT * places[-1], least / 2.0)
+    width = max(4.0 * UNIT * places[-1], least / 1.5)
     for _ in range(12):
         below = _count(finer, float(places[0] - width))
         above = _count(finer, float(places[-1] + width))

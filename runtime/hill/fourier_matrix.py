@@ -55,7 +55,7 @@ class Truncation(NamedTuple):
         # LAPACK's eigenvalues in roundings of the norm: of 4000 random cases on two machines one
         # was off by 5.4, of 1400 ends 999 in 1000 by up to 2.1; they grow with the root of the size
         # beyond some 60 rows.
-        return EPS * max(4.0, 0.5 * sqrt(2.0 * self.harmonic)) * self.norm
+        return EPS * max(3.5, 0.5 * sqrt(2.0 * self.harmonic)) * self.norm
 
 
 def truncation(

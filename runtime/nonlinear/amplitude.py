@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _LAW: ModuleType = beam_amplitude_law
 # Round-offs of the sums in the law: a dozen operations on terms four times as large as their sum.
-_ROUND_OFFS = 64.0 * float(np.finfo(float).eps)
+_ROUND_OFFS = 40.0 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -206,7 +206,7 @@ def _compared(
         relative=relative,
         peak_angles=where,
         method=f"case ({case}) in closed form",
-        error=1.2 * spread / max(relative.values(), default=1.0) + _DIGITS,
+        error=spread / max(relative.values(), default=1.0) + _DIGITS,
         error_norm="relative peaks, over the largest of them",
         checks=checks,
         provenance=provenance({"speed": repr(float(speed))}),
@@ -301,13 +301,13 @@ def _rounding(search: Search, p: Array) -> float:
     """Return what round-off does to the weighted sum of the relative peaks.
 
     Some last digits; and near a change point, where forces hang on the last digits of the lengths,
-    somewhat more than what some of these change.
+    what some of these change.
     """
     values = []
     for linkage in _all_but_equal(search.basis.machine.linkage):
         machine = replace(search.basis.machine, linkage=linkage)
         values.append(_weighted(search, replace(search.basis, machine=machine), search.theta, p))
-    return 1.8 * float(np.ptp(values)) + _DIGITS * search.unit
+    return float(np.ptp(values)) + _DIGITS * search.unit
 
 
 def _sampling(search: Search, p: Array) -> float:

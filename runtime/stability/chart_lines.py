@@ -281,13 +281,13 @@ class Lines:
 
         One number per value; 0 where either overflows, infinite where either is NaN.
         """
-        # Another number of segments gives another solution; four times the difference is the error.
+        # Another number of segments gives another solution: thrice the difference is the error.
         again, weight = self.line(outer, low, high, values, 1.37)(values)
         grown = np.isinf(again) | np.isinf(found)
         with np.errstate(invalid="ignore"):
             gap = np.where(grown, 0.0, np.abs(again - found) / weight)
         worst: Array = np.max(np.where(np.isnan(gap), np.inf, gap), axis=-1)
-        return 4.0 * worst
+        return 3.0 * worst
 
     def _table(
         self,

@@ -12,8 +12,8 @@ extended = pytest.mark.skipif(
 )
 
 
-def covers(estimates, actual, least=1, floor=1e-300, median=1e3):
-    """Estimate over actual error: at least 1 in 99 %, median no larger than 1000.
+def covers(estimates, actual, least=1, floor=1e-300, median=100.0):
+    """Estimate over actual error: at least 1 in 99 %, median no larger than 100.
 
     Below ``floor`` the reference is not known.
     """
@@ -24,13 +24,13 @@ def covers(estimates, actual, least=1, floor=1e-300, median=1e3):
     assert np.median(ratios) <= median
 
 
-def over_scenes(seed, few=20, many=200, *, floor=1e-300, median=1e3):
+def over_scenes(seed, few=20, many=200, *, floor=1e-300, median=100.0):
     """Make a test of one random scene a test of many.
 
     ``scene(rng, ...)`` returns estimates and actual errors that broadcast, or by name several such
     pairs; None where the scene does not do and another is to be drawn.  ``few`` scenes stand in the
     first stage of the tests, ``many`` in the second (times ``ELASTOLINK_SCENES``, where that is in
-    the environment); None for neither.
+    the environment); None for neither.  The median of few scatters: it may be thrice the limit.
     """
     counts = [few] if few else []
     more = max(int(os.environ.get("ELASTOLINK_SCENES", "1")), 1)
@@ -47,8 +47,9 @@ def over_scenes(seed, few=20, many=200, *, floor=1e-300, median=1e3):
                 for name, pair in named.items() if pairs is not None else ():
                     both = np.broadcast_arrays(*(np.asarray(part, dtype=float) for part in pair))
                     found.setdefault(name, []).append([part.ravel() for part in both])
+            most = median * (3 if scenes == few else 1)
             for rows in found.values():
-                covers(*zip(*rows, strict=True), scenes, floor, median)
+                covers(*zip(*rows, strict=True), scenes, floor, most)
 
         own = inspect.signature(scene)
         test.__signature__ = own.replace(

@@ -29,7 +29,7 @@ def coefficient(scene, theta, mode, modes):
     return total
 
 
-@over_scenes(184, few=40, many=None, median=1e4)
+@over_scenes(184, few=40, many=None)
 def test_estimate_covers(rng):
     # A crank-rocker; the nearer 0 the gap, the nearer to a dead position it comes.
     frame, coupler, follower = rng.uniform(0.2, 1.0, 3)

@@ -101,14 +101,14 @@ def of_regions(scene, found):
     return joined(pairs)
 
 
-@over_scenes(41, few=None, many=ENDS, floor=1e-18, median=100.0)
+@over_scenes(41, few=None, many=ENDS, floor=1e-18)
 @damped
 def test_ends_of_all_regions(rng, drag):
     scene = HillPair(rng, drag)
     return of_regions(scene, stability_edges(scene.system, SPAN))
 
 
-@over_scenes(42, few=None, many=24, floor=1e-18, median=100.0)
+@over_scenes(42, few=None, many=24, floor=1e-18)
 def test_bands_of_a_truncated_system(rng):
     scene = HillPair(rng, drag=float(rng.choice([0.0, 0.01])), stiff=True)
     return of_regions(scene, stability_edges(scene.system, SPAN, modes=2))

@@ -13,7 +13,7 @@ from elastolink.runtime.systems import free_free_rod
 from honesty import over_scenes
 
 
-@over_scenes(1, few=10, many=100, median=100.0)
+@over_scenes(1, few=10, many=100)
 def test_pendulums_at_any_tolerance(rng):
     """Swinging or turning in any units and oblique coordinates, by elliptic functions."""
     circle = random_circle(rng)
@@ -24,7 +24,7 @@ def test_pendulums_at_any_tolerance(rng):
     return motion.error, np.max(np.abs(motion.q - circle.exact(motion.time)[0]), axis=0)
 
 
-@over_scenes(2, few=6, many=60, median=100.0)
+@over_scenes(2, few=6, many=60)
 @pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-9])
 def test_stiff_rods(rng, rtol):
     """Some hundred radians of the fastest vibration; the truth is a run at 1e-12."""
@@ -58,7 +58,7 @@ def test_stiff_rods(rng, rtol):
     return estimate, actual
 
 
-@over_scenes(9, few=5, many=40, median=100.0)
+@over_scenes(9, few=5, many=40)
 def test_forces_that_jump(rng):
     """A mass on a spring with a force of constant size towards the middle: arcs of cosines."""
     force, span = rng.uniform(0.1, 2.0), rng.uniform(2.0, 12.0)

@@ -118,7 +118,7 @@ def to_rounding(found, exact):
     return found.error, np.maximum(np.abs(found.speed - exact), 4e-15 * found.speed)
 
 
-@over_scenes(77, few=None, many=45, median=100.0)
+@over_scenes(77, few=None, many=45)
 def test_maxima_of_the_response_of_waving_systems(rng):
     scene = Waving(rng, int(rng.integers(1, 4)), float(10.0 ** rng.uniform(-2.5, -0.3)))
     low = scene.natural[0] * rng.uniform(0.4, 0.6)
@@ -141,7 +141,7 @@ def half_trace(levels, speed):
     return 0.5 * np.trace(whole[0])
 
 
-@over_scenes(78, few=4, many=30, median=100.0)
+@over_scenes(78, few=4, many=30)
 def test_maxima_of_meissners_way(rng):
     """The error is that of the intervals: 1024 and 2048 of them, extrapolated, are the truth."""
     scene = Waving(rng, int(rng.integers(1, 4)), 0.0)

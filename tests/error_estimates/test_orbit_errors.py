@@ -19,7 +19,7 @@ def random_bead(rng: np.random.Generator) -> Cycloid:
     return Cycloid(mass, radius, gravity, drag, arc * reply, speed)
 
 
-@over_scenes(20, median=100.0)
+@over_scenes(20)
 def test_estimates_hold_and_are_not_idle(rng, emit):
     module = emit("cycloid", ModelSpec("cycloid", "multiplier")).module
     bead = random_bead(rng)

@@ -88,7 +88,7 @@ def test_the_estimates_cover_the_errors_and_are_not_idle(scenes):
         assert np.median(estimate / np.maximum(actual, 4 * EPS)) <= 1e3, name
 
 
-@over_scenes(6, few=15, many=150, median=100.0)
+@over_scenes(6, few=15, many=150)
 def test_prepared_for_any_tolerance(rng):
     """From growth to a decay by 1e-12 in a period, at some place of the range."""
     n = int(rng.integers(1, 4))
@@ -138,7 +138,7 @@ def _nearest(values, rates, speed):
     return np.min(np.abs(values[:, None] - np.exp(2j * np.pi * turns)), axis=1)
 
 
-@over_scenes(7, few=30, many=250, floor=EPS, median=100.0)
+@over_scenes(7, few=30, many=250, floor=EPS)
 def test_multipliers_on_the_circle_at_a_coarse_tolerance(rng):
     """Where the waves, not the rates, make the error: it cancels by chance on one rung."""
     arrays, rates = _on_the_circle(rng)
@@ -147,7 +147,7 @@ def test_multipliers_on_the_circle_at_a_coarse_tolerance(rng):
     return found.error, _nearest(found.multipliers, rates, speed)
 
 
-@over_scenes(8, few=15, many=150, floor=EPS, median=100.0)
+@over_scenes(8, few=15, many=150, floor=EPS)
 def test_multipliers_of_a_prepared_system(rng):
     """The tables are good to the last digits here, and the error is that of their round-off."""
     arrays, rates = _on_the_circle(rng)
@@ -160,7 +160,7 @@ def test_multipliers_of_a_prepared_system(rng):
     return motion.multiplier_error, _nearest(motion.multipliers, rates, speed)
 
 
-@over_scenes(4, few=15, many=100, median=100.0)
+@over_scenes(4, few=15, many=100)
 def test_motions_of_fast_modes_that_live(rng):
     """From a state in which all of them ring, up to a thousand radians between given angles."""
     n, samples, turns = int(rng.integers(2, 5)), int(rng.choice([8, 24, 60])), rng.uniform(0.2, 1.5)
@@ -185,7 +185,7 @@ def test_motions_of_fast_modes_that_live(rng):
     return _of_motion(found, exact)
 
 
-@over_scenes(9, few=20, many=200, floor=16 * EPS, median=100.0)
+@over_scenes(9, few=20, many=200, floor=16 * EPS)
 def test_motions_of_overdamped_modes(rng):
     """Each has a rate far above its frequency, which dies within a step, and one far below."""
     n, samples, turns = int(rng.integers(1, 4)), int(rng.choice([8, 24])), rng.uniform(0.2, 4.0)

@@ -106,20 +106,20 @@ def special_ratios(curve):
     return list(zip(*pairs, strict=True))
 
 
-@over_scenes(181, few=2, many=20, median=100.0)
+@over_scenes(181, few=2, many=20)
 def test_estimates_of_rigs_hold_and_are_not_idle(rng):
     drawn = random_rig(rng)
     curve = drawn and curve_of(rng, drawn, turns=int(rng.choice([1, 2])))
     return curve and ratios(rng, curve)
 
 
-@over_scenes(182, few=4, many=30, median=100.0)
+@over_scenes(182, few=4, many=30)
 def test_estimates_of_oscillators_hold_and_are_not_idle(rng):
     curve = curve_of(rng, random_oscillators(rng), turns=2)
     return curve and ratios(rng, curve)
 
 
-@over_scenes(183, few=3, many=20, median=100.0)
+@over_scenes(183, few=3, many=20)
 def test_estimates_of_special_points_hold_and_are_not_idle(rng):
     curve = curve_of(rng, random_oscillators(rng), turns=2)
     return special_ratios(curve) if curve and curve.special else None

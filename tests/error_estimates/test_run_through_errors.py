@@ -114,12 +114,12 @@ def test_a_peak_between_the_last_two_steps_is_told(at):
         assert missed <= _between(values)[0] < 10.0 * missed
 
 
-@over_scenes(8200, few=2, many=34, floor=1e-12, median=100.0)
+@over_scenes(8200, few=2, many=34, floor=1e-12)
 def test_runs_of_all_coordinates(rng):
     return compared(rng)
 
 
-@over_scenes(8300, few=2, many=20, floor=1e-12, median=100.0)
+@over_scenes(8300, few=2, many=20, floor=1e-12)
 def test_runs_of_a_few_modes(rng):
     """Those left out are added, all in the end: their estimate is that of what they change."""
     return compared(rng, int(rng.integers(1, 3)))

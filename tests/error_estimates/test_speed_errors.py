@@ -74,7 +74,7 @@ def test_running_means(rng):
     return found.error[place], np.maximum(np.abs(gap), 4e-16 * exact)
 
 
-@over_scenes(73, few=None, many=100, median=100.0)
+@over_scenes(73, few=None, many=100)
 def test_maxima_of_multipliers(rng):
     """exp(-c t/2) cos(w t) over the period t is greatest where tan(w t) = -c/(2 w)."""
     drag = float(rng.choice([0.0, rng.uniform(0.1, 3.0)]))
@@ -150,7 +150,7 @@ def _largest(motion, weights):
 
 
 @pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning")
-@over_scenes(75, few=None, median=100.0)
+@over_scenes(75, few=None)
 def test_peaks_of_steady_motions(rng):
     system, speed, motion = manufactured(int(rng.integers(2**32)))
     powers = np.arange(1, system.size + 1)

@@ -72,7 +72,7 @@ def exact_maxima(system, speed, method, count=160, fine=1024):
     return np.array([np.max(top[links == link]) for link in dict.fromkeys(links)])
 
 
-@over_scenes(1414, few=1, many=8, median=100.0)
+@over_scenes(1414, few=1, many=8)
 @pytest.mark.parametrize("method", ["equilibrium", "shape"])
 def test_random_four_bars(rng, method):
     system, speed = elastic_linkage(rng, FourBar, 1)

@@ -26,6 +26,9 @@ ErrorKind = Literal["bound", "estimate"]
 BROADCAST = ("...",)
 # Error of a motion, over its size, with which it is still given.
 FAIR = 0.01
+# What is shown of a result: fields that are numbers, how many of them, and how many numbers of one.
+_NUMBERS = (bool, int, float, complex, np.ndarray, np.generic)
+_SHOWN, _FEW = 6, 4
 
 
 @dataclass(frozen=True)
@@ -59,6 +62,11 @@ class DeferredChecks(Mapping[str, Check]):
             # What the maker holds is needed no more.
             self._made, self._make = self._make(), dict
         return self._made
+
+    @property
+    def made(self) -> bool:
+        """Whether they are made."""
+        return self._made is not None
 
     def __getitem__(self, name: str) -> Check:
         return self._checks[name]
@@ -114,6 +122,32 @@ class Result:
                 own.flags.writeable = False
                 object.__setattr__(self, name, own)
 
+    def __init_subclass__(cls, **given: Any) -> None:
+        """Keep :meth:`__repr__` for every result, before a dataclass makes one of all digits."""
+        super().__init_subclass__(**given)
+        if "__repr__" not in vars(cls):
+            cls.__repr__ = Result.__repr__  # type: ignore[method-assign]
+
+    def __repr__(self) -> str:
+        """Return ten lines at most: method, arrays by shape and range, error and checks."""
+        arrays = {
+            item.name: np.asarray(value)
+            for item in fields(self)
+            if item.name != "error" and isinstance(value := getattr(self, item.name), _NUMBERS)
+        }
+        lines = [f"{type(self).__name__}: {self.method}"]
+        lines += [f"  {name}: {_brief(array)}" for name, array in list(arrays.items())[:_SHOWN]]
+        if len(arrays) > _SHOWN:
+            lines.append(f"  and {', '.join(list(arrays)[_SHOWN:])}")
+        lines.append(f"  error: {_brief(np.asarray(self.error))} ({self.error_norm})")
+        checks = self.checks
+        if isinstance(checks, DeferredChecks) and not checks.made:
+            lines.append("  checks: made when they are looked at")
+        else:
+            failed = [name for name, check in checks.items() if not check.passed]
+            lines.append(f"  checks: {'failed: ' + ', '.join(failed) if failed else 'passed'}")
+        return "\n".join(lines)
+
     @property
     def passed(self) -> bool:
         """True where no self-check failed; a result without any (``checks`` is empty) passes.
@@ -141,7 +175,7 @@ class Result:
         for name in (*(item.name for item in fields(self)), *self.exported):
             value = getattr(self, name)
             listed = isinstance(value, tuple) and name in self.dimensions
-            if listed or isinstance(value, (bool, int, float, complex, np.ndarray, np.generic)):
+            if listed or isinstance(value, _NUMBERS):
                 found[name] = np.asarray(value)
         return found
 
@@ -193,6 +227,20 @@ class Result:
         return _dataset(self, split=False)
 
 
+def _brief(array: np.ndarray[Any, Any]) -> str:
+    """Return numbers where they are few, else their shape and range, of complex ones the sizes'."""
+    if array.size <= _FEW:
+        return np.array2string(array, precision=6, separator=", ").replace("\n", "")
+    values, of = array, ""
+    if np.iscomplexobj(array):
+        values, of = np.abs(array), ", sizes"
+    finite = values[np.isfinite(values)]
+    if not finite.size:
+        return f"shape {array.shape}, none finite"
+    some = "" if finite.size == values.size else f", {values.size - finite.size} not finite"
+    return f"shape {array.shape}{of} {np.min(finite):.6g} to {np.max(finite):.6g}{some}"
+
+
 def write_whole(path: Path, content: bytes) -> Path:
     """Write a file whole or not at all; refuse a place that cannot be written."""
     try:
@@ -207,7 +255,7 @@ def _jsonable(value: object) -> Any:
     """Return a field as JSON would have it; None for what has no such form."""
     if isinstance(value, str):
         return value
-    if isinstance(value, bool | int | float | complex | np.ndarray | np.generic):
+    if isinstance(value, _NUMBERS):
         return _plain(np.asarray(value))
     if isinstance(value, tuple) and all(isinstance(v, str | int | float) for v in value):
         return [v if isinstance(v, str) else _plain(np.asarray(v)) for v in value]

@@ -83,6 +83,12 @@ class Prepared:
     provenance: Mapping[str, str]
     compiled: tuple[CompiledTable, ...] = ()
 
+    def __repr__(self) -> str:
+        """Return the system and the range in two lines."""
+        low, high = self.span
+        ready = f"tables: {len(self.tables)}, error: {self.error:.2g}"
+        return f"{type(self).__name__}: {low:.6g} to {high:.6g} rad/s, {ready}\n  {self.system!r}"
+
     @property
     def error(self) -> float:
         """Largest error of a monodromy matrix in scaled variables, over its largest entry."""

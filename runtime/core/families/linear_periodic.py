@@ -175,6 +175,16 @@ class LinearPeriodic:
         if not self.labels:
             object.__setattr__(self, "labels", tuple(f"q{i + 1}" for i in range(self.size)))
 
+    def __repr__(self) -> str:
+        """Return one line: coordinates, arrays, period and parameters."""
+        arrays = ", ".join(name for name in MATRICES + VECTORS if self.has(name))
+        labels = self.labels if self.size <= 4 else (*self.labels[:2], "...", self.labels[-1])
+        numbers = ", ".join(f"{name}={value:.6g}" for name, value in self.parameters.items())
+        return (
+            f"{type(self).__name__}({', '.join(labels)}; arrays {arrays}; "
+            f"period {self.period:.6g} rad{'; ' * bool(numbers)}{numbers})"
+        )
+
     def shapes(self, x: Array, theta: Array) -> Array | None:
         """Return the mode shapes at places x/length ``(nx,)`` and crank angles ``(nt,)`` [rad].
 

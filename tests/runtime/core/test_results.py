@@ -102,6 +102,34 @@ def test_netcdf_splits_complex_arrays(tmp_path):
         assert "x" not in kept.variables
 
 
+def test_it_is_shown_in_ten_lines_at_most():
+    plain = sample(odd=np.array([7.0, np.nan, 9.0, 8.0, 1.0]), y=np.array([3.0 + 4.0j] * 6))
+    assert repr(plain).split("\n") == [
+        "Sample: by hand",
+        "  x: [1., 2., 3.]",
+        "  y: shape (6,), sizes 5 to 5",
+        "  table: shape (2, 3) 11 to 23",
+        "  odd: shape (5,) 1 to 9, 1 not finite",
+        "  error: 0.5 (absolute)",
+        "  checks: passed",
+    ]
+    failed = sample(checks={"loop": Check(2.0, 1.0), "trace": Check(0.0, 1.0)})
+    assert repr(failed).endswith("\n  checks: failed: loop")
+
+
+def test_systems_and_what_is_made_of_them_are_shown_in_a_few_lines():
+    system = el.load_scene("smith_1972_5152_thirtysecond_inch", {"model.modes": 9}).system()
+    system = system.with_parameters(damping=1.0)
+    assert repr(system).startswith("LinearPeriodic(Y1/l3, Y2/l3, ..., Y9/l3; arrays M, ")
+    motion, ready = el.steady_state(system, 30.0), el.prepare(system, (30.0, 31.0))
+    assert repr(ready).startswith("Prepared: 30 to 31 rad/s, tables: 1, error: ")
+    deferred = repr(motion)
+    assert deferred.endswith("checks: made when they are looked at") and motion.passed
+    assert repr(motion).endswith("checks: passed")
+    for shown in (system, motion, ready, el.FourBar(0.3, 0.1, 0.3, 0.3).motion([0.0, 1.0])):
+        assert len(repr(shown)) < 1000 and repr(shown).count("\n") < 10
+
+
 def test_without_checks_it_passes_and_says_so():
     assert sample().passed and not sample().checks
 

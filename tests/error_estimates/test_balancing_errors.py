@@ -83,7 +83,7 @@ def mean_squares(machine, speed):
     return np.array([np.sqrt(weights @ np.sum(row**2, axis=1)) for row in rows])
 
 
-@over_scenes(2, few=10, many=100, floor=1e-15)
+@over_scenes(2, few=10, many=70, floor=1e-15)
 def test_means_near_a_change_point_count_what_the_samples_miss(rng):
     """Below 1e-8 of the lengths no even row of samples resolves the motion.
 

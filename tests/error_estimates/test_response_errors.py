@@ -106,7 +106,7 @@ def special_ratios(curve):
     return list(zip(*pairs, strict=True))
 
 
-@over_scenes(181, few=2, many=20)
+@over_scenes(181, few=2, many=14)
 def test_estimates_of_rigs_hold_and_are_not_idle(rng):
     drawn = random_rig(rng)
     curve = drawn and curve_of(rng, drawn, turns=int(rng.choice([1, 2])))

@@ -26,9 +26,7 @@ ErrorKind = Literal["bound", "estimate"]
 BROADCAST = ("...",)
 # Error of a motion, over its size, with which it is still given.
 FAIR = 0.01
-# What is shown of a result: fields that are numbers, how many of them, and how many numbers of one.
 _NUMBERS = (bool, int, float, complex, np.ndarray, np.generic)
-_SHOWN, _FEW = 6, 4
 
 
 @dataclass(frozen=True)
@@ -136,9 +134,10 @@ class Result:
             if item.name != "error" and isinstance(value := getattr(self, item.name), _NUMBERS)
         }
         lines = [f"{type(self).__name__}: {self.method}"]
-        lines += [f"  {name}: {_brief(array)}" for name, array in list(arrays.items())[:_SHOWN]]
-        if len(arrays) > _SHOWN:
-            lines.append(f"  and {', '.join(list(arrays)[_SHOWN:])}")
+        shown, others = list(arrays)[:6], list(arrays)[6:]
+        lines += [f"  {name}: {_brief(arrays[name])}" for name in shown]
+        if others:
+            lines.append(f"  and {', '.join(others)}")
         lines.append(f"  error: {_brief(np.asarray(self.error))} ({self.error_norm})")
         checks = self.checks
         if isinstance(checks, DeferredChecks) and not checks.made:
@@ -229,7 +228,7 @@ class Result:
 
 def _brief(array: np.ndarray[Any, Any]) -> str:
     """Return numbers where they are few, else their shape and range, of complex ones the sizes'."""
-    if array.size <= _FEW:
+    if array.size <= 4:
         return np.array2string(array, precision=6, separator=", ").replace("\n", "")
     values, of = array, ""
     if np.iscomplexobj(array):

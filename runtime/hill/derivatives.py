@@ -266,6 +266,6 @@ class _Slice:
                 whole += float(felt @ (mixed / apart))
             rounded = np.abs(self.lefts[:, i]) @ np.abs(change) @ np.abs(self.rights[:, i])
             total += (whole + EPS * float(rounded) + given) / float(self.shares[i])
-        # Residuals are round-off themselves: of 2400 derivatives the factor was 2.2 once and up to
+        # Residuals are round-off themselves: of 3600 derivatives the factor was 2.2 once and up to
         # 1.3 for all others.
         return 3.0 * total

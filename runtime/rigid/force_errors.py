@@ -114,7 +114,7 @@ def _of_block(
         # The emitted functions are off by a few round-offs of everything they are given.  Of 5700
         # random machines near folds, near change points and with short links the worst needed 18.4
         # against 60 digits, all others less than 9 (tests/error_estimates has a part of them).
-        errors, size = 18.0 * EPS / 2.0 * (moved + pulls), size + pulls
+        errors, size = 18.5 * EPS / 2.0 * (moved + pulls), size + pulls
         known = np.isfinite(errors) & (_share_of(errors, size) <= _MEANINGFUL)
     return np.where(known, errors, np.inf), size
 

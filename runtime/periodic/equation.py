@@ -140,6 +140,8 @@ class Equation:
         Of frozen modes, ``(nb, n)``: the largest frequency [1/rad] over the period, of the
         symmetric part of the stiffness field beside the mass, and the mean decay of the amplitude
         in a period.  They choose the number of segments; whether it was enough is seen afterwards.
+    fastest : ndarray
+        The largest rate [1/rad] with which one of them turns or falls, ``(nb,)``.
     damped : bool
         Whether something takes energy out or puts it in: damping, or forces that turn.
     """
@@ -153,6 +155,7 @@ class Equation:
     scale: Array
     frequency: Array
     decay: Array
+    fastest: Array
     damped: bool
 
     @property
@@ -182,6 +185,7 @@ class Equation:
             scale=self.scale[members],
             frequency=self.frequency[members],
             decay=self.decay[members],
+            fastest=self.fastest[members],
         )
 
     def with_force_unit(self, unit: float) -> Equation:
@@ -439,12 +443,24 @@ def equation_of(
     fields = _fields(known, factors)
     ones = np.ones((len(flat), plain.size))
     raw = Equation(
-        plain, flat, batch, fields, known.harmonics, known.reach, ones, ones, ones, damped=False
+        plain,
+        flat,
+        batch,
+        fields,
+        known.harmonics,
+        known.reach,
+        ones,
+        ones,
+        ones,
+        flat,
+        damped=False,
     )
     scaled = replace(raw, scale=_scale(raw))
     _check_mass(scaled)
     frequency, decay, damped = _rates(scaled)
-    return replace(scaled, frequency=frequency, decay=decay, damped=damped)
+    # An overdamped mode falls with up to twice its mean rate.
+    fastest = np.max(np.maximum(frequency, 2.0 * decay / scaled.period), axis=1, initial=0.0)
+    return replace(scaled, frequency=frequency, decay=decay, fastest=fastest, damped=damped)
 
 
 def _batch(

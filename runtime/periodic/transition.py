@@ -285,32 +285,46 @@ def choose(equation: Equation, rtol: float) -> Method:
 def predicted_error(equation: Equation, way: Method, segments: NDArray[Any]) -> Array:
     """Return the error of the multipliers that a number of segments is likely to leave.
 
-    A mode of frequency w, whose amplitude falls by exp(-d) in a period, gets over S segments of
-    phase x = 2 pi w/S a relative error of S k x^(order + 1), ``k = (s!)^2/((2s)! (2s+1)!)`` being
-    the constant of Pade's approximation of the exponential, at most 1; it enters a multiplier with
-    exp(-d).  The segments are ``(nb,)``, and so is the error; or ``(1, k)``, for several numbers at
-    once, and the error is ``(nb, k)``.
+    A mode of frequency w, whose amplitude falls by exp(-d) in a period, gets the error of
+    :func:`_mode_error`; it enters a multiplier with exp(-d).  The segments are ``(nb,)``, and so is
+    the error; or ``(1, k)``, for several numbers at once, and the error is ``(nb, k)``.
+    """
+    frequency, number, decay = equation.frequency, np.asarray(segments), equation.decay
+    if number.ndim > 1:
+        frequency, decay = frequency[:, None], decay[:, None]
+    size = _mode_error(way, frequency * equation.period, number[..., None], equation.period)
+    value: Array = np.exp(np.max(size - decay, axis=-1))
+    return value
+
+
+def _mode_error(way: Method, turned: Array, segments: NDArray[Any], period: float) -> Array:
+    """Return the logarithm of the relative error of a mode that turns so far in a period [rad].
+
+    Over S segments of phase ``x = turned/S`` it is ``S k x^(order + 1)``, at most 1; ``k =
+    (s!)^2/((2s)! (2s+1)!)`` is the constant of Pade's approximation of the exponential.
     """
     s, power = way.stages, way.order + 1
     constant = 2 * lgamma(s + 1) - lgamma(2 * s + 1) - lgamma(2 * s + 2)
     # The coefficients' waves turn the state too: about one radian per radian.
-    phase = np.log((equation.frequency + 1.0) * equation.period)
-    number, decay = np.log(segments), equation.decay
-    if number.ndim > 1:
-        phase, decay = phase[:, None], decay[:, None]
-    size = constant + power * phase - (power - 1) * number[..., None]
-    value: Array = np.exp(np.max(np.minimum(size, 0.0) - decay, axis=-1))
+    size = constant + power * np.log(turned + period) - (power - 1) * np.log(segments)
+    value: Array = np.minimum(size, 0.0)
     return value
 
 
-def least_share(way: Method, coarse: Any, fine: Any, order: Any) -> Any:
+def least_share(equation: Equation, way: Method, coarse: Any, fine: Any, order: Any) -> Array:
     """Return the least part of the difference of two rungs that the finer one's error may be.
 
-    ``order`` is that with which differences fall.
+    Where all modes are resolved it is what the fastest lets expect; ``order`` is that with which
+    differences fall.  One rung, ``(nb,)``; several, ``(nb, k)`` with numbers of segments ``(k,)``.
     """
+    coarse = np.asarray(coarse)
     if not way.ends:
-        return _LEAST
-    return np.minimum(_STIFF * (coarse / fine) ** order, 1.0)
+        return np.full((len(equation.fastest), *coarse.shape), _LEAST)
+    turned = (equation.fastest * equation.period).reshape(-1, *(1,) * coarse.ndim)
+    ahead, behind = (_mode_error(way, turned, count, equation.period) for count in (fine, coarse))
+    resolved = np.maximum(_MARGIN * np.exp(ahead - behind), _LEAST)
+    value: Array = np.minimum(resolved, _STIFF * (coarse / fine) ** order)
+    return np.minimum(value, 1.0)
 
 
 def share(equation: Equation, way: Method, level: int, predicted: Array, order: Array) -> Array:
@@ -321,7 +335,7 @@ def share(equation: Equation, way: Method, level: int, predicted: Array, order: 
     """
     if equation.harmonics < 0:
         return np.full(len(predicted), 4.0)
-    least = least_share(way, rung(level - 1), rung(level), order)
+    least = least_share(equation, way, rung(level - 1), rung(level), order)
     ratio = predicted[:, level] / np.maximum(predicted[:, level - 1], 1e-300)
     return np.clip(_MARGIN * ratio, least, 1.0)
 
@@ -335,7 +349,7 @@ def levels_for(equation: Equation, way: Method, rtol: float) -> tuple[NDArray[np
     coarse, fine = _LADDER[:-1], _LADDER[1:]
     errors = predicted_error(equation, way, _LADDER[None])
     enough = _MARGIN * errors[:, 1:] <= rtol
-    enough &= least_share(way, coarse, fine, 0.5 * way.stages) * errors[:, :-1] <= rtol
+    enough &= least_share(equation, way, coarse, fine, 0.5 * way.stages) * errors[:, :-1] <= rtol
     enough &= fine <= _MOST_SEGMENTS
     # The nodes of the rung below too have to see every wave of the coefficients twice.
     enough &= way.stages * coarse >= 2 * equation.reach

@@ -313,10 +313,12 @@ def _likely(
 ) -> tuple[float, float, float]:
     """Return the likely errors of two levels, and the share of their gap."""
     coarse, fine = (_predicted(equation, grid, kind, level) for level in levels)
-    turned = float(np.max(equation.frequency, initial=0.0)) * grid.step
+    turned = float(equation.fastest[0]) * grid.step
     unresolved = kind == "radau" and turned > _PHASE * levels[1][1]
     least = _UNRESOLVED if unresolved else _LEAST
-    missed = [_missed(equation, grid, level) for level in levels]
+    # What modes that the nodes resolve make of missed waves falls with the order of the method.
+    power = 2 if turned < levels[0][0] * ceil(levels[0][1]) else 1
+    missed = [_missed(equation, grid, level) ** power for level in levels]
     # Waves that are missed by less than round-off do not count.
     waves = missed[1] / max(missed[0], 1e-300) if missed[1] > _EPS else 0.0
     part = max(_MARGIN * fine / max(coarse, 1e-300), waves)
@@ -338,7 +340,7 @@ def _predicted(equation: Equation, grid: _Grid, kind: str, level: _Level) -> flo
     """Return the likely error of a motion on a level, over its first period."""
     stages, fineness = level
     way, h = method(kind, stages), grid.step
-    parts = np.maximum(1.0, fineness * equation.frequency[0] * h / _PHASE)
+    parts = np.ceil(fineness * _power(equation.frequency[0] * h))
     # Of the two rates of an overdamped mode the larger is the harder.
     slow, loss = equation.frequency[0], equation.decay[0] / equation.period
     rates = np.maximum(slow, loss + np.sqrt(np.maximum(loss**2 - slow**2, 0.0)))
@@ -377,9 +379,7 @@ def _divisions(equation: Equation, grid: _Grid, count: int, fineness: float) -> 
     passed = grid.step * np.arange(float(count)) / equation.period
     alive = equation.decay[0] * passed[:, None] < _DEAD
     rate = np.max(np.where(alive, equation.frequency[0], 0.0), axis=1)
-    # Powers of two times the fineness, so that few different numbers occur.
-    power = np.exp2(np.ceil(np.log2(np.maximum(1.0, rate * grid.step / _PHASE))))
-    parts = np.ceil(fineness * power)
+    parts = np.ceil(fineness * _power(rate * grid.step))
     if np.max(parts) > _MOST_DIVISIONS:
         raise bad(
             "speed",
@@ -389,6 +389,12 @@ def _divisions(equation: Equation, grid: _Grid, count: int, fineness: float) -> 
             "raise the speed or samples, or leave out the highest modes",
         )
     return np.asarray(parts, dtype=np.intp)
+
+
+def _power(turned: Array) -> Array:
+    """Return the divisions of fineness 1, powers of two: so few different numbers occur."""
+    value: Array = np.exp2(np.ceil(np.log2(np.maximum(1.0, turned / _PHASE))))
+    return value
 
 
 def _march(

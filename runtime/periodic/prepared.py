@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
+from math import log
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,8 @@ from .transition import cheapest
 _TRANSIENT = 1e-6
 # Places of each table at which other segments tell its error, and the margin.
 _TRIED, _MARGIN = (0.0, 0.382, 1.0), 4.0
+# What counts of a matrix's round-off in motions: 370 coordinates needed at most a tenth of it.
+_ROUNDED = 0.25
 _TINY = float(np.finfo(float).tiny)
 # Largest state for which compiled loops win over NumPy's products.
 _COMPILED = 12
@@ -479,9 +482,15 @@ class TableErrors:
         return np.maximum(self.matrix[before], self.matrix[after])
 
     def of_flow(self, speed: float) -> Array:
-        """Return the errors of the entries that give coordinates at a speed, ``(n, m)``."""
+        """Return the errors of the entries that give coordinates at a speed, ``(n, m)``.
+
+        They fall with a power of the speed, as the segments' phases do.
+        """
         before, after = self._beside(np.array(speed))
-        return np.maximum(self.flow[before], self.flow[after])
+        if before == after:
+            return np.asarray(self.flow[before])
+        part = log(speed / self.speed[before]) / log(self.speed[after] / self.speed[before])
+        return np.asarray(self.flow[before] ** (1.0 - part) * self.flow[after] ** part)
 
     def _beside(self, speeds: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
         after = np.searchsorted(self.speed[1:-1], speeds) + min(len(self.speed) - 1, 1)
@@ -540,10 +549,10 @@ class TableMaker:
         # Round-off of what has decayed is that of what is left, as each segment keeps its digits.
         whole = ROUNDED * rounding + table.tail + _MARGIN * gap / np.maximum(size, _TINY)
         gaps = np.max(np.abs(ours[0] - theirs[0])[..., :n, :], axis=1)
-        errors = TableErrors(
-            1.0 / tried, whole, size, np.maximum(rounding, _MARGIN * gaps), rounding
-        )
-        motion = np.full(n, rounding)
+        largest = np.max(np.abs(theirs[0][..., :n, :]), axis=(1, 2, 3))[:, None, None]
+        flow = np.maximum(_ROUNDED * rounding + table.tail * largest, _MARGIN * gaps)
+        errors = TableErrors(1.0 / tried, whole, size, flow, rounding)
+        motion = np.full(n, _ROUNDED * rounding)
         if slowest.forced:
             states, reach = closed(*ours, 1.0 / self.scale[-1])
             wanted, _ = closed(*theirs, 1.0 / self.scale[-1])

@@ -156,7 +156,10 @@ class LowestModes:
         return None if made is None else made[0]
 
     def error(self, modes: int, speed: float) -> float:
-        """Return the largest relative change of an exponent by the modes left out; an estimate."""
+        """Return the largest relative change of an exponent by the modes left out; an estimate.
+
+        Of two motions that are nearly one, as beside a resonance, of their half sum.
+        """
         truncated = self.at(modes, _BESIDE[-1] * speed)
         if truncated is None:
             return np.inf

@@ -1,4 +1,4 @@
-"""Error estimates of charts of several modes: random rods, random axes, every sampled point."""
+"""Error estimates of charts of several modes: random rods, random axes, the worst of 21 points."""
 
 import elastolink as el
 import numpy as np
@@ -38,4 +38,4 @@ def test_errors_of_invariants_are_within_their_estimates(rng):
         wanted, _ = weighed_characteristic(direct.scaled, chart.invariants.shape[-1])
         size = np.maximum(1.0, np.max(np.abs(wanted), axis=-1))
         actual.append(np.max(np.abs(chart.invariants[i, picked] - wanted), axis=-1) / size)
-    return chart.error, np.concatenate(actual)
+    return chart.error, np.max(actual)

@@ -79,7 +79,9 @@ def _scene(options: argparse.Namespace) -> tuple[Scene, list[str]]:
             raise bad(f"scene {scene.name}", found, "a nonlinear formulation", fix)
         more["model.formulation"] = _INEXTENSIBLE
     if "coupler" in scene.tables and not scene["coupler"].get("damping", 0.0):
-        decrements = scene.get("measured.log_decrement", None)
+        # A damping that was set to zero is meant.
+        meant = any(key.startswith("coupler.damping") for key in opt.settings(options.set))
+        decrements = None if meant else scene.get("measured.log_decrement", None)
         if decrements is None:
             told.append("no damping: resonances are bounded by the nonlinear terms alone")
         else:

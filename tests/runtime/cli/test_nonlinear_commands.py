@@ -42,6 +42,8 @@ def test_a_damping_of_the_scene_stays_and_where_there_is_none_it_is_said(capsys,
     assert "damping" not in shown(
         capsys, "response", RIG, *quiet, "--set", "coupler.damping_ratio=0.03"
     )
+    none = shown(capsys, "response", RIG, *quiet, "--set", "coupler.damping_ratio=0")
+    assert none.startswith("no damping: ")
     data = resources.files("elastolink.runtime.scenes") / "data" / f"{RIG}.toml"
     lines = data.read_text().splitlines()
     own = tmp_path / "rig.toml"

@@ -26,6 +26,8 @@ VECTORS = ("f", "h", "g", "p")
 DAMPING = ("C", "D")
 # Places along a link at which its deflection is watched: a third sine is missed by 0.7 % at most.
 _PLACES = np.linspace(0.0, 1.0, 41)
+# What these are kept as for the next motion, and up to how many numbers.
+_DEFLECTIONS, _KEPT = "deflections", 1 << 20
 # What a limit of a parameter's values allows.
 _LIMITS: Mapping[str, Callable[[Array], NDArray[np.bool_]]] = {
     "positive": lambda values: values > 0.0,
@@ -229,7 +231,12 @@ class LinearPeriodic:
         q : ndarray
             Motions, shape ``(nb, nt, n)``; one that is not finite counts for nothing.
         """
-        rows = self.deflection_rows(theta)
+        # Mode shapes at the angles of the motion before serve for the next one.
+        before, rows = self.kept.get(_DEFLECTIONS, (None, None))
+        if not np.array_equal(before, theta):
+            rows = self.deflection_rows(theta)
+            if rows is not None and rows.size <= _KEPT:
+                self.kept[_DEFLECTIONS] = theta.copy(), rows
         if rows is None:
             return None
         sizes = [
@@ -280,7 +287,7 @@ class LinearPeriodic:
 
     @cached_property
     def kept(self) -> dict[object, Any]:
-        """Samples of the terms that one solver leaves for the next, by what they are for."""
+        """Samples that one solver leaves for the next, by what they are for."""
         return {}
 
     def is_damped(self, **axes: ArrayLike) -> bool:

@@ -4,7 +4,7 @@
 
 Prints the table "How many modes" of docs/nonlinear.md, a rig after another: with one to three modes
 from response curves, with more from these, mode by mode.  ``--shooting`` adds how far the speeds
-with three modes are from those by shooting with SciPy's DOP853, relative (minutes).
+with three modes are from those by shooting with SciPy's DOP853, relative (half an hour).
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ def cells(values: dict[int, float], digits: int) -> list[str]:
 
 def shot(rig: Rig, point: Found) -> float:
     """Return how far a speed is from the one that shooting finds, relative."""
-    state = (1.0 + 1e-3) * point.orbit.motion.states[0]
-    guess = point.orbit.value * (1.0 + 1e-4), state, point.turns
-    speed, _ = shot_special(rig.system(3), point.kind, *guess, rtol=1e-10)
+    state = (1.0 + 1e-5) * point.orbit.motion.states[0]
+    guess = point.orbit.value * (1.0 + 1e-6), state, point.turns
+    speed, _ = shot_special(rig.system(3), point.kind, *guess, rtol=1e-12)
     return abs(speed / RPM / point.speed - 1.0)
 
 

@@ -33,6 +33,22 @@ class Stations:
     numbers: Mapping[str, Array]
 
     @cached_property
+    def between(self) -> dict[str, Array]:
+        """Kernels from stations to coordinates and stations, ``(Q, m Q)``."""
+        count, m = self.shapes.shape
+        return {
+            name: (self.shapes[:, :, None] * kernel[:, None]).reshape(count, m * count)
+            for name, kernel in self.numbers.items()
+            if kernel.ndim == 2
+        }
+
+    @cached_property
+    def pairs(self) -> Array:
+        """Products of shapes, from stations to pairs of coordinates, ``(Q, m m)``."""
+        both = self.shapes[:, :, None] * self.shapes[:, None]
+        return np.asarray(both.reshape(len(both), -1))
+
+    @cached_property
     def projected(self) -> dict[str, Array]:
         """Kernels between the coordinates, ``(m, m)``, where nothing stands beside them."""
         kernels = {name: n for name, n in self.numbers.items() if n.ndim == 2}
@@ -84,7 +100,7 @@ class AtStations:
                 elif kind == "column":
                     array[..., i, first:] += _times(value, shapes)
                 elif kind == "diagonal":
-                    weighted.append(value[..., None, :] * shapes.T)
+                    block += _times(value, self.stations.pairs).reshape(block.shape)
                 else:
                     kernel, place = product
                     right = returned[place]
@@ -93,8 +109,8 @@ class AtStations:
                         block += between * self.stations.projected[kernel]
                         continue
                     if (at, kernel) not in across:
-                        before = np.asarray(value)[..., None, :] * shapes.T
-                        across[at, kernel] = _times(before, self.stations.numbers[kernel])
+                        by_row = _times(value, self.stations.between[kernel])
+                        across[at, kernel] = by_row.reshape(*batch, *shapes.T.shape)
                     weighted.append(across[at, kernel] * np.asarray(right)[..., None, :])
             if weighted:
                 block += _times(sum(weighted[1:], weighted[0]), shapes)

@@ -84,6 +84,17 @@ def test_amplitudes_of_shapes_are_the_angles_projected(module):
             else:
                 expected = both.T @ array if name in ("rest", "forces") else array
             assert found[name] == pytest.approx(expected, rel=1e-13, abs=1e-12), name
+    # One place with several rates is that place again and again.
+    again = np.broadcast_to(q[0], q.shape)
+    for one, each in (
+        (by_shape.dynamics(q[0], qd, time), by_shape.dynamics(again, qd, time)),
+        (
+            by_shape.variations(q[0], qd, qdd, lam, time),
+            by_shape.variations(again, qd, qdd, lam, time),
+        ),
+    ):
+        for name, array in each.items():
+            assert one[name] == pytest.approx(array, rel=1e-14, abs=1e-14), name
 
 
 _BOTH = sp.Add(*(m * sp.cos(PHI[i - 1]) * sp.cos(PHI[j - 1]) for (i, j), m in INERTIA.items()))

@@ -100,7 +100,7 @@ class AtStations:
                 elif kind == "column":
                     array[..., i, first:] += _times(value, shapes)
                 elif kind == "diagonal":
-                    block += _times(value, self.stations.pairs).reshape(block.shape)
+                    block += _split(_times(value, self.stations.pairs), *block.shape[-2:])
                 else:
                     kernel, place = product
                     right = returned[place]
@@ -110,7 +110,7 @@ class AtStations:
                         continue
                     if (at, kernel) not in across:
                         by_row = _times(value, self.stations.between[kernel])
-                        across[at, kernel] = by_row.reshape(*batch, *shapes.T.shape)
+                        across[at, kernel] = _split(by_row, *shapes.T.shape)
                     weighted.append(across[at, kernel] * np.asarray(right)[..., None, :])
             if weighted:
                 block += _times(sum(weighted[1:], weighted[0]), shapes)
@@ -124,10 +124,17 @@ def _alone(value: Any) -> bool:
 
 def _times(many: Array, matrix: Array) -> Array:
     """Return ``many @ matrix`` of rows ``(*batch, Q)`` as one product."""
+    if _alone(many):
+        many = np.broadcast_to(many, (*np.shape(many)[:-1], len(matrix)))
     if many.ndim <= 2:
         return np.asarray(many @ matrix)
     flat = many.reshape(-1, many.shape[-1]) @ matrix
     return np.asarray(flat.reshape(*many.shape[:-1], matrix.shape[1]))
+
+
+def _split(rows: Array, count: int, each: int) -> Array:
+    """Return rows ``(*batch, count * each)`` as matrices, ``(*batch, count, each)``."""
+    return rows.reshape(*rows.shape[:-1], count, each)
 
 
 @lru_cache(maxsize=64)

@@ -212,7 +212,7 @@ def campbell(
         Its check ``near``: the largest distance of a running frequency from the held one or, where
         there is none, from that at the speed before, over half the speed; from 1 on its multiple
         of the speed would be open.  ``truncated``: the relative error of running frequencies by
-        the modes that are left out.
+        the modes that are left out; where two motions are nearly one, of their mean.
 
     Raises
     ------

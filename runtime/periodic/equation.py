@@ -141,7 +141,7 @@ class Equation:
         symmetric part of the stiffness field beside the mass, and the mean decay of the amplitude
         in a period.  They choose the number of segments; whether it was enough is seen afterwards.
     fastest : ndarray
-        The largest rate [1/rad] with which one of them turns or falls, ``(nb,)``.
+        The largest of their :attr:`rates`, ``(nb,)``.
     damped : bool
         Whether something takes energy out or puts it in: damping, or forces that turn.
     """
@@ -167,6 +167,13 @@ class Equation:
     def period(self) -> float:
         """Period of the coefficients [rad]."""
         return self.system.period
+
+    @property
+    def rates(self) -> Array:
+        """With which frozen modes turn or fall [1/rad], ``(nb, n)``: an overdamped one's larger."""
+        loss = self.decay / self.period
+        over = np.sqrt(np.maximum(loss**2 - self.frequency**2, 0.0))
+        return np.asarray(np.maximum(self.frequency, loss + over))
 
     @property
     def forced(self) -> bool:
@@ -458,9 +465,8 @@ def equation_of(
     scaled = replace(raw, scale=_scale(raw))
     _check_mass(scaled)
     frequency, decay, damped = _rates(scaled)
-    # An overdamped mode falls with up to twice its mean rate.
-    fastest = np.max(np.maximum(frequency, 2.0 * decay / scaled.period), axis=1, initial=0.0)
-    return replace(scaled, frequency=frequency, decay=decay, fastest=fastest, damped=damped)
+    made = replace(scaled, frequency=frequency, decay=decay, damped=damped)
+    return replace(made, fastest=np.max(made.rates, axis=1, initial=0.0))
 
 
 def _batch(

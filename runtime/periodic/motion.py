@@ -341,9 +341,7 @@ def _predicted(equation: Equation, grid: _Grid, kind: str, level: _Level) -> flo
     stages, fineness = level
     way, h = method(kind, stages), grid.step
     parts = np.ceil(fineness * _power(equation.frequency[0] * h))
-    # Of the two rates of an overdamped mode the larger is the harder.
-    slow, loss = equation.frequency[0], equation.decay[0] / equation.period
-    rates = np.maximum(slow, loss + np.sqrt(np.maximum(loss**2 - slow**2, 0.0)))
+    rates = equation.rates[0]
     quick = replace(equation, frequency=rates[None])
     error = [
         predicted_error(quick.with_slow_modes(rate), way, np.array([equation.period / h * r]))[0]

@@ -558,14 +558,21 @@ def trade_off(
     (low, least), (high, _) = _end(search, first, second), _end(search, second, first)
     ends = [_described(search, end).relative[first] for end in (low, high)]
     bests = [low]
-    for limit in np.linspace(ends[0], ends[1], points)[1:-1]:
-        top = max(float(limit), least + _ALLOWANCE)
+    tops = [
+        max(float(limit), least + _ALLOWANCE)
+        for limit in np.linspace(ends[0], ends[1], points)[1:-1]
+    ]
+    for top in tops:
         limited = replace(search, weights={second: 1.0}, limits={first: top})
         bests.append(best_counterweights(limited))
     bests.append(high)
     results = tuple(_described(search, one) for one in bests)
     values = [np.array([one.relative[term] for one in results]) for term in (first, second)]
     gaps = [one.value - one.bound for one in bests]
+    # Each bound is that at a limit, which points pass by the last digits of the solver.
+    passed = np.zeros(points)
+    passed[1:-1] = np.maximum(values[0][1:-1] / tops - 1.0, 0.0)
+    beyond = passed * [one.slope for one in bests]
     worst = max(min(gap, one.residual) for gap, one in zip(gaps, bests, strict=True))
     return TradeOff(
         first=first,
@@ -576,7 +583,7 @@ def trade_off(
         cases=_cases(machine, search.basis.speed, acceleration, offsets, angles, (first, second)),
         method="limits to the first peak; second-order cone programmes, SLSQP within",
         # Of points on which both peaks count: the second has the weight 1, and is relative already.
-        error=np.array([search.unit * one.error for one in results]),
+        error=np.array([search.unit * one.error for one in results]) + beyond,
         error_norm="second peak above the least possible one, absolute, entrywise",
         error_kind="bound",
         checks={"gap or KKT residual": Check(worst, _OPTIMAL)},

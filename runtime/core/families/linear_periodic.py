@@ -26,8 +26,6 @@ VECTORS = ("f", "h", "g", "p")
 DAMPING = ("C", "D")
 # Places along a link at which its deflection is watched: a third sine is missed by 0.7 % at most.
 _PLACES = np.linspace(0.0, 1.0, 41)
-# What these are kept as for the next motion, and up to how many numbers.
-_DEFLECTIONS, _KEPT = "deflections", 1 << 20
 # What a limit of a parameter's values allows.
 _LIMITS: Mapping[str, Callable[[Array], NDArray[np.bool_]]] = {
     "positive": lambda values: values > 0.0,
@@ -232,11 +230,11 @@ class LinearPeriodic:
             Motions, shape ``(nb, nt, n)``; one that is not finite counts for nothing.
         """
         # Mode shapes at the angles of the motion before serve for the next one.
-        before, rows = self.kept.get(_DEFLECTIONS, (None, None))
+        before, rows = self.kept.get("deflections", (None, None))
         if not np.array_equal(before, theta):
             rows = self.deflection_rows(theta)
-            if rows is not None and rows.size <= _KEPT:
-                self.kept[_DEFLECTIONS] = theta.copy(), rows
+            if np.ptp(theta) <= self.period:  # those of a long motion would fill the memory
+                self.kept["deflections"] = theta.copy(), rows
         if rows is None:
             return None
         sizes = [

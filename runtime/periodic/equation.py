@@ -171,8 +171,9 @@ class Equation:
     @property
     def rates(self) -> Array:
         """With which frozen modes turn or fall [1/rad], ``(nb, n)``: an overdamped one's larger."""
-        loss = self.decay / self.period
-        over = np.sqrt(np.maximum(loss**2 - self.frequency**2, 0.0))
+        loss = np.abs(self.decay) / self.period
+        # The root of the difference of their squares, which may overflow.
+        over = np.sqrt(np.maximum(loss - self.frequency, 0.0)) * np.sqrt(loss + self.frequency)
         return np.asarray(np.maximum(self.frequency, loss + over))
 
     @property

@@ -545,7 +545,10 @@ class TableMaker:
         size = np.max(np.abs(theirs[1][:, : 2 * n, : 2 * n]), axis=(1, 2))
         gap = np.max(np.abs(ours[1] - theirs[1])[:, : 2 * n, : 2 * n], axis=(1, 2))
         # Round-off of what has decayed is that of what is left, as each segment keeps its digits.
-        whole = ROUNDED * rounding + table.tail + _MARGIN * gap / np.maximum(size, _TINY)
+        gap /= np.maximum(size, _TINY)
+        # What the polynomials may miss is in the gap, too, and no segments' error.
+        beyond = np.maximum(_MARGIN * (gap - table.tail), gap)
+        whole = ROUNDED * rounding + table.tail + beyond
         gaps = np.max(np.abs(ours[0] - theirs[0])[..., :n, :], axis=1)
         largest = np.max(np.abs(theirs[0][..., :n, :]), axis=(1, 2, 3))[:, None, None]
         flow = np.maximum(ROUNDED * rounding + table.tail * largest, _MARGIN * gaps)

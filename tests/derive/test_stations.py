@@ -94,7 +94,7 @@ def test_amplitudes_of_shapes_are_the_angles_projected(module):
         ),
     ):
         for name, array in each.items():
-            assert one[name] == pytest.approx(array, rel=1e-14, abs=1e-14), name
+            assert one[name] == pytest.approx(array, rel=1e-13, abs=1e-12), name
 
 
 _BOTH = sp.Add(*(m * sp.cos(PHI[i - 1]) * sp.cos(PHI[j - 1]) for (i, j), m in INERTIA.items()))

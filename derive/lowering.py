@@ -86,10 +86,10 @@ class _Printer:
         if isinstance(e, ModeProduct):
             return f"_product({', '.join(self.line(a)[0] for a in e.args)})", _ATOM
         if isinstance(e, StationSum):
-            return f"xp.sum({self.line(e.args[0])[0]}, axis=-1, keepdims=True)", _ATOM
+            return f"xp.sum({self.line(e.args[0])[0]}, axis=0)", _ATOM
         if isinstance(e, StationProduct):  # the kernels are symmetric
             kernel, values = e.args
-            return f"{self._wrap(values, _ATOM)} @ {self._wrap(kernel, _ATOM)}", _PRODUCT
+            return f"{self._wrap(kernel, _ATOM)} @ {self._wrap(values, _ATOM)}", _PRODUCT
         for kind, name in _FUNCTIONS.items():
             if isinstance(e, kind):
                 return f"xp.{name}({', '.join(self.line(a)[0] for a in e.args)})", _ATOM

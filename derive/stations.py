@@ -19,7 +19,7 @@ from .records import EquationsOfMotion, VariationalEquations
 from .safe import UnsafeRewriting
 
 _ENDINGS = ("", "_dot", "_ddot")
-EACH_STATION = "ndarray, shape (..., Q)"  # the shape of what has a value at each station
+EACH_STATION = "ndarray, shape (Q, N)"  # the shape of what has a value at each station
 _Kernels: TypeAlias = dict[tuple[sp.Expr, sp.Symbol], sp.Expr]
 
 
@@ -218,11 +218,12 @@ class _Closing:
     def _vector(self, entry: sp.Expr) -> sp.Expr:
         """Return an entry with the index of station 1."""
         products: _Kernels = {}
-        local = same = sp.S.Zero
+        local: dict[sp.Expr, sp.Expr] = {}  # by the factor of the station
+        same = sp.S.Zero
         for term in self._expanded(entry):
             first, second, rest, kernel = self._parts(term)
             if kernel is None and second == 1:
-                local += term
+                local[first] = local.get(first, sp.S.Zero) + rest
             elif kernel is not None and kernel[1] == (1, 1) and second == 1:
                 same += term
             elif kernel is not None and kernel[1] == (1, 2):
@@ -230,7 +231,13 @@ class _Closing:
             else:
                 raise UnsafeRewriting(f"{term} is no sum over pairs of stations")
         self._verify(products, same)
-        return self._whole(local) + self._total(products)
+        return self._local(local) + self._total(products)
+
+    def _local(self, factors: dict[sp.Expr, sp.Expr]) -> sp.Expr:
+        """Return the sum of factors of a station times what has no index, taken together."""
+        return sp.Add(
+            *(self._whole(first) * sp.factor_terms(rest) for first, rest in factors.items())
+        )
 
     def _total(self, products: _Kernels) -> sp.Expr:
         """Return the sum of factors of a station times kernels times those of the other."""
@@ -258,11 +265,12 @@ class _Closing:
                 raise UnsafeRewriting(f"{term} has no kernel")
             _add(beside, (first, kernel[0]), second * rest)
         within: _Kernels = {}
-        local = same = sp.S.Zero
+        local: dict[sp.Expr, sp.Expr] = {}
+        same = sp.S.Zero
         for term in self._expanded(matrix[0, 0]):
             first, second, rest, kernel = self._parts(term)
             if kernel is None and second == 1:
-                local += term
+                local[first] = local.get(first, sp.S.Zero) + rest
             elif kernel is not None and kernel[1] == (1, 1) and second == 1:
                 same += term
             elif kernel is not None and kernel[1] == (1, 2):
@@ -273,7 +281,7 @@ class _Closing:
         for key, right in within.items():
             _add(both, key, right)
         self._verify(both, same)
-        diagonal = self._whole(local) + self._total(within)
+        diagonal = self._local(local) + self._total(within)
         pairs = (
             (self._whole(left), kernel, sp.factor_terms(self._whole(right)))
             for (left, kernel), right in beside.items()

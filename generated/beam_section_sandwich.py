@@ -10,7 +10,7 @@ core_shear_modulus (1 + i core_loss), shears and carries no axial force.
 
 Cost per evaluation:
     sandwich: 58 operations
-Content hash 0d44b804da6f2f1e02b70f45c5d1cf24; derived with SymPy 1.14.0.
+Content hash e0dceb3e194584bd8a874d0ac2a094f1; derived with SymPy 1.14.0.
 """
 
 __all__ = ["sandwich"]
@@ -19,7 +19,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"sandwich","mechanism":"beam_section","m'
     'odes":null,"outputs":[]}'
 )
-CONTENT = "0d44b804da6f2f1e02b70f45c5d1cf24"
+CONTENT = "e0dceb3e194584bd8a874d0ac2a094f1"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

@@ -6,15 +6,15 @@ Model: mechanism four_bar, formulation inextensible, flexible coupler, any numbe
 Equations: Smith 9.6, further work 2.
 
 The coupler's points are r(s) = B + coupler int (cos phi, sin phi) ds.  Arrays with a value at each
-of the Q stations have them on their last axis, all others one value there.
+of the Q stations have them on their first axis, all others one value there.
 
 Multipliers: force on C along x and y, up to its sign.
 
 Cost per evaluation:
     constraints: 25 operations
-    dynamics: 81 operations
-    variations: 96 operations
-Content hash f848cdeff6d15cffe45ddaf2147ccf44; derived with SymPy 1.14.0.
+    dynamics: 76 operations
+    variations: 92 operations
+Content hash 6339df8380661245913139f5ebaf53d8; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"inextensible","mechanism":"fou'
     'r_bar","modes":null,"outputs":[]}'
 )
-CONTENT = "f848cdeff6d15cffe45ddaf2147ccf44"
+CONTENT = "6339df8380661245913139f5ebaf53d8"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {
@@ -139,11 +139,11 @@ def constraints(
 ):
     """Return the constraints and their Jacobian.
 
-    psi : float or ndarray, shape (..., 1)
-    phi : ndarray, shape (..., Q)
-    t, theta, theta_d1, theta_d2 : float or ndarray, shape (..., 1)
+    psi : float or ndarray, shape (N,)
+    phi : ndarray, shape (Q, N)
+    t, theta, theta_d1, theta_d2 : float or ndarray, shape (N,)
     frame to follower_first_moment : float
-    end, moment, bow : ndarray, shape (Q,)
+    end, moment, bow : ndarray, shape (Q, 1)
     inertia, bending, drag : ndarray, shape (Q, Q)
     Returns float or ndarray each.
     """
@@ -156,9 +156,8 @@ def constraints(
     x5 = follower * xp.sin(psi)
     x6 = x2 * xp.sin(phi)
     return (
-        x0 - frame + x1 + xp.sum(x3, axis=-1, keepdims=True),
-        x4 - x5 + xp.sum(x6, axis=-1, keepdims=True), x5, -x6, x1, x3, x4 * theta_d1,
-        -x0 * theta_d1,
+        x0 - frame + x1 + xp.sum(x3, axis=0), x4 - x5 + xp.sum(x6, axis=0), x5, -x6, x1, x3,
+        x4 * theta_d1, -x0 * theta_d1,
     )
 
 
@@ -169,13 +168,13 @@ def dynamics(
 ):
     """Return everything in the equations of motion at acceleration level.
 
-    psi : float or ndarray, shape (..., 1)
-    phi : ndarray, shape (..., Q)
+    psi : float or ndarray, shape (N,)
+    phi : ndarray, shape (Q, N)
     psi_dot : float or ndarray, shape (...)
-    phi_dot : ndarray, shape (..., Q)
-    t, theta, theta_d1, theta_d2 : float or ndarray, shape (..., 1)
+    phi_dot : ndarray, shape (Q, N)
+    t, theta, theta_d1, theta_d2 : float or ndarray, shape (N,)
     frame to follower_first_moment : float
-    end, moment, bow : ndarray, shape (Q,)
+    end, moment, bow : ndarray, shape (Q, 1)
     inertia, bending, drag : ndarray, shape (Q, Q)
     Returns float or ndarray each.
     """
@@ -188,37 +187,31 @@ def dynamics(
     x5 = x2 * x4
     x6 = xp.sin(psi)
     x7 = xp.cos(psi)
-    x8 = mass_per_length * coupler**2 * moment
-    x9 = x4 * x8
-    x10 = x0 * x8
-    x11 = xp.sin(theta)
-    x12 = x11 * crank
-    x13 = theta_d2 * x12
-    x14 = xp.cos(theta)
-    x15 = x14 * crank
-    x16 = theta_d2 * x15
-    x17 = theta_d1**2
-    x18 = x15 * x17
-    x19 = phi_dot**2
-    x20 = x12 * x17
-    x21 = x6 * follower
-    x22 = coupler * end
-    x23 = x22 * x4
-    x24 = x7 * follower
-    x25 = x0 * x22
-    x26 = theta_d1 * crank
-    x27 = psi_dot**2
+    x8 = phi_dot**2
+    x9 = xp.sin(theta)
+    x10 = theta_d2 * crank
+    x11 = xp.cos(theta)
+    x12 = crank * theta_d1**2
+    x13 = x10 * x9 + x11 * x12
+    x14 = mass_per_length * coupler**2 * moment
+    x15 = x12 * x9 - x10 * x11
+    x16 = x6 * follower
+    x17 = coupler * end
+    x18 = x17 * x4
+    x19 = x7 * follower
+    x20 = x0 * x17
+    x21 = theta_d1 * crank
+    x22 = psi_dot**2
     return (
         follower_inertia, x0, x3, x4, x5,
         x6 * follower_first_moment * gravity_x - x7 * follower_first_moment * gravity_y,
         (
-            x9 * gravity_x - x10 * gravity_y + x0 * ((-x19 * x5) @ inertia) + x16 * x10 - x20 * x10
-            + x13 * x9 + x18 * x9 + x4 * ((x19 * x3) @ inertia) + (bending_stiffness * (phi - bow)
-            / coupler) @ bending
+            x0 * x14 * (-x15 - gravity_y) + x0 * (inertia @ (-x5 * x8)) + x14 * x4 * (gravity_x +
+            x13) + x4 * (inertia @ (x3 * x8)) + bending @ (bending_stiffness * (phi - bow) /
+            coupler)
         ),
-        (-x1 * phi_dot * damping) @ drag, x21, -x23, -x24, x25, x11 * x26, -x14 * x26,
-        x13 + x18 - x24 * x27 + xp.sum(x19 * x25, axis=-1, keepdims=True),
-        x20 - x16 - x21 * x27 + xp.sum(x19 * x23, axis=-1, keepdims=True),
+        drag @ (-x1 * phi_dot * damping), x16, -x18, -x19, x20, x21 * x9, -x11 * x21,
+        x13 - x19 * x22 + xp.sum(x20 * x8, axis=0), x15 - x16 * x22 + xp.sum(x18 * x8, axis=0),
     )
 
 
@@ -229,16 +222,16 @@ def variations(
 ):
     """Return the arrays of the motion linearised about a given one.
 
-    psi : float or ndarray, shape (..., 1)
-    phi : ndarray, shape (..., Q)
+    psi : float or ndarray, shape (N,)
+    phi : ndarray, shape (Q, N)
     psi_dot : float or ndarray, shape (...)
-    phi_dot : ndarray, shape (..., Q)
+    phi_dot : ndarray, shape (Q, N)
     psi_ddot : float or ndarray, shape (...)
-    phi_ddot : ndarray, shape (..., Q)
+    phi_ddot : ndarray, shape (Q, N)
     lam_1, lam_2 : float or ndarray, shape (...)
-    t, theta, theta_d1, theta_d2 : float or ndarray, shape (..., 1)
+    t, theta, theta_d1, theta_d2 : float or ndarray, shape (N,)
     frame to follower_first_moment : float
-    end, moment, bow : ndarray, shape (Q,)
+    end, moment, bow : ndarray, shape (Q, 1)
     inertia, bending, drag : ndarray, shape (Q, Q)
     Returns float or ndarray each.
     """
@@ -255,21 +248,17 @@ def variations(
     x9 = coupler * end
     x10 = x1 * x9
     x11 = x2 * x9
-    x12 = mass_per_length * coupler**2 * moment
-    x13 = x1 * x12
-    x14 = x12 * x2
-    x15 = xp.sin(theta)
-    x16 = crank * x13
-    x17 = xp.cos(theta)
-    x18 = crank * x14
+    x12 = phi_ddot * x2
+    x13 = phi_dot**2
+    x14 = x1 * x13
+    x15 = x3 * (x12 + x14)
+    x16 = phi_ddot * x1
+    x17 = x16 - x13 * x2
+    x18 = crank * xp.sin(theta)
     x19 = theta_d1**2
-    x20 = phi_ddot * x2
-    x21 = phi_dot**2
-    x22 = x1 * x21
-    x23 = x3 * (x20 + x22)
-    x24 = phi_ddot * x1
-    x25 = x24 - x2 * x21
-    x26 = psi_dot**2
+    x20 = crank * xp.cos(theta)
+    x21 = mass_per_length * coupler**2 * moment
+    x22 = psi_dot**2
     return (
         1, x0 * damping, x1, -x2 * x4, x2, x1 * x4,
         (
@@ -277,11 +266,11 @@ def variations(
             lam_1 - x8 * lam_2
         ),
         (
-            x13 * gravity_x + x14 * gravity_y + lam_1 * x10 + lam_2 * x11 + x15 * theta_d2 * x16 -
-            x17 * theta_d2 * x18 + x1 * (x23 @ inertia) + x15 * x19 * x18 + x17 * x19 * x16 + x2 *
-            ((-x3 * x25) @ inertia)
+            lam_1 * x10 + lam_2 * x11 + x1 * x21 * (gravity_x + x18 * theta_d2 + x19 * x20) + x1 *
+            (inertia @ x15) + x2 * x21 * (gravity_y - x20 * theta_d2 + x18 * x19) + x2 * (inertia @
+            (-x3 * x17))
         ),
-        bending_stiffness / coupler, x3 * x25, -x23, psi_dot * x6, -phi_dot * x10, psi_dot * x8,
-        -phi_dot * x11, x6 * psi_ddot - x26 * x8, coupler * end * x2 * x21 - x24 * x9,
-        x8 * psi_ddot + x26 * x6, -x20 * x9 - x22 * x9,
+        bending_stiffness / coupler, x3 * x17, -x15, psi_dot * x6, -phi_dot * x10, psi_dot * x8,
+        -phi_dot * x11, x6 * psi_ddot - x22 * x8, coupler * end * x13 * x2 - x16 * x9,
+        x8 * psi_ddot + x22 * x6, -x12 * x9 - x14 * x9,
     )

@@ -9,7 +9,7 @@ The caller supplies f as a function of the angle, by the name 'f'.
 
 Cost per evaluation:
     scales: 0 operations
-Content hash 6d96fa60558ccd15f6e41ad9637b9427; derived with SymPy 1.14.0.
+Content hash 8a83c2f7d542e884370f4cbc366adc88; derived with SymPy 1.14.0.
 """
 
 __all__ = ["scales"]
@@ -18,7 +18,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"plain","mechanism":"hill","modes":null,'
     '"outputs":[]}'
 )
-CONTENT = "6d96fa60558ccd15f6e41ad9637b9427"
+CONTENT = "8a83c2f7d542e884370f4cbc366adc88"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

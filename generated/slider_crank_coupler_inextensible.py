@@ -6,15 +6,15 @@ Model: mechanism slider_crank, formulation inextensible, flexible coupler, any n
 Equations: Smith 9.6, further work 2.
 
 The coupler's points are r(s) = B + coupler int (cos phi, sin phi) ds.  Arrays with a value at each
-of the Q stations have them on their last axis, all others one value there.
+of the Q stations have them on their first axis, all others one value there.
 
 Multipliers: force on C along x and y, up to its sign.
 
 Cost per evaluation:
     constraints: 20 operations
-    dynamics: 69 operations
-    variations: 74 operations
-Content hash b5618cd60c3ff35c4423dc77b0540121; derived with SymPy 1.14.0.
+    dynamics: 64 operations
+    variations: 70 operations
+Content hash b7659fd871bbbdd802c92420d6c2138b; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"inextensible","mechanism":"sli'
     'der_crank","modes":null,"outputs":[]}'
 )
-CONTENT = "b5618cd60c3ff35c4423dc77b0540121"
+CONTENT = "b7659fd871bbbdd802c92420d6c2138b"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {
@@ -130,11 +130,11 @@ def constraints(
 ):
     """Return the constraints and their Jacobian.
 
-    x4 : float or ndarray, shape (..., 1)
-    phi : ndarray, shape (..., Q)
-    t, theta, theta_d1, theta_d2 : float or ndarray, shape (..., 1)
+    x4 : float or ndarray, shape (N,)
+    phi : ndarray, shape (Q, N)
+    t, theta, theta_d1, theta_d2 : float or ndarray, shape (N,)
     crank to slider_mass : float
-    end, moment, bow : ndarray, shape (Q,)
+    end, moment, bow : ndarray, shape (Q, 1)
     inertia, bending, drag : ndarray, shape (Q, Q)
     Returns float or ndarray each.
     """
@@ -145,8 +145,7 @@ def constraints(
     x3 = crank * xp.sin(theta)
     x5 = x1 * xp.sin(phi)
     return (
-        x0 - x4 + xp.sum(x2, axis=-1, keepdims=True),
-        x3 - offset + xp.sum(x5, axis=-1, keepdims=True), -1, -x5, x2, x3 * theta_d1,
+        x0 - x4 + xp.sum(x2, axis=0), x3 - offset + xp.sum(x5, axis=0), -1, -x5, x2, x3 * theta_d1,
         -x0 * theta_d1,
     )
 
@@ -158,13 +157,13 @@ def dynamics(
 ):
     """Return everything in the equations of motion at acceleration level.
 
-    x4 : float or ndarray, shape (..., 1)
-    phi : ndarray, shape (..., Q)
+    x4 : float or ndarray, shape (N,)
+    phi : ndarray, shape (Q, N)
     x4_dot : float or ndarray, shape (...)
-    phi_dot : ndarray, shape (..., Q)
-    t, theta, theta_d1, theta_d2 : float or ndarray, shape (..., 1)
+    phi_dot : ndarray, shape (Q, N)
+    t, theta, theta_d1, theta_d2 : float or ndarray, shape (N,)
     crank to slider_mass : float
-    end, moment, bow : ndarray, shape (Q,)
+    end, moment, bow : ndarray, shape (Q, 1)
     inertia, bending, drag : ndarray, shape (Q, Q)
     Returns float or ndarray each.
     """
@@ -175,33 +174,27 @@ def dynamics(
     x3 = x2 * x0
     x4 = xp.sin(phi)
     x5 = x2 * x4
-    x6 = mass_per_length * coupler**2 * moment
-    x7 = x4 * x6
-    x8 = x0 * x6
-    x9 = xp.sin(theta)
-    x10 = x9 * crank
-    x11 = theta_d2 * x10
-    x12 = xp.cos(theta)
-    x13 = x12 * crank
-    x14 = theta_d2 * x13
-    x15 = theta_d1**2
-    x16 = x13 * x15
-    x17 = phi_dot**2
-    x18 = x10 * x15
-    x19 = coupler * end
-    x20 = x19 * x4
-    x21 = x0 * x19
-    x22 = theta_d1 * crank
+    x6 = phi_dot**2
+    x7 = xp.sin(theta)
+    x8 = theta_d2 * crank
+    x9 = xp.cos(theta)
+    x10 = crank * theta_d1**2
+    x11 = x10 * x9 + x7 * x8
+    x12 = mass_per_length * coupler**2 * moment
+    x13 = x10 * x7 - x8 * x9
+    x14 = coupler * end
+    x15 = x14 * x4
+    x16 = x0 * x14
+    x17 = theta_d1 * crank
     return (
         slider_mass, x0, x3, x4, x5, -gravity_x * slider_mass,
         (
-            x7 * gravity_x - x8 * gravity_y + x0 * ((-x17 * x5) @ inertia) + x11 * x7 + x14 * x8 +
-            x16 * x7 - x18 * x8 + x4 * ((x17 * x3) @ inertia) + (bending_stiffness * (phi - bow) /
-            coupler) @ bending
+            x0 * x12 * (-x13 - gravity_y) + x0 * (inertia @ (-x5 * x6)) + x12 * x4 * (gravity_x +
+            x11) + x4 * (inertia @ (x3 * x6)) + bending @ (bending_stiffness * (phi - bow) /
+            coupler)
         ),
-        (-x1 * phi_dot * damping) @ drag, -1, -x20, x21, x22 * x9, -x12 * x22,
-        x11 + x16 + xp.sum(x17 * x21, axis=-1, keepdims=True),
-        x18 - x14 + xp.sum(x17 * x20, axis=-1, keepdims=True),
+        drag @ (-x1 * phi_dot * damping), -1, -x15, x16, x17 * x7, -x17 * x9,
+        x11 + xp.sum(x16 * x6, axis=0), x13 + xp.sum(x15 * x6, axis=0),
     )
 
 
@@ -212,16 +205,16 @@ def variations(
 ):
     """Return the arrays of the motion linearised about a given one.
 
-    x4 : float or ndarray, shape (..., 1)
-    phi : ndarray, shape (..., Q)
+    x4 : float or ndarray, shape (N,)
+    phi : ndarray, shape (Q, N)
     x4_dot : float or ndarray, shape (...)
-    phi_dot : ndarray, shape (..., Q)
+    phi_dot : ndarray, shape (Q, N)
     x4_ddot : float or ndarray, shape (...)
-    phi_ddot : ndarray, shape (..., Q)
+    phi_ddot : ndarray, shape (Q, N)
     lam_1, lam_2 : float or ndarray, shape (...)
-    t, theta, theta_d1, theta_d2 : float or ndarray, shape (..., 1)
+    t, theta, theta_d1, theta_d2 : float or ndarray, shape (N,)
     crank to slider_mass : float
-    end, moment, bow : ndarray, shape (Q,)
+    end, moment, bow : ndarray, shape (Q, 1)
     inertia, bending, drag : ndarray, shape (Q, Q)
     Returns float or ndarray each.
     """
@@ -234,27 +227,23 @@ def variations(
     x5 = coupler * end
     x6 = x1 * x5
     x7 = x2 * x5
-    x8 = mass_per_length * coupler**2 * moment
-    x9 = x1 * x8
-    x10 = x2 * x8
-    x11 = xp.sin(theta)
-    x12 = crank * x9
-    x13 = xp.cos(theta)
-    x14 = crank * x10
+    x8 = phi_ddot * x2
+    x9 = phi_dot**2
+    x10 = x1 * x9
+    x11 = x3 * (x10 + x8)
+    x12 = phi_ddot * x1
+    x13 = x12 - x2 * x9
+    x14 = crank * xp.sin(theta)
     x15 = theta_d1**2
-    x16 = phi_ddot * x2
-    x17 = phi_dot**2
-    x18 = x1 * x17
-    x19 = x3 * (x16 + x18)
-    x20 = phi_ddot * x1
-    x21 = x20 - x17 * x2
+    x16 = crank * xp.cos(theta)
+    x17 = mass_per_length * coupler**2 * moment
     return (
         1, x0 * damping, x1, -x2 * x4, x2, x1 * x4,
         (
-            x9 * gravity_x + x10 * gravity_y + lam_1 * x6 + lam_2 * x7 + x11 * theta_d2 * x12 - x13
-            * theta_d2 * x14 + x1 * (x19 @ inertia) + x11 * x15 * x14 + x13 * x15 * x12 + x2 *
-            ((-x3 * x21) @ inertia)
+            lam_1 * x6 + lam_2 * x7 + x1 * x17 * (gravity_x + x14 * theta_d2 + x15 * x16) + x1 *
+            (inertia @ x11) + x17 * x2 * (gravity_y - x16 * theta_d2 + x14 * x15) + x2 * (inertia @
+            (-x3 * x13))
         ),
-        bending_stiffness / coupler, x3 * x21, -x19, -phi_dot * x6, -phi_dot * x7,
-        coupler * end * x17 * x2 - x20 * x5, -x16 * x5 - x18 * x5,
+        bending_stiffness / coupler, x3 * x13, -x11, -phi_dot * x6, -phi_dot * x7,
+        coupler * end * x2 * x9 - x12 * x5, -x10 * x5 - x5 * x8,
     )

@@ -108,7 +108,7 @@ def _discretise(spec: ModelSpec, equations: EquationsOfMotion) -> ConstrainedSys
 
 
 def _describe(spec: ModelSpec) -> Description:
-    shape = "float or ndarray, shape (..., 1)"
+    shape = "float or ndarray, shape (N,)"
     driven = (
         Argument("x4", shape, "m", "Place of the slider's pin C along the guide")
         if spec.mechanism == "slider_crank"
@@ -116,7 +116,7 @@ def _describe(spec: ModelSpec) -> Description:
     )
     angle = Argument("phi", EACH_STATION, "rad", "Angle of the coupler's tangent at the stations")
     found = described(spec.mechanism, "geometrically exact", [driven, angle], shape)
-    vector, kernel = "ndarray, shape (Q,)", "ndarray, shape (Q, Q)"
+    vector, kernel = "ndarray, shape (Q, 1)", "ndarray, shape (Q, Q)"
     numbers = (
         Argument("end", vector, "", "Weights of int f ds along the coupler, of unit length"),
         Argument("moment", vector, "", "Weights of int (1 - s) f ds"),
@@ -130,7 +130,7 @@ def _describe(spec: ModelSpec) -> Description:
         arguments=(*found.arguments, *numbers),
         notes=(
             "The coupler's points are r(s) = B + coupler int (cos phi, sin phi) ds.  Arrays with a "
-            "value at each of the Q stations have them on their last axis, all others one value "
+            "value at each of the Q stations have them on their first axis, all others one value "
             "there.",
             "Multipliers: force on C along x and y, up to its sign.",
         ),

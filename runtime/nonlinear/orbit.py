@@ -289,7 +289,8 @@ class Solver:
     def measure(self, orbit: Orbit) -> Measure:
         """Return how far a motion is from the true one."""
         motion = orbit.motion
-        fewer = motion.resampled(len(motion.x), motion.a.shape[1] - _FEWER)
+        stages = motion.a.shape[1]
+        fewer = motion.with_stages(stages - _FEWER)
         swept = sweep(self.problem, orbit.value, fewer)
         whole, added = chained(swept.maps, swept.loads)
         # What the parameter does differs but little by fewer stages.
@@ -298,7 +299,7 @@ class Solver:
         rounding, noise = self._rounding(orbit)
         size = max(float(np.linalg.norm(orbit.matrix)), 1.0)
         away = share(self._size(change, moved, motion), noise) + rounding
-        within = taken(fewer, swept, change, 0.0).at(motion.angles.ravel() - motion.begin)[0]
+        within = taken(fewer, swept, change, 0.0).at_stages(stages)
         moved_most, off = self._shown(orbit, within)
         n = motion.x.shape[1]
         coordinates = float(np.max(np.abs(change[:, :n]) / self.scale(motion)[:n]))
@@ -319,7 +320,7 @@ class Solver:
         are compared near the extremes.
         """
         shown, (_, parameters) = self.problem.system.shown, self.problem.at(orbit.value)
-        q = orbit.motion.stages()[0].reshape(other.shape)
+        q = orbit.motion.stages()[0]
         step = 1e-4 * float(self.scale(orbit.motion)[0]) * np.eye(self.problem.system.size)[:, None]
         both = shown(orbit.motion.x + step, parameters) - shown(orbit.motion.x - step, parameters)
         most = float(np.max(np.sum(np.abs(both), axis=0))) / 2e-4

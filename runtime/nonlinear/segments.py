@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -107,6 +108,17 @@ class Motion:
         x = self.x[j] + h * part[:, None] * self.v[j] + h * h * twice
         return x, self.v[j] + h * once, value
 
+    def with_stages(self, stages: int) -> Motion:
+        """Return the motion on other stages of the same steps."""
+        _, values = _at_stages(self.a.shape[1], stages)
+        return replace(self, a=values @ self.a)
+
+    def at_stages(self, stages: int) -> Array:
+        """Return the coordinates at the points of so many stages, ``(m, stages, n)``."""
+        h, twice = self.step, _at_stages(self.a.shape[1], stages)[0]
+        x = self.x[:, None] + h * nodes(stages).c[:, None] * self.v[:, None]
+        return np.asarray(x + h * h * (twice @ self.a))
+
     def resampled(self, steps: int, stages: int, turns: int | None = None) -> Motion:
         """Return the motion on other steps; on more turns it is repeated."""
         turns = self.turns if turns is None else turns
@@ -140,6 +152,16 @@ class Motion:
         """Return no motion at all."""
         n = system.size
         return cls(turns, np.zeros((steps, n)), np.zeros((steps, n)), np.zeros((steps, stages, n)))
+
+
+@lru_cache(maxsize=16)
+def _at_stages(stages: int, others: int) -> tuple[Array, Array]:
+    """Return what accelerations at the points of stages are at those of others, ``(others, s)``.
+
+    Integrated twice from the beginning of a step of length 1, and themselves.
+    """
+    terms = at_places(nodes(others).c, stages) @ nodes(stages).series
+    return terms[:, 0], terms[:, 2]
 
 
 class Sweep(NamedTuple):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from ..core.errors import bad
@@ -29,16 +29,20 @@ class Given:
 
 @dataclass(frozen=True)
 class Driven:
-    """Makes the constrained system of an emitted module at numbers and a drive."""
+    """Makes the constrained system of an emitted module at numbers and a drive.
+
+    ``fixed`` are parameters of the module that are none of the system's.
+    """
 
     emitted: EmittedModule
+    fixed: Mapping[str, float] = field(default_factory=dict)
 
     def __call__(self, parameters: Mapping[str, float], drive: Drive) -> Constrained:
         """Return the system; a parameter that is called ``speed`` is the drive's."""
         module = self.emitted.module
         given = {name: Given(value) for name, value in zip(DRIVE, drive, strict=True)}
         external = {name: given[name] for name in module.EXTERNAL}
-        values = {**parameters, "speed": drive.speed}
+        values = {**parameters, **self.fixed, "speed": drive.speed}
         return Constrained.from_module(
             module, {name: values[name] for name in module.PARAMETERS}, external=external
         )

@@ -10,20 +10,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...generated import beam_tangent_harmonics, four_bar_kinematics, slider_crank_kinematics
+from ...generated import beam_tangent_harmonics
 from ..core.errors import bad
-from ..core.families import Array, Constrained
-from ..core.families.nonlinear import Drive, Nonlinear, Reduced
-from ..core.families.stations import Stations
-from ..core.modules import EmittedModule, find_module
-from .driven import Given, nothing_held
+from ..core.families import Array
+from ..core.families.nonlinear import Drive, Equations, Nonlinear, Reduced
+from ..core.families.stations import AtStations, Stations
+from ..core.modules import find_module
+from .driven import Driven, nothing_held
 
 if TYPE_CHECKING:
     from ..scenes import Scene
 
 _HARMONICS: ModuleType = beam_tangent_harmonics
-_FOUR_BAR: ModuleType = four_bar_kinematics
-_SLIDER_CRANK: ModuleType = slider_crank_kinematics
 # Stations of the coupler: with amplitudes up to 0.7 / k^1.5 of the tangent's angle what is left of
 # the equations is right to 1e-13 (one mode) to 5e-12 (five).
 _LEAST, _PER_MODE = 8, 4
@@ -66,83 +64,57 @@ def coupler_stations(modes: int) -> Stations:
         "bending": between(curved),
         "drag": between(bent),
     }
-    return Stations(np.ascontiguousarray(cosines[: modes + 1].T), numbers)
+    return Stations(cosines[1 : modes + 1], numbers)
 
 
 @dataclass(frozen=True)
 class InextensibleCoupler:
-    """What the equations of the coupler are made of; see :class:`.Reduced`.
-
-    Coordinates of the exact equations: the follower's angle (or the slider's place), the mean
-    angle of the coupler's tangent, and the amplitudes ``q_k`` of ``cos(k pi s)`` in it, which are
-    the free ones.  Those to third order have ``q_k`` alone.
+    """What the geometrically exact equations are made of, beside the emitted module.
 
     Attributes
     ----------
-    emitted : EmittedModule
-        The equations.
     modes : int
-        How many amplitudes.
+        How many amplitudes ``q_k`` of ``cos(k pi s)`` the tangent's angle has, beside its mean.
     assembly : float
         Which closure the linkage takes: 1 or -1.
     """
 
-    emitted: EmittedModule
     modes: int
     assembly: float
-
-    @property
-    def _module(self) -> ModuleType:
-        return self.emitted.module
-
-    @property
-    def exact(self) -> bool:
-        """Whether the equations hold at any amplitude."""
-        return hasattr(self._module, "STATIONS")
-
-    @property
-    def equations(self) -> Reduced:
-        """The equations in the amplitudes."""
-        if self.exact:
-            return Reduced(self.constrained, tuple(range(2, self.modes + 2)), (0, 1), self.ends)
-        return Reduced(self.constrained, tuple(range(self.modes)), (), nothing_held)
 
     @cached_property
     def _straight(self) -> Stations:
         return coupler_stations(self.modes)
 
-    def constrained(self, parameters: Mapping[str, float], drive: Drive) -> Constrained:
-        """Return the constrained system at numbers and a drive."""
-        given = dict(zip(self._module.EXTERNAL, map(Given, drive), strict=True))
-        numbers = {**parameters, "assembly": self.assembly}
-        values = {name: numbers[name] for name in self._module.PARAMETERS}
-        if not self.exact:
-            return Constrained.from_module(self._module, values, external=given)
+    def stations(self, parameters: Mapping[str, float]) -> Stations:
+        """Return the stations of a coupler with its initial bow."""
         stations = self._straight
         if bow := parameters["bow"]:
             # A bow b sin(pi s) has the slope (pi b / l3) cos(pi s) at its pins.
-            angle = np.pi * bow / parameters["coupler"] * stations.shapes[:, 1]
+            angle = np.pi * bow / parameters["coupler"] * stations.shapes[0]
             stations = Stations(stations.shapes, {**stations.numbers, "bow": angle})
-        return Constrained.at_stations(self._module, values, stations, given)
+        return stations
 
-    def ends(self, q: Array, drive: Drive, parameters: Mapping[str, float]) -> Array:
+    def ends(self, chord: Array, drive: Drive, parameters: Mapping[str, float]) -> Array:
         """Return the follower's angle (or the slider's place) and the coupler's mean angle.
 
-        Those of the rigid linkage whose coupler is as long as the chord of the bent one.
+        Those of the rigid linkage whose coupler is as long as the chord of the bent one: ``(2, N)``
+        from the chord over the length, ``x + i y`` at no mean angle, ``(N,)``.
         """
-        shapes = self._straight.shapes
-        chord = np.mean(np.exp(1j * (q @ shapes[:, 1:].T)), axis=-1)
-        given = {name: parameters[name] for name in parameters}
-        given["coupler"] = parameters["coupler"] * np.abs(chord)
-        angle = np.broadcast_to(np.asarray(drive.angle, dtype=float), chord.shape)
-        if "slider_mass" in given:
-            lengths = (given[name] for name in ("crank", "coupler", "offset"))
-            moved = _SLIDER_CRANK.motion(angle, *lengths, self.assembly)
+        chord = parameters["coupler"] * chord
+        pin, length = parameters["crank"] * np.exp(1j * np.asarray(drive.angle)), np.abs(chord)
+        if "slider_mass" in parameters:
+            rise = parameters["offset"] - pin.imag
+            straight = self.assembly * np.sqrt(length**2 - rise**2) + 1j * rise
+            driven = pin.real + straight.real
         else:
-            lengths = (given[name] for name in ("frame", "crank", "coupler", "follower"))
-            drag_link = float(given["crank"] > given["frame"])
-            moved = _FOUR_BAR.motion(angle, *lengths, self.assembly, drag_link)
-        return np.stack([moved[1], moved[0] - np.angle(chord)], axis=-1)
+            across = parameters["frame"] - pin
+            square = np.abs(across) ** 2
+            along = 0.5 * (1.0 + (length**2 - parameters["follower"] ** 2) / square)
+            aside = self.assembly * np.sqrt(length**2 / square - along**2)
+            straight = across * (along + 1j * aside)
+            driven = np.angle(straight - across)
+        return np.stack([driven, np.angle(straight * np.conj(chord))])
 
     def middle(self, q: Array, parameters: Mapping[str, float]) -> Array:
         """Return the deflection of the coupler's middle from its chord [m]; shape batch."""
@@ -154,10 +126,12 @@ class InextensibleCoupler:
 
     def shape(self, q: Array, places: Array) -> Array:
         """Return deflections from the chord over the length at places s, ``(*batch, ns)``."""
-        tangent = np.exp(1j * (q @ self._straight.shapes[:, 1:].T))
-        mean = np.mean(tangent, axis=-1, keepdims=True)
-        place = tangent @ _integrals(tangent.shape[-1], tuple(places.tolist()))
-        return np.asarray(np.imag(place * np.conj(mean)) / np.abs(mean))
+        angle = q @ self._straight.shapes
+        x, y = np.cos(angle), np.sin(angle)
+        along, across = (part.sum(axis=-1, keepdims=True) for part in (x, y))
+        weights = _integrals(angle.shape[-1], tuple(places.tolist()))
+        found: Array = (y @ weights * along - x @ weights * across) / np.hypot(along, across)
+        return found
 
 
 _PLACES = np.linspace(0.0, 1.0, 41)
@@ -204,10 +178,16 @@ def inextensible_system(scene: Scene) -> Nonlinear:
             expected, fix = "the follower's, for gravity pulls at it", "add it (0 if balanced)"
             raise bad("follower.first_moment", "nothing", expected, fix)
         parameters["follower_first_moment"] = follower.get("first_moment", 0.0)
-    made = InextensibleCoupler(emitted, modes, linkage.branch)
+    made, module = InextensibleCoupler(modes, linkage.branch), emitted.module
+    equations: Equations
+    if hasattr(module, "STATIONS"):
+        equations = AtStations(module, made.stations, made.ends)
+    else:
+        driven = Driven(emitted, {"assembly": linkage.branch})
+        equations = Reduced(driven, tuple(range(modes)), (), nothing_held)
     return Nonlinear(
         size=modes,
-        equations=made.equations,
+        equations=equations,
         parameters=parameters,
         labels=tuple(f"q{k}" for k in range(1, modes + 1)),
         deflection=made.middle,

@@ -12,10 +12,10 @@ from itertools import chain, combinations_with_replacement
 from types import ModuleType
 
 import numpy as np
+from constrained_coupler import constrained
 from elastolink import generated
 from elastolink.derive.models import inextensible_coupler as coupler
 from elastolink.runtime.core.families import Constrained
-from elastolink.runtime.core.families.stations import Stations
 from judging import Exact, Point, Reference, exact_at
 from scalar_entries import ScalarEntries, derived_reference
 
@@ -57,12 +57,8 @@ class AtEachStation(ScalarEntries):
     def system(self, given: Mapping[str, float], row: Callable[..., np.ndarray]) -> Constrained:
         numbers = {name: row(name) for name in coupler.STATIONS.vectors}
         numbers |= {name: self.square(given, name) for name in coupler.STATIONS.matrices}
-        return Constrained.at_stations(
-            self.module,
-            {name: given[name] for name in self.module.PARAMETERS},
-            Stations(np.eye(self.count), numbers),
-            {name: lambda q, t, name=name: given[name] for name in self.module.EXTERNAL},
-        )
+        external = {name: lambda q, t, name=name: given[name] for name in self.module.EXTERNAL}
+        return constrained(self.module, given, np.eye(self.count), numbers, external)
 
 
 def station_points(module: str, count: int = COUNT) -> Iterator[Point]:

@@ -16,8 +16,6 @@ from elastolink.derive.safe import UnsafeRewriting
 from elastolink.derive.spec import ModelSpec
 from elastolink.derive.stations import Stations, closed_in_stations
 from elastolink.generated import beam_tangent_harmonics
-from elastolink.runtime.core.families import Constrained
-from elastolink.runtime.core.families import stations as evaluated
 
 MECHANISMS = ("four_bar", "slider_crank")
 SPECS = {name: ModelSpec(name, "inextensible", flexible=("coupler",)) for name in MECHANISMS}
@@ -41,60 +39,6 @@ def test_other_numbers_of_stations_give_what_is_derived_for_them(module, count):
                 size = max(abs(float(exact[name])) for name in values)
                 for name, value in values.items():
                     assert abs(value - float(exact[name])) <= 1e-14 * size, (name, point.name)
-
-
-@pytest.mark.parametrize("module", truth.STATION_MODULES)
-def test_amplitudes_of_shapes_are_the_angles_projected(module):
-    """With angles ``S a`` at the stations: entries by a are ``S^T`` times those by the angles."""
-    random = np.random.default_rng(5)
-    shapes = random.normal(size=(6, 2))
-    numbers = {name: random.normal(size=6) for name in coupler.STATIONS.vectors}
-    for name in coupler.STATIONS.matrices:
-        square = random.normal(size=(6, 6))
-        numbers[name] = square + square.T
-    home = truth.emitted_module(module)
-    parameters = dict(
-        zip(home.PARAMETERS, random.uniform(0.5, 2.0, len(home.PARAMETERS)), strict=True)
-    )
-    given = {
-        name: lambda q, t, value=v: value
-        for name, v in zip(home.EXTERNAL, (0.3, 5.0, -7.0), strict=True)
-    }
-    by_shape, by_angle = (
-        Constrained.at_stations(home, parameters, evaluated.Stations(s, numbers), given)
-        for s in (shapes, np.eye(6))
-    )
-    both = np.zeros((7, 3))  # all coordinates by the projected ones
-    both[0, 0], both[1:, 1:] = 1.0, shapes
-    q, qd, qdd = random.normal(size=(3, 4, 3))
-    lam, time = random.normal(size=(4, 2)), np.zeros(4)
-    states = [vector @ both.T for vector in (q, qd, qdd)]
-    pairs = [
-        (by_shape.violation(q, time), by_angle.violation(states[0], time)),
-        (by_shape.dynamics(q, qd, time), by_angle.dynamics(*states[:2], time)),
-        (by_shape.variations(q, qd, qdd, lam, time), by_angle.variations(*states, lam, time)),
-    ]
-    for found, angles in pairs:
-        assert set(found) == set(angles)
-        for name, array in angles.items():
-            if name in ("mass", "damping", "stiffness"):
-                expected = both.T @ array @ both
-            elif name.startswith("jacobian"):
-                expected = array @ both
-            else:
-                expected = both.T @ array if name in ("rest", "forces") else array
-            assert found[name] == pytest.approx(expected, rel=1e-13, abs=1e-12), name
-    # One place with several rates is that place again and again.
-    again = np.broadcast_to(q[0], q.shape)
-    for one, each in (
-        (by_shape.dynamics(q[0], qd, time), by_shape.dynamics(again, qd, time)),
-        (
-            by_shape.variations(q[0], qd, qdd, lam, time),
-            by_shape.variations(again, qd, qdd, lam, time),
-        ),
-    ):
-        for name, array in each.items():
-            assert one[name] == pytest.approx(array, rel=1e-13, abs=1e-12), name
 
 
 _BOTH = sp.Add(*(m * sp.cos(PHI[i - 1]) * sp.cos(PHI[j - 1]) for (i, j), m in INERTIA.items()))

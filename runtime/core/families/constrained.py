@@ -17,7 +17,6 @@ from ..inputs import require_whole
 from .emitted import Places, Values, dropped_names, nothing, parameter_values, stacked
 from .linear_periodic import Array
 from .multipliers import solve_multipliers
-from .stations import AtStations, Stations
 
 External = Callable[[Array, Array], ArrayLike]
 Margin = Callable[[float, Array, Array], float]
@@ -153,27 +152,6 @@ class Constrained:
             labels=labels,
             provenance=dict(provenance or {}),
         )
-
-    @classmethod
-    def at_stations(
-        cls,
-        module: ModuleType,
-        parameters: Mapping[str, float],
-        stations: Stations,
-        external: Mapping[str, External],
-    ) -> Constrained:
-        """Return the system of an emitted module whose last coordinate has a value at stations.
-
-        ``parameters`` in the module's order; ``stations`` bring the shapes whose amplitudes are
-        the coordinates behind the module's others.
-        """
-
-        def at(name: str) -> AtStations:
-            return AtStations(module, name, external, parameters, stations)
-
-        size = len(module.COORDINATES) - 1 + stations.shapes.shape[1]
-        functions = at("dynamics"), at("constraints"), at("variations")
-        return cls(size, len(module.MULTIPLIERS), *functions)
 
     def accelerations(self, q: Array, qd: Array, t: ArrayLike = 0.0) -> tuple[Array, Array]:
         """Solve for the accelerations and multipliers at a state that meets the constraints.

@@ -232,14 +232,14 @@ class Reduced:
         x[..., free] = q
         x[..., held] = self.guess(q, drive, parameters)
         last = np.inf
-        for _ in range(_CLOSING):
+        for _ in range(CLOSING):
             at = system.violation(x, time)
             inverse: Array = np.asarray(np.linalg.inv(at["jacobian"][..., held]), dtype=np.float64)
             change = (inverse @ at["constraints"])[..., 0]
             x[..., held] -= change
             size = float(np.max(np.abs(change), initial=0.0))
             # Newton squares what is left; a change that no longer falls is round-off.
-            if size <= _CLOSE or (size <= 1e-10 and size >= 0.5 * last):
+            if size <= CLOSE or (size <= 1e-10 and size >= 0.5 * last):
                 return x, at, inverse
             last = size
         raise SelfCheckFailed("the loop of the linkage cannot be closed at a state")
@@ -253,4 +253,4 @@ def _time(q: Array, drive: Drive) -> Array:
 
 
 # Corrections of the coordinates that close a loop, and the change (rad, m) that is the last.
-_CLOSING, _CLOSE = 30, 1e-13
+CLOSING, CLOSE = 30, 1e-13

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 from bent_rigs import REFERENCE, RPM, Shape, motions_at, natural_frequency, rig, smallest_motion
+from constrained_coupler import turning, with_constraints
 from elastolink.runtime.constrained import orbit_multipliers, periodic_orbit
 from elastolink.runtime.core.families.nonlinear import Drive
 from elastolink.runtime.nonlinear import response_curve
@@ -172,10 +173,11 @@ def test_the_cranks_power_balances_along_a_motion():
     (x, v), a = motion.stages(), motion.a
     q, qd, qdd = (part.reshape(-1, 2) * speed**k for k, part in enumerate((x, v, a)))
     drive = Drive(theta, np.full_like(theta, speed), np.zeros_like(theta))
-    whole = system.equations.whole(q, drive, numbers)
+    made = with_constraints(system)
+    whole = made.whole(q, drive, numbers)
     shape = Shape.of(numbers, whole, q, qd, qdd, *drive)
     density, length = numbers["mass_per_length"], numbers["coupler"]
-    constrained = system.equations.make(numbers, drive)
+    constrained = made.make(numbers, drive)
     rates = np.stack([shape.driven[1], shape.turn[1]], axis=-1)
     _, force = constrained.accelerations(whole, np.concatenate([rates, qd], axis=-1), theta / speed)
     pull = force[:, 0] + 1j * force[:, 1]
@@ -215,10 +217,12 @@ def test_the_constrained_form_gives_the_same_motion_and_multipliers(name, modes,
         def __call__(self, q, time):
             return (speed * np.asarray(time), speed, 0.0)[self.order] + 0.0 * np.asarray(time)
 
-    constrained = turned(system, numbers, Turning)
+    names = system.equations.module.EXTERNAL
+    external = {name: Turning(order) for order, name in enumerate(names)}
+    constrained = turning(system, numbers, external)
     x, v, _ = orbit.motion.at(0.0)
     drive = Drive(0.0, speed)
-    whole = system.equations.whole(x[0], drive, numbers)
+    whole = with_constraints(system).whole(x[0], drive, numbers)
     shape = Shape.of(numbers, whole, x[0], speed * v[0], 0 * x[0], *map(np.asarray, drive))
     rates = np.array([shape.driven[1], shape.turn[1], *(speed * v[0])])
     period = 2 * np.pi / speed
@@ -239,16 +243,3 @@ def test_the_constrained_form_gives_the_same_motion_and_multipliers(name, modes,
         nearest = min(expected, key=lambda other, value=value: abs(other - value))
         expected.remove(nearest)
         assert abs(value - nearest) <= error + np.max(result.error) + 1e-9
-
-
-def turned(system, numbers, turning):
-    """Return the constrained system of a rig whose crank turns."""
-    from elastolink.runtime.core.families import Constrained
-
-    module = system.equations.make.__self__.emitted.module
-    return Constrained.at_stations(
-        module,
-        {name: numbers[name] for name in module.PARAMETERS},
-        inextensible.coupler_stations(system.size),
-        {name: turning(order) for order, name in enumerate(module.EXTERNAL)},
-    )

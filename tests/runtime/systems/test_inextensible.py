@@ -6,6 +6,7 @@ import elastolink as el
 import numpy as np
 import pytest
 from bent_rigs import BENT, REFERENCE, Shape, rig, slider_crank
+from constrained_coupler import with_constraints
 from elastolink.runtime.core.errors import BadInput, SelfCheckFailed
 from elastolink.runtime.core.families import LinearPeriodic
 from elastolink.runtime.core.families.nonlinear import Drive
@@ -45,10 +46,9 @@ def test_forces_and_followers_are_those_of_another_lagrangian(many_stations):
     for state in REFERENCE["states"]:
         q, qd = np.array(state["q"]), np.array(state["rates"])
         system, drive = many_stations("A58", len(q)), Drive(*state["theta"])
-        made = system.equations
         shape, constrained = placed(system, q, qd, np.array(state["accelerations"]), drive)
         assert shape.driven == pytest.approx(np.array(state["follower"]), rel=1e-11)
-        x = made.whole(q, drive, system.parameters)
+        x = with_constraints(system).whole(q, drive, system.parameters)
         xd = np.concatenate([[shape.driven[1], shape.turn[1]], qd])
         time = drive.angle / drive.speed
         xdd, force = constrained.accelerations(x, xd, time)
@@ -58,9 +58,10 @@ def test_forces_and_followers_are_those_of_another_lagrangian(many_stations):
 
 def placed(system, q, qd, qdd, drive):
     """Return the coupler's place and motion by quadrature, and the constrained system."""
-    whole = system.equations.whole(q, drive, system.parameters)
+    made = with_constraints(system)
+    whole = made.whole(q, drive, system.parameters)
     shape = Shape.of(system.parameters, whole, q, qd, qdd, *map(np.asarray, drive))
-    return shape, system.equations.make(system.parameters, drive)
+    return shape, made.make(system.parameters, drive)
 
 
 @pytest.mark.parametrize("modes", [1, 3, 5])
@@ -152,7 +153,7 @@ def assert_balanced(system, q, qd, qdd, drive) -> None:
     shape, constrained = placed(system, q, qd, qdd, drive)
     density = numbers["mass_per_length"]
     gravity = numbers["gravity_x"] + 1j * numbers["gravity_y"]
-    x = system.equations.whole(q, drive, numbers)
+    x = with_constraints(system).whole(q, drive, numbers)
     xd, xdd = (
         np.concatenate([[d, t], r])
         for d, t, r in zip(shape.driven[1:], shape.turn[1:], (qd, qdd), strict=True)
@@ -197,6 +198,26 @@ def test_the_power_of_the_crank_balances(modes):
             drive = Drive(random.uniform(-7, 7), 60.0, random.choice([0.0, 900.0]))
             qd = 40.0 * qd
             assert_balanced(system, q, qd, accelerations(system, q, qd, drive), drive)
+
+
+@pytest.mark.parametrize("modes", [1, 2, 4])
+def test_they_are_those_of_the_constrained_form(modes):
+    """All matrices of the module's coordinates, projected: any number of states, and one."""
+    more = {"bow": 2e-3, "gravity_x": 3.0, "gravity_y": -9.0}
+    random = np.random.default_rng(modes)
+    for system in (rig("B58", modes), slider_crank(modes)):
+        system = system.with_parameters(**more)
+        sizes = np.array([0.2, 8.0, 400.0])[:, None, None, None]
+        state = sizes * random.normal(size=(3, 4, 5, modes))
+        drive = Drive(*(s * random.normal(size=(4, 5)) for s in (9.0, 60.0, 900.0)))
+        found = system.equations(*state, drive, system.parameters)
+        expected = with_constraints(system)(*state, drive, system.parameters)
+        one = system.equations(*state[:, 1, 2], Drive(*(d[1, 2] for d in drive)), system.parameters)
+        for each, alone, wanted in zip(found, one, expected, strict=True):
+            assert each.shape == wanted.shape
+            size = np.max(np.abs(wanted))
+            assert each == pytest.approx(wanted, rel=0, abs=1e-13 * size)
+            assert alone == pytest.approx(wanted[1, 2], rel=0, abs=1e-13 * size)
 
 
 def test_derivatives_are_exact():

@@ -156,19 +156,11 @@ class LinearPeriodic:
         for term in self.terms:
             require_kind("terms", term, Term, "make each with Term")
             if term.array not in MATRICES + VECTORS:
-                raise bad(
-                    "Term.array", repr(term.array), f"one of {MATRICES + VECTORS}", "rename it"
-                )
+                known = f"one of {MATRICES + VECTORS}"
+                raise bad("Term.array", repr(term.array), known, "rename it")
             require_whole("Term.power", term.power, -10, 10, "leave it out")
-            sample = term(np.zeros(1))
-            expected = (1,) + (self.size,) * (2 if term.array in MATRICES else 1)
-            if sample.shape != expected:
-                raise bad(
-                    f"term {term.array} ({term.scale})",
-                    f"shape {sample.shape} at one angle",
-                    f"{expected}",
-                    "make the function return one array per angle",
-                )
+            expected = (1, *self._shape_of(term.array))
+            _require_shape(term, term(np.zeros(1)), expected, "at one angle")
         unknown = sorted(set(self.limits.values()) - set(_LIMITS))
         if unknown:
             raise bad("limits", unknown, f"some of {sorted(_LIMITS)}", "correct them")
@@ -188,10 +180,7 @@ class LinearPeriodic:
     def shapes(self, x: Array, theta: Array) -> Array | None:
         """Return the mode shapes at places x/length ``(nx,)`` and crank angles ``(nt,)`` [rad].
 
-        Returns
-        -------
-        ndarray or None
-            Shape ``(nt, nx, n)``; None where the system has none.
+        Their shape is ``(nt, nx, n)``; None where the system has none.
         """
         if self.moving_shape is not None:
             return np.asarray(self.moving_shape(x, theta), dtype=float)
@@ -203,17 +192,8 @@ class LinearPeriodic:
     def deflection_rows(self, theta: Array, places: Array = _PLACES) -> Array | None:
         """Return what turns coordinates into deflections over the length of their link.
 
-        Parameters
-        ----------
-        theta : ndarray
-            Crank angles [rad], shape ``(nt,)``.
-        places : ndarray
-            Places x/length of a system that is known by its shapes, ``(nx,)``.
-
-        Returns
-        -------
-        ndarray or None
-            Shape ``(nt, k, n)``; None where none is known.
+        At crank angles ``(nt,)`` [rad], and at places x/length ``(nx,)`` of a system that is known
+        by its shapes; ``(nt, k, n)``, None where none is known.
         """
         if self.relative_deflection is not None:
             return np.asarray(self.relative_deflection(theta), dtype=float)
@@ -222,12 +202,8 @@ class LinearPeriodic:
     def largest_deflection(self, theta: Array, q: Array) -> float | None:
         """Return the largest deflection over the length of its link; None where none is known.
 
-        Parameters
-        ----------
-        theta : ndarray
-            Crank angles [rad], shape ``(nt,)``.
-        q : ndarray
-            Motions, shape ``(nb, nt, n)``; one that is not finite counts for nothing.
+        Of motions ``(nb, nt, n)`` at crank angles ``(nt,)`` [rad]; one that is not finite counts
+        for nothing.
         """
         # Mode shapes at the angles of the motion before serve for the next one.
         before, rows = self.kept.get("deflections", (None, None))
@@ -255,25 +231,19 @@ class LinearPeriodic:
     def spectrum(self, row: int) -> Array:
         """Largest Fourier amplitude of an entry of a term, per harmonic of the period.
 
-        Of length 1 where the term is constant, else as long as it takes; a term that nobody asks
-        about is never sampled.
-
-        Parameters
-        ----------
-        row : int
-            Place of the term among :attr:`terms`.
-
-        Raises
-        ------
-        BadInput
-            If the term is not finite at a sample, or returns a wrong shape for many angles.
+        ``row`` is the term's place among :attr:`terms`.  Of length 1 where it is constant, else as
+        long as it takes; a term that nobody asks about is never sampled.  One that is not finite at
+        a sample, or returns a wrong shape for many angles, is refused.
         """
         known = self._spectrum_of.get(row)
         if known is None:
             term = self.terms[row]
-            shape = (self.size,) * (2 if term.array in MATRICES else 1)
+            shape = self._shape_of(term.array)
             known = self._spectrum_of[row] = term_spectrum(term, shape, self.period)
         return known
+
+    def _shape_of(self, array: str) -> tuple[int, ...]:
+        return (self.size,) * (2 if array in MATRICES else 1)
 
     @cached_property
     def _spectrum_of(self) -> dict[int, Array]:
@@ -291,15 +261,8 @@ class LinearPeriodic:
     def is_damped(self, **axes: ArrayLike) -> bool:
         """Return True where some damping term is not zero at every angle and parameter value.
 
-        Parameters
-        ----------
-        **axes : float or array_like
-            Parameter values that replace the system's own; arrays broadcast.
-
-        Raises
-        ------
-        BadInput
-            If a name is not one of the system's parameters, or a term is not finite.
+        ``axes`` are parameter values that replace the system's own, arrays broadcasting.  Refused
+        are a name that is not one of its parameters, and a term that is not finite.
         """
         scales = self.scale_values(**axes)
         return any(
@@ -312,10 +275,7 @@ class LinearPeriodic:
     def changed_provenance(self, **changes: ArrayLike) -> dict[str, str]:
         """Return the provenance with parameter changes recorded under ``changed``.
 
-        Parameters
-        ----------
-        **changes : float or array_like
-            Parameter values that replace the system's own; of an array its range is told.
+        They are values that replace the system's own; of an array its range is told.
         """
         found = dict(self.provenance)
         told = [found["changed"]] if "changed" in found else []
@@ -327,22 +287,13 @@ class LinearPeriodic:
     def scale_values(self, **changes: ArrayLike) -> Mapping[str, Array]:
         """Return the parameter monomials at the system's parameters, some of them changed.
 
-        Parameters
-        ----------
-        **changes : float or array_like
-            New values by parameter name; arrays broadcast.
-
-        Raises
-        ------
-        BadInput
-            If a name is not one of the system's parameters, or a value is not a number or not
-            within the parameter's limits.
+        New values are by parameter name, arrays broadcasting.  Refused are a name that is not one
+        of the system's parameters, and a value that is not a number or not within its limits.
         """
         unknown = sorted(set(changes) - set(self.parameters))
         if unknown:
-            raise bad(
-                "parameters", unknown, f"some of {sorted(self.parameters)}", "correct the name"
-            )
+            known = f"some of {sorted(self.parameters)}"
+            raise bad("parameters", unknown, known, "correct the name")
         changes = {name: as_numpy(value) for name, value in changes.items()}
         for name, value in changes.items():
             self._within_limits(name, value)
@@ -383,7 +334,7 @@ class LinearPeriodic:
             Shape ``(nt, n, n)``, or ``(nt, n)`` for a vector; zeros where no term belongs to it.
         """
         angles = np.atleast_1d(np.asarray(theta, dtype=float))
-        shape = (self.size,) * (2 if name in MATRICES else 1)
+        shape = self._shape_of(name)
         total = np.zeros((*angles.shape, *shape))
         pace = np.reshape(speed, (-1, *(1,) * len(shape)))
         scales = self.scale_values(**changes)
@@ -406,17 +357,9 @@ class LinearPeriodic:
     def with_terms(self, *terms: Term, scales: Mapping[str, float] | None = None) -> LinearPeriodic:
         """Return the system with more terms, for example modal damping.
 
-        Parameters
-        ----------
-        *terms : Term
-            Terms to add.
-        scales : mapping, optional
-            Values of monomials that the new terms name and the system does not know; they become
-            parameters of the new system.
-
-        Notes
-        -----
-        :meth:`with_geometry` takes the new terms along as they are.
+        ``scales`` are values of monomials that the new terms name and the system does not know;
+        they become parameters of the new system.  :meth:`with_geometry` takes the new terms along
+        as they are.
         """
         extra = dict(scales or {})
         merged = partial(_merged, self.scales, tuple(self.parameters), tuple(extra))
@@ -431,14 +374,8 @@ class LinearPeriodic:
     def with_changed_terms(self, change: Callable[[Term], Term]) -> LinearPeriodic:
         """Return the system with each term changed, for example scaled.
 
-        Parameters
-        ----------
-        change : callable
-            From each term to the one in its place.
-
-        Notes
-        -----
-        :meth:`with_geometry` changes the terms of the other geometry alike.
+        ``change`` takes each term to the one in its place.  :meth:`with_geometry` changes the terms
+        of the other geometry alike.
         """
         return replace(
             self,
@@ -457,10 +394,8 @@ class LinearPeriodic:
     def remade(self, change: Callable[[LinearPeriodic], LinearPeriodic]) -> dict[str, Any]:
         """Return ``rebuild`` and ``remesh`` of the system that a change makes of this one.
 
-        Parameters
-        ----------
-        change : callable
-            From this system, or one made anew of another geometry or mesh, to the changed one.
+        ``change`` takes this system, or one made anew of another geometry or mesh, to the changed
+        one.
         """
         makers = {"rebuild": self.rebuild, "remesh": self.remesh}
         return {
@@ -490,53 +425,33 @@ class LinearPeriodic:
     def remeshed(self, change: Callable[[Structure], Structure]) -> LinearPeriodic:
         """Return the system of a changed structure, its further terms and parameters kept.
 
-        Parameters
-        ----------
-        change : callable
-            From the structure to the changed one.
-
-        Raises
-        ------
-        BadInput
-            If the system tells no other structure.
+        ``change`` takes the structure to the changed one.  A system that tells no other structure
+        is refused.
         """
         if self.remesh is None:
-            raise bad(
-                "system", "one made for its own beams alone", "a linkage", "use linkage_system"
-            )
+            found = "one made for its own beams alone"
+            raise bad("system", found, "a linkage", "use linkage_system")
         return replace(self.remesh(change), parameters=dict(self.parameters))
 
     def with_geometry(self, **changes: float) -> LinearPeriodic:
         """Return the same system with other lengths or ratios, its functions of angle made anew.
 
-        Parameters
-        ----------
-        **changes : float
-            New values by geometry name.
-
-        Raises
-        ------
-        BadInput
-            If the system has no geometry to change, a name is not one of it, its terms were
-            replaced by other means than its own methods, or the mechanism is impossible.
+        New values are by geometry name.  Refused are a system that has no geometry to change, or
+        whose terms were replaced by other means than its own methods, a name that is not one of
+        its geometry, and an impossible mechanism.
         """
         if self.rebuild is None:
-            raise bad(
-                "with_geometry",
-                "a system that is made for one geometry",
-                "one with named geometry, as rod_system makes",
-                "make it anew from its own numbers",
-            )
+            found = "a system that is made for one geometry"
+            fix = "make it anew from its own numbers"
+            raise bad("with_geometry", found, "one with named geometry, as rod_system makes", fix)
         unknown = sorted(set(changes) - set(self.geometry))
         if unknown:
             raise bad("geometry", unknown, f"some of {sorted(self.geometry)}", "correct the name")
         if not self._rebuilds_itself:
-            raise bad(
-                "with_geometry",
-                "terms that are not those that its geometry gives",
-                "a system whose terms only its own methods changed",
-                "use with_changed_terms, or set rebuild=None too",
-            )
+            found = "terms that are not those that its geometry gives"
+            expected = "a system whose terms only its own methods changed"
+            fix = "use with_changed_terms, or set rebuild=None too"
+            raise bad("with_geometry", found, expected, fix)
         made = self.rebuild({**self.geometry, **changes})
         return replace(
             made, parameters=dict(self.parameters), provenance=self.changed_provenance(**changes)
@@ -621,21 +536,20 @@ def _meets(
 def _checked(term: Term, expected: tuple[int, ...], theta: Array) -> Array:
     """Return the values as rows; refuse what is not finite, or of a wrong shape."""
     values = np.asarray(term(theta), dtype=float)
-    where = f"term {term.array} ({term.scale})"
-    if values.shape != (len(theta), *expected):
-        raise bad(
-            where,
-            f"shape {values.shape} for {len(theta)} angles",
-            f"{(len(theta), *expected)}",
-            "make the function return one array per angle",
-        )
+    _require_shape(term, values, (len(theta), *expected), f"for {len(theta)} angles")
     flat = values.reshape(len(values), -1)
     finite = np.all(np.isfinite(flat), axis=1)
     if not np.all(finite):
-        raise bad(
-            where,
-            f"a value that is not finite at crank angle {theta[int(np.argmin(finite))]:.6g}",
-            "finite numbers at every angle",
-            "check the function, its domain and the geometry",
-        )
+        angle = theta[int(np.argmin(finite))]
+        found = f"a value that is not finite at crank angle {angle:.6g}"
+        fix = "check the function, its domain and the geometry"
+        where = f"term {term.array} ({term.scale})"
+        raise bad(where, found, "finite numbers at every angle", fix)
     return flat
+
+
+def _require_shape(term: Term, values: Array, expected: tuple[int, ...], at: str) -> None:
+    if values.shape != expected:
+        where = f"term {term.array} ({term.scale})"
+        fix = "make the function return one array per angle"
+        raise bad(where, f"shape {values.shape} {at}", f"{expected}", fix)

@@ -165,10 +165,7 @@ def speed_span(speed_range: tuple[float, float]) -> tuple[float, float]:
     """Return a rising pair of positive speeds as floats; refuse anything else."""
     values = numbers("speed_range", speed_range)
     if values.shape != (2,) or not np.all(np.isfinite(values)) or not 0 < values[0] < values[1]:
-        raise bad(
-            "speed_range",
-            speed_range,
-            "(low, high) in rad/s with 0 < low < high",
-            "boundaries accumulate at zero: choose a positive lowest speed",
-        )
+        expected = "(low, high) in rad/s with 0 < low < high"
+        fix = "boundaries accumulate at zero: choose a positive lowest speed"
+        raise bad("speed_range", speed_range, expected, fix)
     return float(values[0]), float(values[1])

@@ -16,6 +16,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .chebyshev import length
 from .errors import bad, shown
 from .inputs import is_finite, numbers_in_a_row
 from .sampling import finite_angles, irregular_angles, values_at
@@ -151,7 +152,9 @@ class PeriodicFunction:
                 # Noise reaches a few times higher than it does in the upper half.
                 level = max(4.0 * tail, goal) if tol is None else goal
                 found = _chopped(cls, a, b, level * scale, values, coherent=tol is not None)
-                gap = _gap(f, found, label)
+                # At angles off every grid: samples alone cannot tell 32 theta from 0 theta.
+                theta = irregular_angles(_PROBES)
+                gap = float(np.max(np.abs(values_at(f, theta, label) - found(theta))))
                 # Where f itself cancels, its noise is that of its largest values.
                 if gap <= 1e3 * max(tail, goal) * max(scale, float(np.max(np.abs(values)))):
                     return cls(found.a, found.b, max(found.error, 2.0 * gap))
@@ -292,21 +295,13 @@ def _analyse(samples: Array) -> tuple[Array, Array]:
     """Return the coefficients of the trigonometric interpolant of equidistant samples."""
     n = len(samples)
     spectrum = np.fft.rfft(samples) / n
+    # The mean, and of an even number the highest harmonic, have no sine.
+    plain = [0, -1] if n % 2 == 0 else [0]
     weight = np.full(len(spectrum), 2.0)
-    weight[0] = 1.0
-    if n % 2 == 0 and n > 1:
-        weight[-1] = 1.0
+    weight[plain] = 1.0
     a, b = weight * spectrum.real, -weight * spectrum.imag
-    b[0] = 0.0
-    if n % 2 == 0 and n > 1:
-        b[-1] = 0.0
+    b[plain] = 0.0
     return a, b
-
-
-def _gap(f: Callable[[Array], ArrayLike], found: PeriodicFunction, label: str) -> float:
-    """Compare at angles off every grid: samples alone cannot tell 32 theta from 0 theta."""
-    theta = irregular_angles(_PROBES)
-    return float(np.max(np.abs(values_at(f, theta, label) - found(theta))))
 
 
 def _chopped(
@@ -317,8 +312,7 @@ def _chopped(
     ``coherent`` says that what is dropped is the function's own, not the noise of its evaluation.
     """
     size = np.hypot(a, b)
-    above = np.flatnonzero(size > level)
-    keep = int(above[-1]) + 1 if len(above) else 1
+    keep = length(size, level)
     largest = float(np.max(np.abs(values)))
     rest = size[keep:]
     if coherent:

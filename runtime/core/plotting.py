@@ -62,9 +62,8 @@ def require_writable(target: Path) -> Path:
     import os
 
     if not target.parent.is_dir() or not os.access(target.parent, os.W_OK) or target.is_dir():
-        raise bad(
-            str(target), "a place that cannot be written", "a writable folder", "choose another"
-        )
+        found = "a place that cannot be written"
+        raise bad(str(target), found, "a writable folder", "choose another")
     return target
 
 

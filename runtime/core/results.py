@@ -8,6 +8,7 @@ import os
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
@@ -52,19 +53,17 @@ class DeferredChecks(Mapping[str, Check]):
 
     def __init__(self, make: Callable[[], Mapping[str, Check]]) -> None:
         self._make = make
-        self._made: Mapping[str, Check] | None = None
 
-    @property
+    @cached_property
     def _checks(self) -> Mapping[str, Check]:
-        if self._made is None:
-            # What the maker holds is needed no more.
-            self._made, self._make = self._make(), dict
-        return self._made
+        # What the maker holds is needed no more.
+        checks, self._make = self._make(), dict
+        return checks
 
     @property
     def made(self) -> bool:
         """Whether they are made."""
-        return self._made is not None
+        return "_checks" in vars(self)
 
     def __getitem__(self, name: str) -> Check:
         return self._checks[name]
@@ -195,9 +194,8 @@ class Result:
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the result into ``ax`` (a new one by default) and return the axes."""
-        raise bad(
-            type(self).__name__, "plot()", "a result with a picture", "use its arrays instead"
-        )
+        name, fix = type(self).__name__, "use its arrays instead"
+        raise bad(name, "plot()", "a result with a picture", fix)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the result; the ending chooses npz, json, csv or nc (NetCDF).
@@ -216,9 +214,8 @@ class Result:
         target = Path(path)
         writers = {".npz": _npz, ".json": _json, ".csv": _csv, ".nc": _netcdf}
         if target.suffix not in writers:
-            raise bad(
-                "save", repr(target.suffix), f"an ending of {sorted(writers)}", "rename the file"
-            )
+            expected = f"an ending of {sorted(writers)}"
+            raise bad("save", repr(target.suffix), expected, "rename the file")
         return write_whole(target, writers[target.suffix](self))
 
     def to_xarray(self) -> xarray.Dataset:
@@ -245,9 +242,8 @@ def write_whole(path: Path, content: bytes) -> Path:
     try:
         return _write_whole(path, content)
     except OSError as refusal:
-        raise bad(
-            str(path), refusal.strerror or "an error", "a writable place", "choose another path"
-        ) from refusal
+        found, fix = refusal.strerror or "an error", "choose another path"
+        raise bad(str(path), found, "a writable place", fix) from refusal
 
 
 def _jsonable(value: object) -> Any:
@@ -292,11 +288,7 @@ def _csv(result: Result) -> bytes:
     for own in sorted(axes.values(), key=len, reverse=True):
         if not any(own.items() <= whole.items() for whole in wholes):
             wholes.append(own)
-    blocks = []
-    for whole in wholes:
-        members = {name: arrays[name] for name in arrays if axes[name].items() <= whole.items()}
-        blocks.append(_block(members, axes, whole))
-    return "\n".join(blocks).encode()
+    return "\n".join(_block(arrays, axes, whole) for whole in wholes).encode()
 
 
 def _axes(
@@ -328,8 +320,9 @@ def _block(
     axes: Mapping[str, Mapping[str, int]],
     whole: Mapping[str, int],
 ) -> str:
-    """Return header and rows of arrays that broadcast to the axes of one of them."""
+    """Return header and rows of the arrays that broadcast to the axes of one of them."""
     shape = tuple(whole.values())
+    arrays = {name: arrays[name] for name in arrays if axes[name].items() <= whole.items()}
     columns: dict[str, np.ndarray[Any, Any]] = {}
     for place, label in enumerate(whole):
         if not any(list(axes[name]) == [label] for name in arrays):
@@ -350,9 +343,8 @@ def _dataset(result: Result, *, split: bool) -> xarray.Dataset:
     try:
         import xarray as xr
     except ImportError as missing:
-        raise bad(
-            "to_xarray", "no xarray", "xarray installed", "pip install 'elastolink[data]'"
-        ) from missing
+        fix = "pip install 'elastolink[data]'"
+        raise bad("to_xarray", "no xarray", "xarray installed", fix) from missing
     data = {}
     for name, value in result.arrays().items():
         dims = result.dimensions.get(name)

@@ -84,12 +84,9 @@ def in_order(executor: Executor) -> Callable[..., Iterable[Any]]:
 def check_executor(executor: object) -> None:
     """Refuse what is neither None nor an executor."""
     if executor is not None and not isinstance(executor, Executor):
-        raise bad(
-            "executor",
-            type(executor).__name__,
-            "a concurrent.futures.Executor",
-            "give a pool of threads or processes, or Dask's client.get_executor()",
-        )
+        found, expected = type(executor).__name__, "a concurrent.futures.Executor"
+        fix = "give a pool of threads or processes, or Dask's client.get_executor()"
+        raise bad("executor", found, expected, fix)
 
 
 @contextmanager
@@ -143,12 +140,10 @@ def _pickled(work: Callable[[Any], Any]) -> bytes:
     try:
         return pickle.dumps(work)
     except (pickle.PicklingError, AttributeError, TypeError) as reason:
-        raise bad(
-            "executor",
-            f"a subject or function that cannot be sent to another process ({reason})",
-            "functions of a module, and systems and scenes made of such",
-            "define them at the top of a file, or use a ThreadPoolExecutor",
-        ) from reason
+        found = f"a subject or function that cannot be sent to another process ({reason})"
+        expected = "functions of a module, and systems and scenes made of such"
+        fix = "define them at the top of a file, or use a ThreadPoolExecutor"
+        raise bad("executor", found, expected, fix) from reason
 
 
 @contextmanager

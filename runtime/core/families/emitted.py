@@ -43,8 +43,7 @@ def dropped_names(module: ModuleType, drop: Collection[str]) -> tuple[Any, ...]:
     terms = tuple(sorted(drop))
     if terms not in known:
         raise bad("drop", terms, f"one of {sorted(known)}", "ask for a module without these terms")
-    entry: tuple[Any, ...] = known[terms]
-    return entry
+    return tuple(known[terms])
 
 
 def array_function(module: ModuleType, name: str) -> Callable[..., dict[str, Array]]:
@@ -56,12 +55,8 @@ def array_function(module: ModuleType, name: str) -> Callable[..., dict[str, Arr
     """
     known = getattr(module, "ARRAYS", {})
     if name not in known:
-        raise bad(
-            module.__name__,
-            f"no function {name} of arrays",
-            f"one of {sorted(known)}",
-            "correct it",
-        )
+        found = f"no function {name} of arrays"
+        raise bad(module.__name__, found, f"one of {sorted(known)}", "correct it")
     places: Places = known[name]
     function: Callable[..., object] = getattr(module, name, nothing)
 

@@ -13,7 +13,7 @@ import pytest
 from elastolink.derive.spec import read_manifest
 from elastolink.runtime import recovery
 from elastolink.runtime.cli.explanation import read_cost
-from elastolink.runtime.core import sampling
+from elastolink.runtime.core import trigonometric
 from elastolink.runtime.rigid import evaluation, forces
 from fresh_process import python
 
@@ -87,13 +87,13 @@ def test_a_question_evaluates_the_functions_that_it_needs_alone(question, monkey
     system = el.load_scene(RIG, {"coupler.damping_ratio": 0.01}).system()
     kernels = {name for name in COSTS[FAMILY].functions if name.endswith("_functions")}
     assert kernels > needed | {"acceleration_functions"}
-    called, evaluate = set(), sampling.Remembered.__call__
+    called, evaluate = set(), trigonometric.Remembered.__call__
 
     def noting(kernel, theta):
         called.add(kernel._function.args[0].__name__)
         return evaluate(kernel, theta)
 
-    monkeypatch.setattr(sampling.Remembered, "__call__", noting)
+    monkeypatch.setattr(trigonometric.Remembered, "__call__", noting)
     ask(system)
     assert called == needed
 

@@ -13,7 +13,7 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.sampling import Remembered
+from ..core.trigonometric import Remembered
 from ..linkages.linkage import PointMotion
 from .elements import ElementArrays, element_arrays
 from .structure import Beam, PlacedElement, Structure

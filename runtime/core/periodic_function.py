@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from .chebyshev import length
 from .errors import bad, shown
 from .inputs import is_finite, numbers_in_a_row
-from .sampling import finite_angles, irregular_angles, values_at
+from .trigonometric import finite_angles, irregular_angles, values_at
 
 Array = NDArray[np.float64]
 

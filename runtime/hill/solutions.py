@@ -22,7 +22,7 @@ from ..core.errors import BadInput, bad
 from ..core.inputs import is_one_of
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, Result, provenance
-from ..core.sampling import finite_angles
+from ..core.trigonometric import finite_angles
 from .bloch import BEYOND, effective_operator, wave_columns
 from .boundaries import hill_boundaries
 from .checks import EPS, LARGEST, Array, Complex, check_regions

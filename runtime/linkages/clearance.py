@@ -19,11 +19,18 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import Problem, bad, refuse, shown
 from ..core.inputs import is_finite, is_one_of, require_kind
 from ..core.plotting import Axes, axes_or_new
-from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
+from ..core.results import (
+    BROADCAST,
+    Check,
+    DeferredChecks,
+    DeferredField,
+    DeferredGroup,
+    Result,
+    provenance,
+)
 from .four_bar import FourBar
 from .linkage import EPS, JOINTS, Array, finite_array, require_linkage
 from .quick_return import QuickReturn

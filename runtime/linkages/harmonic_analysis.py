@@ -14,8 +14,7 @@ from ..core.inputs import require_whole
 from ..core.periodic_function import PeriodicFunction
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
-from ..core.sampling import irregular_angles, values_at
-from ..core.trigonometric import GOLDEN
+from ..core.trigonometric import GOLDEN, irregular_angles, values_at
 from .linkage import EPS, TURN, Array
 
 Function = Callable[[Array], ArrayLike]

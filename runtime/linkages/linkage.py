@@ -14,11 +14,10 @@ from typing import Any, ClassVar, Literal, Self, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.deferred import Deferred, DeferredField
 from ..core.errors import Problem, bad
 from ..core.inputs import is_finite, is_one_of, numbers
 from ..core.plotting import Axes, axes_or_new
-from ..core.results import Check, DeferredChecks, Result, provenance
+from ..core.results import Check, Deferred, DeferredChecks, DeferredField, Result, provenance
 from ..core.twofold import Twofold
 
 Array: TypeAlias = NDArray[np.float64]

@@ -22,13 +22,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.collocation import legendre_integrals
-from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import LINEAR_RANGE, LinearRangeWarning, bad, warn_of_large_deflection
 from ..core.families import Array, LinearPeriodic
 from ..core.inputs import is_one_of, numbers, require_between
 from ..core.maxima import largest_size
 from ..core.progress import bar
-from ..core.results import Check, DeferredChecks, Result, provenance
+from ..core.results import Check, DeferredChecks, DeferredField, DeferredGroup, Result, provenance
 from .equation import Equation, equation_of
 from .multipliers import floquet_multipliers
 from .ring import solve_ring

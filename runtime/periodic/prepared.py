@@ -11,11 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.deferred import DeferredGroup
 from ..core.errors import LINEAR_RANGE, bad
 from ..core.families import Array, LinearPeriodic
 from ..core.inputs import numbers, require_between, require_whole
-from ..core.results import Check, DeferredChecks, provenance
+from ..core.results import Check, DeferredChecks, DeferredGroup, provenance
 from .compiled import CompiledTable, require_numba
 from .equation import SPEED_POWER, Equation, SampledSystem, at_geometry, equation_of, sampled
 from .motion import Trajectory, simulate, start_values

@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 from ..beams.assembly import Array
 from ..beams.element_forms import ElementForms
 from ..beams.recovery_forms import LinearForm
-from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import LINEAR_RANGE, bad, warn_of_large_deflection
 from ..core.families import LinearPeriodic
-from ..core.results import Check, Result, provenance
+from ..core.results import Check, DeferredField, DeferredGroup, Result, provenance
 from .beam_motion import BeamMotion, chunks
 
 # Fields that are computed when they are first looked at.

@@ -13,12 +13,12 @@ from numpy.typing import ArrayLike, NDArray
 from ..beams.assembly import Array
 from ..beams.element_forms import ElementForms, required_structure
 from ..beams.recovery_forms import LinearForm, stacked
-from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import Problem, bad, refuse
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite, numbers_in_a_row
 from ..core.maxima import polished
 from ..core.plotting import Axes, axes_or_new
+from ..core.results import DeferredField, DeferredGroup
 from ..core.trigonometric import resampled
 from .beam_forces import (
     METHODS,

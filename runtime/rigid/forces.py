@@ -10,11 +10,10 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.deferred import Deferred, DeferredField
 from ..core.errors import bad
 from ..core.inputs import names_in_a_row
 from ..core.plotting import Axes, axes_or_new
-from ..core.results import BROADCAST, DeferredChecks, Result, provenance
+from ..core.results import BROADCAST, Deferred, DeferredChecks, DeferredField, Result, provenance
 from ..linkages.linkage import JOINTS, TURN, Array, checked_drive
 from .evaluation import FRAME_FORCE, Evaluation, Output
 from .machine import Machine, require_machine

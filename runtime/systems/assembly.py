@@ -15,7 +15,7 @@ from ..core.errors import bad
 from ..core.families import LinearPeriodic, Term
 from ..core.families.emitted import check_module, dropped_names
 from ..core.inputs import require_kind
-from ..core.sampling import Remembered
+from ..core.trigonometric import Remembered
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import bad
 from ..inputs import is_finite
-from ..sampling import Remembered
+from ..trigonometric import Remembered
 from .linear_periodic import Array, LinearPeriodic, Term, require_system
 
 

@@ -58,12 +58,9 @@ class Problem:
 
 
 class BadInput(ElastolinkError, ValueError):  # noqa: N818 - reads as what it is
-    """An input is unusable; ``problems`` holds all that is wrong, the message twenty of them.
+    """An input is unusable; ``problems``, at least one, are all that is wrong.
 
-    Parameters
-    ----------
-    *problems : Problem
-        At least one problem.
+    The message holds twenty of them.
     """
 
     def __init__(self, *problems: Problem) -> None:

@@ -106,12 +106,9 @@ def _outdated(folder: Path, entry: Entry) -> bool:
 def _refuse_edited(folder: Path, entry: Entry) -> None:
     path = folder / f"{entry.module}.py"
     if hashlib.sha256(path.read_bytes()).hexdigest() != entry.text:
-        raise bad(
-            f"module {path}",
-            "a file that was changed by hand",
-            "the text that was emitted",
-            "move it away and run regenerate-equations again",
-        )
+        found = "a file that was changed by hand"
+        fix = "move it away and run regenerate-equations again"
+        raise bad(f"module {path}", found, "the text that was emitted", fix)
 
 
 def _command(spec: ModelSpec, folders: Sequence[str | Path]) -> str:
@@ -130,9 +127,8 @@ def _command(spec: ModelSpec, folders: Sequence[str | Path]) -> str:
         command = f"regenerate-equations --model FILE.py, with the file of {spec.mechanism}"
     target = (checkout() or cache_folder()).resolve()
     if target not in {folder.resolve() for folder in search_path(folders)}:
-        command = command.replace(
-            "equations", f"equations --out {shlex.quote(str(cache_folder()))}", 1
-        )
+        out = shlex.quote(str(cache_folder()))
+        command = command.replace("equations", f"equations --out {out}", 1)
     return command
 
 

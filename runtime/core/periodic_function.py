@@ -76,24 +76,13 @@ class PeriodicFunction:
 
     @classmethod
     def from_samples(cls, values: ArrayLike) -> PeriodicFunction:
-        """Interpolate samples at the angles 2 pi j / N, j = 0 ... N - 1.
+        """Interpolate samples ``(N,)`` at the angles 2 pi j / N, j = 0 ... N - 1.
 
-        Parameters
-        ----------
-        values : array_like, shape (N,)
-            One period, the end point not repeated.  For even N the highest harmonic, N/2, has a
-            cosine alone (its sine vanishes at every sample).
-
-        Returns
-        -------
-        PeriodicFunction
-            Its ``error`` is an estimate of what the samples cannot show: the energy of the highest
-            eighth of the harmonics, taken as the size of what was folded down, and round-off.
-
-        Raises
-        ------
-        BadInput
-            If the samples are not a non-empty one-dimensional array of finite numbers.
+        They are one period, the end point not repeated.  For even N the highest harmonic, N/2, has
+        a cosine alone (its sine vanishes at every sample).  The ``error`` is an estimate of what
+        the samples cannot show: the energy of the highest eighth of the harmonics, taken as the
+        size of what was folded down, and round-off.  Samples that are not a non-empty
+        one-dimensional array of finite numbers raise `BadInput`.
         """
         samples = numbers_in_a_row("PeriodicFunction.values", values)
         a, b = _analyse(samples)
@@ -160,12 +149,10 @@ class PeriodicFunction:
                     return cls(found.a, found.b, max(found.error, 2.0 * gap))
                 tail, small = max(tail, gap / scale), False
             if count >= _MOST:
-                raise bad(
-                    f"function {label!r}",
-                    f"a Fourier tail of {tail:.1e} of its largest coefficient at {count} samples",
-                    f"at most {goal:.1e}",
-                    "give a smooth function of period 2 pi, or a larger tol",
-                )
+                given = f"a Fourier tail of {tail:.1e} of its largest coefficient"
+                given += f" at {count} samples"
+                fix = "give a smooth function of period 2 pi, or a larger tol"
+                raise bad(f"function {label!r}", given, f"at most {goal:.1e}", fix)
             count, before, settled = 2 * count, tail, small
 
     @property
@@ -235,15 +222,8 @@ class PeriodicFunction:
     def truncated(self, tol: float = 0.0) -> PeriodicFunction:
         """Drop the highest harmonics whose amplitudes together are at most ``tol``.
 
-        Parameters
-        ----------
-        tol : float
-            Largest absolute change of the function that is allowed; 0 drops exact zeros alone.
-
-        Returns
-        -------
-        PeriodicFunction
-            ``error`` is enlarged by the sum of the amplitudes dropped, a bound of the change.
+        That is the largest absolute change of the function that is allowed; 0 drops exact zeros
+        alone.  ``error`` is enlarged by the sum of the amplitudes dropped, a bound of the change.
         """
         if not (np.isfinite(tol) and tol >= 0.0):
             raise bad("tol", tol, "a finite number >= 0", "correct it")

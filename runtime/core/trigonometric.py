@@ -61,19 +61,13 @@ def values_at(f: Callable[[Array], ArrayLike], theta: Array, name: str) -> Array
     if values.shape == ():
         values = np.full(theta.shape, float(values))
     if values.shape != theta.shape:
-        raise bad(
-            f"function {name!r}",
-            f"values of shape {values.shape} for angles of shape {theta.shape}",
-            "one value per angle",
-            "vectorise the function",
-        )
+        found = f"values of shape {values.shape} for angles of shape {theta.shape}"
+        raise bad(f"function {name!r}", found, "one value per angle", "vectorise the function")
     if not np.all(np.isfinite(values)):
-        raise bad(
-            f"function {name!r}",
-            f"a value that is not finite at theta = {theta[~np.isfinite(values)][0]:.6g} rad",
-            "finite values over the whole turn",
-            "check the geometry",
-        )
+        angle = theta[~np.isfinite(values)][0]
+        found = f"a value that is not finite at theta = {angle:.6g} rad"
+        expected = "finite values over the whole turn"
+        raise bad(f"function {name!r}", found, expected, "check the geometry")
     return values
 
 

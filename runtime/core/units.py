@@ -205,12 +205,8 @@ def _factor(unit: str, dimension: str, where: str, text: str) -> Decimal:
         raise _wrong_dimension(found, dimension, where, text)
     if dimension == "frequency" and "angle" not in found.counts:
         if "cycles" not in found.counts:
-            raise bad(
-                where,
-                repr(text),
-                "a rate that says whether it counts cycles or radians",
-                "write Hz, rpm or rad/s instead of 1/s",
-            )
+            expected = "a rate that says whether it counts cycles or radians"
+            raise bad(where, repr(text), expected, "write Hz, rpm or rad/s instead of 1/s")
         return found.factor * _TURN
     return found.factor
 
@@ -276,24 +272,17 @@ def _write_like(dimension: str) -> str:
 
 
 def _not_a_quantity(value: object, dimension: str, where: str) -> BadInput:
-    comma = isinstance(value, str) and _COMMA.match(value)
-    fix = f"write a point for the comma: '{_point(value)}'" if comma else _write_like(dimension)
+    fix = _write_like(dimension)
+    if isinstance(value, str) and _COMMA.match(value):
+        point = printable(value).replace(",", ".", 1)[:60]
+        fix = f"write a point for the comma: '{point}'"
     return bad(where, shown(value), expected(dimension), fix)
 
 
-def _point(text: object) -> str:
-    return printable(str(text)).replace(",", ".", 1)[:60]
-
-
 def _unreadable(unit: str, where: str, text: str) -> BadInput:
-    return bad(
-        where,
-        shown(text),
-        "one number and one unit",
-        "give one value, no range"
-        if unit.startswith(":")
-        else f"spell the unit {shown(unit)} with names, *, / and ** alone",
-    )
+    fix = f"spell the unit {shown(unit)} with names, *, / and ** alone"
+    fix = "give one value, no range" if unit.startswith(":") else fix
+    return bad(where, shown(text), "one number and one unit", fix)
 
 
 def _unknown_unit(name: str, where: str, text: str) -> Problem:
@@ -311,12 +300,9 @@ def _wrong_dimension(found: _Unit, dimension: str, where: str, text: str) -> Bad
     per_gravity = {**found.powers, "[length]": found.powers.get("[length]", 0) - 1}
     per_gravity["[time]"] = found.powers.get("[time]", 0) + 2
     if {base: power for base, power in per_gravity.items() if power} == _powers(dimension):
-        return bad(
-            where,
-            f"{shown(text)}, which is a weight",
-            expected(dimension),
-            "a weight divided by gravity is a mass: write lb instead of lbf, or divide by g",
-        )
+        told = f"{shown(text)}, which is a weight"
+        fix = "a weight divided by gravity is a mass: write lb instead of lbf, or divide by g"
+        return bad(where, told, expected(dimension), fix)
     told = f"{shown(text)}, of dimension {_in_words(found.powers)}"
     return bad(where, told, expected(dimension), _write_like(dimension))
 

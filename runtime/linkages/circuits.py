@@ -40,7 +40,6 @@ class Taylor:
     c: Complex
 
     def __add__(self, other: Taylor | complex) -> Taylor:
-        """Return the sum."""
         if isinstance(other, Taylor):
             return Taylor(self.c + other.c)
         total = self.c.copy()
@@ -50,19 +49,15 @@ class Taylor:
     __radd__ = __add__
 
     def __neg__(self) -> Taylor:
-        """Return the series with its sign changed."""
         return Taylor(-self.c)
 
     def __sub__(self, other: Taylor | complex) -> Taylor:
-        """Return the difference."""
         return self + (-other)
 
     def __rsub__(self, other: complex) -> Taylor:
-        """Return a number less the series."""
         return -self + other
 
     def __mul__(self, other: Taylor | complex) -> Taylor:
-        """Return the product."""
         if not isinstance(other, Taylor):
             return Taylor(self.c * other)
         out = self.c[0] * other.c
@@ -73,7 +68,6 @@ class Taylor:
     __rmul__ = __mul__
 
     def __truediv__(self, other: Taylor | complex) -> Taylor:
-        """Return the quotient."""
         if not isinstance(other, Taylor):
             return Taylor(self.c / other)
         out = np.zeros_like(self.c)
@@ -140,8 +134,7 @@ class Circuit:
     @cached_property
     def limits(self) -> Limits:
         """Where the loop can close."""
-        limits: Limits = self.linkage.limits
-        return limits
+        return self.linkage.limits
 
     @cached_property
     def swings(self) -> tuple[bool, bool]:
@@ -162,17 +155,13 @@ class Circuit:
 
     def check(self) -> None:
         """Raise BadInput for a change point or a circuit that the linkage has not."""
-        limits = self.limits
         if self.linkage.mechanism == "quick_return":
             # A block that leaves the rod has no closed motion.
             self.linkage.require_full_turn()
-        if limits.q1 == 0 or limits.one_less_q2 == 0:
-            raise bad(
-                type(self.linkage).__name__,
-                "a change point: the links come into one line and may leave it two ways",
-                "a linkage whose circuits do not meet",
-                "change a length by a little",
-            )
+        if self.limits.q1 == 0 or self.limits.one_less_q2 == 0:
+            kind, fix = type(self.linkage).__name__, "change a length by a little"
+            found = "a change point: the links come into one line and may leave it two ways"
+            raise bad(kind, found, "a linkage whose circuits do not meet", fix)
         if not is_whole(self.number, 0, self.count - 1):
             has = f"0 to {self.count - 1}" if self.count > 1 else "0, the only one"
             raise bad("circuit", shown(self.number), has, "choose another circuit")

@@ -33,7 +33,6 @@ from .slider_crank import SliderCrank
 Category = Literal["Grashof", "non-Grashof", "change point"]
 
 LINKS = ("frame", "crank", "coupler", "follower")
-_ROLES = ("frame", "input", "coupler", "output")
 
 
 @dataclass(frozen=True)
@@ -52,25 +51,23 @@ class BarkerClass:
 
 def _table() -> tuple[BarkerClass, ...]:
     shapes = (
-        ("crank-crank-crank", "CCC", "double crank (drag link)"),
-        ("crank-rocker-rocker", "CRR", "crank rocker"),
-        ("rocker-crank-rocker", "RCR", "double rocker with turning coupler"),
-        ("rocker-rocker-crank", "RRC", "rocker crank"),
+        ("frame", "crank-crank-crank", "CCC", "double crank (drag link)"),
+        ("input", "crank-rocker-rocker", "CRR", "crank rocker"),
+        ("coupler", "rocker-crank-rocker", "RCR", "double rocker with turning coupler"),
+        ("output", "rocker-rocker-crank", "RRC", "rocker crank"),
     )
-    grashof: list[tuple[Any, ...]] = []
-    others: list[tuple[Any, ...]] = []
-    change: list[tuple[Any, ...]] = []
-    for role, (kind, letters, called) in zip(_ROLES, shapes, strict=True):
-        i, least = len(others) + 1, f"{role} shortest"
+    grashof, others, change = list[Any](), list[Any](), list[Any]()
+    for i, (role, kind, letters, called) in enumerate(shapes, start=1):
+        least, name = f"{role} shortest", f"Class {i} rocker-rocker-rocker"
         grashof.append(("Grashof", least, i, f"Grashof {kind}", f"G{letters}", called))
-        name = f"Class {i} rocker-rocker-rocker"
         others.append(("non-Grashof", f"{role} longest", i, name, f"RRR{i}", "triple rocker"))
         name, also = f"Change point {kind}", f"{called} at a change point"
         change.append(("change point", least, i, name, f"CP{letters}", also))
-    pairs, equal = "two pairs of equal links", "four equal links"
-    two, three = "parallelogram linkage or kite", "rhombus linkage"
+    pairs, two = "two pairs of equal links", "parallelogram linkage or kite"
     change.append(("change point", pairs, 5, "Double change point", "CP2X", two))
-    change.append(("change point", equal, 6, "Triple change point", "CP3X", three))
+    change.append(
+        ("change point", "four equal links", 6, "Triple change point", "CP3X", "rhombus linkage")
+    )
     rows = [*grashof, *others, *change]
     return tuple(BarkerClass(number, *row) for number, row in enumerate(rows, start=1))
 
@@ -132,8 +129,11 @@ _CONDITIONS = tuple(
     f"frame + {beside} = {' + '.join(link for link in LINKS[1:] if link != beside)}"
     for beside in LINKS[1:]
 )
-_ROUNDED = 2.0**-53
-_NORM = "distances over the sum of lengths, absolute, worst"
+_ERROR: Mapping[str, Any] = {
+    "error": 2.0**-53,
+    "error_norm": "distances over the sum of lengths, absolute, worst",
+    "error_kind": "bound",
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -410,9 +410,7 @@ def _four_bar(linkage: FourBar, driven: Input, tolerance: Fraction) -> Classific
         },
         tolerance=float(tolerance),
         method="signs of three sums of links, in exact arithmetic",
-        error=_ROUNDED,
-        error_norm=_NORM,
-        error_kind="bound",
+        **_ERROR,
         provenance=provenance({f"links.{k}": repr(v) for k, v in lengths.items()}),
     )
 
@@ -440,15 +438,14 @@ def _signs(
     return signs, least
 
 
-def _inversions(signs: Sequence[int]) -> tuple[str, str, str, str]:
+def _inversions(signs: Sequence[int]) -> list[str]:
     """Return the symbols of the four inversions, the frame going round in the order of the links.
 
     The sums of an inversion are those of the linkage in another order, some with their sign turned.
     """
     two, three, four = signs
     turned = (signs, (-four, -three, two), (-two, three, -four), (four, -three, -two))
-    one, other, third, last = (SYMBOLS[number_of_signs(each)] for each in turned)
-    return one, other, third, last
+    return [SYMBOLS[number_of_signs(each)] for each in turned]
 
 
 def _slider_crank(linkage: SliderCrank, tolerance: Fraction) -> SlidingClassification:
@@ -520,8 +517,6 @@ def _sliding(
         tolerance=float(tolerance),
         **found,
         method="signs of sums of lengths, in exact arithmetic",
-        error=_ROUNDED,
-        error_norm=_NORM,
-        error_kind="bound",
+        **_ERROR,
         provenance=provenance({f"links.{name}": repr(size) for name, size in lengths.items()}),
     )

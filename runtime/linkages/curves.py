@@ -117,19 +117,10 @@ class CouplerCurve(Result):
     def cognates(self) -> tuple[Cognate, Cognate]:
         """Return the two other four-bars that trace the path (Roberts and Chebyshev).
 
-        Returns
-        -------
-        tuple of Cognate
-            The first has its frame between A and the third focus, its crank parallel to the line
-            from B to the tracing point; the second between D and the third focus.
+        The first has its frame between A and the third focus, its crank parallel to the line from B
+        to the tracing point; the second between D and the third focus.  What is no path of a
+        four-bar's coupler, or of a joint of it, raises `BadInput`.
 
-        Raises
-        ------
-        BadInput
-            If this is no path of a four-bar's coupler, or the point is a joint of it.
-
-        Notes
-        -----
         With u the direction of the coupler, g the point in it, k = g/l3: A + g u is one corner of a
         parallelogram A-B-P, and A + g u + k l2 exp(i theta2) keeps the distance |k| l4 from the
         third focus k l1.
@@ -285,9 +276,8 @@ class _Trace:
         s = np.linspace(0.1, 6.2, 64)
         moved = np.max(np.abs(self.series(s, 1).derivative(1)))
         if moved <= 8 * EPS * self.size:
-            raise bad(
-                "along, across", "the pivot of the link", "a point that moves", "choose another"
-            )
+            found = "the pivot of the link"
+            raise bad("along, across", found, "a point that moves", "choose another")
 
     def doubles(self, stops: Array) -> Doubles:
         """Return the double points; on a line, an arc or a circle about a joint nothing crosses."""
@@ -499,9 +489,7 @@ def sextic_residual(lengths: Mapping[str, float], place: complex, points: Comple
     Eliminating u by |u| = 1 leaves |M w conj(d) + N p conj(g)|^2 = 4 Im(conj(p) g w conj(d))^2, of
     degree six in the coordinates of p.
     """
-    f, crank, coupler, follower = (
-        lengths[name] for name in ("frame", "crank", "coupler", "follower")
-    )
+    f, crank, coupler, follower = (lengths[name] for name in FourBar.names)
     rest = coupler - place
     w = points - f
     m = np.abs(points) ** 2 + abs(place) ** 2 - crank**2
@@ -567,11 +555,5 @@ def _cognate(
     # Of two ranges of the crank the upper one comes first; a crank that turns has its assembly.
     circuit = int(not upper) if all(motion.swings) else 0
     place = point * abs(coupler) / coupler
-    return Cognate(
-        linkage,
-        place.real,
-        place.imag,
-        np.array([pivot.real, pivot.imag]),
-        float(np.angle(frame)),
-        circuit,
-    )
+    turn = float(np.angle(frame))
+    return Cognate(linkage, place.real, place.imag, planar(pivot), turn, circuit)

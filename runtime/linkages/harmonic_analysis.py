@@ -99,8 +99,7 @@ class Harmonics(Result):
         ax.bar(m + 0.2, self.b[1:], 0.38, color="tab:orange", label="sine $b_m$")
         ax.axhline(0.0, color="0.4", lw=0.8)
         growth = f", growing by {self.secular:g} per radian" if self.secular else ""
-        ax.set_title(f"{self.name}: mean {self.a[0]:.6g}{growth}")
-        ax.set_xlabel("harmonic")
+        ax.set(title=f"{self.name}: mean {self.a[0]:.6g}{growth}", xlabel="harmonic")
         if self.order <= 24:
             ax.set_xticks(m)
         ax.legend()
@@ -275,12 +274,9 @@ def _without_growth(f: Function, name: str) -> tuple[Callable[[Array], Array], f
     gap = abs(growth - turns * TURN)
     # A gap over one turn up to this part of the function's size is noise, and enters the error.
     if gap > 1e-5 * max(float(np.max(np.abs(ends))), 5e-324):
-        raise bad(
-            f"function {name!r}",
-            f"a change of {growth:.6g} over one turn",
-            "a function of period 2 pi, or an angle that grows by whole turns",
-            "check its period, or take off what grows",
-        )
+        found = f"a change of {growth:.6g} over one turn"
+        expected = "a function of period 2 pi, or an angle that grows by whole turns"
+        raise bad(f"function {name!r}", found, expected, "check its period, or take off what grows")
 
     def periodic(theta: Array) -> Array:
         values = values_at(f, theta, name)

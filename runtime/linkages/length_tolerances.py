@@ -72,14 +72,9 @@ class Tolerances(Result):
     model: Parametric = field(repr=False)
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "theta2": ("angle",),
-        "omega2": ("angle",),
-        "alpha2": ("angle",),
+        **dict.fromkeys(("theta2", "omega2", "alpha2"), ("angle",)),
         "tolerance": ("parameter",),
-        "nominal": ("output", "angle"),
-        "error": ("output", "angle"),
-        "worst_case": ("output", "angle"),
-        "root_sum_square": ("output", "angle"),
+        **dict.fromkeys(("nominal", "error", "worst_case", "root_sum_square"), ("output", "angle")),
         "sensitivity": ("output", "parameter", "angle"),
     }
     exported: ClassVar[tuple[str, ...]] = ("worst_case", "root_sum_square")
@@ -111,13 +106,7 @@ class Tolerances(Result):
         return np.square(self.deviations / np.where(total > 0.0, total, 1.0))
 
     def place(self, output: str) -> int:
-        """Return the place of an output on the first axis.
-
-        Raises
-        ------
-        BadInput
-            If there is no such output.
-        """
+        """Return the place of an output on the first axis; `BadInput` where there is none."""
         if output not in self.outputs:
             known = f"one of {', '.join(self.outputs)}"
             raise bad("output", repr(output), known, "choose one; forces need a machine")
@@ -126,10 +115,7 @@ class Tolerances(Result):
     def by(self, output: str, parameter: str) -> Array:
         """Return the derivative of an output by a parameter, shape (...).
 
-        Raises
-        ------
-        BadInput
-            If there is no such output or parameter.
+        An output or parameter that there is not raises `BadInput`.
         """
         if parameter not in self.parameters:
             known = f"one of {', '.join(self.parameters)}"
@@ -139,10 +125,7 @@ class Tolerances(Result):
     def unit(self, output: str) -> str:
         """Return the unit of an output; rates without a crank speed are over the crank's.
 
-        Raises
-        ------
-        BadInput
-            If there is no such output.
+        An output that there is not raises `BadInput`.
         """
         return self.model.unit(self.outputs[self.place(output)])
 
@@ -172,9 +155,8 @@ class Tolerances(Result):
             If a number is out of range or the distribution is unknown.
         """
         if distribution not in _SPREADS:
-            raise bad(
-                "distribution", repr(distribution), f"one of {sorted(_SPREADS)}", "choose one"
-            )
+            known = f"one of {sorted(_SPREADS)}"
+            raise bad("distribution", repr(distribution), known, "choose one")
         for name, number, fewest in (("samples", samples, 2), ("seed", seed, 0)):
             if not is_whole(number, fewest):
                 raise bad(name, repr(number), f"an integer of at least {fewest}", "correct it")
@@ -230,17 +212,8 @@ class Tolerances(Result):
     def plot(self, ax: Axes | None = None, output: str | None = None) -> Axes:
         """Draw the error band of an output against the crank angle.
 
-        Parameters
-        ----------
-        ax : Axes, optional
-            Where to draw.
-        output : str, optional
-            By default the angle of the follower or the rod, or the slider's place.
-
-        Raises
-        ------
-        BadInput
-            If there is no such output, or the crank angles are not a one-dimensional array.
+        By default that of the angle of the follower or the rod, or the slider's place.  An output
+        that there is not, and crank angles that are not a one-dimensional array, raise `BadInput`.
         """
         if self.theta2.ndim != 1:
             shape = f"crank angles of shape {self.theta2.shape}"
@@ -248,11 +221,7 @@ class Tolerances(Result):
         drawn = ("theta4", "position", "theta3")
         name = output or next(name for name in drawn if name in self.outputs)
         row, unit = self.place(name), self.unit(name)
-        factor = 1.0
-        if unit == "rad":
-            factor, unit = 1e3, "mrad"
-        elif unit == "m":
-            factor, unit = 1e3, "mm"
+        factor, unit = (1e3, f"m{unit}") if unit in ("rad", "m") else (1.0, unit)
         ax = axes_or_new(ax)
         order = np.argsort(self.theta2)
         degrees = np.degrees(self.theta2[order])
@@ -404,12 +373,10 @@ def _require_reach(linkage: Linkage, sizes: Mapping[str, float], theta: Array) -
     worst = int(np.argmin(margins))
     angle = np.ravel(theta)[worst : worst + 1]
     blamed = max(named, key=lambda name: float(left({**sizes, name: 0.0}, angle)[0]))
-    raise bad(
-        f"tolerance[{blamed!r}]",
-        f"a linkage within the tolerances that cannot reach {angle[0]:.6g} rad, or folds",
-        f"tolerances that leave {-margins[worst]:.3g} m more to the fold",
-        f"narrow them, that of the {blamed} first, or keep theta farther from the fold",
-    )
+    found = f"a linkage within the tolerances that cannot reach {angle[0]:.6g} rad, or folds"
+    expected = f"tolerances that leave {-margins[worst]:.3g} m more to the fold"
+    fix = f"narrow them, that of the {blamed} first, or keep theta farther from the fold"
+    raise bad(f"tolerance[{blamed!r}]", found, expected, fix)
 
 
 def _remainder(model: Parametric, sizes: Mapping[str, float], slopes: dict[str, Array]) -> Array:
@@ -583,8 +550,8 @@ def _trial_checks(
     nominal: Tolerances, shift: Array, spread: Array, expected: Array, kept: int
 ) -> dict[str, Check]:
     """Compare with the first order: within the statistical error and the error."""
-    # |Z| exceeds z with a chance below exp(-z^2/2); every output and angle is one comparison.
-    # Chance that one of all the comparisons fails where both sides are right.
+    # |Z| exceeds z with a chance below exp(-z^2/2); every output and angle is one comparison, and
+    # 1e-6 the chance that one of them all fails where both sides are right.
     quantile = math.sqrt(2.0 * math.log(max(spread.size, 1) / 1e-6))
     axes = tuple(range(1, nominal.nominal.ndim))
     size = np.max(np.abs(nominal.nominal), axis=axes, initial=0.0, keepdims=True)
@@ -595,10 +562,8 @@ def _trial_checks(
     )
     off_mean = np.abs(shift) / (quantile * spread / math.sqrt(kept) + allowed)
     return {
-        "spread within its statistical error and the bound": Check(
-            float(np.max(off_spread, initial=0.0)), 1.0
-        ),
-        "mean within its statistical error and the bound": Check(
-            float(np.max(off_mean, initial=0.0)), 1.0
-        ),
+        f"{what} within its statistical error and the bound": Check(
+            float(np.max(off, initial=0.0)), 1.0
+        )
+        for what, off in (("spread", off_spread), ("mean", off_mean))
     }

@@ -68,10 +68,8 @@ class Parametric:
         values, slopes = {}, {}
         for name, number in self.evaluate(ahead if count else numbers).items():
             full = np.broadcast_to(number, (max(count, 1), *batch))
-            values[name], slopes[name] = (
-                full[0].real.copy(),
-                full[:count].imag / steps.reshape(rows),
-            )
+            values[name] = full[0].real.copy()
+            slopes[name] = full[:count].imag / steps.reshape(rows)
         return values, slopes
 
     def _size(self, name: str) -> float:
@@ -95,17 +93,11 @@ class Parametric:
     def _motion(self, theta: Any, numbers: Mapping[str, Any], moved: Mapping[str, Any]) -> Motion:
         """Return what :meth:`_moved` has computed as a motion, for points of the links."""
         lengths = {name: numbers[name] for name in self.linkage.names}
-        one = self.linkage
-        linkage: Any = SimpleNamespace(lengths=lengths, links=one.links)
+        linkage: Any = SimpleNamespace(lengths=lengths, links=self.linkage.links)
         drive: Any = {"omega2": self.speed, "alpha2": self.acceleration}
+        result: Any = {"method": "", "error": 0.0, "error_norm": ""}
         return self.linkage.moves(
-            linkage=linkage,
-            theta2=np.asarray(theta),
-            **drive,
-            **moved,
-            method="",
-            error=0.0,
-            error_norm="",
+            linkage=linkage, theta2=np.asarray(theta), **drive, **moved, **result
         )
 
 

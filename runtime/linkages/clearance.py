@@ -315,9 +315,8 @@ def _quick_return(linkage: QuickReturn, link: str) -> Route:
     def position(theta: Array) -> CrankPosition:
         motion = linkage.motion(theta)
         slide = np.sqrt((frame - crank) ** 2 + 4.0 * frame * crank * np.cos(theta / 2.0) ** 2)
-        return CrankPosition(
-            slide, 5.0 * EPS * slide, motion.theta4, motion.error, 4.0 * EPS * slide
-        )
+        error, unsure = 5.0 * EPS * slide, 4.0 * EPS * slide
+        return CrankPosition(slide, error, motion.theta4, motion.error, unsure)
 
     def candidates(radius: float, guide: float) -> tuple[float, ...]:
         return (radius + guide,)
@@ -457,12 +456,8 @@ class ClearanceRange(Result):
     def plot(self, ax: Axes | None = None, *, label: str | None = None) -> Axes:
         """Draw the width against the crank angle, as in Smith's Fig. 10.
 
-        Parameters
-        ----------
-        ax : Axes, optional
-            Those of another clearance, for several curves.
-        label : str, optional
-            By default the clearances.
+        The axes may be those of another clearance, for several curves; the label is by default the
+        clearances.
         """
         ax = axes_or_new(ax)
         if label is None:
@@ -740,9 +735,8 @@ def _missing(task: _Task, sizes: Mapping[str, float], pin: Any, end: Array) -> A
         return _nearest(height - (play + guide), height + (play + guide))
     along, coupler = end - pin.real, sizes["coupler"]
     near, far = np.maximum(np.abs(gap) - guide, 0.0), np.abs(gap) + guide
-    return _nearest(
-        np.hypot(along, near) - (coupler + play), np.hypot(along, far) - (coupler - play)
-    )
+    reach = np.hypot(along, near), np.hypot(along, far)
+    return _nearest(reach[0] - (coupler + play), reach[1] - (coupler - play))
 
 
 def _nearest(one: Any, other: Any) -> Array:

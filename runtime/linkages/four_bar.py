@@ -139,7 +139,6 @@ class FourBar(Linkage):
     }
 
     def __post_init__(self) -> None:
-        """Check the lengths."""
         problems = length_problems("FourBar", self.lengths)
         problems += assembly_problems("FourBar", self.assembly)
         if not problems:
@@ -150,14 +149,10 @@ class FourBar(Linkage):
             spare = min(exact.less)
             why = "cannot close" if spare < 0 else "is stretched and cannot move"
             if spare <= 0:
-                problems.append(
-                    Problem(
-                        f"FourBar.{longest}",
-                        f"{self.lengths[longest]:g}",
-                        f"less than {rest:g}, the sum of the other three",
-                        f"the linkage {why}; shorten this link or lengthen another",
-                    )
-                )
+                where, found = f"FourBar.{longest}", f"{self.lengths[longest]:g}"
+                expected = f"less than {rest:g}, the sum of the other three"
+                fix = f"the linkage {why}; shorten this link or lengthen another"
+                problems.append(Problem(where, found, expected, fix))
         refuse(problems)
 
     @property
@@ -186,13 +181,11 @@ class FourBar(Linkage):
     def require_full_turn(self) -> None:
         """Raise BadInput where the crank cannot turn fully."""
         if not self.crank_turns:
+            near, far = abs(self.frame - self.crank), self.frame + self.crank
+            found = f"diagonals from {near:g} to {far:g}"
             shortest, longest = self.reach
-            raise bad(
-                "FourBar",
-                f"diagonals from {abs(self.frame - self.crank):g} to {self.frame + self.crank:g}",
-                f"diagonals strictly between {shortest:g} and {longest:g}",
-                "the crank cannot turn fully; change a length",
-            )
+            expected = f"diagonals strictly between {shortest:g} and {longest:g}"
+            raise bad("FourBar", found, expected, "the crank cannot turn fully; change a length")
 
     def motion(
         self, theta: ArrayLike, speed: ArrayLike = 1.0, acceleration: ArrayLike = 0.0

@@ -232,8 +232,7 @@ def _draw_frame(ax: Axes, motion: Circuit, places: Iterable[Complex] = ()) -> No
     edge = 1.8 * unit
     ax.set_xlim(float(np.min(drawn.real)) - edge, float(np.max(drawn.real)) + edge)
     ax.set_ylim(float(np.min(drawn.imag)) - edge, float(np.max(drawn.imag)) + edge)
-    ax.set_aspect("equal")
-    ax.set(xlabel="x [m]", ylabel="y [m]")
+    ax.set(aspect="equal", xlabel="x [m]", ylabel="y [m]")
 
 
 def _draw_linkage(ax: Axes, motion: Circuit, s: float, alpha: float = 1.0) -> dict[str, Any]:

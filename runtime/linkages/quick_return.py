@@ -108,17 +108,11 @@ class QuickReturn(Linkage):
     }
 
     def __post_init__(self) -> None:
-        """Check the lengths."""
         problems = length_problems("QuickReturn", self.lengths)
         if not problems and self._ends[0] <= 0.0:
-            problems.append(
-                Problem(
-                    "QuickReturn.rod",
-                    f"{self.rod:g}",
-                    f"more than {abs(self.frame - self.crank):g}, the least distance DB",
-                    "the rod never reaches the block; lengthen it",
-                )
-            )
+            expected = f"more than {abs(self.frame - self.crank):g}, the least distance DB"
+            fix = "the rod never reaches the block; lengthen it"
+            problems.append(Problem("QuickReturn.rod", f"{self.rod:g}", expected, fix))
         refuse(problems)
 
     @property
@@ -166,19 +160,15 @@ class QuickReturn(Linkage):
     def require_full_turn(self) -> None:
         """Raise BadInput where the crank cannot turn fully."""
         if self.frame == self.crank:
-            raise bad(
-                "QuickReturn.crank",
-                f"{self.crank:g}, as long as the frame (eps = 1)",
-                "another length",
-                "the block passes the rod's pivot, where the rod's angle is not defined; change it",
+            found = f"{self.crank:g}, as long as the frame (eps = 1)"
+            fix = (
+                "the block passes the rod's pivot, where the rod's angle is not defined; change it"
             )
+            raise bad("QuickReturn.crank", found, "another length", fix)
         if not self._long_enough:
-            raise bad(
-                "QuickReturn.rod",
-                f"{self.rod:g}",
-                f"at least {self.frame + self.crank:g}, frame and crank",
-                "the block leaves the rod; lengthen it",
-            )
+            expected = f"at least {self.frame + self.crank:g}, frame and crank"
+            fix = "the block leaves the rod; lengthen it"
+            raise bad("QuickReturn.rod", f"{self.rod:g}", expected, fix)
 
     def motion(
         self, theta: ArrayLike, speed: ArrayLike = 1.0, acceleration: ArrayLike = 0.0

@@ -117,24 +117,17 @@ class SliderCrank(Linkage):
     fold_axis: ClassVar[float] = -np.pi / 2.0
 
     def __post_init__(self) -> None:
-        """Check the lengths."""
         positive = {"crank": self.crank, "coupler": self.coupler}
         problems = length_problems("SliderCrank", positive)
         if not is_finite(self.offset):
-            problems.append(
-                Problem("SliderCrank.offset", repr(self.offset), "a finite length", "correct it")
-            )
+            found = repr(self.offset)
+            problems.append(Problem("SliderCrank.offset", found, "a finite length", "correct it"))
         problems += assembly_problems("SliderCrank", self.assembly)
         # Each factor is zero where the links just reach the guide, correctly rounded.
         if not problems and min(self.limits.one_less_q1, self.limits.q2) <= 0.0:
-            problems.append(
-                Problem(
-                    "SliderCrank.offset",
-                    f"{self.offset:g}",
-                    f"less than {self.crank + self.coupler:g} in magnitude, crank and coupler",
-                    "they cannot reach the guide; bring it nearer or lengthen one of them",
-                )
-            )
+            expected = f"less than {self.crank + self.coupler:g} in magnitude, crank and coupler"
+            fix = "they cannot reach the guide; bring it nearer or lengthen one of them"
+            problems.append(Problem("SliderCrank.offset", f"{self.offset:g}", expected, fix))
         refuse(problems)
 
     @property
@@ -147,12 +140,10 @@ class SliderCrank(Linkage):
     def require_full_turn(self) -> None:
         """Raise BadInput where the crank cannot turn fully."""
         if not self.crank_turns:
-            raise bad(
-                "SliderCrank",
-                f"coupler {self.coupler:g} for crank {self.crank:g} and offset {self.offset:g}",
-                f"a coupler above {self.crank + abs(self.offset):g}",
-                "the crank cannot turn fully; change a length",
-            )
+            found = f"coupler {self.coupler:g} for crank {self.crank:g} and offset {self.offset:g}"
+            expected = f"a coupler above {self.crank + abs(self.offset):g}"
+            fix = "the crank cannot turn fully; change a length"
+            raise bad("SliderCrank", found, expected, fix)
 
     def motion(
         self, theta: ArrayLike, speed: ArrayLike = 1.0, acceleration: ArrayLike = 0.0

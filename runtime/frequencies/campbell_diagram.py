@@ -176,8 +176,7 @@ class Campbell(Result):
         ax.plot(self.crossing_speed, height, "ko", ms=3, mfc="none", mew=0.7)
         if self.buckling < self.speed[-1]:
             ax.axvline(self.buckling, color="0.5", lw=0.8, ls=":")
-        ax.set_xlim(self.speed[0], self.speed[-1])
-        ax.set_ylim(0.0, 1.05 * top)
+        ax.set(xlim=(self.speed[0], self.speed[-1]), ylim=(0.0, 1.05 * top))
         ax.set(xlabel="crank speed [rad/s]", ylabel="frequency [rad/s]")
         return ax
 

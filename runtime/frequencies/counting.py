@@ -398,12 +398,7 @@ class FrameFrequencies(Result):
         """Return the displacements of the nodes in each mode, ``(n, free)``.
 
         In the order of ``problem.labels`` [m, rad], of unit generalised mass; all zero where the
-        nodes stand still.
-
-        Raises
-        ------
-        BadInput
-            If there are no shapes.
+        nodes stand still.  Where there are no shapes `BadInput` is raised.
         """
         problem = self._members()
         places = {label: i for i, label in enumerate(problem.labels)}
@@ -416,21 +411,10 @@ class FrameFrequencies(Result):
         return found
 
     def shape(self, mode: int, beam: str, eta: ArrayLike) -> MemberShape:
-        """Return the exact shape of a beam in a mode.
+        """Return the exact shape of a beam in a mode, counted from 0, at places ``(m,)`` along it.
 
-        Parameters
-        ----------
-        mode : int
-            Which of the modes, from 0.
-        beam : str
-            Its name.
-        eta : array_like, shape (m,)
-            Places along it, in lengths, 0 to 1.
-
-        Raises
-        ------
-        BadInput
-            If there are no shapes, no such mode or beam, or a place lies outside.
+        The places are in lengths, 0 to 1; one outside raises `BadInput`, as do a mode or a beam
+        that is not there, and a problem without shapes.
         """
         self._members()
         known = isinstance(mode, (int, np.integer)) and not isinstance(mode, bool)
@@ -551,12 +535,9 @@ def _below_all(problem: DynamicStiffness, rigid: int) -> float:
         if found <= rigid:
             return low
         low /= 4.0
-    raise bad(
-        "structure",
-        "a motion that meets next to no stiffness",
-        "frequencies well above 0",
-        "hold the structure, or stiffen the soft spring",
-    )
+    found = "a motion that meets next to no stiffness"
+    fix = "hold the structure, or stiffen the soft spring"
+    raise bad("structure", found, "frequencies well above 0", fix)
 
 
 def _above(counted: Counted, low: float, count: int) -> tuple[float, int]:
@@ -602,8 +583,7 @@ def multiplicities(omega: Array, error: Array) -> NDArray[np.int64]:
     found = np.ones(len(omega), dtype=np.int64)
     start = 0
     for i in range(1, len(omega) + 1):
-        ends = i == len(omega) or omega[i] - omega[i - 1] > error[i] + error[i - 1]
-        if ends:
+        if i == len(omega) or omega[i] - omega[i - 1] > error[i] + error[i - 1]:
             found[start:i] = i - start
             start = i
     return found

@@ -110,8 +110,7 @@ class CriticalSpeeds(Result):
             colour = f"C{(mode - 1) % 10}"
             ax.plot(*points, "o", ms=4, color=colour, label=f"mode {mode}")
             ax.vlines(self.speed[own], 0, self.order[own], color=colour, lw=0.4)
-        ax.set_ylabel("order n")
-        ax.set_ylim(bottom=0.0)
+        ax.set(ylabel="order n", ylim=(0.0, None))
         if len(self.mode):
             ax.legend(fontsize=8)
         return ax
@@ -224,12 +223,9 @@ def by_running_mean(request: Request) -> CriticalSpeeds:
     """
     limit = _SHORT * buckling_speed(request.system).speed
     if limit <= request.low:
-        raise bad(
-            "speed_range",
-            f"a lowest speed of {request.low:.6g} rad/s, buckled at {limit / _SHORT:.6g} rad/s",
-            "speeds below that",
-            "use another method: beyond it there are no natural frequencies",
-        )
+        found = f"a lowest speed of {request.low:.6g} rad/s, buckled at {limit / _SHORT:.6g} rad/s"
+        fix = "use another method: beyond it there are no natural frequencies"
+        raise bad("speed_range", found, "speeds below that", fix)
     low, high = request.low, min(request.high, limit)
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     place = np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
@@ -274,12 +270,9 @@ def by_meissner(request: Request) -> CriticalSpeeds:
     intervals = 2 ** max(8, int(np.ceil(np.log2(turned / _INTERVAL))))
     if intervals > _MOST_INTERVALS:
         least = request.low * intervals / _MOST_INTERVALS
-        raise bad(
-            "speed_range",
-            f"a lowest speed of {request.low:.4g} rad/s, which needs {intervals} intervals",
-            f"at most {_MOST_INTERVALS}",
-            f"raise the lowest speed to {least:.4g} rad/s or ask for fewer modes",
-        )
+        found = f"a lowest speed of {request.low:.4g} rad/s, which needs {intervals} intervals"
+        fix = f"raise the lowest speed to {least:.4g} rad/s or ask for fewer modes"
+        raise bad("speed_range", found, f"at most {_MOST_INTERVALS}", fix)
     held = held_frequencies(request.system, even_angles(period, intervals), {})
     frequency, rounding = (part[:, : request.count] for part in held)
     maxima = meissner_maxima(frequency, rounding, period, (request.low, request.high))
@@ -305,12 +298,8 @@ def by_response(request: Request) -> CriticalSpeeds:
     """Return the speeds of the local maxima of a measure of the periodic motion."""
     system = request.system
     if not any(system.has(name) for name in DAMPING) or not system.is_damped():
-        raise bad(
-            "system",
-            "no damping",
-            "a damped system: without damping the maxima are infinite",
-            "add some with with_modal_damping",
-        )
+        expected = "a damped system: without damping the maxima are infinite"
+        raise bad("system", "no damping", expected, "add some with with_modal_damping")
     speeds = np.linspace(request.low, request.high, request.speeds)
     values = scanned_deflections(system, speeds, request.progress)
     top = local_maxima(values)

@@ -272,9 +272,8 @@ def dynamic_stiffness(
     rigid = rigid_beams("dynamic_stiffness", structure, theta, inextensible)
     if pieces is not None:
         require_mapping("pieces", pieces, 'say {"crank": (0.5, 0.5)}')
-    names = tuple(beam.name for beam in structure.beams)
-    for name in sorted(set(pieces or {}) - set(names)):
-        raise bad("beam", repr(name), f"one of {', '.join(names)}", "correct the name")
+    for name in sorted(pieces or {}):
+        structure.beam(name)  # refuses one that there is not
     freedoms = _numbered(structure, pieces or {})
     assembly = _assembly(structure, float(theta), freedoms, rigid)
     return DynamicStiffness(
@@ -307,8 +306,8 @@ def rigid_beams(
     if names_problems("", inextensible):
         fix = "say True for all"
         raise bad("inextensible", repr(inextensible), "True, False or names of beams", fix)
-    for name in sorted(set(inextensible) - set(names)):
-        raise bad("beam", repr(name), f"one of {', '.join(names)}", "correct the name")
+    for name in sorted(inextensible):
+        structure.beam(name)  # refuses one that there is not
     return tuple(inextensible)
 
 
@@ -357,12 +356,9 @@ def without_stretch(local: Array, rigid: NDArray[np.bool_]) -> Array:
     """Return what makes the free coordinates of those that stretch no inextensible piece."""
     kept, spread = eliminated(local[rigid, 3] - local[rigid, 0])
     if not kept.size:
-        raise bad(
-            "inextensible",
-            "beams that leave no node free to move",
-            "at least one coordinate",
-            "let a beam stretch, or divide one into pieces",
-        )
+        found = "beams that leave no node free to move"
+        fix = "let a beam stretch, or divide one into pieces"
+        raise bad("inextensible", found, "at least one coordinate", fix)
     return spread
 
 

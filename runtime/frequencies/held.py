@@ -93,12 +93,10 @@ def _indefinite(mass: Array, stiffness: Array, theta: Array) -> BadInput:
     name, lowest = "mass M", of_mass
     if np.min(of_mass) > 0.0:
         name, lowest = "stiffness K + Kg", of_stiffness
-    return bad(
-        name,
-        f"smallest eigenvalue {np.min(lowest):.3g} at crank angle {theta[np.argmin(lowest)]:.6g}",
-        "a positive definite matrix at every angle",
-        "check the parameters; a rigid or buckled motion has no natural frequency",
-    )
+    angle = theta[np.argmin(lowest)]
+    found = f"smallest eigenvalue {np.min(lowest):.3g} at crank angle {angle:.6g}"
+    fix = "check the parameters; a rigid or buckled motion has no natural frequency"
+    return bad(name, found, "a positive definite matrix at every angle", fix)
 
 
 def crank_angles(system: LinearPeriodic, theta: ArrayLike | None) -> Array:
@@ -155,8 +153,7 @@ def cycle_mean(
         change = np.abs(found - before)
         if np.all(change <= enough * np.abs(found) + rounding):
             return found, change + rounding
-        slow = count >= 256 and len(breaks) > 0
-        if slow or count >= 1024:
+        if count >= (256 if len(breaks) > 0 else 1024):
             return _by_panels(values, period, breaks, enough)
 
 
@@ -168,10 +165,9 @@ def mean_frequencies(
     parameters: Mapping[str, float] | None = None,
 ) -> tuple[Array, Array]:
     """Return the means of the lowest frequencies over the period and their errors [rad/s]."""
-    given = parameters or {}
 
     def lowest(theta: Array) -> tuple[Array, Array]:
-        frequency, error = held_frequencies(system, theta, given, speed)
+        frequency, error = held_frequencies(system, theta, parameters or {}, speed)
         return frequency[:, :count], error[:, :count]
 
     return cycle_mean(lowest, system.period, enough=enough)

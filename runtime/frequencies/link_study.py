@@ -65,8 +65,8 @@ class LinkFrequencies(Result):
             ax.plot(self.value, values, style, color="0.3", lw=1.0, label=f"{name}, pinned")
         unit = "[m]" if self.quantity == "length" else "over its own"
         ax.set_xlabel(f"{self.quantity} of the {self.link} {unit}")
-        ax.set_ylabel("natural frequency [rad/s]")
-        ax.set_ylim(0.0, 1.15 * float(np.max(self.largest)))
+        top = 1.15 * float(np.max(self.largest))
+        ax.set(ylabel="natural frequency [rad/s]", ylim=(0.0, top))
         ax.legend(fontsize=8)
         return ax
 
@@ -106,9 +106,8 @@ def pinned_frequency(section: Section, length: float) -> float:
     """
     require_kind("section", section, Section, "make one with Section or Section.rectangle")
     require_positive("pinned_frequency", length=length)
-    return float(
-        (np.pi / length) ** 2 * np.sqrt(section.bending_stiffness / section.mass_per_length)
-    )
+    root = np.sqrt(section.bending_stiffness / section.mass_per_length)
+    return float((np.pi / length) ** 2 * root)
 
 
 def link_frequencies(

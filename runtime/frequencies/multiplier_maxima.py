@@ -69,12 +69,9 @@ def multiplier_maxima(
     # The highest mode turns by 0.35 rad between two samples.
     number = int(np.ceil(top * system.period * (1 / low - 1 / high) / 0.35)) + 8
     if number > _MOST_SAMPLES:
-        raise bad(
-            "speed_range",
-            f"a lowest speed of {low:.4g} rad/s, which needs {number} samples",
-            f"at most {_MOST_SAMPLES}",
-            "raise the lowest speed or ask for fewer modes",
-        )
+        found = f"a lowest speed of {low:.4g} rad/s, which needs {number} samples"
+        fix = "raise the lowest speed or ask for fewer modes"
+        raise bad("speed_range", found, f"at most {_MOST_SAMPLES}", fix)
     # The reciprocal of a reciprocal may lie beyond an end by rounding.
     speed = np.clip(1.0 / np.linspace(1 / high, 1 / low, number), low, high)
     truncated, change = LowestModes(system, wanted).required(high)
@@ -221,14 +218,8 @@ def meissner_maxima(
         error += place * float(np.max(rounding[:, mode] / levels))
         parts.append((place, np.full(len(place), mode + 1), value, error))
     speed, number, value, error = (np.concatenate(column) for column in zip(*parts, strict=True))
-    return Maxima(
-        speed,
-        number.astype(np.int64),
-        value,
-        error,
-        f"local maxima of Meissner's J_{count}",
-        {},
-    )
+    method = f"local maxima of Meissner's J_{count}"
+    return Maxima(speed, number.astype(np.int64), value, error, method, {})
 
 
 def _nearest(places: Array, to: Array) -> Array:

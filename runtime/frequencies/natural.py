@@ -90,14 +90,10 @@ class NaturalFrequencies(Result):
         **dict.fromkeys(("tracked", "mac"), ("angle", "curve")),
         **dict.fromkeys(("mean", "mean_error"), ("rank",)),
         **dict.fromkeys(("closure", "sign", "branch_mean", "branch_mean_error"), ("curve",)),
-        **dict.fromkeys(("encounter_angle", "encounter_rank", "encounter_gap"), ("encounter",)),
-        "encounter_width": ("encounter",),
+        **{f"encounter_{name}": ("encounter",) for name in ("angle", "rank", "gap", "width")},
     }
-    exported: ClassVar[tuple[str, ...]] = (
-        "encounter_angle",
-        "encounter_rank",
-        "encounter_gap",
-        "encounter_width",
+    exported: ClassVar[tuple[str, ...]] = tuple(
+        f"encounter_{name}" for name in ("angle", "rank", "gap", "width")
     )
 
     @property
@@ -336,10 +332,9 @@ def draw_mode(
         ax.plot(*place[0], "o", color="0.3", ms=3, mfc="w")
     ax.set_aspect("equal")
     ax.set_axis_off()
-    ax.set_title(
-        f"{np.degrees(theta):.0f} deg, mode {mode}: {held.tracked[at, mode - 1]:.1f} rad/s",
-        fontsize=7,
-    )
+    frequency = held.tracked[at, mode - 1]
+    title = f"{np.degrees(theta):.0f} deg, mode {mode}: {frequency:.1f} rad/s"
+    ax.set_title(title, fontsize=7)
     return ax
 
 

@@ -90,12 +90,9 @@ def _mean_squares(
             state = quiet_state(system, speeds[part], _rtol(system))
             rows = system.deflection_rows(state.theta, _PLACES)
             if rows is None:
-                raise bad(
-                    "system",
-                    "deflections that are not known",
-                    "mode shapes or relative_deflection",
-                    "choose another method",
-                )
+                found = "deflections that are not known"
+                expected = "mode shapes or relative_deflection"
+                raise bad("system", found, expected, "choose another method")
             # One speed at a time: deflections of all would fill the memory.
             out += [np.mean(np.einsum("tkn,tn->tk", rows, q) ** 2, axis=0) for q in state.q]
             error[0, part] = np.max(np.reshape(state.error, (len(state.q), -1)), axis=1)
@@ -105,12 +102,8 @@ def _mean_squares(
     squares = np.array(out)
     known = np.all(np.isfinite(squares), axis=1)
     if not np.all(known):
-        raise bad(
-            "speed_range",
-            f"no single periodic motion at {float(speeds[np.argmin(known)]):.6g} rad/s",
-            "speeds with one each",
-            "move the range or add damping",
-        )
+        found = f"no single periodic motion at {float(speeds[np.argmin(known)]):.6g} rad/s"
+        raise bad("speed_range", found, "speeds with one each", "move the range or add damping")
     return squares, error
 
 

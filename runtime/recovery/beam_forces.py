@@ -39,6 +39,8 @@ from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
 if TYPE_CHECKING:
     from .beam_motion import Motion
 
+# Places on the beams: how many on each, or by beam x over its length.
+Stations = int | Mapping[str, ArrayLike] | None
 METHODS = ("equilibrium", "shape")
 FORCES = ("axial", "shear", "moment")
 # Exact for the shape functions (to degree 5) times the axial force (to degree 2) times x.
@@ -55,9 +57,7 @@ class Station:
     xi: float  # x over the element's length, from its start
 
 
-def stations_of(
-    structure: Structure, stations: int | Mapping[str, ArrayLike] | None = None
-) -> tuple[Station, ...]:
+def stations_of(structure: Structure, stations: Stations = None) -> tuple[Station, ...]:
     """Return places on the beams of a structure, beam by beam.
 
     ``stations`` is the number on each beam, its ends included (by default 25), or by beam the
@@ -73,8 +73,8 @@ def stations_of(
     elif isinstance(stations, Mapping):
         wanted = stations
     else:
-        found_type = type(stations).__name__
-        raise bad("stations", found_type, "a number, or places by beam", "give {'beam': [0.5]}")
+        kind = type(stations).__name__
+        raise bad("stations", kind, "a number, or places by beam", "give {'beam': [0.5]}")
     problems, found = [], []
     for name, given in wanted.items():
         beam = structure.beam(name)
@@ -246,13 +246,7 @@ class BeamForces(StationResult):
     }
 
     def of(self, link: str, quantity: str) -> Array:
-        """Return one quantity along one beam, ``(nt, its stations)``.
-
-        Raises
-        ------
-        BadInput
-            If either is unknown.
-        """
+        """Return one quantity along one beam, ``(nt, its stations)``; refuse an unknown one."""
         if quantity not in QUANTITIES:
             raise bad("quantity", repr(quantity), f"one of {QUANTITIES}", "correct the name")
         return np.asarray(getattr(self, quantity)[:, stations_on(self.links, link)])
@@ -275,7 +269,7 @@ def recover(
     system: LinearPeriodic,
     motion: Motion | float | None = None,
     *,
-    stations: int | Mapping[str, ArrayLike] | None = None,
+    stations: Stations = None,
     method: str = "equilibrium",
 ) -> BeamForces:
     """Return displacements and forces along the beams of a system in a motion.
@@ -318,7 +312,7 @@ def recover(
 def _doubt(
     system: LinearPeriodic,
     moving: BeamMotion,
-    stations: int | Mapping[str, ArrayLike] | None,
+    stations: Stations,
     method: str,
     own: Mapping[str, Array],
 ) -> dict[str, Any]:
@@ -342,7 +336,7 @@ def _doubt(
 def evaluated(
     system: LinearPeriodic,
     motion: BeamMotion,
-    stations: int | Mapping[str, ArrayLike] | None,
+    stations: Stations,
     method: str,
     names: tuple[str, ...] = QUANTITIES,
     *,
@@ -358,9 +352,7 @@ def evaluated(
     return over_motion(system, motion, piece, frozen=frozen)
 
 
-def propagated(
-    system: LinearPeriodic, motion: BeamMotion, stations: int | Mapping[str, ArrayLike] | None
-) -> Array:
+def propagated(system: LinearPeriodic, motion: BeamMotion, stations: Stations) -> Array:
     """Return what the error of the motion can do to axial force, shear force and moment.
 
     The errors of the coordinates are taken to vary no faster than the crank turns, and not to

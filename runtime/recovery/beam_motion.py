@@ -43,12 +43,9 @@ class BeamMotion:
 
     def __post_init__(self) -> None:
         problems = []
-        if (
-            self.q.ndim != 2
-            or self.q.shape != self.qd.shape
-            or self.theta.shape != self.q.shape[:1]
-        ):
-            found = f"shapes {self.theta.shape}, {self.q.shape}, {self.qd.shape}"
+        theta, q, qd = self.theta.shape, self.q.shape, self.qd.shape
+        if self.q.ndim != 2 or q != qd or theta != q[:1]:
+            found = f"shapes {theta}, {q}, {qd}"
             expected = "(nt,), (nt, n) and (nt, n)"
             problems.append(Problem("theta, q, qd", found, expected, "give one row per angle"))
         if not (np.isfinite(self.speed) and self.speed > 0):

@@ -62,12 +62,13 @@ def in_motion(
     motion: BeamMotion,
     doubt: Callable[[], Mapping[str, Any]],
     checks: Mapping[str, Check] | None = None,
-    later: tuple[str, ...] = ("error", "error_norm"),
+    later: tuple[str, ...] = (),
 ) -> dict[str, Any]:
     """Return the fields of :class:`BeamResult`, all but the method.
 
-    Those named in ``later`` come from ``doubt()`` when they are first looked at.  Warns whoever
-    called the caller where a deflection is beyond 5 % of the length of its beam.
+    The error, its norm and those named in ``later`` come from ``doubt()`` when they are first
+    looked at.  Warns whoever called the caller where a deflection is beyond 5 % of the length of
+    its beam.
     """
     found = {**motion.checks, **(checks or {})}
     parts = [system.largest_deflection(motion.theta[c], motion.q[None, c]) for c in chunks(motion)]
@@ -78,7 +79,7 @@ def in_motion(
         warn_of_large_deflection(max(sizes), "the length of its beam", fix, stacklevel=4)
     group = DeferredGroup(doubt)
     return {
-        **{name: group.later(name) for name in later},
+        **{name: group.later(name) for name in ("error", "error_norm", *later)},
         "checks": found,
         "provenance": provenance({**system.provenance, **motion.provenance}),
         "speed": motion.speed,

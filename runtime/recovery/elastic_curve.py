@@ -62,8 +62,7 @@ class ElasticCurve(BeamResult):
         for values, style, label in ((self.rigid, "--", "rigid"), (self.elastic, "-", "elastic")):
             closed = np.vstack([values, values[:1]])
             ax.plot(closed[:, 0], closed[:, 1], style, label=label, linewidth=0.9)
-        ax.set_aspect("equal")
-        ax.set(xlabel="x [m]", ylabel="y [m]")
+        ax.set(aspect="equal", xlabel="x [m]", ylabel="y [m]")
         ax.set_title(f"{self.speed:.4g} rad/s", fontsize="medium")
         ax.legend()
         return ax

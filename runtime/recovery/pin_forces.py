@@ -67,13 +67,7 @@ class PinReactions(BeamResult):
         return found
 
     def force(self, node: str, beam: str) -> Array:
-        """Return the force of a node on a beam [N], ``(nt, 2)``.
-
-        Raises
-        ------
-        BadInput
-            If no beam of that name ends at that node.
-        """
+        """Return the force of a node on a beam [N], ``(nt, 2)``; refuse one that ends elsewhere."""
         if (node, beam) not in self.on_beams:
             known = ", ".join(" on ".join(pair) for pair in self.on_beams)
             raise bad("force", f"{node} on {beam}", f"one of {known}", "correct the names")
@@ -82,10 +76,7 @@ class PinReactions(BeamResult):
     def torque(self, node: str = "A") -> Array:
         """Return the moment of the ground on a node [N m], ``(nt,)``: of a crank's shaft the drive.
 
-        Raises
-        ------
-        BadInput
-            If the ground does not hold the node.
+        A node that the ground does not hold is refused.
         """
         if node not in self.of_ground:
             known = ", ".join(self.of_ground)

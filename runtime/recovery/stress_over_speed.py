@@ -22,7 +22,7 @@ from ..periodic.multipliers import floquet_multipliers
 from ..periodic.periodic_motion import by_segments
 from ..periodic.swept_motions import Growth, Trial, Truncations, speed_ranges
 from ..periodic.truncation import arrays_at
-from .beam_forces import require_method
+from .beam_forces import Stations, require_method
 from .stresses import Peaks, largest_of, stress_operator
 
 # Angles of a revolution at first and at the most, and the upper quarter of a motion's harmonics,
@@ -117,10 +117,7 @@ class StressCurve(Result):
     def of(self, link: str) -> Array:
         """Return the largest stress of one link at each speed [Pa], ``(ns,)``.
 
-        Raises
-        ------
-        BadInput
-            If the link has no station.
+        A link without a station is refused.
         """
         if link not in self.links:
             fix = "choose one with stations"
@@ -162,7 +159,7 @@ def stress_curve(
     system: LinearPeriodic,
     speeds: ArrayLike,
     *,
-    stations: int | Mapping[str, ArrayLike] | None = None,
+    stations: Stations = None,
     rtol: float = 1e-4,
     method: str = "equilibrium",
     stability: bool = True,
@@ -253,9 +250,7 @@ class Fibres:
     positive fibres, then the negative ones.
     """
 
-    def __init__(
-        self, system: LinearPeriodic, stations: int | Mapping[str, ArrayLike], method: str
-    ) -> None:
+    def __init__(self, system: LinearPeriodic, stations: Stations, method: str) -> None:
         self._system, self._stations, self._method = system, stations, method
         self._forms: dict[int, LinearForm] = {}
         where = stress_operator(system, np.zeros(1), stations, method=method)[1]

@@ -23,6 +23,7 @@ from ..core.trigonometric import resampled
 from .beam_forces import (
     METHODS,
     Station,
+    Stations,
     evaluated,
     propagated,
     recovery,
@@ -36,7 +37,6 @@ from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
 if TYPE_CHECKING:
     from .beam_motion import Motion
 
-Stations = int | Mapping[str, ArrayLike] | None
 # How much finer the angles are at which the largest stress is sought, and how near to the largest
 # at the coarse angles a row has to come to be looked at.
 FINER, _NEAR = 8, 0.6
@@ -108,9 +108,8 @@ def energy_gap(system: LinearPeriodic, motion: BeamMotion) -> float:
     """
     structure = required_structure(system)
     picked = np.unique(np.linspace(0, len(motion.theta) - 1, 64).astype(int))
-    few = replace(
-        motion, theta=motion.theta[picked], q=motion.q[picked], qd=motion.qd[picked], period=None
-    )
+    rows = {name: getattr(motion, name)[picked] for name in ("theta", "q", "qd")}
+    few = replace(motion, **rows, period=None)
     places: dict[str, list[Array]] = {beam.name: [] for beam in structure.beams}
     weights: dict[str, list[Array]] = {beam.name: [] for beam in structure.beams}
     for placed in structure.elements:
@@ -254,17 +253,8 @@ class StressResult(StationResult):
     def fibre(self, name: str = "positive", part: str = "all") -> Array:
         """Return the stress of one outer fibre [Pa], ``(nt, stations)``.
 
-        Parameters
-        ----------
-        name : str
-            ``"positive"`` or ``"negative"``.
-        part : str
-            ``"all"``, ``"quasi-static"`` or ``"dynamic"``, the difference of these.
-
-        Raises
-        ------
-        BadInput
-            If either is unknown.
+        The fibre is ``"positive"`` or ``"negative"``, the part ``"all"``, ``"quasi-static"`` or
+        ``"dynamic"``, the difference of these; others are refused.
         """
         if name not in FIBRES:
             raise bad("fibre", repr(name), f"one of {FIBRES}", "correct the name")
@@ -280,10 +270,7 @@ class StressResult(StationResult):
     def at(self, link: str, place: float, fibre: str = "positive", part: str = "all") -> Array:
         """Return the stress of a fibre over the angles ``(nt,)`` at the station nearest a place.
 
-        Raises
-        ------
-        BadInput
-            If the link has no station, or a name is unknown.
+        A link without a station and an unknown name are refused.
         """
         own = stations_on(self.links, link)
         nearest = own[int(np.argmin(np.abs(self.places[own] - place)))]
@@ -314,22 +301,10 @@ class StressResult(StationResult):
         return StressPeak(value, theta, link, float(self.places[own[place]]), FIBRES[fibre])
 
     def safety(self, limit: float | Mapping[str, float]) -> dict[str, float]:
-        """Return the factor of safety of each beam: allowed over largest stress.
+        """Return the factor of safety by beam, allowed over largest stress; inf without stress.
 
-        Parameters
-        ----------
-        limit : float or mapping of str to float
-            Allowed stress [Pa], of all or by beam.
-
-        Returns
-        -------
-        dict of str to float
-            By beam; inf where there is no stress.
-
-        Raises
-        ------
-        BadInput
-            If a limit is missing or not positive.
+        The limit is the allowed stress [Pa], of all or by beam; one that is missing or not positive
+        is refused.
         """
         found, problems = {}, []
         for link, peak in self.maxima.items():
@@ -374,7 +349,7 @@ def stress(
     system: LinearPeriodic,
     motion: Motion | float | None = None,
     *,
-    stations: int | Mapping[str, ArrayLike] | None = None,
+    stations: Stations = None,
     method: str = "equilibrium",
 ) -> StressResult:
     """Return the stresses along the beams of a linkage over the cycle, or of a frame.
@@ -436,9 +411,7 @@ def stress(
         static_axial=still.later("axial"),
         static_bending=still.later("bending"),
         period=moving.period,
-        **in_motion(
-            system, moving, doubt, later=("error", "error_norm", "motion_error", "mesh_error")
-        ),
+        **in_motion(system, moving, doubt, later=("motion_error", "mesh_error")),
     )
 
 
@@ -485,7 +458,7 @@ def _doubt(
 def stress_operator(
     system: LinearPeriodic,
     theta: ArrayLike,
-    stations: int | Mapping[str, ArrayLike] | None = None,
+    stations: Stations = None,
     *,
     method: str = "equilibrium",
     accelerations: bool = False,

@@ -1,4 +1,4 @@
-"""Tables of a scene whose links are beams, and what follows from its quantities."""
+"""Tables of a scene whose links, or whose rod, bend, and what follows from its quantities."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from ..core.errors import Problem, refuse
+from ..core.errors import Problem, bad, refuse
+from .linkage_tables import QUICK_RETURN_LENGTHS
 from .schema import Key, Table, choice, not_negative, positive, quantities
 
 # Terms of the moving beams that a scene may leave out, and names for sets of them.
@@ -156,3 +157,74 @@ def _complete_section(
             expected = "k G A for Timoshenko's beam"
             problems.append(Problem(f"{where}.shear_stiffness", "nothing", expected, fix))
     return problems
+
+
+_FRAME, _CRANK, _ROD = QUICK_RETURN_LENGTHS.keys
+_RATIO = positive("crank_ratio", "crank over frame, eps")
+ROD_LINKS = replace(
+    QUICK_RETURN_LENGTHS,
+    keys=(_FRAME, replace(_CRANK, required=False), _RATIO, _ROD),
+    exactly_one=(("crank", "crank_ratio"),),
+)
+ROD = Table(
+    "rod",
+    "the flexible rod",
+    (
+        positive("bending_stiffness", "EI, in the plane of motion", "bending_stiffness"),
+        positive("modulus", "E; with second_moment it gives EI", "stress"),
+        positive("second_moment", "I, in the plane of motion", "second_moment"),
+        positive("mass_per_length", "mass per length", "mass_per_length", required=True),
+        not_negative(
+            "damping", "viscous damping of the rod's own motion, per length", "damping_per_length"
+        ),
+        not_negative(
+            "relaxation_time",
+            "Kelvin-Voigt damping: the moment is EI (v'' + relaxation_time d v''/dt)",
+            "time",
+        ),
+        not_negative(
+            "damping_ratio", "of the first mode with the block at frame's distance, by damping_law"
+        ),
+        Key(
+            "damping_law",
+            "what damping_ratio is made of: viscous (proportional to mass), internal "
+            "(proportional to stiffness), or modal (the same ratio in every mode)",
+            "text",
+            default="internal",
+            choices=("viscous", "internal", "modal"),
+        ),
+    ),
+    required=True,
+    exactly_one=(("bending_stiffness", "modulus"),),
+    at_most_one=(
+        ("bending_stiffness", "second_moment"),
+        ("damping", "damping_ratio"),
+        ("relaxation_time", "damping_ratio"),
+    ),
+)
+ROD_PARAMETERS = {
+    "speed": "frequency",
+    "crank_ratio": "dimensionless",
+    "bending_stiffness": "bending_stiffness",
+    "mass_per_length": "mass_per_length",
+    "damping": "damping_per_length",
+}
+
+
+def complete_crank(links: dict[str, Any]) -> None:
+    """Fill in the crank's length from its ratio to the frame, or the ratio from the length."""
+    if "crank_ratio" in links:
+        links["crank"] = links["crank_ratio"] * links["frame"]
+    else:
+        links["crank_ratio"] = links["crank"] / links["frame"]
+
+
+def complete_rod(rod: dict[str, Any]) -> None:
+    """Fill in the bending stiffness, and zeros where no damping is given."""
+    if "modulus" in rod:
+        if "second_moment" not in rod:
+            expected = "second_moment beside it"
+            raise bad("rod.modulus", "no section", expected, "add second_moment")
+        rod["bending_stiffness"] = rod["modulus"] * rod["second_moment"]
+    for key in ("damping", "relaxation_time", "damping_ratio"):
+        rod.setdefault(key, 0.0)

@@ -15,6 +15,9 @@ from .beam_tables import (
     MEMBERS,
     MESH,
     NODES,
+    ROD,
+    ROD_LINKS,
+    ROD_PARAMETERS,
     beam_table,
 )
 from .linkage_tables import (
@@ -33,7 +36,6 @@ from .linkage_tables import (
     rigid_link,
     rigid_tables,
 )
-from .rod_tables import ROD, ROD_LINKS, ROD_PARAMETERS
 from .schema import Key, Layout, Table, not_negative, positive
 
 _RIGID = ("kinematics", "forces")

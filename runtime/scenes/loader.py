@@ -12,9 +12,8 @@ from typing import Any
 
 from ...derive.spec import BEAM_FORMULATIONS
 from ..core.errors import BadInput, Problem, bad, refuse, shown
-from .beam_tables import complete_beams
+from .beam_tables import complete_beams, complete_crank, complete_rod
 from .checks import check_body, collecting
-from .rod_tables import complete_crank, complete_rod
 from .scene import ReadOnlyTable, Scene
 from .schema import Layout
 from .validation import find_layout, nearest, show, validate

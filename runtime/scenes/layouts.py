@@ -38,8 +38,6 @@ from .linkage_tables import (
 )
 from .schema import Key, Layout, Table, not_negative, positive
 
-_RIGID = ("kinematics", "forces")
-
 _COUPLER_PARAMETERS = {
     "speed": "frequency",
     "follower_inertia": "inertia",
@@ -51,27 +49,19 @@ _COUPLER_PARAMETERS = {
 }
 _HILL_PARAMETERS = {"lam2": "dimensionless", "mu": "dimensionless", "damping": "dimensionless"}
 
-RIGID_FOUR_BAR = Layout(
-    "four_bar",
-    _RIGID,
-    rigid_tables(FOUR_BAR_LENGTHS, LINKS[1:]),
+
+def _rigid(mechanism: str, lengths: Table, links: tuple[str, ...]) -> Layout:
+    """Return the layout of a linkage of rigid links."""
+    tables = rigid_tables(lengths, links)
+    return Layout(mechanism, ("kinematics", "forces"), tables, links=links)
+
+
+RIGID_FOUR_BAR = replace(
+    _rigid("four_bar", FOUR_BAR_LENGTHS, LINKS[1:]),
     outputs=("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4", "transmission_angle"),
-    links=LINKS[1:],
 )
-
-SLIDER_CRANK = Layout(
-    "slider_crank",
-    _RIGID,
-    rigid_tables(SLIDER_CRANK_LENGTHS, SLIDER_CRANK_LINKS),
-    links=SLIDER_CRANK_LINKS,
-)
-
-QUICK_RETURN = Layout(
-    "quick_return",
-    _RIGID,
-    rigid_tables(QUICK_RETURN_LENGTHS, QUICK_RETURN_LINKS),
-    links=QUICK_RETURN_LINKS,
-)
+SLIDER_CRANK = _rigid("slider_crank", SLIDER_CRANK_LENGTHS, SLIDER_CRANK_LINKS)
+QUICK_RETURN = _rigid("quick_return", QUICK_RETURN_LENGTHS, QUICK_RETURN_LINKS)
 
 FLEXIBLE_COUPLER = Layout(
     "four_bar",

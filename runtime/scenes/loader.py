@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ...derive.spec import BEAM_FORMULATIONS
-from ..core.errors import BadInput, Problem, bad, refuse, shown
+from ..core.errors import Problem, bad, refuse, shown
 from .beam_tables import complete_beams, complete_crank, complete_rod
 from .checks import check_body, collecting
 from .scene import ReadOnlyTable, Scene
@@ -82,13 +82,8 @@ def scene_from_document(
     layout, values = validate(tables)
     complete(values, layout)
     read_only = {key: _read_only(key, table) for key, table in values.items()}
-    return Scene(
-        name=name,
-        title=str(tables.get("title", name)),
-        source=str(tables.get("source", "")),
-        tables=ReadOnlyTable(name, read_only),
-        layout=layout,
-    )
+    title, source = str(tables.get("title", name)), str(tables.get("source", ""))
+    return Scene(name, title, source, ReadOnlyTable(name, read_only), layout)
 
 
 def _read_only(name: str, table: Mapping[str, Any]) -> ReadOnlyTable:
@@ -195,8 +190,7 @@ def complete(values: Values, layout: Layout) -> None:
         for key in ("first_moment", "centre_along")
         if values.get(link, {}).get(key, 0.0) != 0.0
     ]
-    if contradictions:
-        raise BadInput(*contradictions)
+    refuse(contradictions)
     if "coupler" in layout.flexible:
         _flexible_bar(values["coupler"], values["links"]["coupler"])
     gravity = values["gravity"]["acceleration"]

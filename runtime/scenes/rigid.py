@@ -35,14 +35,16 @@ def machine(scene: Scene) -> Machine:
         weight = (pull * math.cos(direction), pull * math.sin(direction))
     springs: list[Spring | TorsionSpring] = []
     springs += [_spring(table) for table in scene.get("springs", {}).values()]
-    springs += [_torsion(table) for table in scene.get("torsion_springs", {}).values()]
-    loads = [_load(table) for table in scene.get("loads", {}).values()]
+    keys = ("stiffness", "free_angle", "damping", "preload")
+    springs += [
+        TorsionSpring(table["first"], table["second"], **_given(table, *keys))
+        for table in scene.get("torsion_springs", {}).values()
+    ]
+    loads = [
+        Load(table["link"], **_given(table, "force", "couple", "along", "across", "axes"))
+        for table in scene.get("loads", {}).values()
+    ]
     return Machine(linkage, masses, weight, tuple(loads), tuple(springs))
-
-
-def _load(table: Mapping[str, Any]) -> Load:
-    given = _given(table, "force", "couple", "along", "across", "axes")
-    return Load(table["link"], **given)
 
 
 def _spring(table: Mapping[str, Any]) -> Spring:
@@ -50,11 +52,6 @@ def _spring(table: Mapping[str, Any]) -> Spring:
         (table[end], *table.get(f"{end}_at", (0.0, 0.0))) for end in ("first", "second")
     )
     return Spring(first, second, **_given(table, "stiffness", "free_length", "damping", "preload"))
-
-
-def _torsion(table: Mapping[str, Any]) -> TorsionSpring:
-    given = _given(table, "stiffness", "free_angle", "damping", "preload")
-    return TorsionSpring(table["first"], table["second"], **given)
 
 
 def _given(table: Mapping[str, Any], *keys: str) -> dict[str, Any]:

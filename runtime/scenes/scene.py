@@ -50,20 +50,16 @@ class ReadOnlyTable(Mapping[str, Any]):
     def __getitem__(self, key: str) -> Any:
         """Return one value; a wrong key is refused with the ones that there are."""
         if key not in self._values:
-            known = sorted(self._values)
-            raise MissingKeyError(f"{self._name}.{key}", known)
+            raise MissingKeyError(f"{self._name}.{key}", sorted(self._values))
         return self._values[key]
 
     def __iter__(self) -> Iterator[str]:
-        """Iterate over the keys in the order of the schema."""
         return iter(self._values)
 
     def __len__(self) -> int:
-        """Return the number of keys."""
         return len(self._values)
 
     def __repr__(self) -> str:
-        """Show the values."""
         return f"ReadOnlyTable({self._name!r}, {self._values!r})"
 
 
@@ -128,7 +124,6 @@ class Scene:
         return table in self.tables
 
     def __hash__(self) -> int:
-        """Hash by content."""
         return hash(self.digest())
 
     @property
@@ -144,17 +139,8 @@ class Scene:
     def get(self, key: str, default: Any = _MISSING) -> Any:
         """Return the value of a dotted key, in SI units.
 
-        Parameters
-        ----------
-        key : str
-            Table and key, for example ``"links.crank"`` or ``"loads.tool.couple"``.
-        default : object, optional
-            Returned where the scene holds no such key.
-
-        Raises
-        ------
-        KeyError
-            If the scene holds no such key and no default is given.
+        The key is of table and key, for example ``"links.crank"`` or ``"loads.tool.couple"``; where
+        the scene holds none, the default is returned or, without one, `KeyError` raised.
         """
         try:
             found: Any = self.tables
@@ -201,10 +187,7 @@ class Scene:
     def system(self) -> LinearPeriodic | Constrained | Nonlinear:
         """Return the family object that the solvers accept.
 
-        Raises
-        ------
-        BadInput
-            If the scene is about rigid links alone, or its module was not emitted yet.
+        A scene about rigid links alone, or whose module was not emitted yet, raises `BadInput`.
         """
         mechanism = self.model["mechanism"]
         if mechanism in LINKAGES and not self.layout.flexible and not self._declared:
@@ -223,10 +206,7 @@ class Scene:
     def linear_system(self) -> LinearPeriodic:
         """Return the system of the scene for solvers that take the linear-periodic family alone.
 
-        Raises
-        ------
-        BadInput
-            As :meth:`system`, and if the scene's formulation is constrained or nonlinear.
+        Refused is what :meth:`system` refuses, and a constrained or nonlinear formulation.
         """
         from ..core.families import LinearPeriodic
 
@@ -243,13 +223,7 @@ class Scene:
         return found
 
     def mechanism(self) -> Linkage:
-        """Return the linkage of the scene: lengths and assembly.
-
-        Raises
-        ------
-        BadInput
-            If the scene has no linkage.
-        """
+        """Return the linkage of the scene, lengths and assembly; `BadInput` where it has none."""
         kind = LINKAGES.get(self.model["mechanism"])
         if kind is None or self._declared:
             found = f"mechanism '{self.model['mechanism']}'"
@@ -265,10 +239,7 @@ class Scene:
     def machine(self) -> Machine:
         """Return the linkage with its masses, loads, springs and weight.
 
-        Raises
-        ------
-        BadInput
-            If the scene has no linkage, a link bends, or no link has a mass.
+        A scene that has no linkage, or in which no link has a mass, raises `BadInput`.
         """
         from .rigid import machine
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import chain, pairwise
-from typing import Any
+from typing import Any, get_args
 
 from ...derive.spec import ModelSpec
 from ..core.errors import BadInput, Problem, bad, refuse, shown
@@ -15,7 +15,7 @@ from ..core.units import DIMENSIONS, expected, to_si
 from .checks import check_chart, check_geometry, check_measured, check_series, collecting
 from .layouts import LAYOUTS
 from .linkage_tables import chart_table
-from .schema import Key, Layout, Table
+from .schema import Key, Kind, Layout, Range, Table
 
 _Reader = Callable[[object, Key, str], Any]
 Values = dict[str, dict[str, Any]]
@@ -45,8 +45,7 @@ def validate(document: Mapping[str, Any]) -> tuple[Layout, Values]:
             check(values, layout)
     if not problems:
         problems += _unusable_names(values.get("model", {}))
-    if problems:
-        raise BadInput(*dict.fromkeys(problems))
+    refuse(list(dict.fromkeys(problems)))
     return layout, values
 
 
@@ -310,9 +309,7 @@ def _complete_model(model: dict[str, Any], layout: Layout) -> list[Problem]:
     return problems
 
 
-_KINDS = ("quantity", "quantities", "count", "counts", "text", "texts")
 _FIELDS = ("meaning", "kind", "dimension", "default", "limit", "choices", "required")
-_LIMITS = ("any", "positive", "non-negative")
 
 
 def declared_layout(
@@ -369,16 +366,17 @@ def _key(table: str, name: str, entry: object, problems: list[Problem]) -> Key:
         problems.append(Problem(f"schema.{table}.{name}", found, expected, fix))
 
     if isinstance(entry, str):
-        entry = {"kind": entry} if entry in _KINDS else {"dimension": entry}
+        entry = {"kind": entry} if entry in get_args(Kind) else {"dimension": entry}
     if not isinstance(entry, Mapping):
         fix = "write KEY = 'length', or KEY = {dimension = 'length', limit = 'positive'}"
         refuse(repr(entry)[:60], "a dimension or a table", fix)
         entry = {}
     kind, dimension = entry.get("kind", "quantity"), entry.get("dimension", "dimensionless")
     limit, choices = entry.get("limit", "any"), entry.get("choices", [])
-    for found, allowed in ((kind, _KINDS), (dimension, sorted(DIMENSIONS)), (limit, _LIMITS)):
+    kinds, limits = list(get_args(Kind)), list(get_args(Range))
+    for found, allowed in ((kind, kinds), (dimension, sorted(DIMENSIONS)), (limit, limits)):
         if not isinstance(found, str) or found not in allowed:
-            refuse(repr(found)[:60], f"one of {list(allowed)}", "correct it")
+            refuse(repr(found)[:60], f"one of {allowed}", "correct it")
     unknown = sorted(set(entry) - set(_FIELDS))
     if unknown:
         refuse(f"unknown {unknown}", f"some of {_FIELDS}", "remove them")

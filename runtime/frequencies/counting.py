@@ -535,9 +535,9 @@ def _below_all(problem: DynamicStiffness, rigid: int) -> float:
         if found <= rigid:
             return low
         low /= 4.0
-    found = "a motion that meets next to no stiffness"
+    motion = "a motion that meets next to no stiffness"
     fix = "hold the structure, or stiffen the soft spring"
-    raise bad("structure", found, "frequencies well above 0", fix)
+    raise bad("structure", motion, "frequencies well above 0", fix)
 
 
 def _above(counted: Counted, low: float, count: int) -> tuple[float, int]:

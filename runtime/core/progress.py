@@ -16,8 +16,8 @@ _bars: list[object] = []
 @contextmanager
 def bar(
     wanted: bool, total: int, *, begun: int = 0, unit: str = "it"
-) -> Iterator[Callable[[int], None] | None]:
-    """Show a progress bar where it is wanted; yield a function of how much is done, or None.
+) -> Iterator[Callable[[int], None]]:
+    """Show a progress bar where it is wanted; yield a function of how much is done.
 
     What was ``begun`` of the ``total`` beforehand does not count in the time left.
     """
@@ -25,7 +25,7 @@ def bar(
 
     require_flag("progress", wanted)
     if not wanted:
-        yield None
+        yield lambda done: None
         return
     from tqdm import tqdm
 

@@ -258,8 +258,7 @@ def _held(
             if speed >= 0.999 * limit:  # next to buckling the means are no longer smooth
                 break
             out[k], error[k] = mean_frequencies(system, count, _ENOUGH, float(speed))
-            if tick is not None:
-                tick(k + 1)
+            tick(k + 1)
     return out, error
 
 

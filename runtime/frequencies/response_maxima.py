@@ -97,8 +97,7 @@ def _mean_squares(
             out += [np.mean(np.einsum("tkn,tn->tk", rows, q) ** 2, axis=0) for q in state.q]
             error[0, part] = np.max(np.reshape(state.error, (len(state.q), -1)), axis=1)
             error[1, part] = _NOISE * np.reshape(state.sensitivity, -1)
-            if tick is not None:
-                tick(part.stop)
+            tick(part.stop)
     squares = np.array(out)
     known = np.all(np.isfinite(squares), axis=1)
     if not np.all(known):

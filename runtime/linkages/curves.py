@@ -118,8 +118,8 @@ class CouplerCurve(Result):
         """Return the two other four-bars that trace the path (Roberts and Chebyshev).
 
         The first has its frame between A and the third focus, its crank parallel to the line from B
-        to the tracing point; the second between D and the third focus.  What is no path of a
-        four-bar's coupler, or of a joint of it, raises `BadInput`.
+        to the tracing point; the second between D and the third focus.  A path that is none of a
+        four-bar's coupler, or that of a joint of it, raises `BadInput`.
 
         With u the direction of the coupler, g the point in it, k = g/l3: A + g u is one corner of a
         parallelogram A-B-P, and A + g u + k l2 exp(i theta2) keeps the distance |k| l4 from the

@@ -30,6 +30,8 @@ _COLOURS = {
     "rod": "tab:blue",
 }
 _GREY = "0.45"
+# Corners of a block of unit half-width.
+_BLOCK = np.array([1 + 0.6j, -1 + 0.6j, -1 - 0.6j, 1 - 0.6j, 1 + 0.6j])
 
 
 def draw_curve(ax: Axes, curve: CouplerCurve) -> None:
@@ -193,7 +195,7 @@ def _bars(motion: Circuit, s: float) -> dict[str, Complex]:
     for link, letters in sorted(motion.linkage.bars.items(), key=lambda bar: -len(bar[1])):
         ends = np.array([complex(joints[name][0]) for name in letters])
         turned = complex(links[link].direction.c[0, 0])
-        bars[link] = ends if len(ends) == 2 else ends[0] + turned * _box(unit, 0.6 * unit)
+        bars[link] = ends if len(ends) == 2 else ends[0] + turned * (unit * _BLOCK)
     return bars
 
 
@@ -262,8 +264,3 @@ def _unit(motion: Circuit) -> float:
     joints = motion.joints(np.arange(8) * pi / 4)
     places = np.concatenate(list(joints.values()))
     return 0.035 * float(np.ptp(places.real) + np.ptp(places.imag))
-
-
-def _box(half_width: float, half_height: float) -> Complex:
-    corners = np.array([1 + 1j, -1 + 1j, -1 - 1j, 1 - 1j, 1 + 1j])
-    return half_width * corners.real + 1j * half_height * corners.imag

@@ -25,6 +25,8 @@ from .tracking import CLEAR, Arrays, Curves, Encounter, Modes, Walk, followed_sh
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+_ENCOUNTERS = ("encounter_angle", "encounter_rank", "encounter_gap", "encounter_width")
+
 
 @dataclass(frozen=True, kw_only=True)
 class NaturalFrequencies(Result):
@@ -90,11 +92,9 @@ class NaturalFrequencies(Result):
         **dict.fromkeys(("tracked", "mac"), ("angle", "curve")),
         **dict.fromkeys(("mean", "mean_error"), ("rank",)),
         **dict.fromkeys(("closure", "sign", "branch_mean", "branch_mean_error"), ("curve",)),
-        **{f"encounter_{name}": ("encounter",) for name in ("angle", "rank", "gap", "width")},
+        **dict.fromkeys(_ENCOUNTERS, ("encounter",)),
     }
-    exported: ClassVar[tuple[str, ...]] = tuple(
-        f"encounter_{name}" for name in ("angle", "rank", "gap", "width")
-    )
+    exported: ClassVar[tuple[str, ...]] = _ENCOUNTERS
 
     @property
     def encounter_angle(self) -> Array:

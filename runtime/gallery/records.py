@@ -1,11 +1,11 @@
 """Records of all figures, read from one file of data for each document, and what drawing gives.
 
 A record holds the figure's label and title, the function that draws it (``draw``, a module and a
-name in it, with ``arguments`` after the axes), its panels and size, and what is compared, the
-expected value under the name of its kind; ``common`` holds what these share.  A record of a
-``kind`` takes what it does not say from the file's table ``kind``, whose quoted numbers follow its
-own; a note ``@name`` stands in its table ``notes``; ``page`` is a document that notes and tables
-make up.
+name in it, with ``arguments`` after the axes), its panels and size, and what is compared, by what
+each number is, the expected value under the name of its kind; ``common`` holds what these share.
+A record of a ``kind`` takes what it does not say from the file's table ``kind``, whose quoted
+numbers follow its own; a note ``@name`` stands in its table ``notes``; ``page`` is a document that
+notes and tables make up.
 """
 
 from __future__ import annotations
@@ -228,7 +228,7 @@ def _merged(kind: Mapping[str, Any], record: Mapping[str, Any]) -> dict[str, Any
         for name in kind.keys() & record.keys()
         if isinstance(kind[name], dict)
     }
-    quoted = [*record.get("quoted", ()), *kind.get("quoted", ())]
+    quoted = {**record.get("quoted", {}), **kind.get("quoted", {})}
     return {**kind, **record, **tables, "quoted": quoted}
 
 
@@ -250,7 +250,9 @@ def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> F
     return FigureEntry(
         document,
         draw=draw,
-        quoted=tuple(_comparison(common, row) for row in record.pop("quoted", ())),
+        quoted=tuple(
+            _comparison(number, common, row) for number, row in record.pop("quoted").items()
+        ),
         notes=tuple(
             notes[note[1:]] if note.startswith("@") else note for note in record.pop("notes", ())
         ),
@@ -258,12 +260,12 @@ def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> F
     )
 
 
-def _comparison(common: Mapping[str, Any], row: Mapping[str, Any]) -> Quoted:
-    """Return one comparison; the key of its expected value is its kind."""
+def _comparison(number: str, common: Mapping[str, Any], row: Mapping[str, Any]) -> Quoted:
+    """Return the comparison of one number; the key of its expected value is its kind."""
     kind = next(kind for source in (row, common) for kind in KINDS if kind in source)
     given = {**common, **row}
     rest = {name: value for name, value in given.items() if name not in KINDS}
-    return Quoted(kind=kind, expected=given[kind], **rest)
+    return Quoted(number, kind=kind, expected=given[kind], **rest)
 
 
 @dataclass(frozen=True)

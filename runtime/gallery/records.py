@@ -4,12 +4,14 @@ A record holds the figure's label and title, the function that draws it (``draw`
 name in it, with ``arguments`` after the axes), its panels and size, and what is compared, by what
 each number is, the expected value under the name of its kind; ``common`` holds what these share.
 A record of a ``kind`` takes what it does not say from the file's table ``kind``, whose quoted
-numbers follow its own; a note ``@name`` stands in its table ``notes``; ``page`` is a document that
-notes and tables make up.
+numbers follow its own; one with a list ``each`` stands for so many figures, each of which adds to
+it.  A text ``@name`` is that of the file's table ``notes``, ``<name>`` within a text that of the
+figure's ``texts``; ``page`` is a document that notes and tables make up.
 """
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
@@ -215,25 +217,50 @@ def contents(document: str) -> Mapping[str, Any]:
 def _read(document: str) -> tuple[FigureEntry, ...]:
     data = contents(document)
     notes, kinds = data.get("notes", {}), data.get("kind", {})
-    return tuple(
-        _entry(document, _merged(kinds.get(record.get("kind", ""), {}), record), notes)
+    records = (
+        _merged(_merged(kinds.get(record.get("kind"), {}), record), one)
         for record in data["figure"]
+        for one in record.get("each", [{}])
+    )
+    return tuple(
+        _entry(document, _filled(record, record.get("texts", {}), notes)) for record in records
     )
 
 
-def _merged(kind: Mapping[str, Any], record: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a record with what its kind adds; tables in both are joined, and quoted numbers."""
+def _merged(base: Mapping[str, Any], record: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a record with what its base adds; tables in both are joined, and quoted numbers."""
     tables = {
-        name: {**kind[name], **record[name]}
-        for name in kind.keys() & record.keys()
-        if isinstance(kind[name], dict)
+        name: {**base[name], **record[name]}
+        for name in base.keys() & record.keys()
+        if isinstance(base[name], dict)
     }
-    quoted = {**record.get("quoted", {}), **kind.get("quoted", {})}
-    return {**kind, **record, **tables, "quoted": quoted}
+    # Those of the record come first.
+    own, others = (part.get("quoted", {}) for part in (record, base))
+    quoted = {number: {**others.get(number, {}), **own.get(number, {})} for number in own | others}
+    return {**base, **record, **tables, "quoted": quoted}
 
 
-def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> FigureEntry:
-    record.pop("kind", None)
+def _filled(value: Any, texts: Mapping[str, Any], notes: Mapping[str, str]) -> Any:
+    """Return a value with a figure's texts where ``<name>`` stood, and notes where ``@name`` did.
+
+    What is ``<name>`` alone becomes what the figure says, be it a text or not.
+    """
+    if isinstance(value, dict):
+        return {_filled(k, texts, notes): _filled(v, texts, notes) for k, v in value.items()}
+    if isinstance(value, list):
+        return [_filled(item, texts, notes) for item in value]
+    if not isinstance(value, str):
+        return value
+    if value.startswith("@"):
+        value = notes[value[1:]]
+    if alone := re.fullmatch(r"<(\w+)>", value):
+        return texts[alone[1]]
+    return re.sub(r"<(\w+)>", lambda match: str(texts[match[1]]), value)
+
+
+def _entry(document: str, record: dict[str, Any]) -> FigureEntry:
+    for name in ("kind", "each", "texts"):
+        record.pop(name, None)
     common = record.pop("common", {})
     place, arguments = record.pop("draw"), record.pop("arguments", ())
 
@@ -253,9 +280,7 @@ def _entry(document: str, record: dict[str, Any], notes: Mapping[str, str]) -> F
         quoted=tuple(
             _comparison(number, common, row) for number, row in record.pop("quoted").items()
         ),
-        notes=tuple(
-            notes[note[1:]] if note.startswith("@") else note for note in record.pop("notes", ())
-        ),
+        notes=tuple(record.pop("notes", ())),
         **record,
     )
 
@@ -265,7 +290,7 @@ def _comparison(number: str, common: Mapping[str, Any], row: Mapping[str, Any]) 
     kind = next(kind for source in (row, common) for kind in KINDS if kind in source)
     given = {**common, **row}
     rest = {name: value for name, value in given.items() if name not in KINDS}
-    return Quoted(number, kind=kind, expected=given[kind], **rest)
+    return Quoted(number, kind=kind, expected=float(given[kind]), **rest)
 
 
 @dataclass(frozen=True)

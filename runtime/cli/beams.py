@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from dataclasses import astuple
 from math import degrees
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,6 @@ from .linkages import moving_scene, speed_of, speed_range
 
 if TYPE_CHECKING:
     from ..core.families import LinearPeriodic
-    from ..design.quiet import QuietSpeeds
     from ..recovery.stress_over_speed import StressCurve
     from ..recovery.stresses import StressResult
     from ..scenes import Scene
@@ -142,12 +142,7 @@ def _stress(options: argparse.Namespace) -> int:
         ("beyond the critical speed", "", [_known(b.above, ".5g") for b in found.bands]),
     )
     lines += _unstable_lines(found.unstable)
-    return opt.finish(options, found, lines, more={"bands": _numbers(found)})
-
-
-def _numbers(found: QuietSpeeds) -> list[tuple[float, float, float, float, float | None]]:
-    """Return ends, quietest speed, stress over limit there and critical speed of each band."""
-    return [(b.low, b.high, b.best, b.ratio, b.above) for b in found.bands]
+    return opt.finish(options, found, lines, more={"bands": list(map(astuple, found.bands))})
 
 
 def _known(value: float | None, form: str) -> str:
@@ -219,7 +214,7 @@ def _running(options: argparse.Namespace) -> int:
         )
     if found.best_damping is not None:
         lines.append(f"damping ratio with the least stress there: {found.best_damping:.3g}")
-    return opt.finish(options, found, lines, more={"bands": _numbers(found.quiet)})
+    return opt.finish(options, found, lines, more={"bands": list(map(astuple, found.quiet.bands))})
 
 
 def _through(options: argparse.Namespace) -> int:

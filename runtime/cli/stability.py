@@ -258,10 +258,8 @@ def _default_axis(axis: str, scene: Scene) -> Axis:
     inertias = scene.get("measured.follower_inertias", None)
     if axis == "y" and name in {None, "follower_inertia"} and inertias:
         return "follower_inertia", opt.spaced(0.9 * min(inertias), 1.1 * max(inertias), points)
-    found, fix = (
-        f"no chart.{axis}_range in scene {scene.name}",
-        f"give --{axis} NAME=START:STOP:COUNT",
-    )
+    found = f"no chart.{axis}_range in scene {scene.name}"
+    fix = f"give --{axis} NAME=START:STOP:COUNT"
     raise bad(f"--{axis}", found, "a parameter and its values", fix)
 
 

@@ -100,6 +100,32 @@ def test_the_numbers_that_the_documents_quote_are_all_there():
     assert all(row.number and row.meaning and row.where for row in rows)
 
 
+def test_one_record_stands_for_figures_that_differ_in_a_few_words(monkeypatch):
+    shared = {"draw": "sketch.canvas", "title": "A <shape>", "notes": ["@of", "plain"]}
+    kind = {**shared, "quoted": {"area": {"words": 1.0, "meaning": "@of"}}}
+    square = {"label": "1", "texts": {"shape": "square", "corners": 4}}
+    disc = {"label": "2", "texts": {"shape": "disc", "corners": 0}}
+    disc["quoted"] = {"area": {"differs": "no corners"}}
+    record = {"kind": "drawn", "each": [square, disc]}
+    record["quoted"] = {"corners of a <shape>": {"printed": "<corners>"}}
+    data = {"notes": {"of": "of a <shape>"}, "kind": {"drawn": kind}, "figure": [record]}
+    monkeypatch.setattr(records, "contents", lambda document: data)
+    read = records.documents.__wrapped__
+    one, two = read()["smith"]
+    assert (one.label, one.title, one.notes) == ("1", "A square", ("of a square", "plain"))
+    assert [(row.number, row.expected) for row in one.quoted] == [
+        ("corners of a square", 4.0),
+        ("area", 1.0),
+    ]
+    # What a kind and a figure both say of a number is joined, at the figure's place for it.
+    first, last = two.quoted
+    assert (first.number, first.meaning, first.differs) == ("area", "of a disc", "no corners")
+    assert (last.number, last.kind, last.expected) == ("corners of a disc", "printed", 0.0)
+    del disc["texts"]["corners"]
+    with pytest.raises(KeyError):
+        read()
+
+
 test_an_unknown_name_is_refused_with_those_there_are = refused(
     lambda document, figure: reproduce(document, figure),
     [

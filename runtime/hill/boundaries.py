@@ -21,7 +21,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev as series
@@ -32,15 +32,12 @@ from ..core.errors import BadInput, bad
 from ..core.inputs import require_flag
 from ..core.maxima import bracketed_roots
 from ..core.periodic_function import PeriodicFunction
+from ..core.plotting import Axes
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .checks import EPS, Array, Index, Mask, axes_over, check_function, check_regions, points
 from .fourier_matrix import banded, by_parity, chunks, stacked, truncation
 from .half_trace import discriminant, growth_rate
 from .meissner import Meissner, meissner_ends
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 # Ends whose half trace is compared with its level, and the step of the differences there.  The
 # errors are estimates, and slope and curvature come from differences.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,9 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad
 from ..core.inputs import numbers as in_doubles
 from ..core.periodic_function import PeriodicFunction
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from ..core.plotting import Axes, axes_or_new
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -88,8 +85,6 @@ def check_regions(
 
 def axes_over(ax: Axes | None, where: str, name: str, values: Array) -> Axes:
     """Return axes, new ones by default, to draw over a line of values; refuse any other shape."""
-    from ..core.plotting import axes_or_new
-
     if values.ndim != 1:
         raise bad(where, f"{name} of shape {values.shape}", f"a line of {name}", "slice it")
     return axes_or_new(ax)

@@ -6,22 +6,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import pi
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import bad
 from ..core.periodic_function import PeriodicFunction
+from ..core.plotting import Axes
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .boundaries import half_trace_check, sample_of
 from .checks import EPS, LARGEST, Array, Mask, axes_over, check_function, check_regions, points
 from .fourier_matrix import chunks, couplings, truncation
 from .half_trace import discriminant
 from .meissner import Meissner
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,26 +8,22 @@ is sampled at few Chebyshev nodes and interpolated, the tail of the coefficients
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import ceil, log, pi, sqrt
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core import chebyshev
 from ..core.errors import bad
+from ..core.periodic_function import PeriodicFunction
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import BROADCAST, Check, Result, provenance
 from .checks import EPS, Array, Index, Mask, arguments, check_function
 from .meissner import Meissner
 from .transfer import Transfer, transfer
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from matplotlib.axes import Axes
-
-    from ..core.periodic_function import PeriodicFunction
 
 Box = tuple[float, float, float, float]
 
@@ -86,8 +82,6 @@ class HalfTrace(Result):
         BadInput
             If the values are neither a grid of lam2 by mu nor a line.
         """
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         lam2, mu = np.squeeze(self.lam2), np.squeeze(self.mu)
         if self.value.ndim == 2 and lam2.ndim == mu.ndim == 1:

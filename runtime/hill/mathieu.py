@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,12 +12,10 @@ from numpy.typing import ArrayLike
 from ..core.errors import bad
 from ..core.inputs import is_whole
 from ..core.periodic_function import PeriodicFunction
+from ..core.plotting import Axes
 from ..core.results import BROADCAST, Result, provenance
 from .boundaries import hill_boundaries
 from .checks import Array, axes_over, finite
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 Kind = Literal["a", "b"]
 

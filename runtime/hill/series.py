@@ -15,7 +15,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
@@ -25,14 +25,11 @@ from ...generated import hill_recursion
 from ..core.errors import bad, shown
 from ..core.inputs import is_finite, is_whole
 from ..core.periodic_function import PeriodicFunction
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from .bloch import HIGHEST_ORDER, effective_operator, level_distance
 from .boundaries import hill_boundaries
 from .checks import EPS, Array, Complex, check_function, check_regions, finite
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 # A leading coefficient of the root is taken for zero where it is within the round-off of the terms
 # that make it, so many units of their size; above this share of its majorant it cannot be.
@@ -115,8 +112,6 @@ class BoundarySeries(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw partial sums of every order and the exact boundaries, mu upwards."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         mu = np.linspace(0.0, 1.0, 101)
         exact = hill_boundaries(self.function, mu, (self.region,), damping=self.damping_ratio * mu)

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
+from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 from ..core.errors import BadInput, bad
 from ..core.inputs import is_one_of
 from ..core.periodic_function import PeriodicFunction
+from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import finite_angles
 from .bloch import BEYOND, effective_operator, wave_columns
@@ -28,9 +29,6 @@ from .boundaries import hill_boundaries
 from .checks import EPS, LARGEST, Array, Complex, check_regions
 from .fourier_matrix import couplings, stacked
 from .perturbation import Sums, check_order, combined, parameters_of
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 End = Literal["lower", "upper"]
 
@@ -103,8 +101,6 @@ class BoundarySolution(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the solution over a period."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         theta = np.linspace(0.0, self.period, 721)
         ax.plot(theta, self(theta))

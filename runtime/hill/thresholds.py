@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,15 +18,12 @@ from numpy.typing import ArrayLike
 from ..core.errors import BadInput, bad
 from ..core.maxima import bracketed_roots, local_maxima, narrowed
 from ..core.periodic_function import PeriodicFunction
+from ..core.plotting import Axes
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
 from .boundaries import ends_at, hill_boundaries, largest_exponent, sample_of
 from .checks import EPS, Array, Index, Mask, axes_over, check_function, check_regions, points
 from .perturbation import CONTRACTION, Sums
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 # Values of mu per decade in the search for the first crossing, and how far it goes: to mu f of so
 # many times the square of the region's number.  Where it begins without damping any width will do.

@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from math import ceil
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,12 +23,10 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic
 from ..core.inputs import numbers_in_a_row, require_between, speed_span
+from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..periodic import Monodromy, monodromy
 from ..periodic.equation import SPEED_POWER, equation_of, sampled
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 ComplexArray = NDArray[np.complex128]
 
@@ -214,12 +212,10 @@ class SpeedBoundaries(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the boundaries as lines over the speed and return the axes."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
         for sign, colour in ((1, "C0"), (-1, "C1")):
             for speed in self.speed[self.multiplier == sign]:
-                ax.axvline(speed * 30 / np.pi, color=colour, linewidth=0.8)
+                ax.axvline(speed * RPM, color=colour, linewidth=0.8)
             ax.plot([], [], color=colour, label=f"multiplier {sign:+d}")
         ax.set_xlabel("crank speed [rpm]")
         ax.set_yticks([])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,7 +20,7 @@ from ..core.inputs import (
     require_mapping,
     text_problems,
 )
-from ..core.plotting import RPM, axes_or_new
+from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.results import Check, Result
 from ..hill.form import is_hill
 from ..hill.perturbation import check_order
@@ -29,11 +29,6 @@ from .chart_axes import damping_rate, natural_frequency, on_grid
 from .chart_boundaries import BoundaryCurves, boundary_curves
 from .chart_lines import Map, Sampler, Series, invariants, relative_error
 from .invariants import instability_kind, known_to, largest_modulus, root_uncertainty
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from .chart_boundaries import BoundaryCurves
 
 Axis = tuple[str, ArrayLike]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ..core.errors import BadInput, bad
 from ..core.families import DAMPING, Array, LinearPeriodic
 from ..core.inputs import is_finite, numbers, require_between, speed_span
+from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..periodic import floquet_multipliers
 from ..periodic.equation import at_geometry, equation_of
@@ -30,9 +31,6 @@ from .labels import (
     unit_labels,
 )
 from .pairs import Edges, Events, Samples, meetings, refined_edges, sampled_phases
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
@@ -131,8 +129,6 @@ class StabilityEdges(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the regions as bars over the speed, closed ones as dots, a row for each pair."""
-        from ..core.plotting import RPM, axes_or_new
-
         ax = axes_or_new(ax)
         low, high = (speed * RPM for speed in self.speed_range)
         pairs = sorted({tuple(pair) for pair in self.modes.tolist()})

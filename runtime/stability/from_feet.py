@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,13 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad
 from ..core.families import DAMPING, Array, LinearPeriodic
 from ..core.inputs import numbers_in_a_row, speed_span
+from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..periodic import floquet_multipliers
 from .edges import StabilityEdges, stability_edges
 from .meetings import Resonance, resonances
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 Whole = NDArray[np.int64]
 
@@ -82,15 +80,12 @@ class TongueCurves(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the tongues, speeds in rpm to the right, each named where it ends."""
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
-        rpm = 30.0 / np.pi
         colours = {"+": "#b2182b", "-": "#1b7837", "2": "#2166ac"}
         for i, label in enumerate(self.labels):
             kind = "2" if label.startswith("2") else "+" if "+" in label else "-"
-            low = np.concatenate([[self.foot[i]], self.lower[i]]) * rpm
-            high = np.concatenate([[self.foot[i]], self.upper[i]]) * rpm
+            low = np.concatenate([[self.foot[i]], self.lower[i]]) * RPM
+            high = np.concatenate([[self.foot[i]], self.upper[i]]) * RPM
             at = np.concatenate([[0.0], self.at])
             ax.fill_betweenx(at, low, high, color=colours[kind], alpha=0.35, lw=0)
             for ends in (low, high):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.polynomial import polynomial
@@ -15,15 +15,13 @@ from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic
 from ..core.inputs import numbers, require_whole
 from ..core.maxima import local_maxima
+from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ..hill.bloch import BEYOND, HIGHEST
 from ..periodic import floquet_multipliers
 from ..periodic.equation import equation_of
 from .meetings import MeanSystem, Resonance, conservative
 from .operators import ResonantOperator, resonant_operator
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 Complex = NDArray[np.complex128]
 
@@ -375,13 +373,10 @@ class Tongue(Result):
 
         Ranges without an end are left out.
         """
-        from ..core.plotting import axes_or_new
-
         ax = axes_or_new(ax)
-        unit = 30 / np.pi
         bounded = np.isfinite(self.upper.ravel())
-        lower = np.where(bounded, self.lower.ravel(), np.nan) * unit
-        upper = np.where(bounded, self.upper.ravel(), np.nan) * unit
+        lower = np.where(bounded, self.lower.ravel(), np.nan) * RPM
+        upper = np.where(bounded, self.upper.ravel(), np.nan) * RPM
         if self.values.ndim and self.parameter:
             values = self.values.ravel()
             order = np.argsort(values, kind="stable")

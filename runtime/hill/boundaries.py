@@ -123,8 +123,7 @@ class Boundaries(Result):
             line, other = ax.plot(np.stack([low, high], axis=1), self.mu)
             other.set_color(line.get_color())
             ax.fill_betweenx(self.mu, low, high, color=line.get_color(), alpha=0.3)
-        ax.set_xlabel(r"$\lambda^2$")
-        ax.set_ylabel(r"$\mu$")
+        ax.set(xlabel=r"$\lambda^2$", ylabel=r"$\mu$")
         return ax
 
 

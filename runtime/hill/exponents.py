@@ -73,8 +73,7 @@ class CharacteristicExponents(Result):
         ax = axes_over(ax, "CharacteristicExponents.plot", name, across)
         if self.bands:
             ax.plot(across, self.lam2.T)
-            ax.set_xlabel(r"$\nu$")
-            ax.set_ylabel(r"$\lambda^2$")
+            ax.set(xlabel=r"$\nu$", ylabel=r"$\lambda^2$")
             return ax
         ax.plot(across, np.ravel(self.growth), label="growth")
         ax.plot(across, np.ravel(self.nu), label=r"$\nu$")

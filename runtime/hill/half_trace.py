@@ -88,14 +88,13 @@ class HalfTrace(Result):
             shown = self.value if lam2.size == self.value.shape[0] else self.value.T
             excess = np.abs(shown) - self.level
             ax.contourf(lam2, mu, excess.T, levels=[0.0, np.inf], colors=["0.8"])
-            ax.set_xlabel(r"$\lambda^2$")
-            ax.set_ylabel(r"$\mu$")
+            ax.set(xlabel=r"$\lambda^2$", ylabel=r"$\mu$")
             return ax
         if self.value.ndim == 1:
             across = lam2 if lam2.ndim == 1 else mu
             ax.plot(across, self.value)
-            ax.set_xlabel(r"$\lambda^2$" if lam2.ndim == 1 else r"$\mu$")
-            ax.set_ylabel("half trace")
+            label = r"$\lambda^2$" if lam2.ndim == 1 else r"$\mu$"
+            ax.set(xlabel=label, ylabel="half trace")
             return ax
         raise bad(
             "HalfTrace.plot", f"values of shape {self.value.shape}", "a line or a grid", "slice it"

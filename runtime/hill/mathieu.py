@@ -151,6 +151,5 @@ class MathieuCharacteristic(Result):
         """
         ax = axes_over(ax, "MathieuCharacteristic.plot", "q", self.q)
         ax.plot(self.q, self.value)
-        ax.set_xlabel("$q$")
-        ax.set_ylabel(f"${self.kind}_{{{self.m}}}$")
+        ax.set(xlabel="$q$", ylabel=f"${self.kind}_{{{self.m}}}$")
         return ax

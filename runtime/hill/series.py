@@ -126,8 +126,7 @@ class BoundarySeries(Result):
         known = known[np.isfinite(known)]
         room = 0.3 * np.ptp(known) + 0.1
         ax.set_xlim(known.min() - room, known.max() + room)
-        ax.set_xlabel(r"$\lambda^2$")
-        ax.set_ylabel(r"$\mu$")
+        ax.set(xlabel=r"$\lambda^2$", ylabel=r"$\mu$")
         ax.legend()
         return ax
 

@@ -104,8 +104,7 @@ class BoundarySolution(Result):
         ax = axes_or_new(ax)
         theta = np.linspace(0.0, self.period, 721)
         ax.plot(theta, self(theta))
-        ax.set_xlabel(r"$\theta$ [rad]")
-        ax.set_ylabel("$y$")
+        ax.set(xlabel=r"$\theta$ [rad]", ylabel="$y$")
         return ax
 
 

@@ -81,8 +81,7 @@ class Thresholds(Result):
         ax = axes_over(ax, "Thresholds.plot", "values", across)
         for n, row in zip(self.regions, up, strict=True):
             ax.plot(across, np.where(np.isfinite(row), row, np.nan), label=f"region {n}")
-        ax.set_xlabel(labels[0])
-        ax.set_ylabel(labels[1])
+        ax.set(xlabel=labels[0], ylabel=labels[1])
         ax.legend()
         return ax
 

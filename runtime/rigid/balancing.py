@@ -89,8 +89,7 @@ class Balancing(Result):
         bars = ax.bar(names, [self.relative[name] for name in names], color=colours)
         ax.bar_label(bars, fmt="%.3f", padding=2)
         ax.axhline(1.0, color="black", linewidth=0.8)
-        ax.set_ylabel("peak over that of the unbalanced linkage")
-        ax.set_title("pale: without a weight")
+        ax.set(ylabel="peak over that of the unbalanced linkage", title="pale: without a weight")
         ax.tick_params(axis="x", rotation=20)
         return ax
 

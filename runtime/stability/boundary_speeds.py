@@ -217,8 +217,7 @@ class SpeedBoundaries(Result):
             for speed in self.speed[self.multiplier == sign]:
                 ax.axvline(speed * RPM, color=colour, linewidth=0.8)
             ax.plot([], [], color=colour, label=f"multiplier {sign:+d}")
-        ax.set_xlabel("crank speed [rpm]")
-        ax.set_yticks([])
+        ax.set(xlabel="crank speed [rpm]", yticks=[])
         ax.legend()
         return ax
 

@@ -163,8 +163,7 @@ class StabilityChart(Result):
                 _draw_curves(ax, self, curves, style, colour, text)
         if self.edges is not None:
             _draw_edges(ax, self, self.edges)
-        ax.set_xlim(x[0], x[-1])
-        ax.set_ylim(y[0], y[-1])
+        ax.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
         for label, values in self.marks.items():
             _draw_marks(ax, _shown(self.y_name, np.asarray(values)), label, float(x[0]))
         ax.set_xlabel(_LABELS.get(self.x_name, self.x_name))

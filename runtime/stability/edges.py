@@ -156,9 +156,7 @@ class StabilityEdges(Result):
                 last[pair] = middle
         names = [f"mode {i}" if i == j else f"modes {i}, {j}" for i, j in pairs]
         ax.set_yticks(range(len(pairs)), names)
-        ax.set_ylim(-0.6, len(pairs) - 0.3)
-        ax.set_xlim(low, high)
-        ax.set_xlabel("crank speed [rpm]")
+        ax.set(xlim=(low, high), ylim=(-0.6, len(pairs) - 0.3), xlabel="crank speed [rpm]")
         ax.set_title("unstable regions; the numbers are harmonics", fontsize=9)
         if seen:
             below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.12)}

@@ -103,8 +103,7 @@ class TongueCurves(Result):
             )
         # Room for the names.
         ax.set_ylim(0.0, 1.2 * float(self.at[-1]))
-        ax.set_xlabel("crank speed [rpm]")
-        ax.set_ylabel(self.name.replace("_", " "))
+        ax.set(xlabel="crank speed [rpm]", ylabel=self.name.replace("_", " "))
         return ax
 
 

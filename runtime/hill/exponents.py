@@ -172,11 +172,7 @@ def _exponent(half: Array, k: Array) -> tuple[Array, Array]:
 
 
 def _bands(
-    f: PeriodicFunction,
-    mu: ArrayLike,
-    damping: ArrayLike,
-    nu: ArrayLike,
-    bands: Sequence[int],
+    f: PeriodicFunction, mu: ArrayLike, damping: ArrayLike, nu: ArrayLike, bands: Sequence[int]
 ) -> CharacteristicExponents:
     """Return the lam2 of each band with a given multiplier ``exp(2 pi (i nu - K))``."""
     numbers = check_regions(bands, most=LARGEST - 1, name="bands")

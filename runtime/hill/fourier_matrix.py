@@ -59,11 +59,7 @@ class Truncation(NamedTuple):
 
 
 def truncation(
-    f: PeriodicFunction,
-    reach: float,
-    highest: int,
-    shift: float = 0.0,
-    goal: float = LEFT_OUT,
+    f: PeriodicFunction, reach: float, highest: int, shift: float = 0.0, goal: float = LEFT_OUT
 ) -> Truncation:
     """Choose the truncation for the regions up to ``highest`` at ``|mu| <= reach``.
 

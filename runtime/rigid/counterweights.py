@@ -265,10 +265,7 @@ def _slider_crank(machine: Machine, case: Case, place: _Place) -> dict[str, Coun
     # The slider does not turn: wherever its centre is, it moves as a point mass at C.
     middle = place({"coupler": -_moment(machine, "coupler") - slider.mass * lengths["coupler"]})
     at_pin = slider.mass + coupler.mass + sum(weight.mass for weight in middle.values())
-    return {
-        **place({"crank": -_moment(machine, "crank") - at_pin * lengths["crank"]}),
-        **middle,
-    }
+    return {**place({"crank": -_moment(machine, "crank") - at_pin * lengths["crank"]}), **middle}
 
 
 def _quick_return(machine: Machine, case: Case, place: _Place) -> dict[str, Counterweight]:

@@ -172,11 +172,7 @@ def _shortest_arm(lengths: Mapping[str, float], motion: Any) -> Array:
 
 
 def checks(
-    machine: Machine,
-    theta: Array,
-    speed: Array,
-    acceleration: Array,
-    values: Mapping[str, Array],
+    machine: Machine, theta: Array, speed: Array, acceleration: Array, values: Mapping[str, Array]
 ) -> dict[str, Check]:
     """Return the checks that the values at hand allow, at some of the places.
 

@@ -445,12 +445,7 @@ class ForceBasis:
         return {term: np.stack(parts, axis=-1) for term, parts in columns.items()}
 
     def sizes(
-        self,
-        theta: Array,
-        p: Array,
-        between: bool,
-        measure: Measure,
-        terms: Sequence[str] = TERMS,
+        self, theta: Array, p: Array, between: bool, measure: Measure, terms: Sequence[str] = TERMS
     ) -> dict[str, tuple[Array, Array]]:
         """Return angles and sizes of the highest peaks of each term with parameters p [N; N m].
 

@@ -352,13 +352,7 @@ def _roots(matrices: Matrices, sign: int, harmonics: int, span: tuple[float, flo
     refined, error, motions = _refined(matrices, speed[index], start, symmetric)
     inside = (refined >= low) & (refined <= high)
     order = np.flatnonzero(inside)[np.argsort(refined[inside], kind="stable")]
-    return _Roots(
-        sign,
-        harmonics,
-        refined[order],
-        (error + imaginary)[order],
-        motions[order],
-    )
+    return _Roots(sign, harmonics, refined[order], (error + imaginary)[order], motions[order])
 
 
 def _symmetric(matrix: Array) -> bool:

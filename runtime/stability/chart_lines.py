@@ -290,12 +290,7 @@ class Lines:
         return 3.0 * worst
 
     def _table(
-        self,
-        fixed: dict[str, float],
-        inner: str | None,
-        low: float,
-        high: float,
-        fineness: float,
+        self, fixed: dict[str, float], inner: str | None, low: float, high: float, fineness: float
     ) -> Line:
         system, rest = at_geometry(self.system, fixed)
         known = sampled(system)

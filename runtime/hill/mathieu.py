@@ -40,7 +40,6 @@ class Mathieu:
     q: ArrayLike
 
     def __post_init__(self) -> None:
-        """Refuse what are no finite numbers."""
         finite("a", self.a)
         finite("q", self.q)
 

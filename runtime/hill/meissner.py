@@ -55,7 +55,6 @@ class Meissner:
     error = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse levels that are not numbers and lengths that do not make a turn."""
         levels, lengths = finite("levels", self.levels), finite("lengths", self.lengths)
         if levels.ndim != 1 or not levels.size or levels.shape != lengths.shape:
             shapes = f"{levels.shape}, {lengths.shape}"

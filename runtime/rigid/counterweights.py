@@ -50,7 +50,6 @@ class Counterweight:
     thickness: float | None = None
 
     def __post_init__(self) -> None:
-        """Check the numbers."""
         where = "Counterweight"
         problems = number_problems(where, {"along": self.along, "across": self.across})
         sizes = {"mass": self.mass, "radius": self.radius}
@@ -110,7 +109,6 @@ class Bounds:
     thickness: float | None = None
 
     def __post_init__(self) -> None:
-        """Check the numbers."""
         problems = _not_positive("Bounds", {"mass": self.mass, "offset": self.offset})
         problems += _cylinder_problems("Bounds", self.density, self.thickness)
         refuse(problems)

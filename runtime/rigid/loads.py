@@ -91,7 +91,6 @@ class Load:
     given: Literal["angle", "motion"] = "angle"
 
     def __post_init__(self) -> None:
-        """Check the numbers and the choices."""
         numbers: dict[str, Any] = {"along": self.along, "across": self.across}
         if not callable(self.couple):
             numbers["couple"] = self.couple
@@ -173,7 +172,6 @@ class Spring:
     preload: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check the numbers and the ends."""
         problems = []
         for name in ("first", "second"):
             problems += _end_problems(f"Spring.{name}", getattr(self, name))
@@ -269,7 +267,6 @@ class TorsionSpring:
     preload: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check the numbers and the links."""
         where = "TorsionSpring"
         rates = {"stiffness": self.stiffness, "damping": self.damping}
         problems = number_problems(where, rates, "not negative")

@@ -56,7 +56,6 @@ class MassDistribution:
         return root * root < sys.float_info.min
 
     def __post_init__(self) -> None:
-        """Refuse what no body can have."""
         _require({"mass": self.mass, "inertia": self.inertia}, along=self.along, across=self.across)
         moment = math.hypot(self.along, self.across)
         most = math.sqrt(self.mass) * math.sqrt(self.inertia)

@@ -565,7 +565,6 @@ class TorqueLine:
     no_load_speed: float
 
     def __post_init__(self) -> None:
-        """Check the numbers."""
         given = {"stall": self.stall, "no_load_speed": self.no_load_speed}
         problems = number_problems("TorqueLine", given)
         if not problems and not self.stall * self.no_load_speed > 0:

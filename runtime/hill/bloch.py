@@ -191,12 +191,9 @@ def _operator(key: _Key, n: int, order: int, damped: bool) -> EffectiveOperator:
     # The mean of f commutes with everything: it moves lam2 and nothing else.
     diagonal[0][: len(algebra.means)] -= algebra.means
     if not all(np.all(np.isfinite(item)) for item in (*diagonal, *coupling)):
-        raise bad(
-            "effective_operator",
-            "coefficients that overflow",
-            "functions of moderate size",
-            "move a common factor into the parameter",
-        )
+        found = "coefficients that overflow"
+        fix = "move a common factor into the parameter"
+        raise bad("effective_operator", found, "functions of moderate size", fix)
     return EffectiveOperator(n, order, damped, tuple(map(_frozen, diagonal)), tuple(coupling))
 
 

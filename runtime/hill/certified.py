@@ -220,12 +220,9 @@ def _group(f: PeriodicFunction, mu: float, coarse: Spectrum, j: int) -> tuple[Sp
 
 def refusal(reason: str) -> BadInput:
     """Return the error for a problem that cannot be certified."""
-    return bad(
-        "hill_boundaries(certified=True)",
-        reason,
-        "eigenvalues that double precision tells apart",
-        "take a smaller mu, lower regions or fewer harmonics",
-    )
+    expected = "eigenvalues that double precision tells apart"
+    fix = "take a smaller mu, lower regions or fewer harmonics"
+    return bad("hill_boundaries(certified=True)", reason, expected, fix)
 
 
 # ---------------------------------------------------------------- coarse positions

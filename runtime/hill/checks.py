@@ -45,12 +45,9 @@ def arguments(**given: ArrayLike) -> tuple[tuple[Array, ...], tuple[int, ...]]:
     try:
         return arrays, np.broadcast_shapes(*(item.shape for item in arrays))
     except ValueError as reason:
-        raise bad(
-            ", ".join(given),
-            f"shapes {', '.join(str(item.shape) for item in arrays)}",
-            "shapes that broadcast",
-            "reshape them, for example to (n, 1) and (1, m)",
-        ) from reason
+        found = f"shapes {', '.join(str(item.shape) for item in arrays)}"
+        fix = "reshape them, for example to (n, 1) and (1, m)"
+        raise bad(", ".join(given), found, "shapes that broadcast", fix) from reason
 
 
 def points(**given: ArrayLike) -> tuple[tuple[Array, ...], tuple[int, ...]]:
@@ -62,12 +59,8 @@ def points(**given: ArrayLike) -> tuple[tuple[Array, ...], tuple[int, ...]]:
 def check_function(f: object) -> PeriodicFunction:
     """Return f, or refuse anything but a :class:`PeriodicFunction`."""
     if not isinstance(f, PeriodicFunction):
-        raise bad(
-            "f",
-            type(f).__name__,
-            "a PeriodicFunction",
-            "use PeriodicFunction(a=, b=), .from_samples or .from_callable",
-        )
+        fix = "use PeriodicFunction(a=, b=), .from_samples or .from_callable"
+        raise bad("f", type(f).__name__, "a PeriodicFunction", fix)
     return f
 
 

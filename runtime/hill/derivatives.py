@@ -161,19 +161,12 @@ def _direction(f: PeriodicFunction, item: object, place: int) -> _Direction:
         return _Direction("mu", f)
     named = _COEFFICIENT.fullmatch(item) if isinstance(item, str) else None
     if named is None or item == "b0":
-        raise bad(
-            f"directions[{place}]",
-            repr(item),
-            "'mu', 'K', a coefficient such as 'a2' or 'b1', or a PeriodicFunction",
-            "correct the name",
-        )
+        expected = "'mu', 'K', a coefficient such as 'a2' or 'b1', or a PeriodicFunction"
+        raise bad(f"directions[{place}]", repr(item), expected, "correct the name")
     if len(named[2]) > 9 or int(named[2]) > max(2 * LARGEST, f.harmonics):
-        raise bad(
-            f"directions[{place}]",
-            repr(str(item)[:20]),
-            f"a harmonic up to {2 * LARGEST}",
-            "higher ones couple nothing that the boundaries depend on",
-        )
+        expected = f"a harmonic up to {2 * LARGEST}"
+        fix = "higher ones couple nothing that the boundaries depend on"
+        raise bad(f"directions[{place}]", repr(str(item)[:20]), expected, fix)
     unit = np.zeros(int(named[2]) + 1)
     unit[-1] = 1.0
     function = PeriodicFunction(unit) if named[1] == "a" else PeriodicFunction([0.0], unit)

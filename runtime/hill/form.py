@@ -78,12 +78,9 @@ def hill_form(system: LinearPeriodic) -> HillForm:
     """
     require_system(system)
     if not is_hill(system):
-        raise bad(
-            "system",
-            f"{system.size} degrees of freedom",
-            "one mode with constant mass, damping and stiffness",
-            "use floquet_multipliers or speed_boundaries",
-        )
+        expected = "one mode with constant mass, damping and stiffness"
+        fix = "use floquet_multipliers or speed_boundaries"
+        raise bad("system", f"{system.size} degrees of freedom", expected, fix)
     parts: dict[str, list[tuple[str | None, PeriodicFunction]]] = {"B": [], "Kg": []}
     for term in system.terms:
         if term.array in parts:

@@ -167,12 +167,9 @@ def _remainder(taps: Array, last: Array, gap: float, k: int, bound: float) -> fl
 
 
 def _too_large(reach: float, f: PeriodicFunction) -> BadInput:
-    return bad(
-        "hill_boundaries",
-        f"|mu| up to {reach:.3g}, {f.harmonics} harmonics",
-        f"a problem that {LARGEST} harmonics settle",
-        "truncate the function or take a smaller mu",
-    )
+    found = f"|mu| up to {reach:.3g}, {f.harmonics} harmonics"
+    expected = f"a problem that {LARGEST} harmonics settle"
+    return bad("hill_boundaries", found, expected, "truncate the function or take a smaller mu")
 
 
 class Layout(NamedTuple):

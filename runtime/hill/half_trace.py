@@ -96,9 +96,8 @@ class HalfTrace(Result):
             label = r"$\lambda^2$" if lam2.ndim == 1 else r"$\mu$"
             ax.set(xlabel=label, ylabel="half trace")
             return ax
-        raise bad(
-            "HalfTrace.plot", f"values of shape {self.value.shape}", "a line or a grid", "slice it"
-        )
+        found = f"values of shape {self.value.shape}"
+        raise bad("HalfTrace.plot", found, "a line or a grid", "slice it")
 
 
 def discriminant(

@@ -193,12 +193,9 @@ def parameters_of(
         check_function(f)
     functions = tuple(check_function(item) for item in f)
     if not isinstance(mu, Sequence | np.ndarray) or len(mu) != len(functions):
-        raise bad(
-            "mu",
-            f"{len(mu)} entries" if isinstance(mu, Sequence | np.ndarray) else "one number",
-            f"one entry for each of the {len(functions)} functions",
-            "pass mu=[eps_1, eps_2, ...]",
-        )
+        found = f"{len(mu)} entries" if isinstance(mu, Sequence | np.ndarray) else "one number"
+        expected = f"one entry for each of the {len(functions)} functions"
+        raise bad("mu", found, expected, "pass mu=[eps_1, eps_2, ...]")
     named = {f"mu[{i}]" if len(mu) > 1 else "mu": value for i, value in enumerate(mu)}
     flat, shape = points(**named, damping=damping)
     return functions, np.stack(flat), shape
@@ -245,12 +242,10 @@ class _Points:
         harmonics = max(item.harmonics for item in self.functions)
         size = comb(order + count - 1, count - 1) * (order * harmonics + n + 1)
         if size > _MOST_COEFFICIENTS:
-            raise bad(
-                "perturbation_boundaries",
-                f"order {self.order}, {harmonics} harmonics, {count} parameters",
-                f"at most {_MOST_COEFFICIENTS} coefficients ({size} would be needed)",
-                "truncate the functions, lower the order or combine the parameters",
-            )
+            found = f"order {self.order}, {harmonics} harmonics, {count} parameters"
+            expected = f"at most {_MOST_COEFFICIENTS} coefficients ({size} would be needed)"
+            fix = "truncate the functions, lower the order or combine the parameters"
+            raise bad("perturbation_boundaries", found, expected, fix)
         return effective_operator(self.functions, n, order, self.damped)
 
     def ends(self, operator: EffectiveOperator, part: slice) -> tuple[SeriesEnds, float]:

@@ -247,12 +247,9 @@ def _to_order(f: PeriodicFunction, n: int, end: End, order: int, damping: float)
         sums = Sums.of(n, order, a, b, noise, noise + reach)
         ends = sums.ends(np.array([damped]))
     if ends.outside[0]:
-        raise bad(
-            "boundary_solution",
-            f"orders that do not converge visibly in region {n} (order {order})",
-            "smaller parameters",
-            "use order=None for the exact solution",
-        )
+        found = f"orders that do not converge visibly in region {n} (order {order})"
+        fix = "use order=None for the exact solution"
+        raise bad("boundary_solution", found, "smaller parameters", fix)
     if np.isnan(ends.half[0]):
         raise _closed(n)
     half = float(ends.half[0]) * (1.0 if end == "upper" else -1.0)
@@ -319,12 +316,9 @@ def _exact(f: PeriodicFunction, n: int, end: End, damping: float) -> _Solution:
         if others.edge <= 1e-18:
             return others.joined(end, gap)
         harmonic += max(harmonic // 2, f.harmonics)
-    raise bad(
-        "boundary_solution",
-        f"{f.harmonics} harmonics, mu f up to {f.bound():.3g}",
-        f"a problem that {LARGEST} harmonics settle",
-        "truncate the function or take a smaller mu",
-    )
+    found = f"{f.harmonics} harmonics, mu f up to {f.bound():.3g}"
+    expected = f"a problem that {LARGEST} harmonics settle"
+    raise bad("boundary_solution", found, expected, "truncate the function or take a smaller mu")
 
 
 def _leading_pair(

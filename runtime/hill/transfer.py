@@ -257,13 +257,12 @@ def _resolution(f: PeriodicFunction, spread: float, size: float, reach: float) -
     """Choose the number of segments and of nodes in each."""
     wanted = 2.0 * pi * max(sqrt(spread) / _SPREAD, sqrt(size) / _SIZE, 1.0)
     if not wanted <= _MOST_SEGMENTS:
-        raise bad(
-            "discriminant",
-            f"|lam2 + mu f| up to {size:.3g}",
+        expected = (
             f"at most {(_MOST_SEGMENTS * _SIZE / (2 * pi)) ** 2:.1g}, in boxes of "
-            f"at most {(_MOST_SEGMENTS * _SPREAD / (2 * pi)) ** 2:.1g}",
-            "scale the equation, or ask for a smaller range",
+            f"at most {(_MOST_SEGMENTS * _SPREAD / (2 * pi)) ** 2:.1g}"
         )
+        fix = "scale the equation, or ask for a smaller range"
+        raise bad("discriminant", f"|lam2 + mu f| up to {size:.3g}", expected, fix)
     segments = max(8, 2 ** ceil(log2(wanted)))
     weights = np.concatenate([[size], reach * f.amplitudes[1:]])
     waves = np.arange(weights.size, dtype=float)
@@ -278,12 +277,8 @@ def _resolution(f: PeriodicFunction, spread: float, size: float, reach: float) -
         if enough.size:
             return segments, int(_NODE_COUNTS[enough[0]])
         if segments >= _MOST_SEGMENTS:
-            raise bad(
-                "discriminant",
-                f"a function with {f.harmonics} harmonics",
-                "one that 65536 segments resolve",
-                "truncate it",
-            )
+            found = f"a function with {f.harmonics} harmonics"
+            raise bad("discriminant", found, "one that 65536 segments resolve", "truncate it")
         segments *= 2
 
 

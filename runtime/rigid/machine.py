@@ -106,12 +106,9 @@ class Machine:
         from .evaluation import ParametricMachine
 
         if any(callable(item.force) or callable(item.couple) for item in self.loads):
-            raise bad(
-                "tolerances",
-                "a machine with a load that is a function",
-                "masses, gravity, constant loads and springs",
-                "leave it out, or ask for the linkage alone",
-            )
+            expected = "masses, gravity, constant loads and springs"
+            fix = "leave it out, or ask for the linkage alone"
+            raise bad("tolerances", "a machine with a load that is a function", expected, fix)
         drive = (theta, speed, acceleration)
         return ParametricMachine(self.linkage, *drive, machine=self, bars=masses == "bars")
 

@@ -61,12 +61,9 @@ class MassDistribution:
         most = math.sqrt(self.mass) * math.sqrt(self.inertia)
         # Data with ten digits may lie this far beyond what a rigid body can have.
         if moment > most * (1.0 + 1e-9) and not self._underflows(moment):
-            raise bad(
-                "MassDistribution",
-                f"first moment {moment:g} kg m",
-                f"at most sqrt(mass inertia) = {most:g} kg m",
-                "no body has these; give the inertia about the first joint of the link",
-            )
+            expected = f"at most sqrt(mass inertia) = {most:g} kg m"
+            fix = "no body has these; give the inertia about the first joint of the link"
+            raise bad("MassDistribution", f"first moment {moment:g} kg m", expected, fix)
 
     def __add__(self, other: MassDistribution) -> MassDistribution:
         """Return both together, fixed to one link."""

@@ -609,12 +609,8 @@ def _checked(law: TorqueLaw) -> TorqueLaw:
             value, number = value.item(), value.dtype.kind in "fiu"
         if not (number and np.isfinite(value)):
             place = f"speed {speed:.6g} rad/s, angle {angle:.6g} rad, time {time:.6g} s"
-            raise bad(
-                "torque",
-                shown(value) + f" from the torque law at {place}",
-                "a finite number [N m]",
-                "correct the torque law",
-            )
+            found = shown(value) + f" from the torque law at {place}"
+            raise bad("torque", found, "a finite number [N m]", "correct the torque law")
         return float(value)
 
     return torque

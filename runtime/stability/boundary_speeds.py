@@ -59,12 +59,9 @@ def waves(system: LinearPeriodic, parameters: Mapping[str, ArrayLike]) -> tuple[
     scales = system.scale_values(**parameters)
     known = sampled(system)
     if known.harmonics < 0:
-        raise bad(
-            "LinearPeriodic.terms",
-            "a function whose Fourier series does not end",
-            "smooth periodic functions",
-            "check it for jumps and kinks",
-        )
+        given = "a function whose Fourier series does not end"
+        fix = "check it for jumps and kinks"
+        raise bad("LinearPeriodic.terms", given, "smooth periodic functions", fix)
     # Harmonics from 0 on, like terms added up.
     sums: dict[tuple[str, int], ComplexArray] = {}
     for place, term in enumerate(system.terms):
@@ -278,12 +275,9 @@ def speed_boundaries(
 
     def matrices(sign: int, harmonics: int) -> Matrices:
         if harmonics > most:
-            raise bad(
-                "speed_range",
-                f"a lowest speed of {low:.4g} rad/s, which needs {harmonics} harmonics",
-                f"at most {most}",
-                "raise the lowest speed or leave out the highest modes",
-            )
+            given = f"a lowest speed of {low:.4g} rad/s, which needs {harmonics} harmonics"
+            fix = "raise the lowest speed or leave out the highest modes"
+            raise bad("speed_range", given, f"at most {most}", fix)
         return real_matrices(found, system.size, system.period, harmonics, sign)
 
     parts = [_converged(partial(matrices, sign), sign, (low, high), usual, rtol) for sign in wanted]

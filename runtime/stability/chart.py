@@ -310,12 +310,8 @@ def _check_options(
     require_between("rtol", rtol, 1e-13, 1e-2, "choose 1e-9")
     check_order(order)
     if order != 1 and not is_hill(system):
-        raise bad(
-            "order",
-            order,
-            "one mode, which alone has boundaries by perturbation in a chart",
-            "leave it out; tongue has the series of several modes",
-        )
+        expected = "one mode, which alone has boundaries by perturbation in a chart"
+        raise bad("order", order, expected, "leave it out; tongue has the series of several modes")
     require_flag("edges", edges)
     if edges and "speed" not in names:
         raise bad("edges", edges, "a chart with the speed as an axis", "leave it out")

@@ -43,12 +43,10 @@ def fixed_speed(system: LinearPeriodic, names: Names, speed: float | None) -> fl
         return 1.0
     if speed is None:
         if _turned(system, names):
-            raise bad(
-                "stability_chart",
-                f"the axes {names[0]} and {names[1]} and no speed",
-                "a crank speed, which decides between inertia and stiffness here",
-                "give speed=..., in rad/s, or make the speed an axis",
-            )
+            found = f"the axes {names[0]} and {names[1]} and no speed"
+            expected = "a crank speed, which decides between inertia and stiffness here"
+            fix = "give speed=..., in rad/s, or make the speed an axis"
+            raise bad("stability_chart", found, expected, fix)
         return 1.0
     try:
         value = float(speed)

@@ -119,13 +119,12 @@ class Sampler:
             # A point alone costs 300 products, and its system, made anew, 1.4e8 flops.
             work = lines * nodes * (300 * segments * product + 1.4e8)
         if work > _MOST_WORK:
-            raise bad(
-                "stability_chart",
+            found = (
                 f"{self.system.size} modes, {lines} lines of {nodes} points, up to "
-                f"{segments:.2g} segments of the period each",
-                f"at most {_MOST_WORK / work:.2g} of that",
-                "raise the lowest speed, give fewer modes or points, or narrower axes",
+                f"{segments:.2g} segments of the period each"
             )
+            fix = "raise the lowest speed, give fewer modes or points, or narrower axes"
+            raise bad("stability_chart", found, f"at most {_MOST_WORK / work:.2g} of that", fix)
 
 
 def relative_error(error: Array, values: Array) -> float:

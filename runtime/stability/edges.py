@@ -231,12 +231,9 @@ def stability_edges(
     parameters = {name: float(numbers(name, value)) for name, value in values.items()}
     sharp = system.without(*DAMPING)
     if equation_of(sharp, low, parameters).damped:
-        raise bad(
-            "system",
-            "stiffness or centrifugal terms that are not symmetric",
-            "a system conservative but for damping",
-            "use floquet_multipliers or stability_chart",
-        )
+        found = "stiffness or centrifugal terms that are not symmetric"
+        fix = "use floquet_multipliers or stability_chart"
+        raise bad("system", found, "a system conservative but for damping", fix)
     damped = system.is_damped(**parameters)
     if damped:
         _check_damping(system, parameters)
@@ -319,12 +316,8 @@ def _check_damping(system: LinearPeriodic, parameters: Mapping[str, float]) -> N
     drag = np.asarray(system.array("C", angles, **parameters))
     rates = np.linalg.eigvalsh(drag + np.swapaxes(drag, -1, -2))
     if np.min(rates) < -1e-12 * np.max(np.abs(rates)):
-        raise bad(
-            "system",
-            "damping that feeds energy",
-            "damping of no direction below zero",
-            "use floquet_multipliers or stability_chart",
-        )
+        fix = "use floquet_multipliers or stability_chart"
+        raise bad("system", "damping that feeds energy", "damping of no direction below zero", fix)
 
 
 def _undamped(

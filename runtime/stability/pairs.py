@@ -78,12 +78,9 @@ def phase_grid(matrices: MatricesOverSpeed, span: tuple[float, float], more: Arr
     fastest = float(np.max(ends.rate() * ends.speed))
     count = int(np.ceil(fastest * system.period * (1 / low - 1 / high) / 0.3)) + 2
     if count > _MOST_SAMPLES:
-        raise bad(
-            "speed_range",
-            f"a lowest speed of {low:.4g} rad/s, which needs {count} samples",
-            f"at most {_MOST_SAMPLES}",
-            "raise the lowest speed or leave out the highest modes",
-        )
+        found = f"a lowest speed of {low:.4g} rad/s, which needs {count} samples"
+        fix = "raise the lowest speed or leave out the highest modes"
+        raise bad("speed_range", found, f"at most {_MOST_SAMPLES}", fix)
     # Phases grow with the inverse speed.
     even = 1.0 / np.linspace(1 / low, 1 / high, max(count, 8))
     return np.asarray(np.unique(np.concatenate([even, more])))
@@ -99,12 +96,8 @@ def sampled_phases(matrices: MatricesOverSpeed, span: tuple[float, float], more:
     for start in range(0, len(speed), TOGETHER):
         scaled, error = matrices(speed[start : start + TOGETHER])
         if not np.all(np.isfinite(scaled)):
-            raise bad(
-                "speed_range",
-                "growth beyond double precision within a turn",
-                "speeds of moderate growth",
-                "raise the lowest speed",
-            )
+            found = "growth beyond double precision within a turn"
+            raise bad("speed_range", found, "speeds of moderate growth", "raise the lowest speed")
         for values, signs in zip(*_signed(scaled, error), strict=True):
             angle, undecided = _positive(np.angle(values), signs)
             phases.append(angle)

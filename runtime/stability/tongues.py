@@ -499,12 +499,9 @@ def _operator(
     condition = resonance.kind, resonance.modes, resonance.harmonic
     meetings = MeanSystem(system, parameters).meetings(span, [condition])[0]
     if not len(meetings):
-        raise bad(
-            resonance.label,
-            f"no such resonance from {span[0]:.4g} to {span[1]:.4g}",
-            "one at every parameter value",
-            "choose values nearer to those that the resonance was found at",
-        )
+        found = f"no such resonance from {span[0]:.4g} to {span[1]:.4g}"
+        fix = "choose values nearer to those that the resonance was found at"
+        raise bad(resonance.label, found, "one at every parameter value", fix)
     at = float(meetings[np.argmin(np.abs(meetings - resonance.speed))])
     flow = conservative(system, at, parameters)
     return resonant_operator(system, parameters, resonance, at, order + BEYOND, flow)

@@ -32,23 +32,19 @@ class HillForm:
 
     def stiffness(self, **changes: float) -> float:
         """Return k [1/s^2], the square of the natural frequency without the periodic parts."""
-        return self._constant("K", changes)
+        return self._entry("K", changes) / self._entry("M", changes)
 
     def damping(self, **changes: float) -> float:
         """Return c [1/s]; K of Smith (7.38) is ``c / (2 w)``."""
-        return self._constant("C", changes)
+        return self._entry("C", changes) / self._entry("M", changes)
 
-    def _constant(self, array: str, changes: Mapping[str, float]) -> float:
-        value = self.system.array(array, 0.0, **changes)[0, 0, 0]
-        return float(value) / self._mass(changes)
-
-    def _mass(self, changes: Mapping[str, float]) -> float:
-        return float(self.system.array("M", 0.0, **changes)[0, 0, 0])
+    def _entry(self, array: str, changes: Mapping[str, float]) -> float:
+        return float(self.system.array(array, 0.0, **changes)[0, 0, 0])
 
     def function(self, speed: float, **changes: float) -> PeriodicFunction:
         """Return ``f + g / w^2`` at a speed [rad/s] and parameter values."""
         scales = self.system.scale_values(**changes)
-        mass = self._mass(changes)
+        mass = self._entry("M", changes)
         total = PeriodicFunction()
         for parts, divisor in ((self.inertial, 1.0), (self.elastic, speed**2)):
             for scale, part in parts:

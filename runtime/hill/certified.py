@@ -231,11 +231,10 @@ def refusal(reason: str) -> BadInput:
 class Spectrum(NamedTuple):
     """Low eigenvalues of the equation without its mean and damping, in one of the two problems."""
 
+    # Approximate eigenvalues, rising, ``(count,)``; each true one lies within ``reach`` of its own
+    # (proved).
     values: Array
-    """Approximate eigenvalues, rising, ``(count,)``; each true one lies within ``reach`` of its
-    own (proved)."""
-    vectors: Array
-    """Eigenvectors in the basis of :func:`.fourier_matrix.layout`, ``(size, count)``."""
+    vectors: Array  # in the basis of :func:`.fourier_matrix.layout`, ``(size, count)``
     reach: float
     norm: float
     odd: int

@@ -41,13 +41,11 @@ def by_parity(regions: Sequence[int]) -> Iterator[tuple[int, list[int]]]:
 class Truncation(NamedTuple):
     """Where Hill's matrix is cut, and what that costs."""
 
-    harmonic: int
-    """Highest k (whole problem) or number of half-whole k."""
+    harmonic: int  # highest k (whole problem) or number of half-whole k
+    # Bound of what the harmonics beyond lower the wanted eigenvalues by (undamped; proved,
+    # round-off of its own evaluation included).
     left_out: float
-    """Bound of what the harmonics beyond lower the wanted eigenvalues by (undamped; proved,
-    round-off of its own evaluation included)."""
-    norm: float
-    """Bound of the norm of the matrix."""
+    norm: float  # bound of the norm of the matrix
 
     @property
     def rounding(self) -> float:

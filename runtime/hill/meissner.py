@@ -88,13 +88,6 @@ class Meissner:
         ends = np.cumsum(self.lengths)[:-1]
         return np.asarray(np.take(self.levels, np.searchsorted(ends, place, side="right")))
 
-    def two(self) -> tuple[Array, Array]:
-        """Return levels and lengths where they are two, or refuse."""
-        if len(self.levels) != 2:
-            fix = "discriminant and characteristic_exponents take any number"
-            raise bad("Meissner", f"{len(self.levels)} levels", "two", fix)
-        return np.array(self.levels), np.array(self.lengths)
-
     def half_trace_with_error(self, lam2: Array, mu: Array) -> HalfTraces:
         """Return half traces and errors at points ``(n,)``; see :class:`.transfer.Transfer`."""
         # Entries of all matrices of a part, so that they stay in the cache.
@@ -168,13 +161,11 @@ def _matrices(q: Array, t: Array, noise: Array) -> tuple[Array, Array]:
 class _Kind(NamedTuple):
     """One of the four functions whose zeros are boundaries."""
 
+    # row, column: which of ``y1, y2`` (columns) or of their slopes at half a turn vanishes
     row: int
     column: int
-    """Which of ``y1, y2`` (columns) or of their slopes at half a turn vanishes."""
-    start: float
-    """Phase of the solution at the start: pi/2 for y1, 0 for y2."""
-    end: float
-    """Phase at the end for the lowest boundary of its kind."""
+    start: float  # phase of the solution at the start: pi/2 for y1, 0 for y2
+    end: float  # phase at the end for the lowest boundary of its kind
 
 
 _Y1, _Y2 = _Kind(0, 0, 0.5 * pi, pi), _Kind(0, 1, 0.0, pi)
@@ -187,7 +178,10 @@ def meissner_ends(f: Meissner, mu: Array, n: int) -> tuple[Array, Array, Array]:
     By bisection on the phase of the solution, which rises with lam2, so that no boundary is missed
     or taken for another.
     """
-    levels, lengths = f.two()
+    if len(f.levels) != 2:
+        fix = "discriminant and characteristic_exponents take any number"
+        raise bad("Meissner", f"{len(f.levels)} levels", "two", fix)
+    levels, lengths = np.array(f.levels), np.array(f.lengths)
     most = float(np.abs(mu).max(initial=0.0))
     if np.sqrt(most * np.ptp(levels)) * pi > 2.0 * _STEEPEST:
         raise bad("mu", most, f"sqrt(mu * jump) * pi <= {2.0 * _STEEPEST:g}", "take less")

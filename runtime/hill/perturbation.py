@@ -270,36 +270,24 @@ class _Points:
 class SeriesEnds(NamedTuple):
     """Ends of one region at points ``(n,)``."""
 
-    centre: Array
-    """Real part of the diagonal, n^2/4 included."""
-    half: Array
-    """Half the width; NaN where damping closes the region."""
-    error: Array
-    """Estimate of the absolute error of ``centre - half`` and ``centre + half``."""
-    outside: Mask
-    """True where the series does not converge visibly, so that ``error`` means nothing."""
-    undecided: Mask
-    """True where open and closed are both within what is left out."""
+    centre: Array  # real part of the diagonal, n^2/4 included
+    half: Array  # half the width; NaN where damping closes the region
+    error: Array  # estimate of the absolute error of ``centre - half`` and ``centre + half``
+    outside: Mask  # where the series does not converge visibly: ``error`` means nothing there
+    undecided: Mask  # where open and closed are both within what is left out
 
 
 class Sums(NamedTuple):
     """Sums of the components to the order, and estimates of what is left out of them."""
 
     region: int
-    centre: Array
-    """``n^2/4 + Re A``."""
-    drag: Array
-    """``|Im A|``."""
-    split: Array
-    """``|B|``."""
-    moved: Array
-    """Error of Re A."""
-    turned: Array
-    """Error of Im A."""
-    spread: Array
-    """Error of B."""
-    ratio: Array
-    """Ratio at which the components fall, with its margin."""
+    centre: Array  # ``n^2/4 + Re A``
+    drag: Array  # ``|Im A|``
+    split: Array  # ``|B|``
+    moved: Array  # error of Re A
+    turned: Array  # error of Im A
+    spread: Array  # error of B
+    ratio: Array  # at which the components fall, with its margin
 
     @classmethod
     def of(cls, n: int, order: int, a: Complex, b: Complex, noise: Array, strength: Array) -> Sums:

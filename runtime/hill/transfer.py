@@ -44,12 +44,9 @@ _SPREAD, _SIZE = 1.8, 3.6
 class Gauss(NamedTuple):
     """Gauss-Legendre nodes on [-1, 1] with the matrices that integrate twice from -1."""
 
-    x: Array
-    """Nodes, ``(q,)``."""
-    inner: Array
-    """From values to the double integral at the nodes, ``(q, q)``."""
-    ends: Array
-    """From values to the double and to the single integral at +1, ``(2, q)``."""
+    x: Array  # nodes, ``(q,)``
+    inner: Array  # from values to the double integral at the nodes, ``(q, q)``
+    ends: Array  # from values to the double and to the single integral at +1, ``(2, q)``
 
 
 @lru_cache(maxsize=32)

@@ -244,8 +244,8 @@ class _Basis(NamedTuple):
     values: Complex
     vectors: Complex
     turning: float
+    # Number of the eigenvalue and harmonic of each, those of the resonance first.
     members: tuple[tuple[int, int], ...]
-    """Number of the eigenvalue and harmonic of each, those of the resonance first."""
     modes: tuple[int, ...]
     centre: complex
     gaps: Complex

@@ -147,17 +147,13 @@ def certified_boundaries(
     arrays = dict(zip(names, np.moveaxis(found, (-2, -1), (0, 1)).reshape(6, *size), strict=True))
     # What the doubles alone are off by.
     left = np.max(np.abs(found[..., 1]) + found[..., 2], axis=-1)
-    undecided = np.isnan(arrays["upper"]) & ~closed
+    undecided = float(np.count_nonzero(np.isnan(arrays["upper"]) & ~closed))
     return CertifiedBoundaries(
         method="Hill matrix, certified: exact residuals, Kato-Temple bounds",
         error=np.nextafter(left, np.inf),
         error_norm="absolute, entrywise, for either end",
         error_kind="bound",
-        checks={
-            "regions that damping may have closed, undecided": Check(
-                float(np.count_nonzero(undecided)), 0.0
-            )
-        },
+        checks={"regions that damping may have closed, undecided": Check(undecided, 0.0)},
         provenance=provenance(),
         regions=regions,
         mu=mu,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import bad
-from ..core.inputs import is_whole
+from ..core.inputs import require_whole
 from ..core.periodic_function import PeriodicFunction
 from ..core.plotting import Axes
 from ..core.results import BROADCAST, Result, provenance
@@ -89,14 +89,11 @@ class Mathieu:
         """
         if kind not in ("a", "b"):
             raise bad("kind", repr(kind), "'a' or 'b'", "choose one")
-        least = 0 if kind == "a" else 1
-        if not is_whole(m, least, _LARGEST_NUMBER):
-            expected = f"a whole number from {least} to {_LARGEST_NUMBER}"
-            raise bad("m", repr(m), expected, "correct it")
+        m = require_whole("m", m, 0 if kind == "a" else 1, _LARGEST_NUMBER)
         values = finite("q", q)
         if values.size and float(np.abs(values).max()) > _LARGEST_Q:
             raise bad("q", float(np.abs(values).max()), f"at most {_LARGEST_Q:g}", "correct it")
-        ends = hill_boundaries(Mathieu.function(), -0.5 * values, (int(m),))
+        ends = hill_boundaries(Mathieu.function(), -0.5 * values, (m,))
         odd_below = (values >= 0.0) | (m % 2 == 0)
         upper = odd_below if kind == "a" else ~odd_below
         # Multiplication by four is exact.
@@ -108,7 +105,7 @@ class Mathieu:
             provenance=provenance(),
             value=np.asarray(4.0 * np.where(upper, ends.upper[0], ends.lower[0])),
             q=values,
-            m=int(m),
+            m=m,
             kind=kind,
         )
 

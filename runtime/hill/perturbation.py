@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import bad, shown
-from ..core.inputs import is_one_of, is_whole
+from ..core.inputs import is_one_of, require_whole
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, provenance
 from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
@@ -175,9 +175,7 @@ def perturbation_boundaries(
 
 def check_order(order: object) -> None:
     """Refuse an order that is not a whole number from 1 to 8."""
-    if not is_whole(order, 1, HIGHEST):
-        expected = f"a whole number from 1 to {HIGHEST}"
-        raise bad("order", repr(order), expected, "use hill_boundaries for the exact boundaries")
+    require_whole("order", order, 1, HIGHEST, "use hill_boundaries for the exact boundaries")
 
 
 def parameters_of(

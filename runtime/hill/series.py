@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike
 
 from ...generated import hill_recursion
 from ..core.errors import bad, shown
-from ..core.inputs import is_finite, is_whole
+from ..core.inputs import is_finite, is_whole, require_whole
 from ..core.periodic_function import PeriodicFunction
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
@@ -166,8 +166,7 @@ def boundary_series(
     """
     check_function(f)
     (n,) = check_regions((region,))
-    if not is_whole(order, 1, HIGHEST_ORDER):
-        raise bad("order", repr(order), f"a whole number from 1 to {HIGHEST_ORDER}", "choose one")
+    require_whole("order", order, 1, HIGHEST_ORDER, "choose one")
     if not (is_finite(damping_ratio) and damping_ratio >= 0.0):
         raise bad("damping_ratio", shown(damping_ratio), "a finite number >= 0", "correct it")
     # The boundaries do not depend on the origin of theta: other ones show the round-off.
@@ -309,10 +308,8 @@ def boundary_latex(order: int, n: int | None = None, damped: bool = False) -> st
 
 def _checked(order: int, n: int | None) -> str:
     """Return the region as it is written."""
-    if not is_whole(order, 1, HIGHEST_FORMULA):
-        expected = f"a whole number from 1 to {HIGHEST_FORMULA}"
-        fix = "the terms of higher orders are many: use perturbation_boundaries for their values"
-        raise bad("order", repr(order), expected, fix)
+    fix = "the terms of higher orders are many: use perturbation_boundaries for their values"
+    require_whole("order", order, 1, HIGHEST_FORMULA, fix)
     if n is None:
         return "n"
     if not is_whole(n, 0):

@@ -379,12 +379,10 @@ class _Others:
         self.y = np.zeros(k.size, dtype=complex)
         self.y[rest] = -inverse @ self.coupling[rest, self.up]
         self.y[self.up] = 1.0
-        self.edge = float(
-            np.abs(self.y[[*range(f.harmonics + 1), *range(-f.harmonics - 1, 0)]]).max()
-        )
-        weight = np.abs(self.y)
+        ends = [*range(f.harmonics + 1), *range(-f.harmonics - 1, 0)]
+        self.edge = float(np.abs(self.y[ends]).max())
+        self.weight = weight = np.abs(self.y)
         weight[self.up] = 0.0
-        self.weight = weight
         loss = self.steps * ((k * k + abs(lam2) + abs(f.mean)) * weight + self.sizes @ weight)
         loss += self.steps * self.sizes[:, self.up] + self.slack * weight
         loss += f.error * (1.0 + weight.sum())

@@ -260,15 +260,12 @@ def _least(f: PeriodicFunction, damping: ArrayLike, regions: tuple[int, ...]) ->
     rows = [_opening(partial(_closing, f, n), n, flat, top) for n in regions]
     full = (len(regions), *shape)
     least, lam2, error, gap = (np.reshape([row[0][i] for row in rows], full) for i in range(4))
+    worst = float(gap[np.isfinite(gap)].max(initial=0.0))
     return Thresholds(
         method="largest half trace",
         error=error,
         error_norm="absolute, entrywise, of mu",
-        checks={
-            "critical damping there less K, over its error": Check(
-                float(gap[np.isfinite(gap)].max(initial=0.0)), 4.0
-            )
-        },
+        checks={"critical damping there less K, over its error": Check(worst, 4.0)},
         provenance=provenance(),
         damping=flat.reshape(shape),
         mu=least,

@@ -127,23 +127,17 @@ def _positive(angle: Array, signs: NDArray[np.int8]) -> tuple[Array, Flags]:
 
 def _followed(phases: Array, flags: Flags) -> tuple[Array, Flags]:
     """Order the phases so that each follows its own, which keeps the order round the circle."""
-    n = phases.shape[1]
+    place = np.arange(phases.shape[1])
     lifted, ordered = np.array(phases), np.array(flags)
-    place = np.arange(n)
+    rotations = (place + place[:, None]) % len(place)
     for t in range(1, len(phases)):
-        best: tuple[float, Array, Index] | None = None
-        for shift in range(n):
-            target = np.roll(place, -shift)
-            step = phases[t][target] - lifted[t - 1]
-            step = step - _TURN_ROUND * np.round(step / _TURN_ROUND)
-            cost = float(np.sum(np.abs(step)))
-            if best is None or cost < best[0]:
-                best = cost, step, target
-        if best is not None:
-            lifted[t] = lifted[t - 1] + best[1]
-            ordered[t] = flags[t][best[2]]
-            # Positions on the circle rotate with what was matched.
-            phases[t] = phases[t][best[2]]
+        steps = phases[t][rotations] - lifted[t - 1]
+        steps = steps - _TURN_ROUND * np.round(steps / _TURN_ROUND)
+        best = int(np.argmin(np.sum(np.abs(steps), axis=1)))
+        lifted[t] = lifted[t - 1] + steps[best]
+        ordered[t] = flags[t][rotations[best]]
+        # Positions on the circle rotate with what was matched.
+        phases[t] = phases[t][rotations[best]]
     return lifted, ordered
 
 

@@ -140,11 +140,7 @@ class StabilityChart(Result):
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
         "x": ("x",),
         "y": ("y",),
-        "stable": ("y", "x"),
-        "largest": ("y", "x"),
-        "slack": ("y", "x"),
-        "undecided": ("y", "x"),
-        "kind": ("y", "x"),
+        **dict.fromkeys(("stable", "largest", "slack", "undecided", "kind"), ("y", "x")),
         "invariants": ("y", "x", "invariant"),
     }
 
@@ -165,22 +161,20 @@ class StabilityChart(Result):
             _draw_edges(ax, self, self.edges)
         ax.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
         for label, values in self.marks.items():
-            _draw_marks(ax, _shown(self.y_name, np.asarray(values)), label, float(x[0]))
+            at = _shown(self.y_name, np.asarray(values))
+            for value in at:
+                ax.axhline(value, color=_MARK, lw=0.6, alpha=0.7)
+            left = np.full(len(at), float(x[0]))
+            ax.plot(left, at, ">", color=_MARK, ms=6, clip_on=False, label=label)
         ax.set_xlabel(_LABELS.get(self.x_name, self.x_name))
         ax.set_ylabel(_LABELS.get(self.y_name, self.y_name))
         if self.x_name == "speed" and np.isfinite(self.natural_frequency):
             _draw_fractions(ax, self)
         what = "discriminant" if self.error_norm.startswith("half trace") else "invariants"
-        ax.text(
-            0.99,
-            0.01,
-            f"error of the {what} < {self.error:.1e} (estimate)",
-            transform=ax.transAxes,
-            ha="right",
-            va="bottom",
-            fontsize=7,
-            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.5},
-        )
+        text = f"error of the {what} < {self.error:.1e} (estimate)"
+        corner: dict[str, Any] = {"transform": ax.transAxes, "ha": "right", "va": "bottom"}
+        box = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.5}
+        ax.text(0.99, 0.01, text, **corner, fontsize=7, bbox=box)
         # Below the axes, where it covers nothing.
         ax.legend(
             loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=2, fontsize=8, frameon=False
@@ -268,7 +262,7 @@ def stability_chart(
     sampler = Sampler(system, names, axes, speed, float(rtol))
     series = invariants(sampler, workers, progress=progress)
     found = judged(sampler, series, workers)
-    exact, near, rows = None, None, None
+    exact = near = rows = None
     shaped = any(name in system.geometry for name in names)
     if boundaries and is_hill(system) and not shaped and sampler.speed == 1.0:
         exact, near = boundary_curves(system, names, axes, int(order))
@@ -357,16 +351,11 @@ def _edge_curves(
         for i, key in enumerate(row.names):
             ends[:, keys.index(key), column] = row.lower[i], row.upper[i], row.error[i]
     failed = sum(not check.passed for row in rows for check in row.checks.values())
-    return EdgeCurves(
-        values,
-        ends[0],
-        ends[1],
-        ends[2],
-        np.array([key[1:3] for key in keys], dtype=np.int64).reshape(-1, 2),
-        np.array([key[3] for key in keys], dtype=np.int64),
-        tuple(key[0] for key in keys),
-        Check(float(failed), 0.0),
-    )
+    modes = np.array([key[1:3] for key in keys], dtype=np.int64).reshape(-1, 2)
+    harmonic = np.array([key[3] for key in keys], dtype=np.int64)
+    (lower, upper, error), kind = ends, tuple(key[0] for key in keys)
+    check = Check(float(failed), 0.0)
+    return EdgeCurves(values, lower, upper, error, modes, harmonic, kind, check)
 
 
 _SPOTS = 5
@@ -504,11 +493,10 @@ _LABELS = {
 }
 _EXACT, _NEAR, _MARK = "#8c2d04", "#2b5c8a", "#3a7d44"
 # By kind of instability; the shades differ in lightness too.
-_SHADES = {-1: "#f2c6a8", 1: "#e0a070", 2: "#b9a3d6"}
-_WORDS = {
-    -1: "odd regions (multiplier below -1)",
-    1: "even regions (multiplier above 1)",
-    2: "combination (complex multipliers)",
+_SHADES = {
+    -1: ("#f2c6a8", "odd regions (multiplier below -1)"),
+    1: ("#e0a070", "even regions (multiplier above 1)"),
+    2: ("#b9a3d6", "combination (complex multipliers)"),
 }
 # Relative width up to which a region is drawn as a hair.
 _NARROW = 1e-4
@@ -520,24 +508,17 @@ def _shade(ax: Axes, chart: StabilityChart, x: Array, y: Array) -> None:
 
     codes = np.zeros(chart.kind.shape)
     colours = ["#ffffff"]
-    for kind, colour in _SHADES.items():
+    for kind, (colour, _) in _SHADES.items():
         here = chart.kind == kind
         if np.any(here):
             colours.append(colour)
             codes[here] = len(colours) - 1
-    ax.pcolormesh(
-        x,
-        y,
-        codes,
-        cmap=ListedColormap(colours),
-        vmin=0,
-        vmax=max(len(colours) - 1, 1),
-        shading="nearest",
-        rasterized=True,
-    )
-    for kind, colour in _SHADES.items():
+    shades, most = ListedColormap(colours), max(len(colours) - 1, 1)
+    style: dict[str, Any] = {"shading": "nearest", "rasterized": True}
+    ax.pcolormesh(x, y, codes, cmap=shades, vmin=0, vmax=most, **style)
+    for colour, words in _SHADES.values():
         if colour in colours:
-            ax.fill([], [], color=colour, label=f"unstable: {_WORDS[kind]}")
+            ax.fill([], [], color=colour, label=f"unstable: {words}")
 
 
 def _draw_edges(ax: Axes, chart: StabilityChart, edges: EdgeCurves) -> None:
@@ -559,21 +540,13 @@ def _draw_edges(ax: Axes, chart: StabilityChart, edges: EdgeCurves) -> None:
         # Labels stand at the row nearest to the end of the axis where the region is in the chart.
         known = np.flatnonzero((edges.lower[i] * RPM > low) & (edges.lower[i] * RPM < high))
         if len(known):
-            text = (
-                "+".join(map(str, edges.modes[i]))
-                if kind == "sum"
-                else "-".join(map(str, edges.modes[i][::-1]))
-            )
+            first, second = edges.modes[i]
+            text = f"{first}+{second}" if kind == "sum" else f"{second}-{first}"
             place = (edges.lower[i, known[-1]] * RPM, at[known[-1]])
-            ax.annotate(
-                f"{text}, {edges.harmonic[i]}",
-                place if horizontal else place[::-1],
-                fontsize=6,
-                color=_EDGES[kind],
-                rotation=90 if horizontal else 0,
-                va="top" if horizontal else "center",
-                ha="right",
-            )
+            rotation, va = (90, "top") if horizontal else (0, "center")
+            style: dict[str, Any] = {"color": _EDGES[kind], "rotation": rotation, "va": va}
+            at_end = place if horizontal else place[::-1]
+            ax.annotate(f"{text}, {edges.harmonic[i]}", at_end, fontsize=6, ha="right", **style)
 
 
 def _shown(name: str, values: Array) -> Array:
@@ -600,12 +573,6 @@ def _draw_curves(
             pair = (values, at) if horizontal else (at, values)
             ax.plot(*pair, style, color=colour, lw=1.0, label=label if first else None)
             first = False
-
-
-def _draw_marks(ax: Axes, values: Array, label: str, left: float) -> None:
-    for value in values:
-        ax.axhline(value, color=_MARK, lw=0.6, alpha=0.7)
-    ax.plot(np.full(len(values), left), values, ">", color=_MARK, ms=6, clip_on=False, label=label)
 
 
 def _draw_fractions(ax: Axes, chart: StabilityChart) -> None:

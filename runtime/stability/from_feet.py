@@ -91,16 +91,9 @@ class TongueCurves(Result):
             for ends in (low, high):
                 ax.plot(ends, at, color=colours[kind], lw=0.8)
             last = int(np.flatnonzero(np.isfinite(low + high))[-1])
-            ax.annotate(
-                label,
-                (0.5 * (low[last] + high[last]), at[last]),
-                (0, 3),
-                textcoords="offset points",
-                rotation=90,
-                fontsize=6,
-                ha="center",
-                va="bottom",
-            )
+            end = 0.5 * (low[last] + high[last]), at[last]
+            above: dict[str, Any] = {"textcoords": "offset points", "fontsize": 6, "rotation": 90}
+            ax.annotate(label, end, (0, 3), ha="center", va="bottom", **above)
         # Room for the names.
         ax.set_ylim(0.0, 1.2 * float(self.at[-1]))
         ax.set(xlabel="crank speed [rpm]", ylabel=self.name.replace("_", " "))

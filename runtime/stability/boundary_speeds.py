@@ -192,11 +192,8 @@ class SpeedBoundaries(Result):
     period: float
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "speed": ("boundary",),
-        "multiplier": ("boundary",),
-        "error": ("boundary",),
-        "cosine": ("boundary", "harmonic", "coordinate"),
-        "sine": ("boundary", "harmonic", "coordinate"),
+        **dict.fromkeys(("speed", "multiplier", "error"), ("boundary",)),
+        **dict.fromkeys(("cosine", "sine"), ("boundary", "harmonic", "coordinate")),
     }
 
     def motion(self, index: int, theta: ArrayLike) -> Array:
@@ -264,7 +261,9 @@ def speed_boundaries(
     BadInput
         If an argument is unusable, or the lowest speed needs a larger matrix than 4000 rows.
     """
-    wanted = _wanted(multiplier)
+    signs = numbers_in_a_row("multiplier", multiplier)
+    if not np.all(np.isin(signs, (1, -1))):
+        raise bad("multiplier", multiplier, "+1, -1 or both", "correct it")
     low, high = speed_span(speed_range)
     require_between("rtol", rtol, 1e-14, 1.0, "choose 1e-11")
     rate = float(equation_of(system, low, parameters).rate()[0])
@@ -280,7 +279,10 @@ def speed_boundaries(
             raise bad("speed_range", given, f"at most {most}", fix)
         return real_matrices(found, system.size, system.period, harmonics, sign)
 
-    parts = [_converged(partial(matrices, sign), sign, (low, high), usual, rtol) for sign in wanted]
+    parts = [
+        _converged(partial(matrices, sign), sign, (low, high), usual, rtol)
+        for sign in sorted({int(sign) for sign in signs}, reverse=True)
+    ]
     return _result(system, parts, (low, high), rtol, parameters)
 
 
@@ -332,7 +334,10 @@ def _roots(matrices: Matrices, sign: int, harmonics: int, span: tuple[float, flo
     degree = max(matrices) // stride
     zero = np.zeros_like(next(iter(matrices.values())))
     levels = [matrices.get(stride * j, zero) * unit ** (stride * j) for j in range(degree + 1)]
-    symmetric = even and all(_symmetric(level) for level in levels)
+    symmetric = even and all(
+        np.max(np.abs(level - level.T)) <= 1e-13 * np.max(np.abs(level), initial=1e-300)
+        for level in levels
+    )
     inverse, vectors = _inverse_roots(levels, symmetric)
     with np.errstate(divide="ignore", invalid="ignore"):
         # A pair so close to the real axis is a double real root.
@@ -347,10 +352,6 @@ def _roots(matrices: Matrices, sign: int, harmonics: int, span: tuple[float, flo
     inside = (refined >= low) & (refined <= high)
     order = np.flatnonzero(inside)[np.argsort(refined[inside], kind="stable")]
     return _Roots(sign, harmonics, refined[order], (error + imaginary)[order], motions[order])
-
-
-def _symmetric(matrix: Array) -> bool:
-    return bool(np.max(np.abs(matrix - matrix.T)) <= 1e-13 * np.max(np.abs(matrix), initial=1e-300))
 
 
 def _inverse_roots(
@@ -395,7 +396,8 @@ def _refined(
     if len(speed) == 0:
         return speed, speed, np.zeros((0, m))
     if start is None:
-        pairs = [_null_vectors(_polynomial(matrices, root), symmetric) for root in speed]
+        at_roots = (sum(root**power * each for power, each in matrices.items()) for root in speed)
+        pairs = [_null_vectors(np.asarray(matrix), symmetric) for matrix in at_roots]
         right, left = (np.array(vectors) for vectors in zip(*pairs, strict=True))
     else:
         right = left = _apart(matrices, speed, start)
@@ -460,13 +462,6 @@ def _null_vectors(matrix: Array, symmetric: bool) -> tuple[Array, Array]:
     return pair[0], pair[0] if symmetric else pair[1]
 
 
-def _polynomial(matrices: Matrices, speed: float) -> Array:
-    total = np.zeros_like(next(iter(matrices.values())))
-    for power, matrix in matrices.items():
-        total += speed**power * matrix
-    return total
-
-
 def _result(
     system: LinearPeriodic,
     parts: list[_Roots],
@@ -481,10 +476,9 @@ def _result(
     sign = np.concatenate([np.full(len(part.speed), part.multiplier) for part in parts])
     cosine = np.zeros((len(speed), harmonics + 1, n))
     sine = np.zeros_like(cosine)
-    done = 0
+    rows = slice(0, 0)
     for part in parts:
-        rows = slice(done, done + len(part.speed))
-        done += len(part.speed)
+        rows = slice(rows.stop, rows.stop + len(part.speed))
         blocks = part.vectors.reshape(len(part.speed), part.vectors.shape[1] // n, n)
         first = 1 if part.multiplier == 1 else 0
         cosine[rows, :first] = blocks[:, :first]
@@ -492,15 +486,14 @@ def _result(
         cosine[rows, first : first + count] = np.sqrt(2) * blocks[:, first::2]
         sine[rows, first : first + count] = np.sqrt(2) * blocks[:, first + 1 :: 2]
     error = np.concatenate([part.error for part in parts])
+    found = [(part.multiplier, part.speed) for part in parts]
     return SpeedBoundaries(
         method="eigenvalues of the Fourier matrix",
         error=error[order],
         error_norm="absolute, of each speed [rad/s]",
         checks={
             "truncation": Check(max(part.truncation for part in parts), limit),
-            "parity": parity(
-                system, [(part.multiplier, part.speed) for part in parts], span, parameters
-            ),
+            "parity": parity(system, found, span, parameters),
             **at_boundaries(system, speed[order], sign[order], error[order], parameters),
         },
         provenance=provenance(system.changed_provenance(**parameters)),
@@ -511,13 +504,6 @@ def _result(
         harmonics=harmonics,
         period=system.period,
     )
-
-
-def _wanted(multiplier: int | Sequence[int]) -> tuple[int, ...]:
-    values = numbers_in_a_row("multiplier", multiplier)
-    if not np.all(np.isin(values, (1, -1))):
-        raise bad("multiplier", multiplier, "+1, -1 or both", "correct it")
-    return tuple(sorted({int(value) for value in values}, reverse=True))
 
 
 def at_boundaries(

@@ -326,7 +326,7 @@ def _damped(
     if float(k.max()) > 1e100:
         # The square of K is added to lam2.
         raise bad("damping", f"{k.max():.3g}", "K up to 1e+100", "scale the equation")
-    ends = Ends(*(item.copy() for item in sharp))
+    ends = Ends(sharp.lower.copy(), sharp.upper.copy(), sharp.error.copy(), sharp.undecided.copy())
     # Beyond this K the condition of the eigenvalues, of the size of exp(2 pi K) at worst, matters.
     strong = (k > 0.0) if isinstance(f, Meissner) else (k > 0.5)
     weak = (k > 0.0) & ~strong

@@ -372,7 +372,9 @@ def invariants(sampler: Sampler, workers: Map, *, progress: bool) -> Series:
         return _plain_hill(sampler, *sampler.plain)
     surface = _Surface(sampler, workers)
     surface.find_inner()
-    lines = surface.first_lines()
+    # Of one mode, whose lines are cheap, no fewer than are worth a series; 0: one at every value.
+    fewest = 2 * _FEWEST_LINES if sampler.hill else _FEWEST_LINES
+    lines = 0 if len(surface.across) <= fewest else _FEWEST_LINES
     while True:
         with bar(progress, lines or len(surface.across)) as tick:
             found = surface.sample(lines, tick)
@@ -484,12 +486,6 @@ class _Surface:
         """Take so many nodes, or every value of the chart where those are hardly more."""
         self.count = 0 if count > _NEARLY_ALL * len(self.wanted) else count
         self.kept.clear()
-
-    def first_lines(self) -> int:
-        """Return with how many lines to begin; 0 stands for one at every value."""
-        # Of one mode, whose lines are cheap, no fewer than are worth a series.
-        fewest = 2 * _FEWEST_LINES if self.sampler.hill else _FEWEST_LINES
-        return 0 if len(self.across) <= fewest else _FEWEST_LINES
 
     def places(self, lines: int) -> Array:
         """Return where the lines lie: all values of the axis, or nested Chebyshev points."""

@@ -255,13 +255,9 @@ def damped_regions(
     phase = np.angle(undamped.multiplier)
     middle, half = 0.5 * (begin + end), 0.5 * (end - begin)
     ends = np.unique(np.concatenate([span, begin, end]))
-    more = np.concatenate(
-        [
-            _highest(matrices, phase, middle, half),
-            (middle[:, None] + half[:, None] * _PLACES).ravel(),
-            0.5 * (ends[1:] + ends[:-1]),
-        ]
-    )
+    highest = _highest(matrices, phase, middle, half)
+    around = (middle[:, None] + half[:, None] * _PLACES).ravel()
+    more = np.concatenate([highest, around, 0.5 * (ends[1:] + ends[:-1])])
     more = more[(more > span[0]) & (more < span[1])]
     speed = phase_grid(matrices, span, more)
     speed[[0, -1]] = span
@@ -274,13 +270,14 @@ def labelled(spans: list[Span], undamped: Regions) -> Regions:
     from scipy.optimize import linear_sum_assignment
 
     k = len(spans)
-    begin, end = np.array([s.begin for s in spans]), np.array([s.end for s in spans])
+    numbers = np.array([s[:5] for s in spans], dtype=float).reshape(k, 5)
+    lower, upper, error, begin, end = numbers.T.copy()
     turn = np.array([s.multiplier for s in spans], dtype=complex)
     lows, highs = undamped.begin, undamped.end
     size = (end - begin)[:, None] + (highs - lows) + 1e-12 * end[:, None]
     cost = np.abs((end + begin)[:, None] - (highs + lows)) / size
-    upper = undamped.multiplier.real + 1j * np.abs(undamped.multiplier.imag)
-    cost = cost + 2 * np.abs(np.angle(turn[:, None] / upper))
+    folded = undamped.multiplier.real + 1j * np.abs(undamped.multiplier.imag)
+    cost = cost + 2 * np.abs(np.angle(turn[:, None] / folded))
     # Of two that lie alike the one of like width, then that of the lower, stronger harmonic; never
     # one of another kind of multiplier.
     ratio = np.log((end - begin + 1e-15 * end)[:, None] / (highs - lows + 1e-15 * highs))
@@ -294,18 +291,8 @@ def labelled(spans: list[Span], undamped: Regions) -> Regions:
     for row, column in pairs:
         modes[row], harmonic[row] = undamped.modes[column], undamped.harmonic[column]
         detuning[row], kind[row] = undamped.detuning[column], undamped.kind[column]
-    return Regions(
-        np.array([s.lower for s in spans]),
-        np.array([s.upper for s in spans]),
-        np.array([s.error for s in spans]),
-        turn,
-        modes,
-        harmonic,
-        detuning,
-        begin,
-        end,
-        np.array(kind, dtype=np.str_),
-    )
+    kinds = np.array(kind, dtype=np.str_)
+    return Regions(lower, upper, error, turn, modes, harmonic, detuning, begin, end, kinds)
 
 
 def _highest(matrices: MatricesOverSpeed, phase: Array, middle: Array, half: Array) -> Array:

@@ -239,7 +239,10 @@ def stability_edges(
         _check_damping(system, parameters)
     change: float | None = None
     if modes is not None:
-        system, change = _truncated(system.with_parameters(**parameters), high, modes)
+        if isinstance(modes, str) and modes != "auto":
+            raise bad("modes", modes, "a number of modes or 'auto'", "leave it out for all modes")
+        lowest = LowestModes(system.with_parameters(**parameters))
+        system, change = lowest.required(high, None if isinstance(modes, str) else modes)
         parameters = {}
     search = partial(_searched, system, change, (low, high), parameters, rtol)
     regions, least, checks = search(margin)
@@ -298,16 +301,6 @@ def _searched(
 
 def _contradicted(checks: Mapping[str, Check]) -> float:
     return checks["samples"].value + checks["verdicts"].value
-
-
-def _truncated(
-    system: LinearPeriodic, high: float, modes: int | str
-) -> tuple[LinearPeriodic, float]:
-    """Return a system on its lowest modes, and what those left out change of exponents."""
-    if isinstance(modes, str) and modes != "auto":
-        raise bad("modes", modes, "a number of modes or 'auto'", "leave it out for all modes")
-    lowest = LowestModes(system)
-    return lowest.required(high, None if isinstance(modes, str) else modes)
 
 
 def _check_damping(system: LinearPeriodic, parameters: Mapping[str, float]) -> None:
@@ -417,18 +410,9 @@ def _principal(
 ) -> Regions:
     """Return principal regions from ends and reach ``(2, k)``, multipliers +-1 and labels."""
     mode, number, off = labels
-    return Regions(
-        ends[0],
-        ends[1],
-        error,
-        real.astype(complex),
-        np.stack([mode, mode], axis=1),
-        number,
-        off,
-        reach[0],
-        reach[1],
-        np.full(len(real), "principal"),
-    )
+    turn, modes = real.astype(complex), np.stack([mode, mode], axis=1)
+    (lower, upper), (begin, end), kind = ends, reach, np.full(len(real), "principal")
+    return Regions(lower, upper, error, turn, modes, number, off, begin, end, kind)
 
 
 def _single(edges: Edges, index: NDArray[np.intp]) -> NDArray[np.intp]:

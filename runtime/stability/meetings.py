@@ -106,17 +106,11 @@ class MeanSystem:
 
     def meetings(self, span: tuple[float, float], conditions: Sequence[Condition]) -> list[Array]:
         """Return all speeds in a span at which the two exponents of each condition meet, rising."""
-        first, second, minus, turns = (
-            np.array(column)
-            for column in zip(
-                *(
-                    (i - 1, j - 1, kind == "difference", harmonic * 2 * np.pi / self.system.period)
-                    for kind, (i, j), harmonic in conditions
-                ),
-                strict=True,
-            )
-        )
-
+        rows = [
+            (i - 1, j - 1, kind == "difference", harmonic * 2 * np.pi / self.system.period)
+            for kind, (i, j), harmonic in conditions
+        ]
+        first, second, minus, turns = (np.array(column) for column in zip(*rows, strict=True))
         grid = np.geomspace(*span, 400)
         nu = self.frequencies(grid)
         value = nu[:, first] + np.where(minus, -1.0, 1.0) * nu[:, second] - turns

@@ -214,10 +214,8 @@ def resonant_operator(
     basis = _basis(start[0], resonance, 2 * np.pi / system.period)
     columns = _Columns(series, basis, len(start))
     effective, wave = recursion(columns, order)
-    undamped: Graded = [
-        np.zeros((1, len(basis.modes), len(basis.modes)), dtype=complex),
-        *effective,
-    ]
+    none = np.zeros((1, len(basis.modes), len(basis.modes)), dtype=complex)
+    undamped: Graded = [none, *effective]
     terms = undamped
     if system.is_damped(**parameters):
         series = _generator(system, parameters, speed, order)
@@ -227,15 +225,9 @@ def resonant_operator(
     if conservative:
         undamped, terms = _symmetric([columns.start, *wave[:-1]], undamped, terms, basis)
     calm = tuple(undamped[1:])
-    return ResonantOperator(
-        speed,
-        basis.centre,
-        basis.modes,
-        basis.gaps,
-        calm if terms is undamped else tuple(terms[1:]),
-        calm,
-        conservative,
-    )
+    whole = calm if terms is undamped else tuple(terms[1:])
+    own = (basis.centre, basis.modes, basis.gaps)
+    return ResonantOperator(speed, *own, whole, calm, conservative)
 
 
 class _Basis(NamedTuple):

@@ -241,10 +241,10 @@ class Several:
         """Return the largest real part of an exponent, ``(nb,)``."""
         return np.asarray(np.max(-np.linalg.eigvals(self._at(sigma)).imag, axis=-1))
 
-    def _distances(self, sigma: Array) -> Array:
+    def _distances(self, sigma: Array, column: int | slice = slice(None)) -> Array:
         """Return the distances of the turnings of neighbouring exponents, ``(nb, r - 1)``."""
         turning = np.sort(np.linalg.eigvals(self._at(sigma)).real, axis=-1)
-        return np.asarray(np.diff(turning, axis=-1))
+        return np.asarray(np.diff(turning, axis=-1)[:, column])
 
     def _belongs(self, sigma: float) -> bool:
         """Return True where the growing motion is that of the resonance's modes.
@@ -288,11 +288,8 @@ class Several:
             for low in local_maxima(-gap).tolist():
                 # Exponents that coincide all along differ by round-off alone.
                 if gap[low] > 1e-12 * np.max(gap):
-                    parts += self._zoomed(sigma, low, partial(self._distance, column))
+                    parts += self._zoomed(sigma, low, partial(self._distances, column=column))
         return np.unique(np.concatenate(parts))
-
-    def _distance(self, column: int, sigma: Array) -> Array:
-        return self._distances(sigma)[:, column]
 
     def _zoomed(self, sigma: Array, place: int, function: Callable[[Array], Array]) -> list[Array]:
         """Return points that close in on a low of a function, until the growth there is seen."""
@@ -548,13 +545,8 @@ def _detunings(
             out.append(ends)
         elif degree >= order:
             # Growth without damping, over the size of the operator, that round-off makes.
-            several = Several(
-                matrices,
-                operator.modes,
-                None if together else resonance.modes,
-                bool(lossless),
-                0.0 if damped else 1e-11,
-            )
+            modes, noise = None if together else resonance.modes, 0.0 if damped else 1e-11
+            several = Several(matrices, operator.modes, modes, bool(lossless), noise)
             out.append(several.ends(centre, half))
     return out[-1 - BEYOND :]
 

@@ -557,10 +557,8 @@ def trade_off(
     (low, least), (high, _) = _end(search, first, second), _end(search, second, first)
     ends = [_described(search, end).relative[first] for end in (low, high)]
     bests = [low]
-    tops = [
-        max(float(limit), least + _ALLOWANCE)
-        for limit in np.linspace(ends[0], ends[1], points)[1:-1]
-    ]
+    inner = np.linspace(ends[0], ends[1], points)[1:-1]
+    tops = [max(float(top), least + _ALLOWANCE) for top in inner]
     for top in tops:
         limited = replace(search, weights={second: 1.0}, limits={first: top})
         bests.append(best_counterweights(limited))

@@ -100,7 +100,11 @@ def _of_block(
     with np.errstate(all="ignore"):
         values, slopes = model.derivatives(numbers, (ANGLE, *fixed, *moments))
         steps = [np.abs(theta), *(_step(linkage, n, numbers[n]) for n in (*fixed, *moments))]
-        drives = _drives(model)
+        drives = []
+        if np.any(model.acceleration):
+            # The forces at no speed and at no acceleration may cancel each other.
+            still = ({"speed": np.zeros_like(model.speed)}, {"acceleration": np.zeros(1)})
+            drives = [replace(model, **part).evaluate(numbers) for part in still]
         moved, size = np.zeros(theta.shape), np.zeros(theta.shape)
         split = 1 + len(fixed)
         for name in model.forces:
@@ -126,14 +130,6 @@ def _step(linkage: Linkage, name: str, value: float) -> float:
     # The height of the coupler's end over the guide is a difference of parts of crank and
     # coupler, which are larger than what is left near small crank angles.
     return abs(value) + (linkage.lengths["crank"] + linkage.lengths["coupler"]) / 4.0
-
-
-def _drives(model: ParametricMachine) -> list[Mapping[str, Array]]:
-    """Return the forces at no speed and at no acceleration, which may cancel each other."""
-    if not np.any(model.acceleration):
-        return []
-    parts = ({"speed": np.zeros_like(model.speed)}, {"acceleration": np.zeros(1)})
-    return [replace(model, **part).evaluate(model.values) for part in parts]
 
 
 def _pulls(

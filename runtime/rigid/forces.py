@@ -199,7 +199,11 @@ def rigid_forces(
     >>> rigid_forces(machine, theta=[0.0, 1.0], speed=10.0).f34.shape
     (2, 2)
     """
-    wanted = _wanted(outputs)
+    given = names_in_a_row("outputs", outputs)
+    unknown = [item for item in given if item not in OUTPUTS]
+    if unknown or not given:
+        raise bad("outputs", f"{unknown or 'nothing'}", f"some of {OUTPUTS}", "correct the names")
+    wanted = tuple(output for output in OUTPUTS if output in given)
     require_machine(machine)
     angles, speeds, accelerations, batch = checked_drive(theta, speed, acceleration)
     values = Evaluation(machine, angles, speeds, accelerations, batch).values(wanted)
@@ -247,14 +251,6 @@ def shaking_moment(
     return rigid_forces(machine, theta, speed, acceleration, ("shaking_moment",))
 
 
-def _wanted(outputs: Sequence[Output]) -> tuple[Output, ...]:
-    given = names_in_a_row("outputs", outputs)
-    unknown = [item for item in given if item not in OUTPUTS]
-    if unknown or not given:
-        raise bad("outputs", f"{unknown or 'nothing'}", f"some of {OUTPUTS}", "correct the names")
-    return tuple(output for output in OUTPUTS if output in given)
-
-
 def _over_the_turn(ax: Axes, theta: Array, values: Array, label: str) -> Axes:
     degrees = np.degrees(np.broadcast_to(theta, values.shape))
     for row, value in _curves(degrees, values):
@@ -289,6 +285,8 @@ def _mark(ax: Axes, theta: Array, x: Array, y: Array) -> None:
     circle = np.stack([np.cos(around), np.sin(around)], axis=-1)
     offsets = np.concatenate([far * circle for far in (11.0, 17.0, 25.0, 36.0, 50.0, 70.0)])
     width = np.array([[-9.0, 0.0], [0.0, 0.0], [9.0, 0.0]])
+    centred: dict[str, Any] = {"textcoords": "offset points", "ha": "center", "va": "center"}
+    line = {"arrowstyle": "-", "lw": 0.5, "color": "0.5"}
     for degrees in range(0, 360, 30):
         angle = np.radians(degrees)
         angle += TURN * np.ceil((theta[0] - angle) / TURN - 1e-12)
@@ -301,17 +299,9 @@ def _mark(ax: Axes, theta: Array, x: Array, y: Array) -> None:
         room = np.min(np.hypot(gaps[..., 0], gaps[..., 1]), axis=(1, 2))
         best = int(np.argmax(np.minimum(room, 8.0)))
         taken = np.concatenate([taken, texts[best]])
-        line = {"arrowstyle": "-", "lw": 0.5, "color": "0.5"}
-        ax.annotate(
-            f"{degrees}°",
-            tuple(place),
-            xytext=tuple(offsets[best]),
-            textcoords="offset points",
-            fontsize=7,
-            ha="center",
-            va="center",
-            arrowprops=line if np.hypot(*offsets[best]) > 12.0 else None,
-        )
+        arrow = line if np.hypot(*offsets[best]) > 12.0 else None
+        text, at = tuple(offsets[best]), tuple(place)
+        ax.annotate(f"{degrees}°", at, text, fontsize=7, arrowprops=arrow, **centred)
 
 
 def _curves(*arrays: Array) -> list[tuple[Array, ...]]:

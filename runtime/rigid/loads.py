@@ -175,10 +175,8 @@ class Spring:
         problems = []
         for name in ("first", "second"):
             problems += _end_problems(f"Spring.{name}", getattr(self, name))
-        names = ("stiffness", "free_length", "damping")
-        problems += number_problems(
-            "Spring", {name: getattr(self, name) for name in names}, "not negative"
-        )
+        sizes = {name: getattr(self, name) for name in ("stiffness", "free_length", "damping")}
+        problems += number_problems("Spring", sizes, "not negative")
         problems += number_problems("Spring", {"preload": self.preload})
         if not problems and self.first[0] == self.second[0]:
             given = f"both ends on {self.first[0]!r}"
@@ -271,8 +269,7 @@ class TorsionSpring:
         rates = {"stiffness": self.stiffness, "damping": self.damping}
         problems = number_problems(where, rates, "not negative")
         problems += number_problems(where, {"free_angle": self.free_angle, "preload": self.preload})
-        ends = (self.first, self.second)
-        problems += names_problems(f"{where}: first, second", ends)
+        problems += names_problems(f"{where}: first, second", self.links)
         if not problems and self.first == self.second:
             given = f"both ends on {self.first!r}"
             problems.append(Problem(where, given, "two different links", "name another link"))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import astuple, dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
@@ -135,10 +135,8 @@ class Machine:
     def provenance(self) -> dict[str, str]:
         """Lengths, assembly and masses, for results."""
         numbers = {
-            f"masses.{link}": " ".join(
-                repr(float(number)) for number in (m.mass, m.along, m.across, m.inertia)
-            )
-            for link, m in self.masses.items()
+            f"masses.{link}": " ".join(repr(float(number)) for number in astuple(mass))
+            for link, mass in self.masses.items()
         }
         return {"links.assembly": "", **self.linkage.provenance, **numbers}
 

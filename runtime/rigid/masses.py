@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 from ..core.errors import bad, refuse
 from ..core.inputs import number_problems
@@ -48,19 +48,14 @@ class MassDistribution:
     across: float = 0.0
     inertia: float = 0.0
 
-    def _underflows(self, moment: float) -> bool:
-        """Return True where the least inertia of a first moment is below the normal numbers."""
-        if not self.mass > 0.0:
-            return False
-        root = moment / math.sqrt(self.mass)
-        return root * root < sys.float_info.min
-
     def __post_init__(self) -> None:
         _require({"mass": self.mass, "inertia": self.inertia}, along=self.along, across=self.across)
         moment = math.hypot(self.along, self.across)
         most = math.sqrt(self.mass) * math.sqrt(self.inertia)
-        # Data with ten digits may lie this far beyond what a rigid body can have.
-        if moment > most * (1.0 + 1e-9) and not self._underflows(moment):
+        root = moment / math.sqrt(self.mass) if self.mass > 0.0 else math.inf
+        # Data with ten digits may lie this far beyond what a rigid body can have, and the least
+        # inertia of a first moment may be below the normal numbers.
+        if moment > most * (1.0 + 1e-9) and root * root >= sys.float_info.min:
             expected = f"at most sqrt(mass inertia) = {most:g} kg m"
             fix = "no body has these; give the inertia about the first joint of the link"
             raise bad("MassDistribution", f"first moment {moment:g} kg m", expected, fix)
@@ -69,12 +64,8 @@ class MassDistribution:
         """Return both together, fixed to one link."""
         if not isinstance(other, MassDistribution):
             return NotImplemented
-        return MassDistribution(
-            self.mass + other.mass,
-            self.along + other.along,
-            self.across + other.across,
-            self.inertia + other.inertia,
-        )
+        pairs = zip(astuple(self), astuple(other), strict=True)
+        return MassDistribution(*(own + added for own, added in pairs))
 
     @property
     def centre(self) -> tuple[float, float]:

@@ -494,9 +494,7 @@ def run_up(
         steps=fine.steps,
         run=fine,
         method=f"DOP853, tolerance {tolerance:g}",
-        error=float(np.max(gap))
-        + astray
-        + 16.0 * np.finfo(float).eps * (1.0 + float(np.max(np.abs(angle)))),
+        error=float(np.max(gap)) + astray + 16.0 * EPS * (1.0 + float(np.max(np.abs(angle)))),
         error_norm="crank angle [rad], largest over the run",
         checks=DeferredChecks(partial(_checks, defect, fine.status, coarse.status)),
         provenance=provenance({**machine.provenance, "torque": _name(torque)}),

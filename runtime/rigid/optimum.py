@@ -429,15 +429,8 @@ class ForceBasis:
         columns: dict[str, list[Array]] = {term: [] for term in terms}
         drive = (self.speed, self.acceleration, terms)
         for i, link in enumerate(self.links):
-            alone = [
-                replace(
-                    self.machine,
-                    masses={link: self._distribution(i, np.array(body, dtype=float))},
-                    loads=(),
-                    springs=(),
-                )
-                for body in bodies
-            ]
+            masses = ({link: self._distribution(i, np.array(body, float))} for body in bodies)
+            alone = (replace(self.machine, masses=m, loads=(), springs=()) for m in masses)
             mass, along, across, ring = (forces_of(one, theta, *drive) for one in alone)
             for term, parts in columns.items():
                 parts += [mass[term], along[term] - ring[term], across[term] - ring[term]]

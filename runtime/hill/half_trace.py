@@ -135,9 +135,10 @@ def discriminant(
     monodromy matrices round the circle), the truncation of the transfer polynomials, the tail of
     the Chebyshev series and the error of ``f``.
     """
-    exact = isinstance(f, Meissner)
-    if not exact:
+    method = "exact matrices of intervals"
+    if not isinstance(f, Meissner):
         check_function(f)
+        method = "transfer polynomials"
     (lam, amp, k), shape = arguments(lam2=lam2, mu=mu, damping=damping)
     x, y, log2_scale = (
         _collapsed(np.array(item, ndmin=len(shape)))
@@ -153,10 +154,7 @@ def discriminant(
         value, error = (item.reshape(shape) for item in work.run())
     beyond = float(value.size - np.count_nonzero(np.isfinite(value)))
     return HalfTrace(
-        method="exact matrices of intervals"
-        if exact
-        else "transfer polynomials"
-        + (" at Chebyshev nodes, interpolated" if work.interpolated else ""),
+        method=method + (" at Chebyshev nodes, interpolated" if work.interpolated else ""),
         error=error,
         error_norm="absolute, entrywise",
         checks={

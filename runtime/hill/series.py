@@ -68,8 +68,7 @@ class BoundarySeries(Result):
     function: PeriodicFunction
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "lower": ("power",),
-        "upper": ("power",),
+        **dict.fromkeys(("lower", "upper"), ("power",)),
         "error": ("end", "power"),
     }
 

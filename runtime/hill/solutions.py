@@ -78,9 +78,7 @@ class BoundarySolution(Result):
     degenerate: bool
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "wave_numbers": ("wave_number",),
-        "a": ("wave_number",),
-        "b": ("wave_number",),
+        **dict.fromkeys(("wave_numbers", "a", "b"), ("wave_number",)),
         "mu": ("parameter",),
     }
 

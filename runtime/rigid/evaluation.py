@@ -23,17 +23,8 @@ Output: TypeAlias = Literal["pins", "torque", "shaking_force", "shaking_moment"]
 FRAME_FORCE = ("shaking_x", "shaking_y")
 # Measured with a dozen outputs: 8192 to 24576 entries take the same time within a few percent.
 BLOCK = 8192
-_KERNELS = {
-    "pins": "pin_forces",
-    "torque": "driving_torque",
-    "shaking_force": "shaking_force",
-    "shaking_moment": "shaking_moment",
-}
-_NAMES = {
-    "torque": ("torque",),
-    "shaking_force": FRAME_FORCE,
-    "shaking_moment": ("shaking_moment",),
-}
+# Emitted functions whose names are others than those of their outputs.
+_KERNELS = {"pins": "pin_forces", "torque": "driving_torque"}
 
 
 @cache
@@ -80,8 +71,8 @@ class Evaluation:
     def values(self, wanted: tuple[Output, ...]) -> dict[str, Array]:
         """Return the wanted forces by name."""
         # Two functions of a part repeat what they share: the one of everything costs less.
-        function = _KERNELS[wanted[0]] if len(wanted) == 1 else "forces"
-        kept = {name for output in wanted for name in _NAMES.get(output, ())}
+        function = _KERNELS.get(wanted[0], wanted[0]) if len(wanted) == 1 else "forces"
+        kept = {*wanted, *(FRAME_FORCE if "shaking_force" in wanted else ())}
         kept |= set(self.kernels.RETURNS["pin_forces"]) if "pins" in wanted else set()
         names = [name for name in self.kernels.RETURNS[function] if name in kept]
         out = np.empty((len(names), *self.batch))

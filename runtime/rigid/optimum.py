@@ -357,12 +357,10 @@ class _Epigraph:
         for _ in range(_POLISHING):
             used = np.flatnonzero(prices)
             values, slopes = (part[used] for part in self._constraints(z))
-            bend = [
-                prices
-                @ (self._constraints(z + e)[1] - self._constraints(z - e)[1])
-                / (-2.0 * _STEP)
-                for e in _STEP * np.eye(len(z))
-            ]
+            bend = []
+            for e in _STEP * np.eye(len(z)):
+                ahead, behind = (self._constraints(at)[1] for at in (z + e, z - e))
+                bend.append(prices @ (ahead - behind) / (-2.0 * _STEP))
             none = np.zeros((len(used), len(used)))
             matrix = np.block([[np.array(bend), -slopes.T], [slopes, none]])
             right = np.concatenate([prices @ self._constraints(z)[1] - self.cost, -values])

@@ -187,7 +187,9 @@ class Line:
         finite = np.all(np.isfinite(found) & np.isfinite(weight), axis=-1)
         if not np.all(finite):
             grown = ~finite & np.all(np.isfinite(plain), axis=(-2, -1))
-            sign = _sign_of_trace(plain, self.half)
+            # Of half a period: that of the whole one's, in which the unit matrix no longer counts.
+            traced = mirrored_sums(plain) - np.eye(plain.shape[-1] // 2) if self.half else plain
+            sign = np.sign(np.trace(traced, axis1=-2, axis2=-1))
             found[~finite], weight[~finite] = np.nan, np.inf
             found[grown] = np.where(sign[grown] > 0, -np.inf, np.inf)[:, None]
         return found, weight
@@ -228,13 +230,6 @@ def is_mirrored(equation: Equation) -> bool:
         if not np.max(np.abs(value - odd * back)) <= _ALIKE * np.max(np.abs(value)):
             return False
     return True
-
-
-def _sign_of_trace(matrices: Array, half: bool) -> Array:
-    """Return the sign of the trace of matrices, or of what half a period's are half of."""
-    if half:
-        matrices = mirrored_sums(matrices) - np.eye(matrices.shape[-1] // 2)
-    return np.asarray(np.sign(np.trace(matrices, axis1=-2, axis2=-1)))
 
 
 class Lines:
@@ -311,20 +306,13 @@ class Lines:
         # A multiple of 16 can be multiplied by pairs, of half a period too.
         count = 16 * int(np.ceil(fineness * count / 16))
 
-        def scaled(made: Equation) -> Equation:
+        def scaled(values: Array) -> Equation:
+            made = plain(values)
             return replace(made, scale=np.broadcast_to(unit, made.scale.shape))
 
         half = self.reduced and is_mirrored(judged)
-        table = table_of(
-            lambda values: scaled(plain(values)),
-            ends,
-            count,
-            way,
-            _RTOL,
-            half=half,
-            nodes=nodes,
-            first=scaled(judged),
-        )
+        first = replace(judged, scale=np.broadcast_to(unit, judged.scale.shape))
+        table = table_of(scaled, ends, count, way, _RTOL, half=half, nodes=nodes, first=first)
         return Line(table, half, self.reduced)
 
 

@@ -16,9 +16,7 @@ Moduli = tuple[Array, NDArray[np.bool_], Array]
 _EPS = float(np.finfo(float).eps)
 
 
-def largest_modulus(
-    coefficients: Array, *, reduced: bool, error: Array | float = 0.0
-) -> tuple[Array, NDArray[np.bool_], Array]:
+def largest_modulus(coefficients: Array, *, reduced: bool, error: Array | float = 0.0) -> Moduli:
     """Return the largest modulus of a multiplier, whether all are stable, and the slack of that.
 
     From the coefficients of :func:`weighed_characteristic` ``(..., k)`` and the absolute error of

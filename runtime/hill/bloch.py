@@ -262,7 +262,6 @@ class _Columns:
         return first.copy(), column[:, self.resonant[1]].conj()
 
     def resolve(self, column: NDArray[Any]) -> NDArray[Any]:
-        """Return R applied to a column."""
         return np.asarray(column * self.resolvent)
 
     def combine(self, column: NDArray[Any], couple: Couple) -> NDArray[Any]:

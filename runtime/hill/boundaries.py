@@ -275,9 +275,9 @@ def _checks(
     return checks
 
 
-def sample_of(places: Index) -> Index:
+def sample_of(places: Index, most: int = _SAMPLE) -> Index:
     """Return an even sample of places ``(n, d)``, its ends included, by coordinate."""
-    chosen = np.unique(np.linspace(0, len(places) - 1, min(_SAMPLE, len(places))).round())
+    chosen = np.unique(np.linspace(0, len(places) - 1, min(most, len(places))).round())
     return np.asarray(places[chosen.astype(int)].T)
 
 

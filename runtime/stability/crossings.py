@@ -303,7 +303,16 @@ def _highest(matrices: MatricesOverSpeed, phase: Array, middle: Array, half: Arr
     speed = np.maximum(middle[:, None] + half[:, None] * _PLACES, 1e-3 * middle[:, None])
 
     def growth(at: Array, which: Index) -> Array:
-        return _growth(matrices, at, phase[which])
+        # The largest log modulus of the multipliers near a phase.
+        values = np.linalg.eigvals(matrices(at)[0])
+        away = np.abs(np.angle(values * np.exp(-1j * phase[which])[:, None]))
+        with np.errstate(divide="ignore"):
+            logarithm = np.log(np.abs(values))
+        # Those that the undamped pair has become, whatever else grows at another argument.
+        second = np.sort(away, axis=-1)[:, 1:2]
+        # Arguments [rad] that count as that of the pair in any case.
+        near = away <= np.maximum(second, 0.1)
+        return np.asarray(np.max(np.where(near, logarithm, -np.inf), axis=-1))
 
     value = growth(speed.ravel(), np.repeat(rows, count)).reshape(-1, count)
     best = np.clip(np.argmax(value, axis=1), 1, count - 2)
@@ -312,19 +321,6 @@ def _highest(matrices: MatricesOverSpeed, phase: Array, middle: Array, half: Arr
         for table in (speed, value)
     )
     return refined_maxima(growth, rows, brackets, around, steps=4, rtol=0.0)[0]
-
-
-def _growth(matrices: MatricesOverSpeed, speed: Array, phase: Array) -> Array:
-    """Return the largest log modulus of the multipliers near a phase."""
-    values = np.linalg.eigvals(matrices(speed)[0])
-    away = np.abs(np.angle(values * np.exp(-1j * phase)[:, None]))
-    with np.errstate(divide="ignore"):
-        logarithm = np.log(np.abs(values))
-    # Those that the undamped pair has become, whatever else grows at another argument.
-    second = np.sort(away, axis=-1)[:, 1:2]
-    # Arguments [rad] that count as that of the pair in any case.
-    near = away <= np.maximum(second, 0.1)
-    return np.asarray(np.max(np.where(near, logarithm, -np.inf), axis=-1))
 
 
 def mended(

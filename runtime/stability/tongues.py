@@ -18,6 +18,7 @@ from ..core.maxima import local_maxima
 from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ..hill.bloch import BEYOND, HIGHEST
+from ..hill.boundaries import sample_of
 from ..periodic import floquet_multipliers
 from ..periodic.equation import equation_of
 from .meetings import MeanSystem, Resonance, conservative
@@ -580,7 +581,8 @@ class TongueChecks:
         checks["error over half the width"] = Check(worst, 1.0)
         opened = opened[share < 1]
         if len(opened):
-            wrong = np.sum([self._contradictions(place) for place in _some(opened)], axis=0)
+            few = sample_of(opened, 3).tolist()
+            wrong = np.sum([self._contradictions(place) for place in few], axis=0)
             checks["stable inside"] = Check(float(wrong[0]), 0.0)
             checks["unstable outside"] = Check(float(wrong[1]), 0.0)
         return checks
@@ -593,7 +595,8 @@ class TongueChecks:
         at = {int(place): self._within(int(place)) for place in closed}
         size = {k: np.max(np.abs(self._multipliers(k, x)), axis=-1) for k, x in at.items()}
         # All that the series doubts, and a few others; at the middle and the likeliest place.
-        for k in sorted({k for k in at if np.max(size[k]) > 1.0} | set(_some(closed))):
+        doubted = {k for k in at if np.max(size[k]) > 1.0}
+        for k in sorted(doubted.union(sample_of(closed, 3).tolist())):
             modulus, error = self._modulus(k, at[k][[0, int(np.argmax(size[k]))]])
             lost += bool(np.any(modulus > 1 + error))
         return lost
@@ -651,10 +654,3 @@ class TongueChecks:
         powers = (operator.speed / at - 1)[:, None] ** np.arange(len(matrices))
         values = operator.centre + np.linalg.eigvals(np.tensordot(powers, matrices, axes=1))
         return np.asarray(np.exp(values * self.system.period))
-
-
-def _some(places: NDArray[np.intp]) -> list[int]:
-    if not len(places):
-        return []
-    chosen = np.unique(np.linspace(0, len(places) - 1, 3).round().astype(int))
-    return [int(place) for place in places[chosen]]

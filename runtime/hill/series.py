@@ -329,10 +329,7 @@ def _where(order: int, region: str, damped: bool) -> Iterator[str]:
             yield r"\text{in the sums: } c_{m-l} &= 0 \quad (m = l)"
         if damped:
             drag = "2 i m" if region == "0" else f"i (2 m - {region})"
-            yield (
-                r"v_{m,l} &= c_{m-l} \quad (m \neq l), \qquad "
-                rf"v_{{m,m}} = {drag} K"
-            )
+            yield rf"v_{{m,l}} &= c_{{m-l}} \quad (m \neq l), \qquad v_{{m,m}} = {drag} K"
 
 
 def _parts(

@@ -476,9 +476,10 @@ def _result(
     sign = np.concatenate([np.full(len(part.speed), part.multiplier) for part in parts])
     cosine = np.zeros((len(speed), harmonics + 1, n))
     sine = np.zeros_like(cosine)
-    rows = slice(0, 0)
+    done = 0
     for part in parts:
-        rows = slice(rows.stop, rows.stop + len(part.speed))
+        rows = slice(done, done + len(part.speed))
+        done += len(part.speed)
         blocks = part.vectors.reshape(len(part.speed), part.vectors.shape[1] // n, n)
         first = 1 if part.multiplier == 1 else 0
         cosine[rows, :first] = blocks[:, :first]

@@ -353,8 +353,8 @@ def _edge_curves(
     failed = sum(not check.passed for row in rows for check in row.checks.values())
     modes = np.array([key[1:3] for key in keys], dtype=np.int64).reshape(-1, 2)
     harmonic = np.array([key[3] for key in keys], dtype=np.int64)
-    (lower, upper, error), kind = ends, tuple(key[0] for key in keys)
-    check = Check(float(failed), 0.0)
+    lower, upper, error = ends
+    kind, check = tuple(key[0] for key in keys), Check(float(failed), 0.0)
     return EdgeCurves(values, lower, upper, error, modes, harmonic, kind, check)
 
 

@@ -187,7 +187,7 @@ class Line:
         finite = np.all(np.isfinite(found) & np.isfinite(weight), axis=-1)
         if not np.all(finite):
             grown = ~finite & np.all(np.isfinite(plain), axis=(-2, -1))
-            # Of half a period: that of the whole one's, in which the unit matrix no longer counts.
+            # Half a period tells the trace of the whole but for a unit matrix, which is lost in it.
             traced = mirrored_sums(plain) - np.eye(plain.shape[-1] // 2) if self.half else plain
             sign = np.sign(np.trace(traced, axis1=-2, axis2=-1))
             found[~finite], weight[~finite] = np.nan, np.inf

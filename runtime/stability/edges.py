@@ -411,7 +411,9 @@ def _principal(
     """Return principal regions from ends and reach ``(2, k)``, multipliers +-1 and labels."""
     mode, number, off = labels
     turn, modes = real.astype(complex), np.stack([mode, mode], axis=1)
-    (lower, upper), (begin, end), kind = ends, reach, np.full(len(real), "principal")
+    lower, upper = ends
+    begin, end = reach
+    kind = np.full(len(real), "principal")
     return Regions(lower, upper, error, turn, modes, number, off, begin, end, kind)
 
 

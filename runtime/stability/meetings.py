@@ -222,8 +222,7 @@ def resonances(
         for condition, met in zip(conditions, places, strict=True)
         for at in met
     ]
-    out.sort(key=lambda item: (-item.speed, item.modes, item.kind))
-    return out
+    return sorted(out, key=lambda item: (-item.speed, item.modes, item.kind))
 
 
 def conservative(system: LinearPeriodic, speed: float, parameters: Mapping[str, ArrayLike]) -> bool:

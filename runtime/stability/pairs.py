@@ -288,8 +288,7 @@ def refined_edges(matrices: MatricesOverSpeed, events: Events) -> Edges:
     k = len(events.low)
     ends, errors = np.full((2, k), np.nan), np.zeros((2, k))
     phase = np.array(search.phase)
-    for side in (0, 1):
-        outer = (events.low, events.high)[side]
+    for side, outer in enumerate((events.low, events.high)):
         known = np.flatnonzero(search.found & np.isfinite(outer))
         roots, error, at = search.edge(known, side)
         ends[side, known], errors[side, known] = roots, error

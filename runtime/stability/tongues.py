@@ -358,8 +358,7 @@ class Tongue(Result):
     @property
     def width(self) -> Array:
         """Width of the range [rad/s]; zero where it is closed."""
-        value: Array = np.where(self.open, self.upper - self.lower, 0.0)
-        return value
+        return np.asarray(np.where(self.open, self.upper - self.lower, 0.0))
 
     @property
     def label(self) -> str:

@@ -58,9 +58,12 @@ class Problem:
 
 
 class BadInput(ElastolinkError, ValueError):  # noqa: N818 - reads as what it is
-    """An input is unusable; ``problems``, at least one, are all that is wrong.
+    """An input is unusable; ``problems`` holds all that is wrong, the message twenty of them.
 
-    The message holds twenty of them.
+    Parameters
+    ----------
+    *problems : Problem
+        At least one problem.
     """
 
     def __init__(self, *problems: Problem) -> None:

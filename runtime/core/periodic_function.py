@@ -76,13 +76,24 @@ class PeriodicFunction:
 
     @classmethod
     def from_samples(cls, values: ArrayLike) -> PeriodicFunction:
-        """Interpolate samples ``(N,)`` at the angles 2 pi j / N, j = 0 ... N - 1.
+        """Interpolate samples at the angles 2 pi j / N, j = 0 ... N - 1.
 
-        They are one period, the end point not repeated.  For even N the highest harmonic, N/2, has
-        a cosine alone (its sine vanishes at every sample).  The ``error`` is an estimate of what
-        the samples cannot show: the energy of the highest eighth of the harmonics, taken as the
-        size of what was folded down, and round-off.  Samples that are not a non-empty
-        one-dimensional array of finite numbers raise `BadInput`.
+        Parameters
+        ----------
+        values : array_like, shape (N,)
+            One period, the end point not repeated.  For even N the highest harmonic, N/2, has a
+            cosine alone (its sine vanishes at every sample).
+
+        Returns
+        -------
+        PeriodicFunction
+            Its ``error`` is an estimate of what the samples cannot show: the energy of the highest
+            eighth of the harmonics, taken as the size of what was folded down, and round-off.
+
+        Raises
+        ------
+        BadInput
+            If the samples are not a non-empty one-dimensional array of finite numbers.
         """
         samples = numbers_in_a_row("PeriodicFunction.values", values)
         a, b = _analyse(samples)
@@ -222,8 +233,15 @@ class PeriodicFunction:
     def truncated(self, tol: float = 0.0) -> PeriodicFunction:
         """Drop the highest harmonics whose amplitudes together are at most ``tol``.
 
-        That is the largest absolute change of the function that is allowed; 0 drops exact zeros
-        alone.  ``error`` is enlarged by the sum of the amplitudes dropped, a bound of the change.
+        Parameters
+        ----------
+        tol : float
+            Largest absolute change of the function that is allowed; 0 drops exact zeros alone.
+
+        Returns
+        -------
+        PeriodicFunction
+            ``error`` is enlarged by the sum of the amplitudes dropped, a bound of the change.
         """
         if not (np.isfinite(tol) and tol >= 0.0):
             raise bad("tol", tol, "a finite number >= 0", "correct it")

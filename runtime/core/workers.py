@@ -91,11 +91,22 @@ def check_executor(executor: object) -> None:
 
 @contextmanager
 def process_pool(workers: int) -> Iterator[Executor]:
-    """Open a pool of 1 to 1024 processes for sweeps, their numerical libraries on one thread.
+    """Open a pool of processes for sweeps, each with its numerical libraries on one thread.
 
-    Another number of ``workers`` raises `BadInput`.  The processes are started afresh, not copied:
-    a script that opens a pool keeps its own work under ``if __name__ == "__main__":``, as with any
-    such pool.
+    Parameters
+    ----------
+    workers : int
+        How many, 1 to 1024.
+
+    Raises
+    ------
+    BadInput
+        If that is no such number.
+
+    Notes
+    -----
+    The processes are started afresh, not copied: a script that opens a pool keeps its own work
+    under ``if __name__ == "__main__":``, as with any such pool.
     """
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor

@@ -398,7 +398,12 @@ class FrameFrequencies(Result):
         """Return the displacements of the nodes in each mode, ``(n, free)``.
 
         In the order of ``problem.labels`` [m, rad], of unit generalised mass; all zero where the
-        nodes stand still.  Where there are no shapes `BadInput` is raised.
+        nodes stand still.
+
+        Raises
+        ------
+        BadInput
+            If there are no shapes.
         """
         problem = self._members()
         places = {label: i for i, label in enumerate(problem.labels)}
@@ -411,10 +416,21 @@ class FrameFrequencies(Result):
         return found
 
     def shape(self, mode: int, beam: str, eta: ArrayLike) -> MemberShape:
-        """Return the exact shape of a beam in a mode, counted from 0, at places ``(m,)`` along it.
+        """Return the exact shape of a beam in a mode.
 
-        The places are in lengths, 0 to 1; one outside raises `BadInput`, as do a mode or a beam
-        that is not there, and a problem without shapes.
+        Parameters
+        ----------
+        mode : int
+            Which of the modes, from 0.
+        beam : str
+            Its name.
+        eta : array_like, shape (m,)
+            Places along it, in lengths, 0 to 1.
+
+        Raises
+        ------
+        BadInput
+            If there are no shapes, no such mode or beam, or a place lies outside.
         """
         self._members()
         known = isinstance(mode, (int, np.integer)) and not isinstance(mode, bool)

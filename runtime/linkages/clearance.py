@@ -456,8 +456,12 @@ class ClearanceRange(Result):
     def plot(self, ax: Axes | None = None, *, label: str | None = None) -> Axes:
         """Draw the width against the crank angle, as in Smith's Fig. 10.
 
-        The axes may be those of another clearance, for several curves; the label is by default the
-        clearances.
+        Parameters
+        ----------
+        ax : Axes, optional
+            Those of another clearance, for several curves.
+        label : str, optional
+            By default the clearances.
         """
         ax = axes_or_new(ax)
         if label is None:

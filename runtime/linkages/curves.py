@@ -117,10 +117,19 @@ class CouplerCurve(Result):
     def cognates(self) -> tuple[Cognate, Cognate]:
         """Return the two other four-bars that trace the path (Roberts and Chebyshev).
 
-        The first has its frame between A and the third focus, its crank parallel to the line from B
-        to the tracing point; the second between D and the third focus.  A path that is none of a
-        four-bar's coupler, or that of a joint of it, raises `BadInput`.
+        Returns
+        -------
+        tuple of Cognate
+            The first has its frame between A and the third focus, its crank parallel to the line
+            from B to the tracing point; the second between D and the third focus.
 
+        Raises
+        ------
+        BadInput
+            If this is no path of a four-bar's coupler, or the point is a joint of it.
+
+        Notes
+        -----
         With u the direction of the coupler, g the point in it, k = g/l3: A + g u is one corner of a
         parallelogram A-B-P, and A + g u + k l2 exp(i theta2) keeps the distance |k| l4 from the
         third focus k l1.

@@ -106,7 +106,13 @@ class Tolerances(Result):
         return np.square(self.deviations / np.where(total > 0.0, total, 1.0))
 
     def place(self, output: str) -> int:
-        """Return the place of an output on the first axis; `BadInput` where there is none."""
+        """Return the place of an output on the first axis.
+
+        Raises
+        ------
+        BadInput
+            If there is no such output.
+        """
         if output not in self.outputs:
             known = f"one of {', '.join(self.outputs)}"
             raise bad("output", repr(output), known, "choose one; forces need a machine")
@@ -115,7 +121,10 @@ class Tolerances(Result):
     def by(self, output: str, parameter: str) -> Array:
         """Return the derivative of an output by a parameter, shape (...).
 
-        An output or parameter that there is not raises `BadInput`.
+        Raises
+        ------
+        BadInput
+            If there is no such output or parameter.
         """
         if parameter not in self.parameters:
             known = f"one of {', '.join(self.parameters)}"
@@ -125,7 +134,10 @@ class Tolerances(Result):
     def unit(self, output: str) -> str:
         """Return the unit of an output; rates without a crank speed are over the crank's.
 
-        An output that there is not raises `BadInput`.
+        Raises
+        ------
+        BadInput
+            If there is no such output.
         """
         return self.model.unit(self.outputs[self.place(output)])
 
@@ -212,8 +224,17 @@ class Tolerances(Result):
     def plot(self, ax: Axes | None = None, output: str | None = None) -> Axes:
         """Draw the error band of an output against the crank angle.
 
-        By default that of the angle of the follower or the rod, or the slider's place.  An output
-        that there is not, and crank angles that are not a one-dimensional array, raise `BadInput`.
+        Parameters
+        ----------
+        ax : Axes, optional
+            Where to draw.
+        output : str, optional
+            By default the angle of the follower or the rod, or the slider's place.
+
+        Raises
+        ------
+        BadInput
+            If there is no such output, or the crank angles are not a one-dimensional array.
         """
         if self.theta2.ndim != 1:
             shape = f"crank angles of shape {self.theta2.shape}"

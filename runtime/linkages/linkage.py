@@ -75,9 +75,16 @@ class LinkMotion:
     angular_acceleration: Array
 
     def point(self, along: ArrayLike, across: ArrayLike = 0.0) -> PointMotion:
-        """Return the motion of a point at a place in the link's axes [m].
+        """Return the motion of a point of the link.
 
-        The components of the place broadcast with the angles.
+        Parameters
+        ----------
+        along, across : array_like
+            Its place in the link's axes [m]; broadcast with the angles.
+
+        Returns
+        -------
+        PointMotion
         """
         x, y = self.turned(along, across)
         speed, change = self.speed, self.angular_acceleration
@@ -174,7 +181,15 @@ class Motion(Result, ABC):
     def link(self, name: str) -> LinkMotion:
         """Return the motion of a moving link, its origin at the link's first joint.
 
-        A name that is none of ``linkage.links`` raises `BadInput`.
+        Parameters
+        ----------
+        name : str
+            One of ``linkage.links``.
+
+        Raises
+        ------
+        BadInput
+            If the linkage has no such moving link.
         """
         if name not in self.linkage.links:
             known = ", ".join(self.linkage.links)
@@ -184,11 +199,25 @@ class Motion(Result, ABC):
         return self._other_link(name)
 
     def point(self, link: str, along: ArrayLike, across: ArrayLike = 0.0) -> PointMotion:
-        """Return place, velocity and acceleration of a point of a moving link, each (..., 2).
+        """Return place, velocity and acceleration of a point of a moving link.
 
-        The place is in the link's axes [m]: origin at the link's first joint, x along the link; it
-        broadcasts with the angles.  A link that is none of ``linkage.links``, and a place that is
-        not finite, raise `BadInput`.
+        Parameters
+        ----------
+        link : str
+            One of ``linkage.links``.
+        along, across : array_like
+            Place of the point in the link's axes [m]: origin at the link's first joint, x along
+            the link; broadcast with the angles.
+
+        Returns
+        -------
+        PointMotion
+            Fields of shape (..., 2).
+
+        Raises
+        ------
+        BadInput
+            If the linkage has no such moving link, or the place is not finite.
         """
         place = np.asarray(along, dtype=float), np.asarray(across, dtype=float)
         if not all(np.all(np.isfinite(part)) for part in place):
@@ -379,9 +408,13 @@ class Linkage(ABC):
         """Return the intervals of crank angle [rad] that one turn offers; their ends are folds.
 
         There coupler and follower come into one line, the coupler stands across the guide, or the
-        block is at the rod's tip or, with eps = 1, on its pivot.  The intervals are without their
-        ends, each up to whole turns; ``((-pi, pi),)`` for a crank that turns fully, for which -pi
-        and pi are no folds.
+        block is at the rod's tip or, with eps = 1, on its pivot.
+
+        Returns
+        -------
+        tuple of (float, float)
+            Without their ends, each up to whole turns; ``((-pi, pi),)`` for a crank that turns
+            fully, for which -pi and pi are no folds.
         """
         axis, (low, high) = self.fold_axis, self.limits.ends
         if low is None and high is None:
@@ -472,7 +505,10 @@ class Linkage(ABC):
     def course(self, name: str) -> Callable[[Array], Array]:
         """Return a place or rate of the motion as a function of the crank angle.
 
-        A crank that cannot turn fully, and a field that the motion has not, raise `BadInput`.
+        Raises
+        ------
+        BadInput
+            If the crank cannot turn fully, or the motion has no such field.
         """
         self.require_full_turn()
         known = {**self.moves.places, **self.moves.rates}

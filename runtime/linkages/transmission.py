@@ -122,9 +122,17 @@ class TransmissionAngle(Result):
         """Return the mechanical advantage at crank angles (Aannaque 3.1, corrected).
 
         T4/T2 = omega2/omega4 = follower sin(transmission angle)/(crank sin(beta)), beta between
-        crank and coupler; printed (3.1) has the frame in the place of the crank.  Crank angles are
-        in rad, of any shape; one that is not a finite number, that the linkage cannot reach or at
-        which it folds, raises `BadInput`.
+        crank and coupler; printed (3.1) has the frame in the place of the crank.
+
+        Parameters
+        ----------
+        theta : array_like
+            Crank angles [rad], any shape.
+
+        Raises
+        ------
+        BadInput
+            If an angle is not a finite number, or the linkage cannot reach it or folds there.
         """
         motion = self.linkage.motion(theta)
         rate = "slider_velocity" if isinstance(self.linkage, SliderCrank) else "omega4"

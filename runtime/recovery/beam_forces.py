@@ -246,7 +246,13 @@ class BeamForces(StationResult):
     }
 
     def of(self, link: str, quantity: str) -> Array:
-        """Return one quantity along one beam, ``(nt, its stations)``; refuse an unknown one."""
+        """Return one quantity along one beam, ``(nt, its stations)``.
+
+        Raises
+        ------
+        BadInput
+            If either is unknown.
+        """
         if quantity not in QUANTITIES:
             raise bad("quantity", repr(quantity), f"one of {QUANTITIES}", "correct the name")
         return np.asarray(getattr(self, quantity)[:, stations_on(self.links, link)])

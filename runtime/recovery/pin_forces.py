@@ -67,7 +67,13 @@ class PinReactions(BeamResult):
         return found
 
     def force(self, node: str, beam: str) -> Array:
-        """Return the force of a node on a beam [N], ``(nt, 2)``; refuse one that ends elsewhere."""
+        """Return the force of a node on a beam [N], ``(nt, 2)``.
+
+        Raises
+        ------
+        BadInput
+            If no beam of that name ends at that node.
+        """
         if (node, beam) not in self.on_beams:
             known = ", ".join(" on ".join(pair) for pair in self.on_beams)
             raise bad("force", f"{node} on {beam}", f"one of {known}", "correct the names")
@@ -76,7 +82,10 @@ class PinReactions(BeamResult):
     def torque(self, node: str = "A") -> Array:
         """Return the moment of the ground on a node [N m], ``(nt,)``: of a crank's shaft the drive.
 
-        A node that the ground does not hold is refused.
+        Raises
+        ------
+        BadInput
+            If the ground does not hold the node.
         """
         if node not in self.of_ground:
             known = ", ".join(self.of_ground)

@@ -117,7 +117,10 @@ class StressCurve(Result):
     def of(self, link: str) -> Array:
         """Return the largest stress of one link at each speed [Pa], ``(ns,)``.
 
-        A link without a station is refused.
+        Raises
+        ------
+        BadInput
+            If the link has no station.
         """
         if link not in self.links:
             fix = "choose one with stations"

@@ -253,8 +253,17 @@ class StressResult(StationResult):
     def fibre(self, name: str = "positive", part: str = "all") -> Array:
         """Return the stress of one outer fibre [Pa], ``(nt, stations)``.
 
-        The fibre is ``"positive"`` or ``"negative"``, the part ``"all"``, ``"quasi-static"`` or
-        ``"dynamic"``, the difference of these; others are refused.
+        Parameters
+        ----------
+        name : str
+            ``"positive"`` or ``"negative"``.
+        part : str
+            ``"all"``, ``"quasi-static"`` or ``"dynamic"``, the difference of these.
+
+        Raises
+        ------
+        BadInput
+            If either is unknown.
         """
         if name not in FIBRES:
             raise bad("fibre", repr(name), f"one of {FIBRES}", "correct the name")
@@ -270,7 +279,10 @@ class StressResult(StationResult):
     def at(self, link: str, place: float, fibre: str = "positive", part: str = "all") -> Array:
         """Return the stress of a fibre over the angles ``(nt,)`` at the station nearest a place.
 
-        A link without a station and an unknown name are refused.
+        Raises
+        ------
+        BadInput
+            If the link has no station, or a name is unknown.
         """
         own = stations_on(self.links, link)
         nearest = own[int(np.argmin(np.abs(self.places[own] - place)))]
@@ -301,10 +313,22 @@ class StressResult(StationResult):
         return StressPeak(value, theta, link, float(self.places[own[place]]), FIBRES[fibre])
 
     def safety(self, limit: float | Mapping[str, float]) -> dict[str, float]:
-        """Return the factor of safety by beam, allowed over largest stress; inf without stress.
+        """Return the factor of safety of each beam: allowed over largest stress.
 
-        The limit is the allowed stress [Pa], of all or by beam; one that is missing or not positive
-        is refused.
+        Parameters
+        ----------
+        limit : float or mapping of str to float
+            Allowed stress [Pa], of all or by beam.
+
+        Returns
+        -------
+        dict of str to float
+            By beam; inf where there is no stress.
+
+        Raises
+        ------
+        BadInput
+            If a limit is missing or not positive.
         """
         found, problems = {}, []
         for link, peak in self.maxima.items():

@@ -139,8 +139,17 @@ class Scene:
     def get(self, key: str, default: Any = _MISSING) -> Any:
         """Return the value of a dotted key, in SI units.
 
-        The key is of table and key, for example ``"links.crank"`` or ``"loads.tool.couple"``; where
-        the scene holds none, the default is returned or, without one, `KeyError` raised.
+        Parameters
+        ----------
+        key : str
+            Table and key, for example ``"links.crank"`` or ``"loads.tool.couple"``.
+        default : object, optional
+            Returned where the scene holds no such key.
+
+        Raises
+        ------
+        KeyError
+            If the scene holds no such key and no default is given.
         """
         try:
             found: Any = self.tables
@@ -187,7 +196,10 @@ class Scene:
     def system(self) -> LinearPeriodic | Constrained | Nonlinear:
         """Return the family object that the solvers accept.
 
-        A scene about rigid links alone, or whose module was not emitted yet, raises `BadInput`.
+        Raises
+        ------
+        BadInput
+            If the scene is about rigid links alone, or its module was not emitted yet.
         """
         mechanism = self.model["mechanism"]
         if mechanism in LINKAGES and not self.layout.flexible and not self._declared:
@@ -206,7 +218,10 @@ class Scene:
     def linear_system(self) -> LinearPeriodic:
         """Return the system of the scene for solvers that take the linear-periodic family alone.
 
-        Refused is what :meth:`system` refuses, and a constrained or nonlinear formulation.
+        Raises
+        ------
+        BadInput
+            As :meth:`system`, and if the scene's formulation is constrained or nonlinear.
         """
         from ..core.families import LinearPeriodic
 
@@ -223,7 +238,13 @@ class Scene:
         return found
 
     def mechanism(self) -> Linkage:
-        """Return the linkage of the scene, lengths and assembly; `BadInput` where it has none."""
+        """Return the linkage of the scene: lengths and assembly.
+
+        Raises
+        ------
+        BadInput
+            If the scene has no linkage.
+        """
         kind = LINKAGES.get(self.model["mechanism"])
         if kind is None or self._declared:
             found = f"mechanism '{self.model['mechanism']}'"
@@ -239,7 +260,10 @@ class Scene:
     def machine(self) -> Machine:
         """Return the linkage with its masses, loads, springs and weight.
 
-        A scene that has no linkage, or in which no link has a mass, raises `BadInput`.
+        Raises
+        ------
+        BadInput
+            If the scene has no linkage, a link bends, or no link has a mass.
         """
         from .rigid import machine
 

@@ -180,7 +180,10 @@ class LinearPeriodic:
     def shapes(self, x: Array, theta: Array) -> Array | None:
         """Return the mode shapes at places x/length ``(nx,)`` and crank angles ``(nt,)`` [rad].
 
-        Their shape is ``(nt, nx, n)``; None where the system has none.
+        Returns
+        -------
+        ndarray or None
+            Shape ``(nt, nx, n)``; None where the system has none.
         """
         if self.moving_shape is not None:
             return np.asarray(self.moving_shape(x, theta), dtype=float)
@@ -192,8 +195,17 @@ class LinearPeriodic:
     def deflection_rows(self, theta: Array, places: Array = _PLACES) -> Array | None:
         """Return what turns coordinates into deflections over the length of their link.
 
-        At crank angles ``(nt,)`` [rad], and at places x/length ``(nx,)`` of a system that is known
-        by its shapes; ``(nt, k, n)``, None where none is known.
+        Parameters
+        ----------
+        theta : ndarray
+            Crank angles [rad], shape ``(nt,)``.
+        places : ndarray
+            Places x/length of a system that is known by its shapes, ``(nx,)``.
+
+        Returns
+        -------
+        ndarray or None
+            Shape ``(nt, k, n)``; None where none is known.
         """
         if self.relative_deflection is not None:
             return np.asarray(self.relative_deflection(theta), dtype=float)
@@ -202,8 +214,12 @@ class LinearPeriodic:
     def largest_deflection(self, theta: Array, q: Array) -> float | None:
         """Return the largest deflection over the length of its link; None where none is known.
 
-        Of motions ``(nb, nt, n)`` at crank angles ``(nt,)`` [rad]; one that is not finite counts
-        for nothing.
+        Parameters
+        ----------
+        theta : ndarray
+            Crank angles [rad], shape ``(nt,)``.
+        q : ndarray
+            Motions, shape ``(nb, nt, n)``; one that is not finite counts for nothing.
         """
         # Mode shapes at the angles of the motion before serve for the next one.
         before, rows = self.kept.get("deflections", (None, None))
@@ -231,9 +247,18 @@ class LinearPeriodic:
     def spectrum(self, row: int) -> Array:
         """Largest Fourier amplitude of an entry of a term, per harmonic of the period.
 
-        ``row`` is the term's place among :attr:`terms`.  Of length 1 where it is constant, else as
-        long as it takes; a term that nobody asks about is never sampled.  One that is not finite at
-        a sample, or returns a wrong shape for many angles, is refused.
+        Of length 1 where the term is constant, else as long as it takes; a term that nobody asks
+        about is never sampled.
+
+        Parameters
+        ----------
+        row : int
+            Place of the term among :attr:`terms`.
+
+        Raises
+        ------
+        BadInput
+            If the term is not finite at a sample, or returns a wrong shape for many angles.
         """
         known = self._spectrum_of.get(row)
         if known is None:
@@ -261,8 +286,15 @@ class LinearPeriodic:
     def is_damped(self, **axes: ArrayLike) -> bool:
         """Return True where some damping term is not zero at every angle and parameter value.
 
-        ``axes`` are parameter values that replace the system's own, arrays broadcasting.  Refused
-        are a name that is not one of its parameters, and a term that is not finite.
+        Parameters
+        ----------
+        **axes : float or array_like
+            Parameter values that replace the system's own; arrays broadcast.
+
+        Raises
+        ------
+        BadInput
+            If a name is not one of the system's parameters, or a term is not finite.
         """
         scales = self.scale_values(**axes)
         return any(
@@ -275,7 +307,10 @@ class LinearPeriodic:
     def changed_provenance(self, **changes: ArrayLike) -> dict[str, str]:
         """Return the provenance with parameter changes recorded under ``changed``.
 
-        They are values that replace the system's own; of an array its range is told.
+        Parameters
+        ----------
+        **changes : float or array_like
+            Parameter values that replace the system's own; of an array its range is told.
         """
         found = dict(self.provenance)
         told = [found["changed"]] if "changed" in found else []
@@ -287,8 +322,16 @@ class LinearPeriodic:
     def scale_values(self, **changes: ArrayLike) -> Mapping[str, Array]:
         """Return the parameter monomials at the system's parameters, some of them changed.
 
-        New values are by parameter name, arrays broadcasting.  Refused are a name that is not one
-        of the system's parameters, and a value that is not a number or not within its limits.
+        Parameters
+        ----------
+        **changes : float or array_like
+            New values by parameter name; arrays broadcast.
+
+        Raises
+        ------
+        BadInput
+            If a name is not one of the system's parameters, or a value is not a number or not
+            within the parameter's limits.
         """
         unknown = sorted(set(changes) - set(self.parameters))
         if unknown:
@@ -357,9 +400,17 @@ class LinearPeriodic:
     def with_terms(self, *terms: Term, scales: Mapping[str, float] | None = None) -> LinearPeriodic:
         """Return the system with more terms, for example modal damping.
 
-        ``scales`` are values of monomials that the new terms name and the system does not know;
-        they become parameters of the new system.  :meth:`with_geometry` takes the new terms along
-        as they are.
+        Parameters
+        ----------
+        *terms : Term
+            Terms to add.
+        scales : mapping, optional
+            Values of monomials that the new terms name and the system does not know; they become
+            parameters of the new system.
+
+        Notes
+        -----
+        :meth:`with_geometry` takes the new terms along as they are.
         """
         extra = dict(scales or {})
         merged = partial(_merged, self.scales, tuple(self.parameters), tuple(extra))
@@ -374,8 +425,14 @@ class LinearPeriodic:
     def with_changed_terms(self, change: Callable[[Term], Term]) -> LinearPeriodic:
         """Return the system with each term changed, for example scaled.
 
-        ``change`` takes each term to the one in its place.  :meth:`with_geometry` changes the terms
-        of the other geometry alike.
+        Parameters
+        ----------
+        change : callable
+            From each term to the one in its place.
+
+        Notes
+        -----
+        :meth:`with_geometry` changes the terms of the other geometry alike.
         """
         return replace(
             self,
@@ -394,8 +451,10 @@ class LinearPeriodic:
     def remade(self, change: Callable[[LinearPeriodic], LinearPeriodic]) -> dict[str, Any]:
         """Return ``rebuild`` and ``remesh`` of the system that a change makes of this one.
 
-        ``change`` takes this system, or one made anew of another geometry or mesh, to the changed
-        one.
+        Parameters
+        ----------
+        change : callable
+            From this system, or one made anew of another geometry or mesh, to the changed one.
         """
         makers = {"rebuild": self.rebuild, "remesh": self.remesh}
         return {
@@ -425,8 +484,15 @@ class LinearPeriodic:
     def remeshed(self, change: Callable[[Structure], Structure]) -> LinearPeriodic:
         """Return the system of a changed structure, its further terms and parameters kept.
 
-        ``change`` takes the structure to the changed one.  A system that tells no other structure
-        is refused.
+        Parameters
+        ----------
+        change : callable
+            From the structure to the changed one.
+
+        Raises
+        ------
+        BadInput
+            If the system tells no other structure.
         """
         if self.remesh is None:
             found = "one made for its own beams alone"
@@ -436,9 +502,16 @@ class LinearPeriodic:
     def with_geometry(self, **changes: float) -> LinearPeriodic:
         """Return the same system with other lengths or ratios, its functions of angle made anew.
 
-        New values are by geometry name.  Refused are a system that has no geometry to change, or
-        whose terms were replaced by other means than its own methods, a name that is not one of
-        its geometry, and an impossible mechanism.
+        Parameters
+        ----------
+        **changes : float
+            New values by geometry name.
+
+        Raises
+        ------
+        BadInput
+            If the system has no geometry to change, a name is not one of it, its terms were
+            replaced by other means than its own methods, or the mechanism is impossible.
         """
         if self.rebuild is None:
             found = "a system that is made for one geometry"

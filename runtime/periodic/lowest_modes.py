@@ -27,6 +27,7 @@ from .truncation import TruncatedSystem
 
 ComplexArray = NDArray[np.complex128]
 
+_EPS = float(np.finfo(float).eps)
 # Error of the transition matrices for free motions, of which some decay, and for small changes.
 _FINE, _RTOL = 1e-13, 1e-10
 # Error of the exponents by the modes left out that is small enough, that from which a better one
@@ -136,12 +137,21 @@ class LowestModes:
         The system, with its present parameters.
     least : int
         Fewest modes that are kept.
+
+    Attributes
+    ----------
+    rounding : ndarray, shape (n,)
+        Relative error of each mode's exponents by round-off of the stiffest one.
     """
 
     def __init__(self, system: LinearPeriodic, least: int = 4) -> None:
         self.truncations = Truncations(system, min(least, system.size))
         still = still_modes(system, _FEWEST)
         self._top = np.sqrt(np.max(still.squares, axis=0))
+        # Entries are rounded as the stiffest mode's are, those of slow modes too: of their
+        # exponents this is a sixteenth or less.
+        slowest = np.min(still.squares, axis=0)
+        self.rounding = _EPS / 16.0 * np.max(still.squares) / np.maximum(slowest, _EPS)
 
     def at(self, modes: int, speed: float) -> TruncatedSystem | None:
         """Return the truncation whose angles resolve its motions at a speed [rad/s].

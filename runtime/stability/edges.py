@@ -237,13 +237,13 @@ def stability_edges(
     damped = system.is_damped(**parameters)
     if damped:
         _check_damping(system, parameters)
-    change: float | None = None
+    change, rounding = None, np.zeros(system.size)
     if modes is not None:
         if isinstance(modes, str) and modes != "auto":
             raise bad("modes", modes, "a number of modes or 'auto'", "leave it out for all modes")
         lowest = LowestModes(system.with_parameters(**parameters))
         system, change = lowest.required(high, None if isinstance(modes, str) else modes)
-        parameters = {}
+        parameters, rounding = {}, lowest.rounding
     search = partial(_searched, system, change, (low, high), parameters, rtol)
     regions, least, checks = search(margin)
     while margin < _WIDEST and not all(checks[name].passed for name in ("samples", "verdicts")):
@@ -256,10 +256,11 @@ def stability_edges(
         if _contradicted(wider[2]) < _contradicted(checks):
             regions, least, checks = wider
     shift = (change or 0.0) * (regions.end / high) ** 2 * regions.end
+    rounded = np.max(rounding[regions.modes - 1], axis=1) * regions.end
     return StabilityEdges(
         method=("modulus 1 of a multiplier" if damped else _GAP)
         + (f", of {system.size} modes" if modes is not None else ""),
-        error=regions.error + shift,
+        error=np.maximum(regions.error, rounded) + shift,
         shift=shift,
         error_norm="absolute, of either end [rad/s]",
         checks=checks,

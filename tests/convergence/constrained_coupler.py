@@ -69,7 +69,8 @@ class Whole:
             value = np.asarray(value, dtype=float)
             return np.broadcast_to(value, (stations if value.ndim == 2 else 1, count)).T
 
-        for i, j, at, *product in entries:
+        # What a station's Coriolis terms by its own rate leave, nothing, comes before damping.
+        for i, j, at, *product in reversed(entries):
             value = of(returned[at])
             row, column = own[0] and i == 1, own[1] and j == 1
             if product:

@@ -150,8 +150,8 @@ class LowestModes:
         self._top = np.sqrt(np.max(still.squares, axis=0))
         # Entries are rounded as the stiffest mode's are, those of slow modes too: of their
         # exponents this is a sixteenth or less.
-        slowest = np.min(still.squares, axis=0)
-        self.rounding = _EPS / 16.0 * np.max(still.squares) / np.maximum(slowest, _EPS)
+        slowest, stiffest = np.min(still.squares, axis=0), np.max(still.squares)
+        self.rounding = _EPS / 16.0 * stiffest / np.maximum(slowest, _EPS * stiffest)
 
     def at(self, modes: int, speed: float) -> TruncatedSystem | None:
         """Return the truncation whose angles resolve its motions at a speed [rad/s].

@@ -238,8 +238,7 @@ class Reduced:
             change = (inverse @ at["constraints"])[..., 0]
             x[..., held] -= change
             size = float(np.max(np.abs(change), initial=0.0))
-            # Newton squares what is left; a change that no longer falls is round-off.
-            if size <= CLOSE or (size <= 1e-10 and size >= 0.5 * last):
+            if is_last(size, last):
                 return x, at, inverse
             last = size
         raise SelfCheckFailed("the loop of the linkage cannot be closed at a state")
@@ -253,4 +252,10 @@ def _time(q: Array, drive: Drive) -> Array:
 
 
 # Corrections of the coordinates that close a loop, and the change (rad, m) that is the last.
-CLOSING, CLOSE = 30, 1e-13
+CLOSING, _CLOSE = 30, 1e-13
+
+
+def is_last(size: float, before: float) -> bool:
+    """Return True where a correction that closes a loop, after one before, leaves round-off."""
+    # Newton squares what is left; a change that no longer falls is round-off.
+    return size <= _CLOSE or (size <= 1e-10 and size >= 0.5 * before)

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from ..errors import SelfCheckFailed
 from .linear_periodic import Array
-from .nonlinear import CLOSE, CLOSING, Drive, Varied
+from .nonlinear import CLOSING, Drive, Varied, is_last
 
 # What of the emitted functions is used.
 _WANTED = {
@@ -136,8 +136,7 @@ class AtStations:
             change = _solved(inverse, found["constraints"])
             z -= at.moved(change)
             size = float(np.max(np.abs(change), initial=0.0))
-            # Newton squares what is left; a change that no longer falls is round-off.
-            if size <= CLOSE or (size <= 1e-10 and size >= 0.5 * last):
+            if is_last(size, last):
                 return z, found, inverse
             last = size
         raise SelfCheckFailed("the loop of the linkage cannot be closed at a state")

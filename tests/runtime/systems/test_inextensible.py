@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from bent_rigs import BENT, REFERENCE, Shape, rig, slider_crank
 from constrained_coupler import with_constraints
+from elastolink.generated import four_bar_kinematics, slider_crank_kinematics
 from elastolink.runtime.core.errors import BadInput, SelfCheckFailed
 from elastolink.runtime.core.families import LinearPeriodic
 from elastolink.runtime.core.families.nonlinear import Drive
 from elastolink.runtime.systems import inextensible
-from elastolink.runtime.systems.inextensible import coupler_stations
+from elastolink.runtime.systems.inextensible import InextensibleCoupler, coupler_stations
 from straight_rod import projected
 
 RIGS = ("smith_1972_5152_sixteenth_inch", "smith_1972_101104_thirtysecond_inch")
@@ -198,6 +199,25 @@ def test_the_power_of_the_crank_balances(modes):
             drive = Drive(random.uniform(-7, 7), 60.0, random.choice([0.0, 900.0]))
             qd = 40.0 * qd
             assert_balanced(system, q, qd, accelerations(system, q, qd, drive), drive)
+
+
+@pytest.mark.parametrize("assembly", [1.0, -1.0])
+def test_ends_of_a_straight_coupler_are_those_of_the_rigid_linkage(assembly):
+    """Crank-rocker, drag link and slider-crank, both closures, against the emitted kinematics."""
+    made = InextensibleCoupler(1, assembly)
+    angle, chord = np.linspace(0.1, 6.2, 40), np.ones(40, dtype=complex)
+    for lengths in ((10.0, 1.0, 10.0, 4.0), (1.0, 4.0, 3.0, 3.5)):
+        names = ("frame", "crank", "coupler", "follower")
+        driven, mean = made.ends(chord, Drive(angle, 1.0), dict(zip(names, lengths, strict=True)))
+        winding = float(lengths[1] > lengths[0])
+        theta3, theta4, *_ = four_bar_kinematics.motion(angle, *lengths, assembly, winding)
+        assert np.exp(1j * driven) == pytest.approx(np.exp(1j * theta4), abs=1e-13)
+        assert np.exp(1j * mean) == pytest.approx(np.exp(1j * theta3), abs=1e-13)
+    numbers = {"crank": 1.0, "coupler": 4.0, "offset": 0.5, "slider_mass": 1.0}
+    driven, mean = made.ends(chord, Drive(angle, 1.0), numbers)
+    turned, place, *_ = slider_crank_kinematics.motion(angle, 1.0, 4.0, 0.5, assembly)
+    assert driven == pytest.approx(place, abs=1e-13)
+    assert np.exp(1j * mean) == pytest.approx(np.exp(1j * turned), abs=1e-13)
 
 
 @pytest.mark.parametrize("modes", [1, 2, 4])

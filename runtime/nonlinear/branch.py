@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from itertools import takewhile
 
 import numpy as np
 
@@ -18,7 +19,8 @@ _AIM = 1e-4
 _LONGER, _SHORTER = 2.0, 0.3
 _PAST = 2  # motions before the last one that a step is extrapolated from
 _FIRST, _LEAST, _LARGEST = 0.02, 1e-7, 0.5
-_WIDEST = 1.0 / 60.0  # part of the range that a step may change the parameter by
+# Parts of the range that a step may change the parameter by, and between two points of a curve.
+_REACH, _WIDEST = 1.0 / 20.0, 1.0 / 60.0
 # Relative amplitude at which a crossing branch is entered.
 _ENTERED = 0.02
 # Steps of a special point over those of the motions about it, the part of a step that it may lie
@@ -149,37 +151,31 @@ def _steps(
     past: list[Orbit] = []
     watch = solver.problem.system.watch
     for _ in range(limits.points):
-        ahead = None
-        while ahead is None:
+        points: list[tuple[Orbit, Measure]] = []
+        while not points:
             if step < _LEAST:
                 yield None, None, "it cannot be followed"
                 return
             try:
-                value, guess = orbit.ahead(step, past)
-                ahead, size = solver.corrected(value, guess, orbit.tangent)
-                if ahead.tangent.dot(orbit.tangent) < 0.5:
-                    raise Lost("the branch turns within a step")
-                ahead, measure = solver.refined(ahead)
+                points, size = _ahead(solver, orbit, step, past)
             except FAILURES:
-                ahead, step = None, step * _SHORTER
-        if ahead.tangent.dot(orbit.tangent) < 0:
-            ahead = ahead.turned()
-        if _fewer_turns(orbit.motion, ahead.motion):
-            yield None, None, JOINED
-            return
-        if not limits.hold(ahead.value):
-            with suppress(*FAILURES):
-                # The last motion is that at the end of the range.
-                value = limits.low if ahead.value < limits.low else limits.high
-                across = solver.along_parameter(ahead.motion, ahead.value - orbit.value)
-                ahead, measure = solver.fine(value, ahead.motion, across)
-            yield ahead if ahead.tangent.dot(orbit.tangent) > 0 else ahead.turned(), measure, ""
+                step *= _SHORTER
+        inside = [*takewhile(lambda point: limits.hold(point[0].value), points)]
+        if len(inside) < len(points):
+            beyond = points[len(inside)]
+            points = [*inside, _at_end(solver, orbit, beyond[0], limits) or beyond]
+        for point, measure in points:
+            if _fewer_turns(orbit.motion, point.motion):
+                yield None, None, JOINED
+                return
+            yield point, measure, ""
+            if watch is not None and float(np.max(watch(point.motion.x))) > limits.largest:
+                yield None, None, f"the deflection passes {limits.largest:g} of the length"
+                return
+        if len(inside) < len(points):
             yield None, None, LEFT
             return
-        yield ahead, measure, ""
-        if watch is not None and float(np.max(watch(ahead.motion.x))) > limits.largest:
-            yield None, None, f"the deflection passes {limits.largest:g} of the length"
-            return
+        ahead = points[-1][0]
         passed = abs(first.value - ahead.value) <= 2.0 * step * solver.span and _passed(
             ahead, orbit, first
         )
@@ -189,9 +185,42 @@ def _steps(
         away = away or not passed
         order = 2 * (1 + len(past))
         grown = float(np.clip((_AIM / max(size, 1e-12)) ** (1 / order), _SHORTER, _LONGER))
-        reach = _WIDEST * solver.span / max(abs(ahead.tangent.value), 1e-12)
+        reach = _REACH * solver.span / max(abs(ahead.tangent.value), 1e-12)
         past, orbit = [orbit, *past][:_PAST], ahead
         step = min(step * grown, _LARGEST, reach)
+
+
+def _ahead(
+    solver: Solver, orbit: Orbit, step: float, past: list[Orbit]
+) -> tuple[list[tuple[Orbit, Measure]], float]:
+    """Return the motions of a step, as dense as a curve through them wants, with their errors.
+
+    And the largest first correction.  They are corrected side by side, as arrays of more states
+    cost less a state.
+    """
+    past = [other.resampled(len(orbit.motion.x)) for other in past]
+    value, guess = orbit.ahead(step, past)
+    count = max(round(abs(value - orbit.value) / (_WIDEST * solver.span)), 1)
+    guesses = [orbit.ahead(step * j / count, past) for j in range(1, count)]
+    orbits, size = solver.all_corrected(
+        [(*each, orbit.tangent) for each in (*guesses, (value, guess))]
+    )
+    if orbits[-1].tangent.dot(orbit.tangent) < 0.5:
+        raise Lost("the branch turns within a step")
+    pairs = zip(orbits, solver.all_measured(orbits), strict=True)
+    return [solver.refined(orbit, measure=measure) for orbit, measure in pairs], size
+
+
+def _at_end(
+    solver: Solver, orbit: Orbit, beyond: Orbit, limits: Limits
+) -> tuple[Orbit, Measure] | None:
+    """Return the motion at the end of the range that a step leaves, None where it is not found."""
+    value = limits.low if beyond.value < limits.low else limits.high
+    across = solver.along_parameter(beyond.motion, beyond.value - orbit.value)
+    with suppress(*FAILURES):
+        found, measure = solver.fine(value, beyond.motion, across)
+        return found if found.tangent.dot(orbit.tangent) > 0.0 else found.turned(), measure
+    return None
 
 
 def _passed(ahead: Orbit, orbit: Orbit, first: Orbit) -> bool:
@@ -276,10 +305,9 @@ class _Between:
     def __init__(self, solver: Solver, before: Orbit, after: Orbit) -> None:
         self.solver = solver
         steps = int(np.ceil(_FINER * len(after.motion.x)))
-        ends = [
-            solver.corrected(o.value, o.motion.resampled(steps, STAGES), o.tangent)[0]
-            for o in (before, after)
-        ]
+        ends, _ = solver.all_corrected(
+            [(o.value, o.motion.resampled(steps, STAGES), o.tangent) for o in (before, after)]
+        )
         self._found = list(zip((0.0, 1.0), ends, strict=True))
         states = ends[1].motion.states - ends[0].motion.states
         chord = replace(ends[1].tangent, states=states, value=ends[1].value - ends[0].value)
@@ -349,7 +377,7 @@ def value_error(solver: Solver, orbit: Orbit, kind: str, measure: Measure | None
 
 def doubled(solver: Solver, orbit: Orbit) -> tuple[Orbit, Measure]:
     """Return a first motion of twice the turns, beside a doubling."""
-    values, vectors = np.linalg.eig(orbit.matrix)
+    values, vectors = orbit.eigen
     vector = np.real(vectors[:, np.argmin(np.abs(values + 1.0))])
     change = orbit.whole[:-1] @ vector
     motion = orbit.motion

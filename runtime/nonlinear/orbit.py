@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise, takewhile
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -108,10 +108,16 @@ class Orbit:
         return np.asarray(self.whole[-1])
 
     @cached_property
+    def eigen(self) -> tuple[Array, Array]:
+        """Eigenvalues of the monodromy matrix, the largest first, and its vectors as columns."""
+        values, vectors = np.linalg.eig(self.matrix)
+        order = np.argsort(-np.abs(values), kind="stable")
+        return values[order].astype(complex), vectors[:, order]
+
+    @property
     def multipliers(self) -> Array:
         """Floquet multipliers, the largest first."""
-        values = np.linalg.eigvals(self.matrix).astype(complex)
-        return np.asarray(values[np.argsort(-np.abs(values), kind="stable")])
+        return self.eigen[0]
 
     def turned(self) -> Orbit:
         """Return the motion with its tangent the other way."""
@@ -119,13 +125,24 @@ class Orbit:
             self, tangent=self.tangent.times(-1.0), slope=-self.slope, border=-self.border
         )
 
+    def resampled(self, steps: int) -> Orbit:
+        """Return motion and tangent on other steps, all that `ahead` needs."""
+        motion, n = self.motion, self.motion.x.shape[1]
+        if steps == len(motion.x):
+            return self
+        way = replace(
+            motion, x=self.tangent.states[:, :n], v=self.tangent.states[:, n:], a=self.slope
+        ).resampled(steps, STAGES)
+        tangent = replace(self.tangent, states=way.states)
+        return replace(self, motion=motion.resampled(steps, STAGES), tangent=tangent, slope=way.a)
+
     def ahead(self, step: float, past: Sequence[Orbit] = ()) -> tuple[float, Motion]:
         """Return value and motion a step along the branch, by Hermite's interpolation.
 
-        ``past``: the motions before, the last one first, as far as they are of the same steps.
+        ``past``: the motions before, the last one first, of as many steps.
         """
         here, places, factors = self.tangent, [0.0], [1.0]
-        orbits = [self, *takewhile(lambda o: o.motion.a.shape == self.motion.a.shape, past)]
+        orbits = [self, *past]
         ways = [replace(o.tangent, scale=here.scale, span=here.span) for o in orbits]
         for k, (orbit, other) in enumerate(pairwise(orbits)):
             states = orbit.motion.states - other.motion.states
@@ -244,23 +261,41 @@ class Solver:
 
         Raises `Lost` where there is none near.
         """
-        direction = direction.resampled(len(motion.x))
+        orbits, first = self.all_corrected([(value, motion, direction)])
+        return orbits[0], first
+
+    def all_corrected(
+        self, guesses: Sequence[tuple[float, Motion, Direction]]
+    ) -> tuple[list[Orbit], float]:
+        """Return the motions nearest to guesses of as many steps, and the largest first correction.
+
+        They are corrected side by side.  Raises `Lost` where there is none near one of them.
+        """
+        values = np.array([value for value, _, _ in guesses])
+        motions = [motion for _, motion, _ in guesses]
+        directions = [direction.resampled(len(motion.x)) for _, motion, direction in guesses]
         before, first = np.inf, 0.0
         by_parameter: bool | Array = True
         for _ in range(_ITERATIONS):
-            swept = sweep(self.problem, value, motion, by_parameter=by_parameter)
-            whole, added = chained(swept.maps, swept.loads)
-            change, moved = _bordered(whole, added, direction)
-            size = self._size(change, moved, motion)
+            together = Motion.together(motions)
+            swept = sweep(self.problem, values, together, by_parameter=by_parameter)
+            runs = swept.runs(len(motions))
+            chains = [chained(run.maps, run.loads) for run in runs]
+            sizes = []
+            for i, (run, chain) in enumerate(zip(runs, chains, strict=True)):
+                change, moved = _bordered(*chain, directions[i])
+                sizes.append(self._size(change, moved, motions[i]))
+                motions[i] = taken(motions[i], run, change, moved)
+                values[i] += moved
+            size = max(sizes)
             first = first or size
             if not size < _FAR:
                 raise Lost("a correction is too large")
-            motion, value = taken(motion, swept, change, moved), value + moved
-            # The derivative by the parameter is kept where the motion has all but settled.
+            # The derivative by the parameter is kept where the motions have all but settled.
             by_parameter = swept.by_parameter if size <= _NEAR else True
             if size <= _LAST or (size <= _SMALL and size >= 0.5 * before):
-                orbit = self._orbit(value, motion, swept, whole, added, direction)
-                return replace(orbit, last=size), first
+                found = zip(values.tolist(), motions, runs, chains, directions, sizes, strict=True)
+                return [self._orbit(*parts) for parts in found], first
             before = size
         raise Lost(f"not there after {_ITERATIONS} corrections")
 
@@ -272,11 +307,12 @@ class Solver:
         value: float,
         motion: Motion,
         swept: Sweep,
-        whole: Array,
-        added: Array,
+        chain: tuple[Array, Array],
         direction: Direction,
+        last: float,
     ) -> Orbit:
         """Return the motion with its tangent, in the sense of a direction."""
+        whole, added = chain
         measured = replace(direction, scale=self.scale(motion), span=self.span)
         change, moved = _bordered(whole, added, measured, along=1.0)
         tangent = replace(measured, states=change, value=moved).unit()
@@ -284,26 +320,35 @@ class Solver:
         slope += tangent.value * swept.stage_loads[..., 1]
         rows = _bordered_matrix(whole, added, tangent)
         border = float(np.linalg.det(rows / np.linalg.norm(rows, axis=1, keepdims=True)))
-        return Orbit(value, motion, swept, whole, added, tangent, slope, border)
+        return Orbit(value, motion, swept, whole, added, tangent, slope, border, last)
 
     def measure(self, orbit: Orbit) -> Measure:
         """Return how far a motion is from the true one."""
+        return self.all_measured([orbit])[0]
+
+    def all_measured(self, orbits: Sequence[Orbit]) -> list[Measure]:
+        """Return how far motions of as many steps are from the true ones."""
+        fewer = [orbit.motion.with_stages(orbit.motion.a.shape[1] - _FEWER) for orbit in orbits]
+        values = np.array([orbit.value for orbit in orbits])
+        swept = sweep(self.problem, values, Motion.together(fewer)).runs(len(orbits))
+        return [self._measured(*parts) for parts in zip(orbits, fewer, swept, strict=True)]
+
+    def _measured(self, orbit: Orbit, fewer: Motion, swept: Sweep) -> Measure:
+        """Return how far a motion is from the true one, by its sweep on fewer stages."""
         motion = orbit.motion
         stages = motion.a.shape[1]
-        fewer = motion.with_stages(stages - _FEWER)
-        swept = sweep(self.problem, orbit.value, fewer)
         whole, added = chained(swept.maps, swept.loads)
         # What the parameter does differs but little by fewer stages.
         added = np.concatenate([added, orbit.added[..., 1:]], axis=-1)
         change, moved = _bordered(whole, added, orbit.tangent)
         rounding, noise = self._rounding(orbit)
         size = max(float(np.linalg.norm(orbit.matrix)), 1.0)
-        away = share(self._size(change, moved, motion), noise) + rounding
+        scale = orbit.tangent.scale
+        sizes = np.max(np.abs(change) / scale, axis=0)
+        away = share(max(float(np.max(sizes)), abs(moved) / self.span), noise) + rounding
         within = taken(fewer, swept, change, 0.0).at_stages(stages)
         moved_most, off = self._shown(orbit, within)
-        n = motion.x.shape[1]
-        coordinates = float(np.max(np.abs(change[:, :n]) / self.scale(motion)[:n]))
-        moved_by = share(coordinates, noise) + rounding
+        moved_by = share(float(np.max(sizes[: motion.x.shape[1]])), noise) + rounding
         differences = _differences(orbit, np.asarray(whole[-1]))
         return Measure(
             away,
@@ -321,7 +366,7 @@ class Solver:
         """
         shown, (_, parameters) = self.problem.system.shown, self.problem.at(orbit.value)
         q = orbit.motion.stages()[0]
-        step = 1e-4 * float(self.scale(orbit.motion)[0]) * np.eye(self.problem.system.size)[:, None]
+        step = 1e-4 * float(orbit.tangent.scale[0]) * np.eye(self.problem.system.size)[:, None]
         both = shown(orbit.motion.x + step, parameters) - shown(orbit.motion.x - step, parameters)
         most = float(np.max(np.sum(np.abs(both), axis=0))) / 2e-4
         values = shown(q, parameters)
@@ -338,7 +383,7 @@ class Solver:
         """
         n = self.problem.system.size
         stiffness = float(np.max(np.abs(orbit.swept.response[:, :, :, :n])))
-        scale = float(self.scale(orbit.motion)[0])
+        scale = float(orbit.tangent.scale[0])
         return 48 * EPS * len(orbit.motion.x), 32 * EPS * (1.0 + stiffness / min(scale, 1.0))
 
     def fine(self, value: float, motion: Motion, direction: Direction) -> tuple[Orbit, Measure]:
@@ -346,20 +391,25 @@ class Solver:
         orbit, _ = self.corrected(value, motion, direction)
         return self.refined(orbit, direction)
 
-    def refined(self, orbit: Orbit, direction: Direction | None = None) -> tuple[Orbit, Measure]:
+    def refined(
+        self,
+        orbit: Orbit,
+        direction: Direction | None = None,
+        measure: Measure | None = None,
+    ) -> tuple[Orbit, Measure]:
         """Return a motion on as many steps as its error wants, and that error.
 
-        Across a direction, by default that of the branch.
+        Across a direction, by default that of the branch.  ``measure``: its error, where known.
         """
         across = direction or orbit.tangent
         while True:
-            measure, steps = self.measure(orbit), len(orbit.motion.x)
+            measure, steps = measure or self.measure(orbit), len(orbit.motion.x)
             unsure = np.max(measure.multiplier_errors / np.maximum(np.abs(orbit.multipliers), 1.0))
             sure = measure.error <= self.rtol and unsure <= _MULTIPLIERS * self.rtol
             if sure or steps >= MOST_STEPS * orbit.motion.turns:
                 return orbit, measure
             motion = orbit.motion.resampled(int(np.ceil(1.3 * steps)), STAGES)
-            orbit, _ = self.corrected(orbit.value, motion, across)
+            (orbit, _), measure = self.corrected(orbit.value, motion, across), None
 
     def along_parameter(self, motion: Motion, sign: float = 1.0) -> Direction:
         """Return the direction in which the parameter alone changes."""
@@ -374,15 +424,14 @@ def _differences(orbit: Orbit, rough: Array) -> Array:
     At least a part of what the difference of the matrices may amount to: that of a multiplier
     passes zero where its signs change.
     """
-    values, vectors = np.linalg.eig(orbit.matrix)
-    order = np.argsort(-np.abs(values), kind="stable")
-    rows, columns = np.abs(np.linalg.pinv(vectors)[order]), np.abs(vectors[:, order])
+    multipliers, vectors = orbit.eigen
+    rows, columns = np.abs(np.linalg.pinv(vectors)), np.abs(vectors)
     gaps = np.abs(rough - orbit.matrix)
     # Two that have all but met part by a root.
     root = np.sqrt(np.linalg.norm(gaps) * np.linalg.norm(orbit.matrix))
-    most = np.minimum(np.einsum("ij,jk,ki->i", rows, gaps, columns), root)
+    most = np.minimum(np.sum(rows @ gaps * columns.T, axis=1), root)
     others, found = np.linalg.eigvals(rough).astype(complex), []
-    for multiplier in orbit.multipliers:
+    for multiplier in multipliers:
         nearest = int(np.argmin(np.abs(others - multiplier)))
         found.append(abs(others[nearest] - multiplier))
         others = np.delete(others, nearest)
@@ -425,7 +474,7 @@ def _bordered_matrix(whole: Array, added: Array, direction: Direction) -> Array:
     matrix = np.empty((size + 1, size + 1))
     matrix[:size, :size] = whole[-1] - np.eye(size)
     matrix[:size, size] = added[-1, :, 1]
-    matrix[size, :size] = np.tensordot(row, whole[:-1], axes=([0, 1], [0, 1]))
+    matrix[size, :size] = np.einsum("mi,mij->j", row, whole[:-1])
     matrix[size, size] = np.sum(row * added[:-1, :, 1]) + last
     return matrix
 

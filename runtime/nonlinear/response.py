@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from itertools import groupby, pairwise
 from typing import ClassVar
 
 import numpy as np
@@ -337,7 +337,10 @@ def _all_branches(
     missed: dict[float, str] = {}
     for value, sign in ((limits.low, 1.0), (limits.high, -1.0)):
         try:
-            begun = _begun(solver, value, sign)
+            motion = _begun(solver, value)
+            if any(_on(solver, value, motion, branch) for branch in branches):
+                continue
+            begun = solver.fine(value, motion, solver.along_parameter(motion, sign))
         except FAILURES as failure:
             missed[value] = str(failure)
             continue
@@ -356,13 +359,12 @@ def _all_branches(
     return branches, tuple(missed)
 
 
-def _begun(solver: Solver, value: float, sign: float) -> tuple[Orbit, Measure]:
+def _begun(solver: Solver, value: float) -> Motion:
     """Return the motion that is found from rest: by Newton's iteration, or after some turns."""
     try:
-        motion = solver.settled(value, first_motion(solver.problem))
+        return solver.settled(value, first_motion(solver.problem))
     except FAILURES:
-        motion = solver.settled(value, from_rest(Marcher(solver.problem, solver.rtol), value))
-    return solver.fine(value, motion, solver.along_parameter(motion, sign))
+        return solver.settled(value, from_rest(Marcher(solver.problem, solver.rtol), value))
 
 
 def _follow(
@@ -379,7 +381,8 @@ def _follow(
 
     ``back``: the same motion with its tangent the other way, to follow it that way, too.
     """
-    if any(_on(solver, begun[0], branch) for branch in branches):
+    first, _ = begun
+    if any(_on(solver, first.value, first.motion, branch) for branch in branches):
         return
     branch = followed(solver, begun, limits)
     if back is not None and branch.ended != CLOSED:
@@ -397,25 +400,25 @@ def _follow(
             continue
 
 
-def _on(solver: Solver, orbit: Orbit, branch: Branch) -> bool:
+def _on(solver: Solver, value: float, motion: Motion, branch: Branch) -> bool:
     """Return True for a motion that lies on a branch, from whatever turn it is counted."""
-    if branch.turns != orbit.motion.turns:
+    if branch.turns != motion.turns:
         return False
     values = [point.value for point, _ in branch.points]
     for end, before in ((values[-1], values[-2]), (values[0], values[1])):
-        if JOINED in branch.ended and abs(orbit.value - end) <= 2.0 * abs(end - before):
+        if JOINED in branch.ended and abs(value - end) <= 2.0 * abs(end - before):
             return True
     slack = 1e-9 * solver.span  # ends of the range are met but for rounding
     for (one, _), (other, _) in pairwise(branch.points):
         low, high = sorted((one.value, other.value))
-        if not low - slack <= orbit.value <= high + slack:
+        if not low - slack <= value <= high + slack:
             continue
-        near = min(one, other, key=lambda point: abs(point.value - orbit.value))
+        near = min(one, other, key=lambda point: abs(point.value - value))
         try:
-            settled = solver.settled(orbit.value, near.motion)
+            settled = solver.settled(value, near.motion)
         except FAILURES:
             continue
-        if same_motion(solver, settled, orbit.motion):
+        if same_motion(solver, settled, motion):
             return True
     return False
 
@@ -436,37 +439,61 @@ def same_motion(solver: Solver, one: Motion, other: Motion) -> bool:
 
 def extremes(problem: Problem, orbit: Orbit) -> tuple[float, float]:
     """Return the extremes of the deflection over the period."""
-    motion, (_, parameters) = orbit.motion, problem.at(orbit.value)
-    angles = motion.angles.ravel() - motion.begin
-    width = motion.step / motion.a.shape[1]
+    low, high = _all_extremes(problem, [orbit]).tolist()[0]
+    return low, high
 
-    def deflection(angle: Array) -> Array:
-        return problem.system.shown(motion.at(np.mod(angle, motion.span))[0], parameters)
 
-    values = problem.system.shown(motion.stages()[0], parameters).ravel()
-    return tops(deflection, angles, np.concatenate([values[-1:], values, values[:1]]), width)
+def _all_extremes(problem: Problem, orbits: Sequence[Orbit]) -> Array:
+    """Return the extremes of the deflection over the period of each motion, ``(k, 2)``."""
+
+    def alike(orbit: Orbit) -> object:
+        motion = orbit.motion
+        return motion.turns, motion.a.shape, None if problem.name == "speed" else orbit.value
+
+    found = [np.empty((0, 2))]
+    for _, group in groupby(orbits, alike):
+        some = list(group)
+        together = Motion.together([orbit.motion for orbit in some])
+        _, parameters = problem.at(some[0].value)
+
+        def deflection(
+            row: NDArray[np.int64],
+            angle: Array,
+            together: Motion = together,
+            parameters: Mapping[str, float] = parameters,
+        ) -> Array:
+            q = together.at(np.mod(angle, together.span), row)[0]
+            return problem.system.shown(q, parameters)
+
+        values = problem.system.shown(together.stages()[0], parameters).reshape(len(some), -1)
+        angles = some[0].motion.angles.ravel() - together.begin
+        width = together.step / together.a.shape[1]
+        found.append(tops(deflection, angles, np.pad(values, ((0, 0), (1, 1)), "wrap"), width))
+    return np.concatenate(found)
 
 
 def tops(
-    deflection: Callable[[Array], Array],
+    deflection: Callable[[NDArray[np.int64], Array], Array],
     angles: Array,
     values: Array,
     width: float,
     ends: tuple[float, float] = (-np.inf, np.inf),
-) -> tuple[float, float]:
-    """Return the extremes of a deflection between ends, from samples and one more at either side.
+) -> Array:
+    """Return lowest and highest of deflections between ends, ``(r, 2)``.
 
-    Every lowest and highest of the samples among its neighbours is polished by ever narrower
-    parabolas, for the largest sample need not be next to the highest top.
+    From samples of each at the same angles, and one more at either side, ``(r, k + 2)``.  Every
+    lowest and highest among its neighbours is polished by ever narrower parabolas, for the largest
+    sample need not be next to the highest top.  ``deflection``: of some rows, at angles.
     """
-    signed = np.array([[-1.0], [1.0]]) * values
-    inner = signed[:, 1:-1]
-    which, samples = np.nonzero((inner >= signed[:, :-2]) & (inner >= signed[:, 2:]))
+    signed = np.array([[[-1.0]], [[1.0]]]) * values
+    inner = signed[..., 1:-1]
+    which, rows, samples = np.nonzero((inner >= signed[..., :-2]) & (inner >= signed[..., 2:]))
     places, signs = angles[samples], 2.0 * which - 1.0
-    widths = np.full(places.shape, width)
+    widths, thrice = np.full(places.shape, width), np.repeat(rows, 3)
     for _ in range(_POLISHED):
         around = places[:, None] + np.multiply.outer(widths, [-1.0, 0.0, 1.0])
-        left, middle, right = (signs[:, None] * deflection(around.ravel()).reshape(-1, 3)).T
+        near = deflection(thrice, around.ravel()).reshape(-1, 3)
+        left, middle, right = (signs[:, None] * near).T
         bend = left - 2.0 * middle + right
         shift = np.divide(left - right, 2.0 * bend, out=np.zeros_like(bend), where=bend < 0.0)
         least, most = ((end - places) / widths for end in ends)
@@ -475,8 +502,10 @@ def tops(
         # One that may lie beyond is looked for as widely again.
         widths = np.where(np.abs(shift) < 1.0, 0.1 * widths, widths)
     # Of the last parabolas.
-    found = signs * (middle - 0.5 * (left - right) * shift + 0.5 * bend * shift**2)
-    return float(np.min(found[which == 0])), float(np.max(found[which == 1]))
+    last = middle - 0.5 * (left - right) * shift + 0.5 * bend * shift**2
+    found = np.full((2, len(values)), -np.inf)
+    np.maximum.at(found, (which, rows), last)
+    return np.stack([-found[0], found[1]], axis=-1)
 
 
 def _result(
@@ -489,8 +518,8 @@ def _result(
     points = [point for branch in branches for point in branch.points]
     counts = [len(branch.points) for branch in branches]
     special = [point for branch in branches for point in branch.special]
-    shown = np.array([extremes(problem, orbit) for orbit, _ in points])
-    at_special = np.array([extremes(problem, p.orbit) for p in special]).reshape(-1, 2)
+    shown = _all_extremes(problem, [orbit for orbit, _ in points])
+    at_special = _all_extremes(problem, [point.orbit for point in special])
     error = np.array([measure.error for _, measure in points])
     peak_error = [measure.peak_error for _, measure in points]
     return ResponseCurve(

@@ -13,7 +13,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..constrained.collocation import Nodes, at_places, nodes, stage_matrix
 from ..core.errors import SelfCheckFailed
@@ -97,11 +97,16 @@ class Motion:
         x = self.x + h * (self.v + h * ((b * (1.0 - c)) @ self.a))
         return np.concatenate([x, self.v + h * (b @ self.a)], axis=1)
 
-    def at(self, angle: ArrayLike) -> tuple[Array, Array, Array]:
-        """Return coordinates, rates and accelerations at angles ``(k,)`` from the beginning."""
+    def at(self, angle: ArrayLike, run: int | NDArray[np.int64] = 0) -> tuple[Array, Array, Array]:
+        """Return coordinates, rates and accelerations at angles ``(k,)`` from the beginning.
+
+        Of the first run, or of one for each angle.
+        """
         within = np.atleast_1d(np.asarray(angle, dtype=float)) / self.step
-        j = np.clip(within.astype(int), 0, len(self.x) - 1)
+        m = len(self.x) // self.runs
+        j = np.clip(within.astype(int), 0, m - 1)
         part, h = within - j, self.step
+        j = j + m * run
         terms = (self.points.series @ self.a)[j]
         values = at_places(part, terms.shape[1]) @ terms
         twice, once, value = values[:, 0], values[:, 1], values[:, 2]
@@ -177,6 +182,12 @@ class Sweep(NamedTuple):
     response: Array  # (m, s, n, 2n): derivative of these accelerations by the beginning
     by_parameter: Array  # (m, s, n, 1 or 0): derivative of the residual by the parameter
 
+    def runs(self, number: int) -> list[Sweep]:
+        """Return the steps of each of so many runs."""
+        if number == 1:
+            return [self]
+        return [Sweep(*parts) for parts in zip(*(np.split(a, number) for a in self), strict=True)]
+
 
 class NotFinite(ArithmeticError):  # noqa: N818 - reads as what it is
     """The equations cannot be evaluated along a motion."""
@@ -192,7 +203,7 @@ class Ramp(NamedTuple):
 @np.errstate(all="ignore")
 def evaluated(
     problem: Problem,
-    value: float,
+    value: float | Array,
     angles: Array,
     states: tuple[Array, Array, Array],
     *,
@@ -201,9 +212,11 @@ def evaluated(
 ) -> Varied:
     """Return residual and derivatives at drive angles, over the speed squared, by the angle.
 
-    ``states``: x, v and a at the angles, ``(*batch, n)`` each.
+    ``value``: one, or one of each run, ``(runs,)``.  ``angles``: ``(m, s)``; ``states``: x, v and
+    a there, ``(m, s, n)`` each.
     """
-    speed, parameters = problem.at(value)
+    varied = problem.name == "speed"
+    speed = _of_steps(value, len(angles))[..., None] if varied else problem.speed
     rise = ramp.acceleration if ramp else 0.0
     since = angles - ramp.begin if ramp else np.zeros_like(angles)
     batch, n = angles.shape, problem.system.size
@@ -213,15 +226,22 @@ def evaluated(
     w: Array = np.sqrt(square)
     rates, accelerations = w * v, square * a + rise * v
 
-    def part_of(at: slice) -> Varied:
+    # Parameters are numbers: states of one value of them are evaluated at once.
+    values = np.atleast_1d(value)
+    alike = len(x) if varied else len(x) // len(values)
+
+    def part_of(first: int) -> Varied:
+        at = slice(first, min(first + _ROWS, (first // alike + 1) * alike))
         angle = angles.ravel()[at]
         drive = Drive(angle, w[at, 0], np.full_like(angle, rise))
+        _, parameters = problem.at(float(values[first // alike]))
         return problem.system.equations(
             x[at], rates[at], accelerations[at], drive, parameters, derivatives
         )
 
+    firsts = (i for k in range(0, len(x), alike) for i in range(k, k + alike, _ROWS))
     try:
-        parts = [part_of(slice(i, i + _ROWS)) for i in range(0, len(x), _ROWS)]
+        parts = [part_of(first) for first in firsts]
     except (SelfCheckFailed, np.linalg.LinAlgError) as lost:
         raise NotFinite(str(lost)) from lost
     found = parts[0] if len(parts) == 1 else Varied(*map(np.concatenate, zip(*parts, strict=True)))
@@ -236,17 +256,23 @@ def evaluated(
     return Varied(residual, *(matrix.reshape(*batch, n, n) for matrix in matrices))
 
 
+def _of_steps(value: float | Array, steps: int) -> Array:
+    """Return a value for each step, ``(m,)``, of one, or of one of each run."""
+    values = np.atleast_1d(value)
+    return np.repeat(values, steps // len(values))
+
+
 @np.errstate(all="ignore")  # what is not finite is refused
 def sweep(
     problem: Problem,
-    value: float,
+    value: float | Array,
     motion: Motion,
     *,
     by_parameter: bool | Array = False,
     ramp: Ramp | None = None,
     periodic: bool = True,
 ) -> Sweep:
-    """Linearise all steps of a motion at once.
+    """Linearise all steps of a motion at once, at one value or at one of each run, ``(runs,)``.
 
     ``by_parameter``: whether the derivative by the parameter is wanted, or what it was at a motion
     nearby, as it is returned.  The ends are to meet the beginnings of the next steps, round the
@@ -296,15 +322,15 @@ def sweep(
 
 def _by_parameter(
     problem: Problem,
-    value: float,
+    value: float | Array,
     angles: Array,
     states: tuple[Array, Array, Array],
     residual: Array,
 ) -> Array:
     """Return the derivative of what :func:`evaluated` calls residual by the parameter."""
-    step = _DIFFERENCE * (abs(value) or 1.0)
+    step = _DIFFERENCE * np.where(value, np.abs(value), 1.0)
     ahead = evaluated(problem, value + step, angles, states, derivatives=False).residual
-    return np.asarray((ahead - residual) / step)
+    return np.asarray((ahead - residual) / _of_steps(step, len(angles))[:, None, None])
 
 
 @np.errstate(all="ignore")

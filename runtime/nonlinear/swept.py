@@ -245,11 +245,12 @@ def _swept(
 def _extremes(system: Nonlinear, motion: Motion, angles: Array) -> tuple[float, float]:
     """Return lowest and highest deflection of a revolution, that need not close."""
 
-    def deflection(angle: Array) -> Array:
-        return system.shown(motion.at(angle)[0])
+    def deflection(row: NDArray[np.int64], angle: Array) -> Array:
+        return system.shown(motion.at(angle, row)[0])
 
-    values = np.pad(deflection(angles), 1, mode="edge")
-    return tops(deflection, angles, values, angles[1], (0.0, motion.span))
+    values = np.pad(deflection(np.zeros(len(angles), int), angles), 1, mode="edge")
+    low, high = tops(deflection, angles, values[None], angles[1], (0.0, motion.span)).tolist()[0]
+    return low, high
 
 
 def _jumps(speed: Array, size: Array) -> list[tuple[float, float]]:

@@ -14,7 +14,10 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.families import Drive, Nonlinear, Varied
 from elastolink.runtime.nonlinear.branch import special_points
+from elastolink.runtime.nonlinear.orbit import STAGES, Solver
+from elastolink.runtime.nonlinear.response import extremes as extremes_of
 from elastolink.runtime.nonlinear.response import tops
+from elastolink.runtime.nonlinear.segments import Motion, Problem
 from elastolink.runtime.systems import free_free_rod
 from elastolink.runtime.systems.rod import FreeFreeBasis, rod_system
 from elastolink.runtime.systems.rod.driven import driven_rod
@@ -223,17 +226,43 @@ def test_two_coupled_ones_lose_their_rest_by_a_torus_at_the_sum_of_frequencies()
 
 @pytest.mark.parametrize("count", [10, 13, 24])
 def test_extremes_are_right_from_a_few_samples_on(count):
-    """Of ``exp(sin) cos``, whose tops lean: where ``sin = cos^2``, wherever the samples are."""
+    """Of ``exp(sin) cos``, whose tops lean: where ``sin = cos^2``, wherever the samples are.
+
+    And of twice that beside it.
+    """
     sine = (np.sqrt(5.0) - 1.0) / 2.0
     top, width = np.exp(sine) * np.sqrt(1.0 - sine**2), 2.0 * np.pi / count
 
-    def deflection(angle):
-        return np.exp(np.sin(angle)) * np.cos(angle)
+    def deflection(row, angle):
+        return (1.0 + row) * np.exp(np.sin(angle)) * np.cos(angle)
 
     for begin in np.linspace(0.0, width, 21):
         angles = begin + width * np.arange(count)
-        values = deflection(np.concatenate([angles[:1] - width, angles, angles[-1:] + width]))
-        assert tops(deflection, angles, values, width) == pytest.approx((-top, top), rel=1e-11)
+        around = np.concatenate([angles[:1] - width, angles, angles[-1:] + width])
+        values = deflection(np.array([[0], [1]]), around)
+        found = tops(deflection, angles, values, width)
+        assert found == pytest.approx(np.array([[-top, top], [-2.0 * top, 2.0 * top]]), rel=1e-11)
+
+
+@pytest.mark.parametrize("name", ["speed", "force"])
+def test_motions_corrected_side_by_side_are_those_of_one_at_a_time(name):
+    """At other values of what is varied, with errors and extremes."""
+    system = oscillators(damping=0.04, cubic=HARD, force=0.1)
+    value = 1.1 if name == "speed" else system.parameters["force"]
+    solver = Solver(Problem(system, name, 1.1), value)
+    begun = solver.settled(value, Motion.rest(system, 1, 9, STAGES))
+    along = solver.along_parameter(begun)
+    guesses = [(part * value, begun, along) for part in (1.0, 1.01, 0.98)]
+    orbits, _ = solver.all_corrected(guesses)
+    for guess, orbit, measure in zip(guesses, orbits, solver.all_measured(orbits), strict=True):
+        alone, _ = solver.corrected(*guess)
+        assert orbit.value == pytest.approx(guess[0], rel=1e-14)
+        assert orbit.motion.states == pytest.approx(alone.motion.states, rel=1e-12, abs=1e-13)
+        assert orbit.multipliers == pytest.approx(alone.multipliers, rel=1e-9)
+        assert measure.error == pytest.approx(solver.measure(alone).error, rel=0.01)
+        assert extremes_of(solver.problem, orbit) == pytest.approx(
+            extremes_of(solver.problem, alone), rel=1e-11
+        )
 
 
 # ---------------------------------------------------------------- the elastica

@@ -132,10 +132,10 @@ def lower_constrained(
     """
     e, v, modes, stations = system.equations, system.variations, system.modes, system.stations
     outer = {argument.name: argument for argument in description.arguments}
-    many = modes.amplitude if modes else stations.angle if stations else None
-    for symbol in (*e.velocities, *(v.accelerations if v else ())):
-        if many is not None and symbol.name.startswith(f"{many}_d"):
-            outer[symbol.name] = replace(outer[many], name=symbol.name, meaning="")
+    for rates in (e.velocities, v.accelerations if v else ()):
+        for q, rate in zip(e.coordinates, rates, strict=bool(rates)):
+            if q.name in outer:
+                outer[rate.name] = replace(outer[q.name], name=rate.name, meaning="")
     time = _argument(e.t, "Time", outer)
     positions = [_argument(q, "Coordinate", outer) for q in e.coordinates]
     velocities = [_argument(q, "", outer) for q in e.velocities]
@@ -170,7 +170,8 @@ def lower_constrained(
     external = values.symbols if modes is None else sp.symbols(modes.external)
     passed = [_argument(s, "Passed in", outer) for s in external]
     indexed = modes or stations
-    numbers = [outer[name] for name in indexed.numbers] if indexed else []
+    handed = (*(stations.tangent if stations else ()), *(indexed.numbers if indexed else ()))
+    numbers = [outer[name] for name in handed]
     kernels = [
         _ArrayKernel(
             name,
@@ -191,16 +192,17 @@ def lower_constrained(
         words = "Coordinate that stands for one of each mode, and the numbers of modes and pairs."
         tables += (Table("MODES", (modes.amplitude, modes.numbers), words),)
     if stations is not None:
-        tables += (Table("STATIONS", (stations.angle, stations.numbers), _STATION_WORDS),)
+        parts = (stations.angle, stations.tangent, stations.numbers)
+        tables += (Table("STATIONS", parts, _STATION_WORDS),)
     tables += drops_table(system.dropped)
     steps = _plain_steps(system.steps, values)
     return _module(spec, "constrained", kernels, steps, description, tables)
 
 
 _STATION_WORDS = (
-    "Coordinate that stands for one of each station, and the numbers of stations and pairs.  In "
-    "ARRAYS a matrix over the stations has its diagonal and, beside it, products of factors of the "
-    "rows, a kernel, and factors of the columns."
+    "Coordinate that stands for one of each station, its cosine and sine, and the numbers of "
+    "stations and pairs.  In ARRAYS a matrix over the stations has its diagonal and, beside it, "
+    "products of factors of the rows, a kernel, and factors of the columns."
 )
 _SUMMARIES = {
     "constraints": "Return the constraints and their Jacobian",

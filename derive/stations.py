@@ -43,11 +43,14 @@ class Stations:
     ----------
     angle : str
         Coordinate: ``phi1``, ``phi2``, ... where it is ``phi``; the last one of the closed system.
+    tangent : tuple of str
+        Its cosine and its sine, which all functions are handed.
     vectors, matrices : tuple of str
         Numbers ``end_1`` of each station, and symmetric ones ``inertia_1_2`` of each pair.
     """
 
     angle: str
+    tangent: tuple[str, str]
     vectors: tuple[str, ...]
     matrices: tuple[str, ...]
 
@@ -138,6 +141,8 @@ class _Closing:
             for name in stations.matrices
             for i, j in ((1, 1), (1, 2), (2, 2))
         }
+        angle, tangent = sp.Symbol(stations.angle), map(sp.Symbol, stations.tangent)
+        self._tangent = dict(zip((sp.cos(angle), sp.sin(angle)), tangent, strict=True))
         self._second |= {
             stations.pair(name, 2, 2): stations.pair(name, 1, 1) for name in stations.matrices
         }
@@ -197,7 +202,7 @@ class _Closing:
         return [] if opened == 0 else sp.Add.make_args(opened)
 
     def _whole(self, entry: sp.Expr) -> sp.Expr:
-        return entry.xreplace(self._own[0]).xreplace(self._own[1])
+        return entry.xreplace(self._own[0]).xreplace(self._own[1]).xreplace(self._tangent)
 
     def _scalar(self, entry: sp.Expr) -> sp.Expr:
         """Return an entry without an index: what has one is summed over the stations."""

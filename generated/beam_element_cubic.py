@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 81 operations
-Content hash 6a93ee72dba54b1a886db6a300ee7bb0; derived with SymPy 1.14.0.
+Content hash 2c0707b577f5b64e410b45490f6d1920; derived with SymPy 1.14.0.
 """
 
 __all__ = ["element"]
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"cubic","mechanism":"beam_element","mode'
     's":null,"outputs":[]}'
 )
-CONTENT = "6a93ee72dba54b1a886db6a300ee7bb0"
+CONTENT = "2c0707b577f5b64e410b45490f6d1920"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 168 operations
-Content hash dc323498d9c55904582223552be36432; derived with SymPy 1.14.0.
+Content hash e65625e2b52dbc47ad6343db6a6fe098; derived with SymPy 1.14.0.
 """
 
 __all__ = ["element"]
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"curvature","mechanism":"beam_element","'
     'modes":null,"outputs":[]}'
 )
-CONTENT = "dc323498d9c55904582223552be36432"
+CONTENT = "e65625e2b52dbc47ad6343db6a6fe098"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

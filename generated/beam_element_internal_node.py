@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 202 operations
-Content hash 3af5f1c085216e518496d2ebe159f24a; derived with SymPy 1.14.0.
+Content hash 669364f2b799174e94bf5b7731179b3f; derived with SymPy 1.14.0.
 """
 
 __all__ = ["element"]
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"internal_node","mechanism":"beam_elemen'
     't","modes":null,"outputs":[]}'
 )
-CONTENT = "3af5f1c085216e518496d2ebe159f24a"
+CONTENT = "669364f2b799174e94bf5b7731179b3f"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

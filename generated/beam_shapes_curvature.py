@@ -10,7 +10,7 @@ rotations, k curvatures; node 3 is the middle.
 
 Cost per evaluation:
     shapes: 113 operations
-Content hash ebb169391776a963f9edef1a505b0f53; derived with SymPy 1.14.0.
+Content hash aa0a4bce7744b219c1347fdac100035d; derived with SymPy 1.14.0.
 """
 
 __all__ = ["shapes"]
@@ -19,7 +19,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"curvature","mechanism":"beam_shapes","m'
     'odes":null,"outputs":[]}'
 )
-CONTENT = "ebb169391776a963f9edef1a505b0f53"
+CONTENT = "aa0a4bce7744b219c1347fdac100035d"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

@@ -11,10 +11,10 @@ of the Q stations have them on their first axis, all others one value there.
 Multipliers: force on C along x and y, up to its sign.
 
 Cost per evaluation:
-    constraints: 25 operations
-    dynamics: 76 operations
-    variations: 92 operations
-Content hash 6339df8380661245913139f5ebaf53d8; derived with SymPy 1.14.0.
+    constraints: 23 operations
+    dynamics: 74 operations
+    variations: 90 operations
+Content hash b6b91ff6044ecf3d0153546f2bd4bfe8; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"inextensible","mechanism":"fou'
     'r_bar","modes":null,"outputs":[]}'
 )
-CONTENT = "6339df8380661245913139f5ebaf53d8"
+CONTENT = "b6b91ff6044ecf3d0153546f2bd4bfe8"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {
@@ -46,6 +46,8 @@ QUANTITIES = {
     "theta": ("rad", "Crank angle"),
     "theta_d1": ("rad/s", "Crank speed"),
     "theta_d2": ("rad/s^2", "Crank acceleration"),
+    "tangent_x": ("", "Cosine of phi"),
+    "tangent_y": ("", "Sine of phi"),
     "end": ("", "Weights of int f ds along the coupler, of unit length"),
     "moment": ("", "Weights of int (1 - s) f ds"),
     "bow": ("rad", "Angle of the unloaded coupler's tangent"),
@@ -85,10 +87,14 @@ COORDINATES = ("psi", "phi")
 MULTIPLIERS = ("lam_1", "lam_2")
 EXTERNAL = ("theta", "theta_d1", "theta_d2")
 
-# Coordinate that stands for one of each station, and the numbers of stations and pairs.  In ARRAYS
-# a matrix over the stations has its diagonal and, beside it, products of factors of the rows, a
-# kernel, and factors of the columns.
-STATIONS = ("phi", ("end", "moment", "bow", "inertia", "bending", "drag"))
+# Coordinate that stands for one of each station, its cosine and sine, and the numbers of stations
+# and pairs.  In ARRAYS a matrix over the stations has its diagonal and, beside it, products of
+# factors of the rows, a kernel, and factors of the columns.
+STATIONS = (
+    "phi",
+    ("tangent_x", "tangent_y"),
+    ("end", "moment", "bow", "inertia", "bending", "drag"),
+)
 
 # Of each function its arrays: shape, and row, column and place among what it returns.
 ARRAYS = {
@@ -134,8 +140,8 @@ def _namespace(array):
 
 def constraints(
     psi, phi, t, theta, theta_d1, theta_d2, frame, crank, coupler, follower, bending_stiffness,
-    mass_per_length, damping, gravity_x, gravity_y, follower_inertia, follower_first_moment, end,
-    moment, bow, inertia, bending, drag,
+    mass_per_length, damping, gravity_x, gravity_y, follower_inertia, follower_first_moment,
+    tangent_x, tangent_y, end, moment, bow, inertia, bending, drag,
 ):
     """Return the constraints and their Jacobian.
 
@@ -143,6 +149,7 @@ def constraints(
     phi : ndarray, shape (Q, N)
     t, theta, theta_d1, theta_d2 : float or ndarray, shape (N,)
     frame to follower_first_moment : float
+    tangent_x, tangent_y : ndarray, shape (Q, N)
     end, moment, bow : ndarray, shape (Q, 1)
     inertia, bending, drag : ndarray, shape (Q, Q)
     Returns float or ndarray each.
@@ -151,10 +158,10 @@ def constraints(
     x0 = crank * xp.cos(theta)
     x1 = -follower * xp.cos(psi)
     x2 = coupler * end
-    x3 = x2 * xp.cos(phi)
+    x3 = tangent_x * x2
     x4 = crank * xp.sin(theta)
     x5 = follower * xp.sin(psi)
-    x6 = x2 * xp.sin(phi)
+    x6 = tangent_y * x2
     return (
         x0 - frame + x1 + xp.sum(x3, axis=0), x4 - x5 + xp.sum(x6, axis=0), x5, -x6, x1, x3,
         x4 * theta_d1, -x0 * theta_d1,
@@ -164,113 +171,112 @@ def constraints(
 def dynamics(
     psi, phi, psi_dot, phi_dot, t, theta, theta_d1, theta_d2, frame, crank, coupler, follower,
     bending_stiffness, mass_per_length, damping, gravity_x, gravity_y, follower_inertia,
-    follower_first_moment, end, moment, bow, inertia, bending, drag,
+    follower_first_moment, tangent_x, tangent_y, end, moment, bow, inertia, bending, drag,
 ):
     """Return everything in the equations of motion at acceleration level.
 
     psi : float or ndarray, shape (N,)
     phi : ndarray, shape (Q, N)
-    psi_dot : float or ndarray, shape (...)
+    psi_dot : float or ndarray, shape (N,)
     phi_dot : ndarray, shape (Q, N)
     t, theta, theta_d1, theta_d2 : float or ndarray, shape (N,)
     frame to follower_first_moment : float
-    end, moment, bow : ndarray, shape (Q, 1)
-    inertia, bending, drag : ndarray, shape (Q, Q)
-    Returns float or ndarray each.
-    """
-    xp = _namespace(psi)
-    x0 = xp.cos(phi)
-    x1 = coupler**3
-    x2 = x1 * mass_per_length
-    x3 = x2 * x0
-    x4 = xp.sin(phi)
-    x5 = x2 * x4
-    x6 = xp.sin(psi)
-    x7 = xp.cos(psi)
-    x8 = phi_dot**2
-    x9 = xp.sin(theta)
-    x10 = theta_d2 * crank
-    x11 = xp.cos(theta)
-    x12 = crank * theta_d1**2
-    x13 = x10 * x9 + x11 * x12
-    x14 = mass_per_length * coupler**2 * moment
-    x15 = x12 * x9 - x10 * x11
-    x16 = x6 * follower
-    x17 = coupler * end
-    x18 = x17 * x4
-    x19 = x7 * follower
-    x20 = x0 * x17
-    x21 = theta_d1 * crank
-    x22 = psi_dot**2
-    return (
-        follower_inertia, x0, x3, x4, x5,
-        x6 * follower_first_moment * gravity_x - x7 * follower_first_moment * gravity_y,
-        (
-            x0 * x14 * (-x15 - gravity_y) + x0 * (inertia @ (-x5 * x8)) + x14 * x4 * (gravity_x +
-            x13) + x4 * (inertia @ (x3 * x8)) + bending @ (bending_stiffness * (phi - bow) /
-            coupler)
-        ),
-        drag @ (-x1 * phi_dot * damping), x16, -x18, -x19, x20, x21 * x9, -x11 * x21,
-        x13 - x19 * x22 + xp.sum(x20 * x8, axis=0), x15 - x16 * x22 + xp.sum(x18 * x8, axis=0),
-    )
-
-
-def variations(
-    psi, phi, psi_dot, phi_dot, psi_ddot, phi_ddot, lam_1, lam_2, t, theta, theta_d1, theta_d2,
-    frame, crank, coupler, follower, bending_stiffness, mass_per_length, damping, gravity_x,
-    gravity_y, follower_inertia, follower_first_moment, end, moment, bow, inertia, bending, drag,
-):
-    """Return the arrays of the motion linearised about a given one.
-
-    psi : float or ndarray, shape (N,)
-    phi : ndarray, shape (Q, N)
-    psi_dot : float or ndarray, shape (...)
-    phi_dot : ndarray, shape (Q, N)
-    psi_ddot : float or ndarray, shape (...)
-    phi_ddot : ndarray, shape (Q, N)
-    lam_1, lam_2 : float or ndarray, shape (...)
-    t, theta, theta_d1, theta_d2 : float or ndarray, shape (N,)
-    frame to follower_first_moment : float
+    tangent_x, tangent_y : ndarray, shape (Q, N)
     end, moment, bow : ndarray, shape (Q, 1)
     inertia, bending, drag : ndarray, shape (Q, Q)
     Returns float or ndarray each.
     """
     xp = _namespace(psi)
     x0 = coupler**3
-    x1 = xp.cos(phi)
-    x2 = xp.sin(phi)
-    x3 = x0 * mass_per_length
-    x4 = 2 * x3 * phi_dot
+    x1 = x0 * mass_per_length
+    x2 = x1 * tangent_x
+    x3 = x1 * tangent_y
+    x4 = xp.sin(psi)
     x5 = xp.cos(psi)
-    x6 = x5 * follower
-    x7 = xp.sin(psi)
-    x8 = x7 * follower
-    x9 = coupler * end
-    x10 = x1 * x9
-    x11 = x2 * x9
-    x12 = phi_ddot * x2
-    x13 = phi_dot**2
-    x14 = x1 * x13
-    x15 = x3 * (x12 + x14)
-    x16 = phi_ddot * x1
-    x17 = x16 - x13 * x2
-    x18 = crank * xp.sin(theta)
-    x19 = theta_d1**2
-    x20 = crank * xp.cos(theta)
-    x21 = mass_per_length * coupler**2 * moment
-    x22 = psi_dot**2
+    x6 = phi_dot**2
+    x7 = xp.sin(theta)
+    x8 = theta_d2 * crank
+    x9 = xp.cos(theta)
+    x10 = crank * theta_d1**2
+    x11 = x10 * x9 + x7 * x8
+    x12 = mass_per_length * coupler**2 * moment
+    x13 = x10 * x7 - x8 * x9
+    x14 = x4 * follower
+    x15 = coupler * end
+    x16 = tangent_y * x15
+    x17 = x5 * follower
+    x18 = tangent_x * x15
+    x19 = theta_d1 * crank
+    x20 = psi_dot**2
     return (
-        1, x0 * damping, x1, -x2 * x4, x2, x1 * x4,
+        follower_inertia, tangent_x, x2, tangent_y, x3,
+        x4 * follower_first_moment * gravity_x - x5 * follower_first_moment * gravity_y,
         (
-            x5 * follower_first_moment * gravity_x + x7 * follower_first_moment * gravity_y - x6 *
-            lam_1 - x8 * lam_2
+            tangent_x * x12 * (-x13 - gravity_y) + tangent_x * (inertia @ (-x3 * x6)) + tangent_y *
+            x12 * (gravity_x + x11) + tangent_y * (inertia @ (x2 * x6)) + bending @
+            (bending_stiffness * (phi - bow) / coupler)
+        ),
+        drag @ (-x0 * phi_dot * damping), x14, -x16, -x17, x18, x19 * x7, -x19 * x9,
+        x11 - x17 * x20 + xp.sum(x18 * x6, axis=0), x13 - x14 * x20 + xp.sum(x16 * x6, axis=0),
+    )
+
+
+def variations(
+    psi, phi, psi_dot, phi_dot, psi_ddot, phi_ddot, lam_1, lam_2, t, theta, theta_d1, theta_d2,
+    frame, crank, coupler, follower, bending_stiffness, mass_per_length, damping, gravity_x,
+    gravity_y, follower_inertia, follower_first_moment, tangent_x, tangent_y, end, moment, bow,
+    inertia, bending, drag,
+):
+    """Return the arrays of the motion linearised about a given one.
+
+    psi : float or ndarray, shape (N,)
+    phi : ndarray, shape (Q, N)
+    psi_dot : float or ndarray, shape (N,)
+    phi_dot : ndarray, shape (Q, N)
+    psi_ddot : float or ndarray, shape (N,)
+    phi_ddot : ndarray, shape (Q, N)
+    lam_1, lam_2 : float or ndarray, shape (...)
+    t, theta, theta_d1, theta_d2 : float or ndarray, shape (N,)
+    frame to follower_first_moment : float
+    tangent_x, tangent_y : ndarray, shape (Q, N)
+    end, moment, bow : ndarray, shape (Q, 1)
+    inertia, bending, drag : ndarray, shape (Q, Q)
+    Returns float or ndarray each.
+    """
+    xp = _namespace(psi)
+    x0 = coupler**3
+    x1 = x0 * mass_per_length
+    x2 = 2 * x1 * phi_dot
+    x3 = xp.cos(psi)
+    x4 = x3 * follower
+    x5 = xp.sin(psi)
+    x6 = x5 * follower
+    x7 = coupler * end
+    x8 = tangent_x * x7
+    x9 = tangent_y * x7
+    x10 = phi_ddot * tangent_y
+    x11 = phi_dot**2
+    x12 = tangent_x * x11
+    x13 = x1 * (x10 + x12)
+    x14 = phi_ddot * tangent_x
+    x15 = x14 - tangent_y * x11
+    x16 = crank * xp.sin(theta)
+    x17 = theta_d1**2
+    x18 = crank * xp.cos(theta)
+    x19 = mass_per_length * coupler**2 * moment
+    x20 = psi_dot**2
+    return (
+        1, x0 * damping, tangent_x, -tangent_y * x2, tangent_y, tangent_x * x2,
+        (
+            x3 * follower_first_moment * gravity_x + x5 * follower_first_moment * gravity_y - x4 *
+            lam_1 - x6 * lam_2
         ),
         (
-            lam_1 * x10 + lam_2 * x11 + x1 * x21 * (gravity_x + x18 * theta_d2 + x19 * x20) + x1 *
-            (inertia @ x15) + x2 * x21 * (gravity_y - x20 * theta_d2 + x18 * x19) + x2 * (inertia @
-            (-x3 * x17))
+            lam_1 * x8 + lam_2 * x9 + tangent_x * x19 * (gravity_x + x16 * theta_d2 + x17 * x18) +
+            tangent_x * (inertia @ x13) + tangent_y * x19 * (gravity_y - x18 * theta_d2 + x16 *
+            x17) + tangent_y * (inertia @ (-x1 * x15))
         ),
-        bending_stiffness / coupler, x3 * x17, -x15, psi_dot * x6, -phi_dot * x10, psi_dot * x8,
-        -phi_dot * x11, x6 * psi_ddot - x22 * x8, coupler * end * x13 * x2 - x16 * x9,
-        x8 * psi_ddot + x22 * x6, -x12 * x9 - x14 * x9,
+        bending_stiffness / coupler, x1 * x15, -x13, psi_dot * x4, -phi_dot * x8, psi_dot * x6,
+        -phi_dot * x9, x4 * psi_ddot - x20 * x6, coupler * end * tangent_y * x11 - x14 * x7,
+        x6 * psi_ddot + x20 * x4, -x10 * x7 - x12 * x7,
     )

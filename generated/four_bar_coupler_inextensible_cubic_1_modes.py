@@ -11,7 +11,7 @@ Derivatives by_u are those by the chord's length over the coupler's.
 Cost per evaluation:
     dynamics: 405 operations
     variations: 392 operations
-Content hash 23fb1afc56330780861ee15d8eb6d0df; derived with SymPy 1.14.0.
+Content hash 94cebf50babe46470459118f597a10dc; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -22,7 +22,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"inextensible_cubic","mechanism'
     '":"four_bar","modes":1,"outputs":[]}'
 )
-CONTENT = "23fb1afc56330780861ee15d8eb6d0df"
+CONTENT = "94cebf50babe46470459118f597a10dc"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

@@ -9,7 +9,7 @@ The caller supplies f as a function of the angle, by the name 'f'.
 
 Cost per evaluation:
     scales: 0 operations
-Content hash 8a83c2f7d542e884370f4cbc366adc88; derived with SymPy 1.14.0.
+Content hash 7ee6a238fac2a59cc2d78dbe61ba21ca; derived with SymPy 1.14.0.
 """
 
 __all__ = ["scales"]
@@ -18,7 +18,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"plain","mechanism":"hill","modes":null,'
     '"outputs":[]}'
 )
-CONTENT = "8a83c2f7d542e884370f4cbc366adc88"
+CONTENT = "7ee6a238fac2a59cc2d78dbe61ba21ca"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

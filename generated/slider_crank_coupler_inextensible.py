@@ -11,10 +11,10 @@ of the Q stations have them on their first axis, all others one value there.
 Multipliers: force on C along x and y, up to its sign.
 
 Cost per evaluation:
-    constraints: 20 operations
-    dynamics: 64 operations
-    variations: 70 operations
-Content hash b7659fd871bbbdd802c92420d6c2138b; derived with SymPy 1.14.0.
+    constraints: 18 operations
+    dynamics: 62 operations
+    variations: 68 operations
+Content hash 1d3fe57747c302e7ad503c28cbeb645b; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"inextensible","mechanism":"sli'
     'der_crank","modes":null,"outputs":[]}'
 )
-CONTENT = "b7659fd871bbbdd802c92420d6c2138b"
+CONTENT = "1d3fe57747c302e7ad503c28cbeb645b"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {
@@ -44,6 +44,8 @@ QUANTITIES = {
     "theta": ("rad", "Crank angle"),
     "theta_d1": ("rad/s", "Crank speed"),
     "theta_d2": ("rad/s^2", "Crank acceleration"),
+    "tangent_x": ("", "Cosine of phi"),
+    "tangent_y": ("", "Sine of phi"),
     "end": ("", "Weights of int f ds along the coupler, of unit length"),
     "moment": ("", "Weights of int (1 - s) f ds"),
     "bow": ("rad", "Angle of the unloaded coupler's tangent"),
@@ -82,10 +84,14 @@ COORDINATES = ("x4", "phi")
 MULTIPLIERS = ("lam_1", "lam_2")
 EXTERNAL = ("theta", "theta_d1", "theta_d2")
 
-# Coordinate that stands for one of each station, and the numbers of stations and pairs.  In ARRAYS
-# a matrix over the stations has its diagonal and, beside it, products of factors of the rows, a
-# kernel, and factors of the columns.
-STATIONS = ("phi", ("end", "moment", "bow", "inertia", "bending", "drag"))
+# Coordinate that stands for one of each station, its cosine and sine, and the numbers of stations
+# and pairs.  In ARRAYS a matrix over the stations has its diagonal and, beside it, products of
+# factors of the rows, a kernel, and factors of the columns.
+STATIONS = (
+    "phi",
+    ("tangent_x", "tangent_y"),
+    ("end", "moment", "bow", "inertia", "bending", "drag"),
+)
 
 # Of each function its arrays: shape, and row, column and place among what it returns.
 ARRAYS = {
@@ -125,8 +131,8 @@ def _namespace(array):
 
 def constraints(
     x4, phi, t, theta, theta_d1, theta_d2, crank, coupler, offset, bending_stiffness,
-    mass_per_length, damping, gravity_x, gravity_y, slider_mass, end, moment, bow, inertia,
-    bending, drag,
+    mass_per_length, damping, gravity_x, gravity_y, slider_mass, tangent_x, tangent_y, end, moment,
+    bow, inertia, bending, drag,
 ):
     """Return the constraints and their Jacobian.
 
@@ -134,6 +140,7 @@ def constraints(
     phi : ndarray, shape (Q, N)
     t, theta, theta_d1, theta_d2 : float or ndarray, shape (N,)
     crank to slider_mass : float
+    tangent_x, tangent_y : ndarray, shape (Q, N)
     end, moment, bow : ndarray, shape (Q, 1)
     inertia, bending, drag : ndarray, shape (Q, Q)
     Returns float or ndarray each.
@@ -141,9 +148,9 @@ def constraints(
     xp = _namespace(x4)
     x0 = crank * xp.cos(theta)
     x1 = coupler * end
-    x2 = x1 * xp.cos(phi)
+    x2 = tangent_x * x1
     x3 = crank * xp.sin(theta)
-    x5 = x1 * xp.sin(phi)
+    x5 = tangent_y * x1
     return (
         x0 - x4 + xp.sum(x2, axis=0), x3 - offset + xp.sum(x5, axis=0), -1, -x5, x2, x3 * theta_d1,
         -x0 * theta_d1,
@@ -152,98 +159,96 @@ def constraints(
 
 def dynamics(
     x4, phi, x4_dot, phi_dot, t, theta, theta_d1, theta_d2, crank, coupler, offset,
-    bending_stiffness, mass_per_length, damping, gravity_x, gravity_y, slider_mass, end, moment,
-    bow, inertia, bending, drag,
+    bending_stiffness, mass_per_length, damping, gravity_x, gravity_y, slider_mass, tangent_x,
+    tangent_y, end, moment, bow, inertia, bending, drag,
 ):
     """Return everything in the equations of motion at acceleration level.
 
     x4 : float or ndarray, shape (N,)
     phi : ndarray, shape (Q, N)
-    x4_dot : float or ndarray, shape (...)
+    x4_dot : float or ndarray, shape (N,)
     phi_dot : ndarray, shape (Q, N)
     t, theta, theta_d1, theta_d2 : float or ndarray, shape (N,)
     crank to slider_mass : float
-    end, moment, bow : ndarray, shape (Q, 1)
-    inertia, bending, drag : ndarray, shape (Q, Q)
-    Returns float or ndarray each.
-    """
-    xp = _namespace(x4)
-    x0 = xp.cos(phi)
-    x1 = coupler**3
-    x2 = x1 * mass_per_length
-    x3 = x2 * x0
-    x4 = xp.sin(phi)
-    x5 = x2 * x4
-    x6 = phi_dot**2
-    x7 = xp.sin(theta)
-    x8 = theta_d2 * crank
-    x9 = xp.cos(theta)
-    x10 = crank * theta_d1**2
-    x11 = x10 * x9 + x7 * x8
-    x12 = mass_per_length * coupler**2 * moment
-    x13 = x10 * x7 - x8 * x9
-    x14 = coupler * end
-    x15 = x14 * x4
-    x16 = x0 * x14
-    x17 = theta_d1 * crank
-    return (
-        slider_mass, x0, x3, x4, x5, -gravity_x * slider_mass,
-        (
-            x0 * x12 * (-x13 - gravity_y) + x0 * (inertia @ (-x5 * x6)) + x12 * x4 * (gravity_x +
-            x11) + x4 * (inertia @ (x3 * x6)) + bending @ (bending_stiffness * (phi - bow) /
-            coupler)
-        ),
-        drag @ (-x1 * phi_dot * damping), -1, -x15, x16, x17 * x7, -x17 * x9,
-        x11 + xp.sum(x16 * x6, axis=0), x13 + xp.sum(x15 * x6, axis=0),
-    )
-
-
-def variations(
-    x4, phi, x4_dot, phi_dot, x4_ddot, phi_ddot, lam_1, lam_2, t, theta, theta_d1, theta_d2, crank,
-    coupler, offset, bending_stiffness, mass_per_length, damping, gravity_x, gravity_y,
-    slider_mass, end, moment, bow, inertia, bending, drag,
-):
-    """Return the arrays of the motion linearised about a given one.
-
-    x4 : float or ndarray, shape (N,)
-    phi : ndarray, shape (Q, N)
-    x4_dot : float or ndarray, shape (...)
-    phi_dot : ndarray, shape (Q, N)
-    x4_ddot : float or ndarray, shape (...)
-    phi_ddot : ndarray, shape (Q, N)
-    lam_1, lam_2 : float or ndarray, shape (...)
-    t, theta, theta_d1, theta_d2 : float or ndarray, shape (N,)
-    crank to slider_mass : float
+    tangent_x, tangent_y : ndarray, shape (Q, N)
     end, moment, bow : ndarray, shape (Q, 1)
     inertia, bending, drag : ndarray, shape (Q, Q)
     Returns float or ndarray each.
     """
     xp = _namespace(x4)
     x0 = coupler**3
-    x1 = xp.cos(phi)
-    x2 = xp.sin(phi)
-    x3 = x0 * mass_per_length
-    x4 = 2 * x3 * phi_dot
-    x5 = coupler * end
-    x6 = x1 * x5
-    x7 = x2 * x5
-    x8 = phi_ddot * x2
-    x9 = phi_dot**2
-    x10 = x1 * x9
-    x11 = x3 * (x10 + x8)
-    x12 = phi_ddot * x1
-    x13 = x12 - x2 * x9
-    x14 = crank * xp.sin(theta)
-    x15 = theta_d1**2
-    x16 = crank * xp.cos(theta)
-    x17 = mass_per_length * coupler**2 * moment
+    x1 = x0 * mass_per_length
+    x2 = x1 * tangent_x
+    x3 = x1 * tangent_y
+    x4 = phi_dot**2
+    x5 = xp.sin(theta)
+    x6 = theta_d2 * crank
+    x7 = xp.cos(theta)
+    x8 = crank * theta_d1**2
+    x9 = x5 * x6 + x7 * x8
+    x10 = mass_per_length * coupler**2 * moment
+    x11 = x5 * x8 - x6 * x7
+    x12 = coupler * end
+    x13 = tangent_y * x12
+    x14 = tangent_x * x12
+    x15 = theta_d1 * crank
     return (
-        1, x0 * damping, x1, -x2 * x4, x2, x1 * x4,
+        slider_mass, tangent_x, x2, tangent_y, x3, -gravity_x * slider_mass,
         (
-            lam_1 * x6 + lam_2 * x7 + x1 * x17 * (gravity_x + x14 * theta_d2 + x15 * x16) + x1 *
-            (inertia @ x11) + x17 * x2 * (gravity_y - x16 * theta_d2 + x14 * x15) + x2 * (inertia @
-            (-x3 * x13))
+            tangent_x * x10 * (-x11 - gravity_y) + tangent_x * (inertia @ (-x3 * x4)) + tangent_y *
+            x10 * (gravity_x + x9) + tangent_y * (inertia @ (x2 * x4)) + bending @
+            (bending_stiffness * (phi - bow) / coupler)
         ),
-        bending_stiffness / coupler, x3 * x13, -x11, -phi_dot * x6, -phi_dot * x7,
-        coupler * end * x2 * x9 - x12 * x5, -x10 * x5 - x5 * x8,
+        drag @ (-x0 * phi_dot * damping), -1, -x13, x14, x15 * x5, -x15 * x7,
+        x9 + xp.sum(x14 * x4, axis=0), x11 + xp.sum(x13 * x4, axis=0),
+    )
+
+
+def variations(
+    x4, phi, x4_dot, phi_dot, x4_ddot, phi_ddot, lam_1, lam_2, t, theta, theta_d1, theta_d2, crank,
+    coupler, offset, bending_stiffness, mass_per_length, damping, gravity_x, gravity_y,
+    slider_mass, tangent_x, tangent_y, end, moment, bow, inertia, bending, drag,
+):
+    """Return the arrays of the motion linearised about a given one.
+
+    x4 : float or ndarray, shape (N,)
+    phi : ndarray, shape (Q, N)
+    x4_dot : float or ndarray, shape (N,)
+    phi_dot : ndarray, shape (Q, N)
+    x4_ddot : float or ndarray, shape (N,)
+    phi_ddot : ndarray, shape (Q, N)
+    lam_1, lam_2 : float or ndarray, shape (...)
+    t, theta, theta_d1, theta_d2 : float or ndarray, shape (N,)
+    crank to slider_mass : float
+    tangent_x, tangent_y : ndarray, shape (Q, N)
+    end, moment, bow : ndarray, shape (Q, 1)
+    inertia, bending, drag : ndarray, shape (Q, Q)
+    Returns float or ndarray each.
+    """
+    xp = _namespace(x4)
+    x0 = coupler**3
+    x1 = x0 * mass_per_length
+    x2 = 2 * x1 * phi_dot
+    x3 = coupler * end
+    x4 = tangent_x * x3
+    x5 = tangent_y * x3
+    x6 = phi_ddot * tangent_y
+    x7 = phi_dot**2
+    x8 = tangent_x * x7
+    x9 = x1 * (x6 + x8)
+    x10 = phi_ddot * tangent_x
+    x11 = x10 - tangent_y * x7
+    x12 = crank * xp.sin(theta)
+    x13 = theta_d1**2
+    x14 = crank * xp.cos(theta)
+    x15 = mass_per_length * coupler**2 * moment
+    return (
+        1, x0 * damping, tangent_x, -tangent_y * x2, tangent_y, tangent_x * x2,
+        (
+            lam_1 * x4 + lam_2 * x5 + tangent_x * x15 * (gravity_x + x12 * theta_d2 + x13 * x14) +
+            tangent_x * (inertia @ x9) + tangent_y * x15 * (gravity_y - x14 * theta_d2 + x12 * x13)
+            + tangent_y * (inertia @ (-x1 * x11))
+        ),
+        bending_stiffness / coupler, x1 * x11, -x9, -phi_dot * x4, -phi_dot * x5,
+        coupler * end * tangent_y * x7 - x10 * x3, -x3 * x6 - x3 * x8,
     )

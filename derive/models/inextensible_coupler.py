@@ -24,7 +24,12 @@ from ..records import EquationsOfMotion, Lagrangian
 from ..spec import Choices, ModelSpec
 from ..stations import EACH_STATION, Stations, closed_in_stations
 
-STATIONS = Stations("phi", ("end", "moment", "bow"), ("inertia", "bending", "drag"))
+STATIONS = Stations(
+    "phi",
+    ("tangent_x", "tangent_y"),
+    ("end", "moment", "bow"),
+    ("inertia", "bending", "drag"),
+)
 T = sp.Symbol("t", real=True)
 THETA = sp.Function("theta")(T)
 CRANK, COUPLER, DENSITY, STIFFNESS, DAMPING = sp.symbols(
@@ -118,6 +123,8 @@ def _describe(spec: ModelSpec) -> Description:
     found = described(spec.mechanism, "geometrically exact", [driven, angle], shape)
     vector, kernel = "ndarray, shape (Q, 1)", "ndarray, shape (Q, Q)"
     numbers = (
+        Argument("tangent_x", EACH_STATION, "", "Cosine of phi"),
+        Argument("tangent_y", EACH_STATION, "", "Sine of phi"),
         Argument("end", vector, "", "Weights of int f ds along the coupler, of unit length"),
         Argument("moment", vector, "", "Weights of int (1 - s) f ds"),
         Argument("bow", vector, "rad", "Angle of the unloaded coupler's tangent"),

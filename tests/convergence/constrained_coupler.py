@@ -45,12 +45,13 @@ class Whole:
         ]
         taken = [part for row in rows[:3] for part in (row[:, 0], self.shapes @ row[:, 1:].T)]
         taken += [multiplier for row in rows[3:] for multiplier in row.T]
-        numbers = (self.numbers[name] for name in self.module.STATIONS[1])
+        numbers = (self.numbers[name] for name in self.module.STATIONS[2])
         returned = getattr(self.module, self.name)(
             *taken,
             np.broadcast_to(time, batch).ravel(),
             *given,
             *(self.values[name] for name in self.module.PARAMETERS),
+            *(np.cos(taken[1]), np.sin(taken[1])),
             *(number if number.ndim == 2 else number[:, None] for number in numbers),
         )
         arrays = {}

@@ -48,6 +48,8 @@ class AtEachStation(ScalarEntries):
     def components(self, name: str) -> list[str]:
         if name in coupler.STATIONS.matrices:
             return [f"{name}_{i}_{j}" for i, j in combinations_with_replacement(self.every, 2)]
+        if name in coupler.STATIONS.tangent:
+            return []  # follows from the angles
         if name in coupler.STATIONS.vectors:
             return [f"{name}_{i}" for i in self.every]
         if name.startswith("phi"):

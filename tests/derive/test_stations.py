@@ -88,7 +88,7 @@ def test_a_mass_at_the_end_by_the_coupler_is_refused():
 
 
 def test_the_order_of_the_kernel_does_not_matter():
-    assert Stations("phi", (), ("inertia",)).pair("inertia", 2, 1) == INERTIA[1, 2]
+    assert Stations("phi", ("x", "y"), (), ("inertia",)).pair("inertia", 2, 1) == INERTIA[1, 2]
 
 
 def changed(mechanism: str, extra: sp.Expr):
@@ -115,6 +115,7 @@ def numbers_of(module, count: int = truth.COUNT, **changes: float) -> dict[str, 
 def called(module, function: str, numbers) -> dict[str, np.ndarray]:
     """Return what a function of a module returns, by name."""
     emitted = getattr(module, function)
+    numbers = numbers | {"tangent_x": np.cos(numbers["phi"]), "tangent_y": np.sin(numbers["phi"])}
     taken = emitted.__code__.co_varnames[: emitted.__code__.co_argcount]
     values = emitted(*(numbers[name] for name in taken))
     return dict(zip(module.RETURNS[function], values, strict=True))

@@ -125,18 +125,22 @@ class AtStations:
         With the inverse of their derivatives by what they give, ``(2, 2, N)``.
         """
         angles = at.stations.shapes.T @ q
-        chord = (np.cos(angles).sum(axis=0) + 1j * np.sin(angles).sum(axis=0)) / len(angles)
-        z = at.moved(self.guess(chord, drive, parameters))
-        z[1:] += angles
-        last = np.inf
+        x, y = np.cos(angles), np.sin(angles)
+        chord = (np.add.reduce(x, axis=0) + 1j * np.add.reduce(y, axis=0)) / len(angles)
+        held, last = self.guess(chord, drive, parameters), np.inf
         for _ in range(CLOSING):
+            cosine, sine = np.cos(held[1]), np.sin(held[1])
+            at.tangent = x * cosine - y * sine, y * cosine + x * sine
+            z = at.moved(held)
+            z[1:] += angles
             found = at("constraints", z)
             (a, c), (b, d) = _held(found["jacobian"])
             inverse = np.stack([d, -b, -c, a]).reshape(2, 2, -1) / (a * d - b * c)
             change = _solved(inverse, found["constraints"])
-            z -= at.moved(change)
+            held = held - change
             size = float(np.max(np.abs(change), initial=0.0))
             if is_last(size, last):
+                z -= at.moved(change)
                 return z, found, inverse
             last = size
         raise SelfCheckFailed("the loop of the linkage cannot be closed at a state")
@@ -153,13 +157,11 @@ class _Evaluated:
         parameters: Mapping[str, float],
     ) -> None:
         self.module, self.stations = module, stations
-        numbers = (stations.numbers[name] for name in module.STATIONS[1])
-        self._given = (
-            0.0,  # the time, which nothing hangs on
-            *drive,
-            *(parameters[name] for name in module.PARAMETERS),
-            *(number if number.ndim == 2 else number[:, None] for number in numbers),
-        )
+        self.tangent: tuple[Array, Array]  # cosines and sines of the angles, (Q, N)
+        numbers = (stations.numbers[name] for name in module.STATIONS[2])
+        # First the time, which nothing hangs on.
+        self._given = 0.0, *drive, *(parameters[name] for name in module.PARAMETERS)
+        self._numbers = [n if n.ndim == 2 else n[:, None] for n in numbers]
 
     def moved(self, held: Array) -> Array:
         """Return what the first coordinate and the mean angle ``(2, ..., N)`` move.
@@ -180,7 +182,7 @@ class _Evaluated:
         """
         taken = [part for vector in vectors[:3] for part in (vector[0], vector[1:])]
         taken += [multiplier for each in vectors[3:] for multiplier in each]
-        returned = getattr(self.module, name)(*taken, *self._given)
+        returned = getattr(self.module, name)(*taken, *self._given, *self.tangent, *self._numbers)
         arrays: dict[str, Any] = {}
         for array in _WANTED[name]:
             entries = self.module.ARRAYS[name][array][1]

@@ -1,4 +1,4 @@
-"""Choosing a running speed: quiet speeds, run-ups, damping, geometry, screening and fatigue."""
+"""Choosing a running speed: quiet speeds, run-ups, damping, screening, fatigue, measured points."""
 
 from __future__ import annotations
 
@@ -12,6 +12,9 @@ if TYPE_CHECKING:
     from .effects import screen as screen
     from .fatigue_life import Material as Material
     from .fatigue_life import fatigue as fatigue
+    from .identification import identify as identify
+    from .measured import Point as Point
+    from .measured import read_points as read_points
     from .procedure import running_speed as running_speed
     from .quiet import quiet_speeds as quiet_speeds
     from .speed_profile import SpeedProfile as SpeedProfile
@@ -22,6 +25,8 @@ __all__, __getattr__, __dir__ = on_first_use(
     {
         "effects": ("damping_effect", "length_effect", "screen"),
         "fatigue_life": ("Material", "fatigue"),
+        "identification": ("identify",),
+        "measured": ("Point", "read_points"),
         "procedure": ("running_speed",),
         "quiet": ("quiet_speeds",),
         "speed_profile": ("SpeedProfile",),

@@ -20,21 +20,19 @@ EPS = float(np.finfo(float).eps)
 # squares, the fourth being a margin of what is left then.
 _LAST, _SMALL, _SQUARED, _MORE = 3e-10, 1e-8, 1e-4, 4.0
 _ITERATIONS, _MOST_ITERATIONS = 10, 40
-_NEAR = 1e-5  # correction after which the derivative by the parameter is kept
-# First correction beyond which a guess is refused, relative.
-_FAR = 0.3
+# Corrections after which the derivative by the parameter is kept, and beyond which a guess is
+# refused, relative.
+_NEAR, _FAR = 1e-5, 0.3
 # Stages of the motion beside which errors are measured, less than those of the motion, and the
 # share of the difference that is taken for the error, where steps meet and within them: 99 % of the
 # multipliers, motions and peaks of random systems are covered, half of them by no more than 100
 # times the error (tests/error_estimates/test_response_errors.py).
 _FEWER, SHARE, _INNER_SHARE = 1, 2.0, 1.0
 _NEAR_TOP = 0.4  # distance from the middle of all deflections over their range: near an extreme
-# Least part of what the difference of two matrices may amount to that counts for a multiplier.
-_LEAST_PART = 0.02
-# Steps are linearised before the last correction: multipliers are off by at most 4 times that.
-_STALE = 10.0
-# Errors of the multipliers that are allowed, over that of the motion.
-_MULTIPLIERS = 10.0
+# Of multipliers: the least part of what the difference of two matrices may amount to that counts;
+# of the last correction, before which steps are linearised, a factor (they are off by at most 4
+# times it); and their errors that are allowed, over that of the motion.
+_LEAST_PART, _STALE, _MULTIPLIERS = 0.02, 10.0, 10.0
 STAGES, FIRST_STEPS, MOST_STEPS = 12, 5, 384
 
 

@@ -1,0 +1,155 @@
+"""Measured points: speeds of resonance, ends of unstable regions, and deflections at speeds."""
+
+from __future__ import annotations
+
+import csv
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from ..core.errors import BadInput, Problem, bad, refuse
+from ..core.inputs import is_finite
+from ..core.units import to_si
+
+KINDS = ("resonance", "unstable from", "unstable to", "deflection")
+# Columns of a file by their dimension; None for the one that holds words.
+_COLUMNS: Mapping[str, str | None] = {
+    "kind": None,
+    "speed": "frequency",
+    "deflection": "length",
+    "speed deviation": "frequency",
+    "deflection deviation": "length",
+}
+_FORM = "kind, speed [rpm], deflection [mm], speed deviation [rpm], deflection deviation [mm]"
+
+
+@dataclass(frozen=True)
+class Point:
+    """One measurement on a running machine.
+
+    Attributes
+    ----------
+    kind : str
+        ``"resonance"``: the speed at which the steady deflection is largest; ``"unstable from"``
+        and ``"unstable to"``: a speed at which an unstable region begins or ends, upwards;
+        ``"deflection"``: the largest steady deflection at a speed.
+    speed : float
+        Crank speed [rad/s].
+    deflection : float, optional
+        Largest deflection of the link from its chord [m], of the kind ``"deflection"`` alone.
+    deviation : float, optional
+        Standard deviation of what is measured [rad/s; m for a deflection].
+
+    Raises
+    ------
+    BadInput
+        If the kind is unknown, a number is not positive, or a deflection lacks or is too many.
+    """
+
+    kind: str
+    speed: float
+    deflection: float | None = None
+    deviation: float | None = None
+
+    def __post_init__(self) -> None:
+        problems = []
+        if self.kind not in KINDS:
+            problems.append(Problem("kind", repr(self.kind), f"one of {KINDS}", "correct it"))
+        for name in ("speed", "deflection", "deviation"):
+            value = getattr(self, name)
+            if (value is not None or name == "speed") and not (is_finite(value) and value > 0):
+                problems.append(Problem(name, repr(value), "a positive number", "correct it"))
+        if (self.deflection is not None) != (self.kind == "deflection"):
+            found = "none" if self.deflection is None else "one"
+            expected = "one for the kind 'deflection' and for no other"
+            problems.append(
+                Problem("deflection", f"{found} for {self.kind!r}", expected, "mend it")
+            )
+        refuse(problems)
+
+    @property
+    def measured(self) -> float:
+        """What is measured: the deflection [m], or the speed [rad/s]."""
+        return self.speed if self.deflection is None else self.deflection
+
+
+def read_points(path: str | os.PathLike[str]) -> tuple[Point, ...]:
+    """Return the measured points of a CSV file.
+
+    Its first line names the columns with their units: ``kind`` and ``speed [rpm]``, and as far as
+    they are known ``deflection [mm]``, ``speed deviation [rpm]``, ``deflection deviation [mm]``.
+    Empty fields are none; lines that begin with # are left out.
+
+    Raises
+    ------
+    BadInput
+        If the file cannot be read, a column is unknown or lacks its unit, or a row is unusable:
+        the message names the line.
+    """
+    name = os.fspath(path)
+    try:
+        text = Path(path).read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as problem:
+        fix = "give the path of a CSV file"
+        raise bad("points", f"{name}: {problem}", "a text file", fix) from problem
+    lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if _holds(line)]
+    if len(lines) < 2:
+        raise bad(name, "no rows", "a first line of names and points below", f"write {_FORM}")
+    (number, header), *rows = zip(
+        (i for i, _ in lines), csv.reader(line for _, line in lines), strict=True
+    )
+    columns = [_column(field, f"{name}, line {number}") for field in header]
+    known = [column for column, _ in columns]
+    if len(set(known)) < len(known) or not {"kind", "speed"} <= set(known):
+        raise bad(f"{name}, line {number}", ", ".join(header), "kind, speed and more, once", _FORM)
+    return tuple(_point(fields, columns, f"{name}, line {i}") for i, fields in rows)
+
+
+def _holds(line: str) -> bool:
+    return bool(line.strip()) and not line.lstrip().startswith("#")
+
+
+def _column(field: str, where: str) -> tuple[str, str]:
+    """Return name and unit of a column."""
+    name, _, unit = field.strip().partition("[")
+    name, unit = " ".join(name.split()).lower(), unit.rstrip(" ]")
+    if name not in _COLUMNS:
+        raise bad(where, repr(field.strip()), f"a column of {list(_COLUMNS)}", f"write {_FORM}")
+    dimension = _COLUMNS[name]
+    if (dimension is not None) != bool(unit):
+        raise bad(where, repr(field.strip()), "its unit in brackets", f"write {_FORM}")
+    if dimension is not None:
+        to_si(f"1 {unit}", dimension, where)
+    return name, unit
+
+
+def _point(fields: Sequence[str], columns: Sequence[tuple[str, str]], where: str) -> Point:
+    if len(fields) != len(columns):
+        raise bad(where, f"{len(fields)} fields", f"{len(columns)}", "one for each column")
+    kind, given = "", {}
+    for field, (name, unit) in zip(fields, columns, strict=True):
+        text, dimension = field.strip(), _COLUMNS[name]
+        if dimension is None:
+            kind = " ".join(text.split()).lower()
+        elif text:
+            given[name] = to_si(f"{text} {unit}", dimension, f"{where}, {name}")
+    own = "deflection deviation" if kind == "deflection" else "speed deviation"
+    deviation = given.pop(own, None)
+    left = sorted(name for name in given if name not in ("speed", "deflection"))
+    if left or "speed" not in given:
+        found = f"{left[0]} of {kind!r}" if left else "no speed"
+        raise bad(where, found, f"a speed, and no deviation but the {own}", "correct the row")
+    try:
+        return Point(kind, given["speed"], given.get("deflection"), deviation)
+    except BadInput as refused:
+        problems = (replace(p, where=f"{where}, {p.where}") for p in refused.problems)
+        raise BadInput(*problems) from refused
+
+
+def checked_points(points: object) -> tuple[Point, ...]:
+    """Return points, having checked that they are some."""
+    found = tuple(points) if isinstance(points, Iterable) else ()
+    if not found or not all(isinstance(point, Point) for point in found):
+        raise bad("points", repr(points)[:80], "one Point or more", "make each with Point(...)")
+    return found

@@ -1,11 +1,13 @@
-"""``elastolink identify``: numbers of a machine from measured points."""
+"""``elastolink identify``: numbers of a machine from measured points; and these in pictures."""
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from typing import Any
 
 from .. import design
+from ..core.errors import bad
 from . import options as opt
 
 
@@ -18,6 +20,35 @@ def add(commands: Any) -> None:
     opt.add(parser, {"--unknown NAME": unknown}, action="append", default=[])
     window = "how far from a measured speed the computed one is looked for; default 0.15"
     opt.add(parser, {"--window PART": window}, default="0.15")
+
+
+def points_option(parser: argparse.ArgumentParser) -> None:
+    """Add the option of a file of points that are drawn too."""
+    points = "draw the measured points of this CSV file, too (see identify)"
+    opt.add(parser, {"--points FILE": points})
+
+
+def measured_points(options: argparse.Namespace, across: str) -> tuple[design.Point, ...]:
+    """Return the points of ``--points``, none without it; ``across``: along the picture."""
+    if options.points is None:
+        return ()
+    if options.plot is None or across != "speed":
+        found = "no --plot" if options.plot is None else f"a picture over {across}"
+        raise bad("--points", found, "a picture over the speed", "draw one with --plot")
+    return design.read_points(options.points)
+
+
+def with_points(
+    points: tuple[design.Point, ...], draw: Callable[[Any], Any]
+) -> Callable[[Any], Any]:
+    """Return what draws measured points beside what is drawn."""
+
+    def both(ax: Any) -> None:
+        draw(ax)
+        if points:
+            design.draw_points(ax, points)
+
+    return both
 
 
 def _identify(options: argparse.Namespace) -> int:

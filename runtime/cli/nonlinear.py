@@ -9,6 +9,7 @@ from .. import nonlinear
 from ..core.errors import bad
 from . import options as opt
 from .linkages import speed_of, speed_range
+from .measured import measured_points, points_option, with_points
 
 if TYPE_CHECKING:
     from ..core.families import Nonlinear
@@ -28,6 +29,7 @@ def add(commands: Any) -> None:
     opt.add(parser, {"--turns N": turns}, type=int, default=1)
     rate = "march up and down at this acceleration of the crank instead, e.g. '2 rpm/s'"
     opt.add(parser, {"--sweep RATE": rate})
+    points_option(parser)
     kicks = "disturbance of each revolution of a sweep; default 1e-6"
     opt.add(parser, {"--kicks SIZE": kicks}, type=float)
     search = "search for branches that do not hang together with the first, at three values"
@@ -46,6 +48,7 @@ def _response(options: argparse.Namespace) -> int:
     if options.sweep is not None:
         return _sweep(options, scene, system, told)
     opt.refuse_unused(options, ("kicks",), "--sweep")
+    points = measured_points(options, "a parameter" if getattr(options, "in") else "speed")
     shown = opt.progress(options)
     varied = getattr(options, "in")
     if varied is None:
@@ -62,7 +65,7 @@ def _response(options: argparse.Namespace) -> int:
     curve = nonlinear.response_curve(
         system, name, bounds, speed=speed, turns=options.turns, starts=starts, progress=shown
     )
-    return opt.finish(options, curve, [*lines, *_lines(curve)])
+    return opt.finish(options, curve, [*lines, *_lines(curve)], with_points(points, curve.plot))
 
 
 def _scene(options: argparse.Namespace) -> tuple[Scene, list[str]]:
@@ -176,6 +179,7 @@ def _sweep(options: argparse.Namespace, scene: Scene, system: Nonlinear, told: l
     rate = opt.positive(options, "sweep", "angular_acceleration") or 0.0
     bounds = speed_range(options.speed, scene, "--speed")
     kicks = 1e-6 if options.kicks is None else options.kicks
+    points = measured_points(options, "speed")
     found = nonlinear.sweep_response(
         system, bounds, rate, kicks=kicks, progress=opt.progress(options)
     )
@@ -193,4 +197,4 @@ def _sweep(options: argparse.Namespace, scene: Scene, system: Nonlinear, told: l
         ]
     else:
         lines.append("no jumps")
-    return opt.finish(options, found, lines)
+    return opt.finish(options, found, lines, with_points(points, found.plot))

@@ -14,6 +14,7 @@ from .. import periodic, stability, sweeps
 from ..core.errors import bad
 from . import options as opt
 from .linkages import at_speed, is_constrained, speed_of, speeds_of, speeds_option, without_crank
+from .measured import measured_points, points_option, with_points
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from ..constrained.multipliers import ConstrainedMultipliers
     from ..constrained.orbits import PeriodicOrbit
     from ..core.families import Array, LinearPeriodic
+    from ..design import Point
     from ..scenes import Scene
     from ..sweeps.tasks import AnyArray
 
@@ -46,6 +48,7 @@ def add(commands: Any) -> None:
             " by piece; the same command goes on from there after it was stopped",
         },
     )
+    points_option(chart)
     estimate = "with --store: tell time and memory, and work nothing out"
     opt.switches(chart, {"--estimate": estimate})
     for axis in ("x", "y"):
@@ -139,10 +142,11 @@ def _chart(options: argparse.Namespace) -> int:
     x, y = (_axis(getattr(options, axis), axis, scene) for axis in ("x", "y"))
     if x[0] == y[0]:
         raise bad("--y", repr(y[0]), "another parameter than along x", "choose one")
+    points = measured_points(options, x[0])
     unset = "speed" in (x[0], y[0]) or scene.get("operation.speed", None) is None
     speed = None if options.speed is None and unset else speed_of(options, scene)
     if options.store is not None:
-        return _stored(options, system, (x, y), speed, count)
+        return _stored(options, system, (x, y), speed, count, points)
     from ..core.workers import in_order
 
     name = "coupler frequency" if tuple(scene.get("model.flexible", ())) == ("coupler",) else None
@@ -158,7 +162,7 @@ def _chart(options: argparse.Namespace) -> int:
             workers=map if executor is None else in_order(executor),
             frequency_name=name or "natural frequency",
         )
-    return opt.finish(options, chart, _chart_lines(chart, scene))
+    return opt.finish(options, chart, _chart_lines(chart, scene), with_points(points, chart.plot))
 
 
 def _marks(scene: Scene, y: Axis) -> dict[str, tuple[float, ...]]:
@@ -294,6 +298,7 @@ def _stored(
     axes: tuple[Axis, Axis],
     speed: float | None,
     count: int,
+    points: tuple[Point, ...],
 ) -> int:
     """Work out a chart piece by piece, or estimate what that takes."""
     (x, _), (y, _) = axes
@@ -314,7 +319,7 @@ def _stored(
         + ", ".join(sorted(chart.outputs)),
         *(f"damaged, and done anew: {what}" for what in chart.damaged),
     ]
-    return opt.finish(options, chart, lines)
+    return opt.finish(options, chart, lines, with_points(points, chart.plot))
 
 
 def _shares(names: tuple[str, str], stable: AnyArray, kind: AnyArray) -> list[str]:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from .fatigue_life import fatigue as fatigue
     from .identification import identify as identify
     from .measured import Point as Point
+    from .measured import draw_points as draw_points
     from .measured import read_points as read_points
     from .procedure import running_speed as running_speed
     from .quiet import quiet_speeds as quiet_speeds
@@ -26,7 +27,7 @@ __all__, __getattr__, __dir__ = on_first_use(
         "effects": ("damping_effect", "length_effect", "screen"),
         "fatigue_life": ("Material", "fatigue"),
         "identification": ("identify",),
-        "measured": ("Point", "read_points"),
+        "measured": ("Point", "draw_points", "read_points"),
         "procedure": ("running_speed",),
         "quiet": ("quiet_speeds",),
         "speed_profile": ("SpeedProfile",),

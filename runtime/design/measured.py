@@ -7,9 +7,11 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from ..core.errors import BadInput, Problem, bad, refuse
 from ..core.inputs import is_finite
+from ..core.plotting import RPM, Axes
 from ..core.units import to_si
 
 KINDS = ("resonance", "unstable from", "unstable to", "deflection")
@@ -21,6 +23,8 @@ _COLUMNS: Mapping[str, str | None] = {
     "speed deviation": "frequency",
     "deflection deviation": "length",
 }
+_COLOUR = "#5e3c99"
+_STYLES = dict(zip(KINDS, (":", "--", "-.", "-"), strict=True))
 _FORM = "kind, speed [rpm], deflection [mm], speed deviation [rpm], deflection deviation [mm]"
 
 
@@ -145,6 +149,27 @@ def _point(fields: Sequence[str], columns: Sequence[tuple[str, str]], where: str
     except BadInput as refused:
         problems = (replace(p, where=f"{where}, {p.where}") for p in refused.problems)
         raise BadInput(*problems) from refused
+
+
+def draw_points(ax: Axes, points: Iterable[Point]) -> None:
+    """Draw measured points over a crank speed in rpm: lines, with bands of two deviations."""
+    for point in checked_points(points):
+        speed, style = point.speed * RPM, _STYLES[point.kind]
+        ax.axvline(speed, color=_COLOUR, linestyle=style, linewidth=0.9)
+        if point.deviation is not None and point.kind != "deflection":
+            wide = 2.0 * point.deviation * RPM
+            ax.axvspan(speed - wide, speed + wide, color=_COLOUR, alpha=0.12, linewidth=0.0)
+        place = ax.get_xaxis_transform()
+        text: dict[str, Any] = {"rotation": 90, "ha": "right", "va": "top", "fontsize": 7}
+        ax.text(
+            speed,
+            0.98,
+            f"measured: {point.kind}",
+            transform=place,
+            color=_COLOUR,
+            clip_on=True,
+            **text,
+        )
 
 
 def checked_points(points: object) -> tuple[Point, ...]:

@@ -200,7 +200,9 @@ def _ahead(
     """
     past = [other.resampled(len(orbit.motion.x)) for other in past]
     value, guess = orbit.ahead(step, past)
-    count = max(round(abs(value - orbit.value) / (_WIDEST * solver.span)), 1)
+    # Before a fold, where the parameter slows down, as many as its present rate wants.
+    wide = max(abs(value - orbit.value), step * abs(orbit.tangent.value))
+    count = max(round(wide / (_WIDEST * solver.span)), 1)
     guesses = [orbit.ahead(step * j / count, past) for j in range(1, count)]
     orbits, size = solver.all_corrected(
         [(*each, orbit.tangent) for each in (*guesses, (value, guess))]

@@ -176,14 +176,20 @@ class ResponseCurve(Result):
             (at,) = np.nonzero(self.branch == number)
             if len(at) < 2:
                 continue
-            turns, points = int(self.turns[at[0]]), np.arange(len(at))
-            fine = np.linspace(0, points[-1], _DRAWN * int(points[-1]) + 1)
-            along = PchipInterpolator(points, factor * self.value[at])(fine)
+            turns = int(self.turns[at[0]])
             # A special point is all but stable: what it leads to decides.
             holds = self.stable[at[:-1]] & self.stable[at[1:]]
             ends = [0, *(np.flatnonzero(np.diff(holds)) + 1).tolist(), len(holds)]
             for size in sizes:
-                shown = PchipInterpolator(points, scale * size[at])(fine)
+                both = np.stack([factor * self.value[at], scale * size[at]])
+                # By the length of the curve as it is seen: motions lie unevenly about folds.
+                extent = np.maximum(np.ptp(both, axis=1, keepdims=True), 1e-300)
+                lengths = np.maximum(np.linalg.norm(np.diff(both) / extent, axis=0), 1e-9)
+                places = np.concatenate([[0.0], np.cumsum(lengths)])
+                fine = np.interp(
+                    np.arange(_DRAWN * (len(at) - 1) + 1) / _DRAWN, np.arange(len(at)), places
+                )
+                along, shown = PchipInterpolator(places, both, axis=1)(fine)
                 for first, last in pairwise(ends):
                     part = slice(_DRAWN * first, _DRAWN * last + 1)
                     style, word = ("-", "stable") if holds[first] else (":", "unstable")

@@ -1,9 +1,14 @@
-"""``elastolink identify``: a table for people, numbers for programs, a picture, refusals."""
+"""``elastolink identify``: a table for people, numbers for programs, a picture, refusals.
+
+And measured points beside what is computed in other pictures.
+"""
 
 import elastolink as el
 import numpy as np
 import pytest
 from command_runs import refused, shown, told
+from elastolink.runtime.core.plotting import new_figure
+from elastolink.runtime.design import Point, draw_points
 
 SCENE = "smith_1972_5152_sixteenth_inch"
 
@@ -55,3 +60,46 @@ def test_what_a_file_does_not_decide_is_said(capsys, measured):
 def test_an_unusable_option_is_one_line(capsys, measured, more, words):
     assert words in refused(capsys, "identify", SCENE, measured, *more)
     assert "none.csv" in refused(capsys, "identify", SCENE, measured.with_name("none.csv"), *more)
+
+
+CHART = ("chart", SCENE, "--x", "speed=700:800:9rpm", "--y", "follower_inertia=0.0006:0.001:5")
+RESPONSE = ("response", "smith_1972_101104_thirtysecond_inch")
+
+
+@pytest.mark.parametrize("command", [CHART, (*RESPONSE, "--speed", "300:310rpm")])
+def test_measured_points_stand_in_pictures_over_the_speed(capsys, measured, tmp_path, command):
+    """At their speeds in rpm, each with its kind; the file was written with rad/s."""
+    path = tmp_path / "picture.svg"
+    shown(capsys, *command, "--plot", path)
+    alone = path.read_text()
+    shown(capsys, *command, "--plot", path, "--points", measured)
+    assert alone.count("measured: unstable") == 0
+    assert path.read_text().count("measured: unstable") >= 2
+
+
+def test_the_lines_of_points_are_where_they_were_measured():
+    ax = new_figure().add_subplot()
+    draw_points(ax, [Point("resonance", 10.0 * np.pi, deviation=np.pi / 15.0)])
+    (line,), (band,) = ax.lines, ax.patches
+    assert list(line.get_xdata()) == pytest.approx([300.0, 300.0], rel=1e-14)
+    assert band.get_x() == pytest.approx(296.0) and band.get_width() == pytest.approx(8.0)
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        (CHART, "no --plot"),
+        (
+            (*CHART[:2], "--x", "mass_per_length=0.08:0.1:3", *CHART[4:], "--plot", "{}"),
+            "over mass",
+        ),
+        (
+            (*RESPONSE, "--speed", "300rpm", "--in", "damping=0.1:0.2", "--plot", "{}"),
+            "over a para",
+        ),
+    ],
+)
+def test_points_have_no_place_in_other_pictures(capsys, measured, tmp_path, command, words):
+    path = str(tmp_path / "picture.png")
+    given = [text.format(path) for text in command]
+    assert words in refused(capsys, *given, "--points", measured)

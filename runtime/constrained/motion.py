@@ -425,8 +425,7 @@ def march(
                 if because:
                     status, message = 1, because
                     break
-                if tick is not None:
-                    tick(count - 1)
+                tick(count - 1)
         except (StoppedEarly, NoConvergence) as reason:
             status, message = 2, f"{reason}, after t = {parts[-1][0][-1]:.6g}"
         t, x, v, a, multipliers = _on_constraints(equations, parts)

@@ -153,8 +153,9 @@ def running_speed(
             )
             best = float(ratios[np.argmin(np.max(_ratios(damping, quiet, allowed), axis=(1, 2)))])
         if band.above is not None:
-            later = None if tick is None else lambda done: tick(first + done)
-            way, chosen = _way_up(system, quiet, band, allowed, length, tried, rtol, later)
+            way, chosen = _way_up(
+                system, quiet, band, allowed, length, tried, rtol, lambda done: tick(first + done)
+            )
     return RunningSpeed(
         method="stress curves over speed, damping and length",
         error=float(np.max(quiet.error)),
@@ -207,7 +208,7 @@ def _way_up(
     length: str,
     tried: Sequence[float],
     rtol: float,
-    tick: Callable[[int], None] | None,
+    tick: Callable[[int], None],
 ) -> tuple[StressEffect, float | None]:
     """Return stresses on the way to the band for several lengths, and the least change that does.
 

@@ -85,8 +85,7 @@ def reproduce(
             if picture is not None:
                 files[f"{entry.stem}.png"] = picture
                 files |= {name: text.encode() for name, text in item.files.items()}
-            if tick is not None:
-                tick(done)
+            tick(done)
     if folder is not None:
         names = ", ".join(sorted({entry.document.capitalize() for entry in chosen}))
         title = f"Figures of {names}, redrawn and checked"

@@ -127,8 +127,7 @@ def special_curve(
             points, ended = plane.walked(start, sign)
             halves.append(points)
             ends.append(ended)
-            if tick is not None:
-                tick(_POINTS * len(halves))
+            tick(_POINTS * len(halves))
     points = [*reversed(halves[0]), start, *halves[1]]
     errors = [value_error(plane.solver(p.second), p.orbit, kind) for p in points]
     return SpecialCurve(

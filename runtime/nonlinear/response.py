@@ -332,7 +332,7 @@ def _all_branches(
     limits: Limits,
     turns: int,
     starts: list[tuple[float, Motion]],
-    tick: Callable[[int], None] | None,
+    tick: Callable[[int], None],
 ) -> tuple[list[Branch], tuple[float, ...]]:
     """Return the branch from either end of the range, and those that begin on it.
 
@@ -380,7 +380,7 @@ def _follow(
     branches: list[Branch],
     queue: list[tuple[Orbit, Measure]],
     turns: int,
-    tick: Callable[[int], None] | None,
+    tick: Callable[[int], None],
     back: tuple[Orbit, Measure] | None = None,
 ) -> None:
     """Follow a branch unless it is known, and add the beginnings of those that start on it.
@@ -394,8 +394,7 @@ def _follow(
     if back is not None and branch.ended != CLOSED:
         branch = followed(solver, back, limits).joined(branch)
     branches.append(branch)
-    if tick is not None:
-        tick(len(branches))
+    tick(len(branches))
     for point in branch.special:
         try:
             if point.kind == "doubling" and 2 * branch.turns <= turns:

@@ -137,8 +137,7 @@ def coexisting_motions(
         for number, motions in enumerate(starts.values()):
             for motion in _together(solver, value, motions, bound):
                 _keep(solver, found, motion)
-            if tick is not None:
-                tick(number + 1)
+            tick(number + 1)
         counts["known ones, deflated"] = len(found) + 1
         for start in [first_motion(problem), *found]:
             with suppress(*FAILURES):

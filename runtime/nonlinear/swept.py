@@ -168,8 +168,7 @@ def sweep_response(
                 for speed, extremes, unsure, reached in steps:
                     rows.append((speed, way > 0, *extremes, unsure))
                     state = reached
-                    if tick is not None:
-                        tick(len(rows))
+                    tick(len(rows))
             except (Lost, NotFinite) as failure:
                 stopped = f"at {rows[-1][0] if rows else low:.6g} rad/s: {failure}"
                 break
@@ -397,8 +396,7 @@ def basins(
                 found[i] = attractors.reached(partial(_marched, marcher, speed), states[i : i + 1])[
                     0
                 ]
-                if tick is not None:
-                    tick(i + 1)
+                tick(i + 1)
     return Basins(
         method="map of a revolution on a grid" if n == 1 else "marching by revolutions",
         error=wrong,
@@ -473,8 +471,7 @@ def _mapped(
         for i, q in enumerate(axes[0]):
             before = np.column_stack([np.full(_GRID, q), axes[1]])
             later[i] = _marched(marcher, speed, before)
-            if tick is not None:
-                tick(i + 1)
+            tick(i + 1)
     lost = np.any(np.isnan(later), axis=2)
     filled = np.where(lost[..., None], 0.0, later)
     splines = [RectBivariateSpline(*axes, filled[..., i]) for i in range(2)]

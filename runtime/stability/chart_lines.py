@@ -153,7 +153,7 @@ _NEARLY_ALL = 0.8
 
 # Invariants at values of the inner variable, and the weights of their errors.
 Samples = Callable[[Array], tuple[Array, Array]]
-Tick = Callable[[int], None] | None
+Tick = Callable[[int], None]
 # Value of the outer axis, ends and values of the variable of the inner one.
 _Place = tuple[float, float, float, Array]
 
@@ -500,8 +500,7 @@ class _Surface:
         ):
             self.kept[place] = found
             done += 1
-            if tick is not None:
-                tick(done)
+            tick(done)
         rows = [self.kept[float(place)] for place in places]
         return _Found(
             places, np.stack([r[0] for r in rows]), np.stack([r[1] for r in rows]), not lines

@@ -332,8 +332,7 @@ def _pieces(
         for place, piece in run_on(executor, plan.piece, wanted):
             yield wanted[place], piece
             done += sizes[place].stop - sizes[place].start
-            if tick is not None:
-                tick(done)
+            tick(done)
 
 
 class Summary:

@@ -146,7 +146,7 @@ def identify(
     values = np.array([point.measured for point in measured])
     deviations = np.array([point.deviation or point.measured for point in measured])
     start = np.array([float(system.parameters[name]) for name in names])
-    computing = _Computing(system, names, measured, window)
+    computing = _Computings(system, names, measured, window)
     _require_all(computing(start), measured, window)
 
     def residuals(logarithms: Array) -> Array:
@@ -263,6 +263,44 @@ def _require_all(computed: Array, points: Iterable[Point], window: float) -> Non
             fix = "start from other values, or widen the window"
             problems.append(Problem(f"point {i}", words, expected, fix))
     refuse(problems)
+
+
+class _Computings:
+    """What is computed at the measured points with other numbers, each on its own machine."""
+
+    def __init__(
+        self,
+        system: LinearPeriodic,
+        names: tuple[str, ...],
+        points: tuple[Point, ...],
+        window: float,
+    ) -> None:
+        machines: dict[tuple[tuple[str, float], ...], list[int]] = {}
+        for i, point in enumerate(points):
+            machines.setdefault(tuple(sorted(point.given.items())), []).append(i)
+        self.size = len(points)
+        self.parts = [
+            (at, _Computing(_run_with(system, names, given, at[0]), names, some, window))
+            for given, at in machines.items()
+            for some in [tuple(points[i] for i in at)]
+        ]
+
+    def __call__(self, values: Array) -> Array:
+        found = np.empty(self.size)
+        for at, computing in self.parts:
+            found[at] = computing(values)
+        return found
+
+
+def _run_with(
+    system: LinearPeriodic, names: tuple[str, ...], given: tuple[tuple[str, float], ...], place: int
+) -> LinearPeriodic:
+    """Return the system with what the machine was run with, refused where that is not known."""
+    wrong = [name for name, _ in given if name in names or name not in system.parameters]
+    if wrong:
+        known = f"one of {sorted(set(system.parameters) - set(names))}: known or unknown, not both"
+        raise bad(f"point {place + 1}", repr(wrong[0]), known, "correct the column")
+    return system.with_parameters(**dict(given)) if given else system
 
 
 class _Computing:

@@ -5,14 +5,15 @@ from __future__ import annotations
 import csv
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from ..core.errors import BadInput, Problem, bad, refuse
 from ..core.inputs import is_finite
 from ..core.plotting import RPM, Axes
-from ..core.units import to_si
+from ..core.units import DIMENSIONS, to_si
 
 KINDS = ("resonance", "unstable from", "unstable to", "deflection")
 # Columns of a file by their dimension; None for the one that holds words.
@@ -44,17 +45,21 @@ class Point:
         Largest deflection of the link from its chord [m], of the kind ``"deflection"`` alone.
     deviation : float, optional
         Standard deviation of what is measured [rad/s; m for a deflection].
+    given : mapping, optional
+        Parameters [SI] that the machine was run with, where they are not those of the scene.
 
     Raises
     ------
     BadInput
-        If the kind is unknown, a number is not positive, or a deflection lacks or is too many.
+        If the kind is unknown, a number is not positive or finite, or a deflection lacks or is too
+        many.
     """
 
     kind: str
     speed: float
     deflection: float | None = None
     deviation: float | None = None
+    given: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         problems = []
@@ -70,6 +75,9 @@ class Point:
             problems.append(
                 Problem("deflection", f"{found} for {self.kind!r}", expected, "mend it")
             )
+        if not (isinstance(self.given, Mapping) and all(map(is_finite, self.given.values()))):
+            fix = "name each with its value"
+            problems.append(Problem("given", repr(self.given), "names of finite numbers", fix))
         refuse(problems)
 
     @property
@@ -82,8 +90,9 @@ def read_points(path: str | os.PathLike[str]) -> tuple[Point, ...]:
     """Return the measured points of a CSV file.
 
     Its first line names the columns with their units: ``kind`` and ``speed [rpm]``, and as far as
-    they are known ``deflection [mm]``, ``speed deviation [rpm]``, ``deflection deviation [mm]``.
-    Empty fields are none; lines that begin with # are left out.
+    they are known ``deflection [mm]``, ``speed deviation [rpm]``, ``deflection deviation [mm]``;
+    others are parameters that the machine was run with, ``follower_inertia [kg m^2]``, in SI units
+    where no unit is named.  Empty fields are none; lines that begin with # are left out.
 
     Raises
     ------
@@ -100,11 +109,12 @@ def read_points(path: str | os.PathLike[str]) -> tuple[Point, ...]:
     lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if _holds(line)]
     if len(lines) < 2:
         raise bad(name, "no rows", "a first line of names and points below", f"write {_FORM}")
-    (number, header), *rows = zip(
-        (i for i, _ in lines), csv.reader(line for _, line in lines), strict=True
-    )
+    try:
+        (number, header), *rows = [(i, next(csv.reader([line]))) for i, line in lines]
+    except csv.Error as problem:
+        raise bad(name, str(problem), "fields between commas", f"write {_FORM}") from problem
     columns = [_column(field, f"{name}, line {number}") for field in header]
-    known = [column for column, _ in columns]
+    known = [column for column, *_ in columns]
     if len(set(known)) < len(known) or not {"kind", "speed"} <= set(known):
         raise bad(f"{name}, line {number}", ", ".join(header), "kind, speed and more, once", _FORM)
     return tuple(_point(fields, columns, f"{name}, line {i}") for i, fields in rows)
@@ -114,38 +124,47 @@ def _holds(line: str) -> bool:
     return bool(line.strip()) and not line.lstrip().startswith("#")
 
 
-def _column(field: str, where: str) -> tuple[str, str]:
-    """Return name and unit of a column."""
+def _column(field: str, where: str) -> tuple[str, str, str | None]:
+    """Return name, unit and dimension of a column."""
     name, _, unit = field.strip().partition("[")
-    name, unit = " ".join(name.split()).lower(), unit.rstrip(" ]")
-    if name not in _COLUMNS:
-        raise bad(where, repr(field.strip()), f"a column of {list(_COLUMNS)}", f"write {_FORM}")
-    dimension = _COLUMNS[name]
-    if (dimension is not None) != bool(unit):
-        raise bad(where, repr(field.strip()), "its unit in brackets", f"write {_FORM}")
-    if dimension is not None:
-        to_si(f"1 {unit}", dimension, where)
-    return name, unit
+    name, unit = " ".join(name.split()), unit.rstrip(" ]")
+    lower = name.lower()
+    if lower in _COLUMNS:
+        dimension = _COLUMNS[lower]
+        if (dimension is not None) != bool(unit):
+            raise bad(where, repr(field.strip()), "its unit in brackets", f"write {_FORM}")
+        if dimension is not None:
+            to_si(f"1 {unit}", dimension, where)
+        return lower, unit, dimension
+    if not name.isidentifier():
+        expected = f"a column of {list(_COLUMNS)}, or a parameter"
+        raise bad(where, repr(field.strip()), expected, f"write {_FORM}")
+    for dimension in DIMENSIONS:
+        with suppress(BadInput):
+            to_si(f"1 {unit}".strip(), dimension, where)
+            return name, unit, dimension
+    raise bad(where, repr(field.strip()), f"a unit of {name} in brackets", "correct the unit")
 
 
-def _point(fields: Sequence[str], columns: Sequence[tuple[str, str]], where: str) -> Point:
+def _point(
+    fields: Sequence[str], columns: Sequence[tuple[str, str, str | None]], where: str
+) -> Point:
     if len(fields) != len(columns):
         raise bad(where, f"{len(fields)} fields", f"{len(columns)}", "one for each column")
-    kind, given = "", {}
-    for field, (name, unit) in zip(fields, columns, strict=True):
-        text, dimension = field.strip(), _COLUMNS[name]
+    kind, values = "", {}
+    for text, (name, unit, dimension) in zip(map(str.strip, fields), columns, strict=True):
         if dimension is None:
             kind = " ".join(text.split()).lower()
         elif text:
-            given[name] = to_si(f"{text} {unit}", dimension, f"{where}, {name}")
+            values[name] = to_si(f"{text} {unit}".strip(), dimension, f"{where}, {name}")
     own = "deflection deviation" if kind == "deflection" else "speed deviation"
-    deviation = given.pop(own, None)
-    left = sorted(name for name in given if name not in ("speed", "deflection"))
-    if left or "speed" not in given:
-        found = f"{left[0]} of {kind!r}" if left else "no speed"
+    other = ({"deflection deviation", "speed deviation"} - {own}).pop()
+    if other in values or "speed" not in values:
+        found = f"{other} of {kind!r}" if other in values else "no speed"
         raise bad(where, found, f"a speed, and no deviation but the {own}", "correct the row")
+    given = {name: value for name, value in values.items() if name not in _COLUMNS}
     try:
-        return Point(kind, given["speed"], given.get("deflection"), deviation)
+        return Point(kind, values["speed"], values.get("deflection"), values.get(own), given)
     except BadInput as refused:
         problems = (replace(p, where=f"{where}, {p.where}") for p in refused.problems)
         raise BadInput(*problems) from refused

@@ -3,6 +3,9 @@
 And measured points beside what is computed in other pictures.
 """
 
+import re
+from pathlib import Path
+
 import elastolink as el
 import numpy as np
 import pytest
@@ -60,6 +63,25 @@ def test_what_a_file_does_not_decide_is_said(capsys, measured):
 def test_an_unusable_option_is_one_line(capsys, measured, more, words):
     assert words in refused(capsys, "identify", SCENE, measured, *more)
     assert "none.csv" in refused(capsys, "identify", SCENE, measured.with_name("none.csv"), *more)
+
+
+def test_the_page_of_measured_points_tells_what_the_command_does(capsys, tmp_path):
+    """Its file, command, table, and what one point alone does not decide."""
+    page = (Path(__file__).parents[3] / "docs" / "measured_points.md").read_text()
+    blocks = dict(re.findall(r"```(csv|console)\n(.*?)```", page, re.DOTALL))
+    table, words = re.findall(r"```text\n(.*?)```", page, re.DOTALL)
+    path = tmp_path / "points.csv"
+    path.write_text(blocks["csv"])
+    command = [path if text == path.name else text for text in blocks["console"].split()[1:]]
+    printed = shown(capsys, *command).splitlines()
+    for line, told_line in zip(printed, table.splitlines(), strict=False):
+        numbers, known = line.split(), told_line.split()
+        assert numbers[0] == known[0]
+        if numbers[0] != "fitted":
+            assert [*map(float, numbers[1:])] == pytest.approx([*map(float, known[1:])], rel=0.02)
+            assert float(numbers[1]) == pytest.approx(float(known[1]), rel=1e-5)
+    path.write_text("\n".join(blocks["csv"].splitlines()[:3]))
+    assert " ".join(words.split()) in " ".join(shown(capsys, *command).split())
 
 
 CHART = ("chart", SCENE, "--x", "speed=700:800:9rpm", "--y", "follower_inertia=0.0006:0.001:5")

@@ -81,7 +81,7 @@ def test_planted_stiffness_and_damping_are_found_from_resonances_and_a_deflectio
     "seed", [pytest.param(seed, marks=pytest.mark.slow) for seed in (1, 2, 3, 4)]
 )
 def test_standard_errors_cover_planted_numbers(seed):
-    """Three of them 99 % of 30 sets of each seed; of all 300 by hand 99.8 % (see the note)."""
+    """Three of them in 98 % of 30 sets of each seed; of 300 by hand in all, one in 70 %."""
     random, inside = np.random.default_rng(seed), []
     exact = np.array([coupler().parameters[name] for name in (STIFFNESS, INERTIA)])
     for _ in range(30):
@@ -115,6 +115,20 @@ def test_one_observation_does_not_decide_two_unknowns():
     assert abs(edges.lower[0] / point.speed - 1.0) < 3e-4
 
 
+def test_points_of_a_machine_with_several_inertias_are_fitted_together():
+    """Stiffness and mass, of which the inertia over the mass alone moves a region."""
+    points = []
+    for factor in (1.0, 1.6):
+        inertia = factor * coupler().parameters[INERTIA]
+        edges = el.stability_edges(coupler(), (70.0, 84.0), **{INERTIA: inertia})
+        ends_of = (("unstable from", edges.lower[0]), ("unstable to", edges.upper[0]))
+        points += [Point(kind, float(v), given={INERTIA: inertia}) for kind, v in ends_of]
+    names = [STIFFNESS, "mass_per_length"]
+    found = identify(started(coupler(), **{names[0]: 1.05, names[1]: 0.97}), points, names)
+    assert found.value == pytest.approx([coupler().parameters[name] for name in names], rel=1e-6)
+    assert found.passed and np.all(found.decided)
+
+
 def test_damping_that_no_point_depends_on_is_left_where_it_is():
     """Undamped regions' ends hardly feel it, and a resonance's speed as little."""
     points = [replace(point, deviation=1e-3 * point.speed) for point in ringing()[:2]]
@@ -146,6 +160,8 @@ def test_values_without_a_point_are_those_of_a_fit_without_it():
         ({"unknown": [STIFFNESS, STIFFNESS]}, "different names"),
         ({"window": 0.0}, "window: found 0.0"),
         ({"system": None}, "system: found"),
+        ({"points": [Point("unstable to", 79.0, given={"mass": 1.0})]}, "point 1: found 'mass'"),
+        ({"points": [Point("unstable to", 79.0, given={STIFFNESS: 1.0})]}, "known or unknown"),
         (
             {"points": [Point("unstable from", 130.0)], "window": 0.03},
             "point 1: found unstable from at 1241.41 rpm",
@@ -172,6 +188,8 @@ def test_what_cannot_be_fitted_is_refused(change, words):
         {"deviation": -1.0},
         {"deflection": 1e-3},
         {"kind": "deflection"},
+        {"given": {"follower_inertia": "large"}},
+        {"given": 3.0},
     ],
 )
 def test_points_that_are_none_are_refused(wrong):
@@ -183,15 +201,17 @@ def test_a_file_of_points_is_read_with_its_units(tmp_path):
     path = tmp_path / "points.csv"
     path.write_text(
         "# run of the fifth of May\n"
-        "Kind, speed [rpm], deflection [in], speed deviation [Hz], deflection deviation [mm]\n"
-        "unstable from, 600, , 0.1,\n\n"
-        "deflection, 300, 0.25, , 0.2\n"
+        "Kind, speed [rpm], deflection [in], speed deviation [Hz], deflection deviation [mm],"
+        " follower_inertia [g m^2]\n"
+        "unstable from, 600, , 0.1,,\n\n"
+        "deflection, 300, 0.25, , 0.2, 2\n"
     )
     first, second = read_points(path)
     assert (first.kind, first.deflection) == ("unstable from", None)
     assert (first.speed, first.deviation) == pytest.approx((20.0 * np.pi, 0.2 * np.pi), rel=1e-15)
     assert (second.kind, second.deflection) == ("deflection", 0.00635)
     assert (second.speed, second.deviation) == pytest.approx((10.0 * np.pi, 0.0002), rel=1e-15)
+    assert first.given == {} and second.given == {"follower_inertia": pytest.approx(0.002)}
     assert first.measured == first.speed and second.measured == second.deflection
 
 
@@ -203,9 +223,14 @@ def test_a_file_of_points_is_read_with_its_units(tmp_path):
         ("kind, speed\nresonance, 3\n", "line 1: found 'speed'; expected its unit"),
         ("kind [rpm], speed [rpm]\nresonance, 3\n", "line 1: found 'kind [rpm]'"),
         ("kind, speed [mm]\nresonance, 3\n", "line 1"),
-        ("kind, rate [rpm]\nresonance, 3\n", "line 1: found 'rate [rpm]'"),
+        ("kind, rate [rpm]\nresonance, 3\n", "line 1: found kind, rate [rpm]"),
+        ("kind, speed [rpm], my mass [kg]\nresonance, 3, 1\n", "line 1: found 'my mass [kg]'"),
+        ("kind, speed [rpm], mass [xyz]\nresonance, 3, 1\n", "line 1"),
         ("kind, deflection [mm]\nresonance, 3\n", "line 1"),
         ("kind, kind\nresonance, 3\n", "line 1"),
+        ('kind, speed [rpm]\n"resonance, 3\nresonance, 3\n', "line 2: found 1 fields"),
+        ("kind; speed [rpm]\nresonance; 3\n", "line 1"),
+        ("kind, speed [rpm]\nresonance, -3\n", "line 2, speed"),
         ("kind, speed [rpm]\nresonance\n", "line 2: found 1 fields"),
         ("kind, speed [rpm]\nresonance, x\n", "line 2, speed"),
         ("kind, speed [rpm]\nresonance,\n", "line 2: found no speed"),

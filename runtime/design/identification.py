@@ -2,34 +2,28 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import LinearRangeWarning, Problem, bad, refuse
+from ..core.errors import Problem, bad, refuse
 from ..core.families import Array, LinearPeriodic
 from ..core.inputs import names_in_a_row, require_between, require_kind
 from ..core.plotting import RPM, Axes, axes_or_new
-from ..core.results import Check, Result
-from ..frequencies import critical_speeds
-from ..frequencies.response_maxima import response_maxima
-from ..periodic import steady_state
-from ..stability import stability_edges
+from ..core.results import Check, Result, provenance
+from .computed_points import Machines
 from .measured import Point, checked_points
 
-# Step of the differences, in logarithms of the numbers, as what is computed is good to 1e-9; and
-# part of a speed beside the expected one within which a resonance is looked for.
-_STEP, _NEAR = 1e-4, 0.003
-# Steps of a fit; the longest one, the one after which derivatives are kept, and the last one.
-_MOST, _LONGEST, _KEPT, _SHORTEST = 20, 0.5, 0.01, 1e-6
+# Looks of a fit; the longest step of the logarithms, the one after which derivatives are kept, and
+# the last one; how far they may move in all.
+_MOST, _LONGEST, _KEPT, _SHORTEST, _WHOLE = 30, 0.5, 0.01, 1e-6, 3.5
 # Standard error, relative, beyond which a number is not decided; the part of the largest effect
-# below which a combination of numbers has none, by what the differences tell apart; and by how many
-# logarithms that may be wrong.
-_UNSURE, _NO_EFFECT, _WIDEST = 0.5, 1e-6, 50.0
+# below which a combination of numbers has none, by what the differences tell apart; by how many
+# logarithms that may be wrong; and deviation, relative, that is assumed where no point is to spare.
+_UNSURE, _NO_EFFECT, _WIDEST, _ASSUMED = 0.5, 1e-6, 50.0, 0.01
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,12 +46,17 @@ class Identification(Result):
         What the points leave open, in words.
     points : tuple of Point
         The k measured points.
+    kind : tuple of str
+        Their kinds.
+    speed : ndarray, shape (k,)
+        Their speeds [rad/s].
     measured, computed : ndarray, shape (k,)
         What was measured and what is computed with the values [rad/s; m for deflections].
     residual : ndarray, shape (k,)
-        Measured less computed, over the standard deviation of the measurement.
+        Measured less computed, over the standard deviation of the measurement; NaN where that is
+        not known.
     without : ndarray, shape (k, n)
-        The values without each point, to first order [SI]; NaN where it alone decides one.
+        The values without each point, to first order [SI]; NaN where that moves one by half.
     scatter : float
         Root of the mean square of the residuals, over the k - n that are free; NaN if none is.
     """
@@ -69,6 +68,8 @@ class Identification(Result):
     decided: NDArray[np.bool_]
     undecided: tuple[str, ...]
     points: tuple[Point, ...] = field(repr=False)
+    kind: tuple[str, ...]
+    speed: Array
     measured: Array
     computed: Array
     residual: Array
@@ -77,7 +78,7 @@ class Identification(Result):
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
         **dict.fromkeys(("error", "value", "start", "deviation", "decided"), ("unknown",)),
-        **dict.fromkeys(("measured", "computed", "residual"), ("point",)),
+        **dict.fromkeys(("speed", "measured", "computed", "residual"), ("point",)),
         "without": ("point", "unknown"),
     }
 
@@ -105,8 +106,9 @@ def identify(
 
     Speeds of resonance are maxima of the steady deflection (:func:`critical_speeds`, ``response``),
     ends of unstable regions those of :func:`stability_edges`, deflections those of
-    :func:`steady_state`.  Each point is compared with the computed one of its kind that is nearest.
-    The logarithms of the numbers are fitted, so that they stay positive.
+    :func:`steady_state`.  To begin with each point is paired with the computed one of its kind that
+    is nearest; then that is followed by its modes and order.  The logarithms of the numbers are
+    fitted, so that they stay positive, by Levenberg's and Marquardt's iteration.
 
     Parameters
     ----------
@@ -115,6 +117,8 @@ def identify(
     points : sequence of Point
         Measured points, for example of :func:`read_points`.  Standard deviations are those that
         the points tell; if none tells one, all have the same, relative, which the residuals tell.
+        Where there are no more points than numbers nothing tells it: then 1 % decides what is
+        decided, and standard errors are NaN.
     unknown : sequence of str
         Names of ``system.parameters``, of values above 0.
     window : float
@@ -124,12 +128,19 @@ def identify(
     -------
     Identification
         Its checks: ``converged``, the last step over the standard error or 1e-6 of the numbers;
-        ``fit``, the scatter against 3 where the points tell their deviations.
+        ``fit``, the scatter against 3 where the points tell their deviations; and those of what is
+        computed with the values.
 
     Raises
     ------
     BadInput
-        If an argument is unusable, or a point has no computed one within its window to begin with.
+        If an argument is unusable, or to begin with a point has no computed one within its window,
+        or two that are about as near.
+
+    Warns
+    -----
+    LinearRangeWarning
+        If a deflection passes 5 % of the length with the values.
     """
     require_kind("system", system, LinearPeriodic, "take the .system() of a linear scene")
     measured = checked_points(points)
@@ -146,79 +157,57 @@ def identify(
     values = np.array([point.measured for point in measured])
     deviations = np.array([point.deviation or point.measured for point in measured])
     start = np.array([float(system.parameters[name]) for name in names])
-    computing = _Computings(system, names, measured, window)
-    _require_all(computing(start), measured, window)
+    machines = Machines(system, names, measured, window)
 
     def residuals(logarithms: Array) -> Array:
-        off = (values - computing(start * np.exp(logarithms))) / deviations
-        return np.where(np.isfinite(off), off, 1e3)  # as far off as no point is
+        found = machines(start * np.exp(logarithms)).values
+        return np.asarray((values - found) / deviations)
 
+    residuals(np.zeros(len(names)))  # what has no counterpart is refused
+    # What is computed for a structure of beams is good to 1e-6, else to 1e-9.
+    fit = _Fit(residuals, 1e-4 if system.structure is None else 3e-3, all(told))
     speeds = np.array([point.kind != "deflection" for point in measured])
     fitted = np.zeros(len(names))
     # A deflection beside a resonance tells the way only where that all but stands at its place.
     for used in (speeds, np.ones_like(speeds)):
         if np.any(used):
-            fitted = _fitted(residuals, used, fitted, all(told))
-    residual = residuals(fitted)
-    jacobian = _derivative(residuals, fitted)
-    scatter = _scatter(residual, len(names))
-    noise = 1.0 if all(told) else scatter
-    spread = _Spread.of(jacobian, noise)
-    last = _last_step(jacobian, residual, spread)
+            fitted = fit.least(fitted, np.eye(len(names)), used)
+    fitted, residual, spread = fit.settled(fitted)
     best = start * np.exp(fitted)
-    shifts = spread.without_each(jacobian, residual)
-    checks = {"converged": Check(float(np.max(np.abs(last) / spread.tolerance, initial=0.0)), 0.1)}
+    computed = machines(best, quiet=False)
+    last = -spread.inverse @ (spread.jacobian.T @ residual)
+    off = np.abs(spread.inverse @ spread.jacobian.T) @ (computed.errors / deviations)
+    scatter = _scatter(residual, len(names))
+    checks = {
+        **computed.checks,
+        "converged": Check(float(np.max(np.abs(last) / spread.tolerance, initial=0.0)), 0.1),
+    }
     if all(told) and np.isfinite(scatter):
         checks["fit"] = Check(scatter, 3.0)
+    error = np.abs(last) + off
+    deviation = np.where(spread.decided, np.maximum(spread.deviation, error), np.inf)
+    shifts = spread.without_each(residual)
     return Identification(
         method="least squares of the logarithms, by differences",
-        error=np.abs(last) + _STEP**2,
+        error=error,
         error_norm="of each number by the computation, relative",
         checks=checks,
-        provenance=dict(system.provenance),
+        provenance=provenance(system.provenance),
         unknown=names,
         value=best,
         start=start,
-        deviation=best * np.where(spread.decided, spread.deviation, np.inf),
+        deviation=best * deviation,
         decided=spread.decided,
         undecided=spread.words(names),
         points=measured,
+        kind=tuple(point.kind for point in measured),
+        speed=np.array([point.speed for point in measured]),
         measured=values,
-        computed=values - residual * deviations,
-        residual=residual / (scatter if scatter > 0.0 and not all(told) else 1.0),
-        without=best * np.exp(shifts),
+        computed=computed.values,
+        residual=residual / (1.0 if all(told) else scatter if scatter > 0.0 else np.nan),
+        without=np.where(np.abs(shifts) <= _UNSURE, best * np.exp(shifts), np.nan),
         scatter=scatter,
     )
-
-
-def _fitted(
-    residuals: Callable[[Array], Array], used: NDArray[np.bool_], place: Array, told: bool
-) -> Array:
-    """Return the place of the least sum of squares of some residuals, by Gauss-Newton's iteration.
-
-    It leaves what the points do not decide where it is.
-    """
-
-    def some(place: Array) -> Array:
-        return residuals(place)[used]
-
-    here, moved = some(place), np.inf
-    for _ in range(_MOST):
-        if moved > _KEPT:
-            steps = _STEP * np.eye(len(place))
-            slopes = np.stack([(some(place + step) - here) / _STEP for step in steps], axis=-1)
-        step = _last_step(slopes, here, _Spread.of(slopes, 1.0 if told else _scatter(here, 1)))
-        step *= min(1.0, _LONGEST / max(float(np.max(np.abs(step))), 1e-300))
-        ahead = some(place + step)
-        while np.sum(ahead**2) > np.sum(here**2) and np.max(np.abs(step)) > _SHORTEST:
-            step *= 0.25
-            ahead = some(place + step)
-        if not np.sum(ahead**2) <= np.sum(here**2):
-            break
-        place, here, moved = place + step, ahead, float(np.max(np.abs(step)))
-        if moved <= _SHORTEST:
-            break
-    return place
 
 
 def _scatter(residual: Array, unknown: int) -> float:
@@ -227,13 +216,93 @@ def _scatter(residual: Array, unknown: int) -> float:
     return float(np.sqrt(np.sum(residual**2) / free)) if free > 0 else np.nan
 
 
-def _derivative(residuals: Callable[[Array], Array], place: Array) -> Array:
-    """Return the derivative of the residuals by differences to both sides, ``(k, n)``."""
-    steps = _STEP * np.eye(len(place))
-    columns = [
-        (residuals(place + step) - residuals(place - step)) / (2.0 * _STEP) for step in steps
-    ]
-    return np.stack(columns, axis=-1)
+@dataclass(frozen=True)
+class _Fit:
+    """Least squares of residuals, NaN where there is nothing to compare, by logarithms."""
+
+    residuals: Callable[[Array], Array]
+    step: float  # of the differences
+    told: bool  # whether residuals have deviation 1
+
+    def least(self, place: Array, ways: Array, used: NDArray[np.bool_]) -> Array:
+        """Return the place of the least sum of squares of some residuals, along ways ``(n, m)``.
+
+        By Levenberg's and Marquardt's iteration; a step that loses a point is none.
+        """
+
+        def some(place: Array) -> Array:
+            return self.residuals(place)[used]
+
+        here, moved, damping, slopes = some(place), np.inf, 1e-3, np.empty((0, 0))
+        for _ in range(_MOST):
+            if moved > _KEPT:
+                slopes = self._slopes(some, place, here, ways)
+            left, effects, right = np.linalg.svd(slopes, full_matrices=False)
+            least = max(_NO_EFFECT * float(effects[0]), 1e-300)
+            gains = effects / (effects**2 + (damping * effects[0]) ** 2 + least**2)
+            step = ways @ (right.T @ (np.where(effects > least, -gains, 0.0) * (left.T @ here)))
+            step *= min(1.0, _LONGEST / max(float(np.max(np.abs(step))), 1e-300))
+            step = np.clip(place + step, -_WHOLE, _WHOLE) - place
+            size, ahead = float(np.max(np.abs(step))), some(place + step)
+            if np.sum(ahead**2) <= np.sum(here**2):
+                place, here, moved, damping = place + step, ahead, size, 0.1 * damping
+            elif moved <= _KEPT:
+                moved = np.inf  # once more, with derivatives from here
+                continue
+            else:
+                moved, damping = 0.0, max(damping, 1e-4) * 10.0
+            if size <= _SHORTEST:
+                break
+        return place
+
+    def settled(self, place: Array) -> tuple[Array, Array, _Spread]:
+        """Return the place at which what is not decided is as at first, with residuals and spread.
+
+        That is where the fit may not tell it from the best one.
+        """
+        n, here = len(place), self.residuals(place)
+        spread = self._spread(place, here)
+        if not spread.known:
+            # No point is to spare: what was open at first has been moved to meet them at any cost.
+            first = self._spread(0.0 * place, self.residuals(0.0 * place))
+            spread = first if np.any(first.open) else spread
+        if np.any(spread.open):
+            kept = spread.directions[:, ~spread.open]
+            back = kept @ (kept.T @ place)
+            if np.all(np.isfinite(self.residuals(back))):
+                back = self.least(back, kept, np.ones(len(here), bool)) if kept.size else back
+                there = self.residuals(back)
+                worse = float(np.sum(there**2) - np.sum(here**2))
+                if not spread.known or worse <= 4.0 * n * spread.noise**2 + 1e-12:
+                    return back, there, self._spread(back, there)
+        return place, here, spread
+
+    def _spread(self, place: Array, here: Array) -> _Spread:
+        ways = np.eye(len(place))
+        columns = [self._slope(self.residuals, place, here, way) for way in ways]
+        scatter = 1.0 if self.told else _scatter(here, len(place))
+        known = bool(np.isfinite(scatter))
+        return _Spread(np.stack(columns, axis=-1), scatter if known else _ASSUMED, known)
+
+    def _slopes(
+        self, some: Callable[[Array], Array], place: Array, here: Array, ways: Array
+    ) -> Array:
+        """Return forward differences along ways, backward ones where a point is lost."""
+        columns = []
+        for way in ways.T:
+            ahead = (some(place + self.step * way) - here) / self.step
+            if not np.all(np.isfinite(ahead)):
+                ahead = (here - some(place - self.step * way)) / self.step
+            columns.append(np.where(np.isfinite(ahead), ahead, 0.0))
+        return np.stack(columns, axis=-1)
+
+    def _slope(
+        self, some: Callable[[Array], Array], place: Array, here: Array, way: Array
+    ) -> Array:
+        """Return differences to both sides, to one where a point is lost."""
+        ahead, behind = (some(place + side * self.step * way) for side in (1.0, -1.0))
+        ahead, behind = (np.where(np.isfinite(each), each, here) for each in (ahead, behind))
+        return np.asarray((ahead - behind) / (2.0 * self.step))
 
 
 def _checked_names(system: LinearPeriodic, unknown: Sequence[str]) -> tuple[str, ...]:
@@ -253,191 +322,74 @@ def _checked_names(system: LinearPeriodic, unknown: Sequence[str]) -> tuple[str,
     return names
 
 
-def _require_all(computed: Array, points: Iterable[Point], window: float) -> None:
-    """Refuse points that have no computed one to begin with."""
-    problems = []
-    for i, (point, value) in enumerate(zip(points, computed.tolist(), strict=True), 1):
-        if not np.isfinite(value):
-            words = f"{point.kind} at {point.speed * RPM:.6g} rpm"
-            expected = f"a computed one within {100 * window:g} % of the speed"
-            fix = "start from other values, or widen the window"
-            problems.append(Problem(f"point {i}", words, expected, fix))
-    refuse(problems)
-
-
-class _Computings:
-    """What is computed at the measured points with other numbers, each on its own machine."""
-
-    def __init__(
-        self,
-        system: LinearPeriodic,
-        names: tuple[str, ...],
-        points: tuple[Point, ...],
-        window: float,
-    ) -> None:
-        machines: dict[tuple[tuple[str, float], ...], list[int]] = {}
-        for i, point in enumerate(points):
-            machines.setdefault(tuple(sorted(point.given.items())), []).append(i)
-        self.size = len(points)
-        self.parts = [
-            (at, _Computing(_run_with(system, names, given, at[0]), names, some, window))
-            for given, at in machines.items()
-            for some in [tuple(points[i] for i in at)]
-        ]
-
-    def __call__(self, values: Array) -> Array:
-        found = np.empty(self.size)
-        for at, computing in self.parts:
-            found[at] = computing(values)
-        return found
-
-
-def _run_with(
-    system: LinearPeriodic, names: tuple[str, ...], given: tuple[tuple[str, float], ...], place: int
-) -> LinearPeriodic:
-    """Return the system with what the machine was run with, refused where that is not known."""
-    wrong = [name for name, _ in given if name in names or name not in system.parameters]
-    if wrong:
-        known = f"one of {sorted(set(system.parameters) - set(names))}: known or unknown, not both"
-        raise bad(f"point {place + 1}", repr(wrong[0]), known, "correct the column")
-    return system.with_parameters(**dict(given)) if given else system
-
-
-class _Computing:
-    """What is computed at the measured points with other numbers; NaN where there is nothing."""
-
-    def __init__(
-        self,
-        system: LinearPeriodic,
-        names: tuple[str, ...],
-        points: tuple[Point, ...],
-        window: float,
-    ) -> None:
-        self.system, self.names, self.points, self.window = system, names, points, window
-        # Of the resonances: mode, order, and their speed over the mode's mean frequency.
-        self._followed: tuple[NDArray[np.int64], Array] | None = None
-
-    def __call__(self, values: Array) -> Array:
-        system = self.system.with_parameters(**dict(zip(self.names, values.tolist(), strict=True)))
-        found = np.full(len(self.points), np.nan)
-        with warnings.catch_warnings():
-            # The fit passes values that are not those of the machine.
-            warnings.simplefilter("ignore", LinearRangeWarning)
-            if at := self._of("resonance"):
-                found[at] = self._resonances(system, at)
-            if at := self._of("unstable from", "unstable to"):
-                edges = stability_edges(system, self._span(at))
-                seen = edges.lower < edges.upper
-                for kind, speeds in (("from", edges.lower[seen]), ("to", edges.upper[seen])):
-                    own = self._of(f"unstable {kind}")
-                    self._nearest(found, own, speeds, own)
-            if at := self._of("deflection"):
-                state = steady_state(system, [self.points[i].speed for i in at], rtol=1e-9)
-                for i, q in zip(at, state.q, strict=True):
-                    largest = system.largest_deflection(state.theta, q[None]) or np.nan
-                    found[i] = largest * system.reference_length
-        return found
-
-    def _resonances(self, system: LinearPeriodic, at: list[int]) -> Array:
-        """Return the resonances of the points; those that were found at first are followed."""
-        span, speeds = self._span(at), np.full(len(at), np.nan)
-        if self._followed is None:
-            first = critical_speeds(system, span, method="response")
-            self._nearest(speeds, at, first.speed, range(len(at)))
-            if not np.all(np.isfinite(speeds)):
-                return speeds
-            modes = first.mode[[int(np.argmin(np.abs(first.speed - speed))) for speed in speeds]]
-            self._followed = modes, speeds / first.mean_frequency[modes - 1]
-            return speeds
-        modes, ratios = self._followed
-        means = critical_speeds(system, span, modes=int(np.max(modes))).mean_frequency
-        expected = ratios * means[modes - 1]
-        return response_maxima(system, expected * (1.0 - _NEAR), expected * (1.0 + _NEAR))[0]
-
-    def _of(self, *kinds: str) -> list[int]:
-        return [i for i, point in enumerate(self.points) if point.kind in kinds]
-
-    def _span(self, at: list[int]) -> tuple[float, float]:
-        speeds = [self.points[i].speed for i in at]
-        return min(speeds) * (1.0 - self.window), max(speeds) * (1.0 + self.window)
-
-    def _nearest(self, found: Array, at: list[int], speeds: Array, places: Iterable[int]) -> None:
-        for place, i in zip(places, at, strict=True):
-            off = np.abs(speeds - self.points[i].speed)
-            if len(off) and np.min(off) <= self.window * self.points[i].speed:
-                found[place] = speeds[np.argmin(off)]
-
-
-@dataclass(frozen=True)
 class _Spread:
-    """How well the logarithms of numbers are known, by the singular values of their effect."""
+    """How well the logarithms of numbers are known, by the singular values of their effect.
 
-    directions: Array  # (n, n): combinations of the numbers, as columns
-    effects: Array  # (n,): what each does to all residuals; 0 where the points do not tell
-    noise: float  # standard deviation of the residuals; NaN where it is not known
+    Of the derivatives ``(k, n)`` of residuals of standard deviation ``noise``, which is ``known``
+    or assumed.
+    """
 
-    @classmethod
-    def of(cls, jacobian: Array, noise: float) -> _Spread:
-        """Return it from the derivatives ``(k, n)`` of residuals."""
+    def __init__(self, jacobian: Array, noise: float, known: bool) -> None:
         n = jacobian.shape[1]
+        self.jacobian, self.noise, self.known = jacobian, noise, known
         _, effects, rows = np.linalg.svd(np.vstack([jacobian, np.zeros((n, n))]))
         tells = effects > _NO_EFFECT * max(float(effects[0]), np.finfo(float).tiny)
-        return cls(rows.T, np.where(tells, effects, 0.0), noise)
+        # Combinations of the numbers as columns, and what each does to all residuals.
+        self.directions, self._effects = rows.T, np.where(tells, effects, 0.0)
+        width = np.full(n, _WIDEST)
+        np.divide(noise, self._effects, out=width, where=tells)
+        self._width = np.minimum(width, _WIDEST)
 
     @property
-    def width(self) -> Array:
-        """Standard error along each combination, within bounds; none that is not known."""
-        noise = self.noise if np.isfinite(self.noise) else 0.0
-        found = np.full(len(self.effects), _WIDEST)
-        np.divide(noise, self.effects, out=found, where=self.effects > 0.0)
-        return np.asarray(np.minimum(found, _WIDEST))
+    def _shares(self) -> Array:
+        """Standard errors of the numbers by each combination, ``(n, n)``."""
+        return np.asarray(np.abs(self.directions) * self._width)
 
     @property
     def open(self) -> NDArray[np.bool_]:
-        """Which combinations the points do not decide."""
-        return np.asarray(self.width > _UNSURE)
-
-    @property
-    def deviation(self) -> Array:
-        """Standard errors of the logarithms; NaN where as many points as numbers tell none."""
-        if not np.isfinite(self.noise):
-            return np.full(len(self.effects), np.nan)
-        return np.asarray(np.linalg.norm(self.directions * self.width, axis=1))
+        """Which combinations leave a number undecided."""
+        return np.asarray(np.any(self._shares > _UNSURE, axis=0))
 
     @property
     def decided(self) -> NDArray[np.bool_]:
-        """Which numbers they decide."""
-        left = np.where(self.open, self.width, 0.0)
-        return np.asarray(np.linalg.norm(self.directions * left, axis=1) <= _UNSURE)
+        """Which numbers are decided."""
+        return np.asarray(~np.any(self._shares > _UNSURE, axis=1))
+
+    @property
+    def deviation(self) -> Array:
+        """Standard errors of the logarithms; NaN where no point is to spare."""
+        found = np.linalg.norm(self._shares, axis=1)
+        return np.asarray(found if self.known else np.full(len(found), np.nan))
 
     @property
     def tolerance(self) -> Array:
         """What a step of each logarithm is measured by."""
         known = np.where(np.isfinite(self.deviation), self.deviation, 0.0)
-        return np.maximum(known, 1e-6)
+        return np.asarray(np.maximum(known, 1e-6))
 
     @property
     def inverse(self) -> Array:
         """Covariance of the logarithms over the variance of the residuals, decided ones alone."""
-        gains = np.zeros(len(self.effects))
-        np.divide(1.0, self.effects, out=gains, where=(self.effects > 0.0) & ~self.open)
+        gains = np.zeros(len(self._effects))
+        np.divide(1.0, self._effects, out=gains, where=(self._effects > 0.0) & ~self.open)
         return np.asarray((self.directions * gains**2) @ self.directions.T)
 
-    def without_each(self, jacobian: Array, residuals: Array) -> Array:
+    def without_each(self, residuals: Array) -> Array:
         """Return by how much the logarithms move if one point is left out, ``(k, n)``."""
-        gain = jacobian @ self.inverse
-        held = np.sum(gain * jacobian, axis=1)
+        gain = self.jacobian @ self.inverse
+        held = np.sum(gain * self.jacobian, axis=1)
         alone = held > 1.0 - 1e-6
         weight = np.divide(residuals, 1.0 - held, out=np.full(len(held), np.nan), where=~alone)
         return np.asarray(gain * weight[:, None])
 
     def words(self, names: tuple[str, ...]) -> tuple[str, ...]:
         """Return what is left open, in words."""
-        told, known = [], self.decided
-        for direction in self.directions[:, self.open].T:
-            most = int(np.argmax(np.abs(direction)))
+        told = []
+        for k in np.flatnonzero(self.open).tolist():
+            direction, shares = self.directions[:, k], self._shares[:, k]
+            most = int(np.argmax(shares))
             parts = direction / direction[most]
-            others = [i for i in range(len(names)) if i != most and not known[i]]
+            others = [i for i in range(len(names)) if i != most and shares[i] > _UNSURE]
             if not others:
                 told.append(f"{names[most]} is not decided: the points hardly depend on it")
                 continue
@@ -447,8 +399,3 @@ class _Spread:
                 f"hardly change if {names[most]} changes by +1 % and {along}"
             )
         return tuple(told)
-
-
-def _last_step(jacobian: Array, residuals: Array, spread: _Spread) -> Array:
-    """Return the step of the logarithms that Newton's iteration would still take, ``(n,)``."""
-    return np.asarray(-spread.inverse @ (jacobian.T @ residuals))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import os
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -63,7 +64,7 @@ class Point:
 
     def __post_init__(self) -> None:
         problems = []
-        if self.kind not in KINDS:
+        if not isinstance(self.kind, str) or self.kind not in KINDS:
             problems.append(Problem("kind", repr(self.kind), f"one of {KINDS}", "correct it"))
         for name in ("speed", "deflection", "deviation"):
             value = getattr(self, name)
@@ -100,19 +101,16 @@ def read_points(path: str | os.PathLike[str]) -> tuple[Point, ...]:
         If the file cannot be read, a column is unknown or lacks its unit, or a row is unusable:
         the message names the line.
     """
-    name = os.fspath(path)
     try:
         text = Path(path).read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as problem:
+    except (OSError, TypeError, ValueError) as problem:  # ValueError: no text, no path
         fix = "give the path of a CSV file"
-        raise bad("points", f"{name}: {problem}", "a text file", fix) from problem
+        raise bad("points", f"{path!r}: {problem}", "a text file", fix) from problem
+    name = os.fspath(path)
     lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if _holds(line)]
     if len(lines) < 2:
         raise bad(name, "no rows", "a first line of names and points below", f"write {_FORM}")
-    try:
-        (number, header), *rows = [(i, next(csv.reader([line]))) for i, line in lines]
-    except csv.Error as problem:
-        raise bad(name, str(problem), "fields between commas", f"write {_FORM}") from problem
+    (number, header), *rows = [(i, _fields(line, f"{name}, line {i}")) for i, line in lines]
     columns = [_column(field, f"{name}, line {number}") for field in header]
     known = [column for column, *_ in columns]
     if len(set(known)) < len(known) or not {"kind", "speed"} <= set(known):
@@ -124,10 +122,19 @@ def _holds(line: str) -> bool:
     return bool(line.strip()) and not line.lstrip().startswith("#")
 
 
+def _fields(line: str, where: str) -> list[str]:
+    try:
+        return next(csv.reader([line], skipinitialspace=True, strict=True))
+    except csv.Error as problem:
+        raise bad(where, str(problem), "fields between commas", f"write {_FORM}") from problem
+
+
 def _column(field: str, where: str) -> tuple[str, str, str | None]:
     """Return name, unit and dimension of a column."""
-    name, _, unit = field.strip().partition("[")
-    name, unit = " ".join(name.split()), unit.rstrip(" ]")
+    form = re.fullmatch(r"([^\[\]]*?)\s*(?:\[\s*([^\[\]]*?)\s*\])?", field.strip())
+    if form is None:
+        raise bad(where, repr(field.strip()), "a name and its unit in brackets", f"write {_FORM}")
+    name, unit = " ".join(form[1].split()), form[2] or ""
     lower = name.lower()
     if lower in _COLUMNS:
         dimension = _COLUMNS[lower]
@@ -156,6 +163,7 @@ def _point(
         if dimension is None:
             kind = " ".join(text.split()).lower()
         elif text:
+            to_si(text, "dimensionless", f"{where}, {name}")  # a plain number
             values[name] = to_si(f"{text} {unit}".strip(), dimension, f"{where}, {name}")
     own = "deflection deviation" if kind == "deflection" else "speed deviation"
     other = ({"deflection deviation", "speed deviation"} - {own}).pop()

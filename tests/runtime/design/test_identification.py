@@ -91,12 +91,56 @@ def test_standard_errors_cover_planted_numbers(seed):
     assert np.mean(inside) >= 0.98
 
 
+DAMPED = (79.32853744, 80.04444889)  # ends of region 4 with a damping of 0.3 [rad/s]
+
+
+@pytest.mark.parametrize("told", [True, False])
+@pytest.mark.parametrize("start", [0.05, 0.2])
+def test_damping_is_found_from_where_the_ends_hardly_feel_it(start, told):
+    """Ends shift with its square: at 0.05 by a sixth of what they do at 0.3."""
+    points = [
+        Point(kind, speed, deviation=0.02 if told else None)
+        for kind, speed in zip(("unstable from", "unstable to"), DAMPED, strict=True)
+    ]
+    found = identify(coupler(start), points, ["damping"])
+    assert found.value == pytest.approx([0.3], rel=1e-6) and np.all(found.decided)
+
+
+def test_a_step_that_closes_the_region_is_none():
+    """Ends known to a millionth, from far off: more damping leaves no region to compare."""
+    point = Point("unstable from", DAMPED[0], deviation=1e-4)
+    found = identify(coupler(0.05), [point], ["damping"])
+    assert found.value == pytest.approx([0.3], rel=1e-5)
+    assert found.computed == pytest.approx(found.measured, rel=1e-8)
+
+
+def test_a_resonance_that_hardly_stands_out_is_found():
+    """The tenth part of the frequency: a peak of one per cent, 0.002 rad/s wide."""
+    found = identify(coupler(0.002), [Point("resonance", 16.34579802, deviation=0.01)], [STIFFNESS])
+    assert found.value == pytest.approx(found.start, rel=1e-7)
+
+
+def test_stiffness_and_mass_of_which_one_ratio_is_sharp_are_open_together():
+    """What is decided is said of both or of neither."""
+    for part in (3e-3, 3e-2):
+        points = [replace(point, deviation=part * point.speed) for point in ends()]
+        found = identify(coupler(), points, [STIFFNESS, "mass_per_length"])
+        assert found.decided[0] == found.decided[1]
+        assert np.all(found.decided) == (not found.undecided)
+        if found.undecided:
+            assert all(name in found.undecided[0] for name in found.unknown)
+
+
 def test_as_many_points_as_numbers_are_met_without_a_standard_error():
     begin = started(coupler(), **{STIFFNESS: 1.05})
     found = identify(begin, ends()[:1], [STIFFNESS])
     assert found.value == pytest.approx([coupler().parameters[STIFFNESS]], rel=1e-6)
     assert np.isnan(found.deviation[0]) and found.decided[0] and np.isnan(found.scatter)
-    assert np.all(np.isnan(found.without))
+    assert np.all(np.isnan(found.without)) and np.isnan(found.residual[0])
+    # A resonance off by a thousandth says nothing of the damping, exactly as it could be met.
+    off = replace(ringing()[1], speed=1.001 * ringing()[1].speed)
+    found = identify(coupler(0.05), [off], ["damping"])
+    assert not found.decided[0] and found.value == pytest.approx([0.05], rel=1e-12)
 
 
 def test_one_observation_does_not_decide_two_unknowns():
@@ -160,6 +204,10 @@ def test_values_without_a_point_are_those_of_a_fit_without_it():
         ({"unknown": [STIFFNESS, STIFFNESS]}, "different names"),
         ({"window": 0.0}, "window: found 0.0"),
         ({"system": None}, "system: found"),
+        (
+            {"system": started(coupler(), **{STIFFNESS: 1.25}), "points": ends()[1:2]},
+            "computed ones at 692.034 and 841.74 rpm; expected one that is clearly the nearest",
+        ),
         ({"points": [Point("unstable to", 79.0, given={"mass": 1.0})]}, "point 1: found 'mass'"),
         ({"points": [Point("unstable to", 79.0, given={STIFFNESS: 1.0})]}, "known or unknown"),
         (
@@ -228,7 +276,7 @@ def test_a_file_of_points_is_read_with_its_units(tmp_path):
         ("kind, speed [rpm], mass [xyz]\nresonance, 3, 1\n", "line 1"),
         ("kind, deflection [mm]\nresonance, 3\n", "line 1"),
         ("kind, kind\nresonance, 3\n", "line 1"),
-        ('kind, speed [rpm]\n"resonance, 3\nresonance, 3\n', "line 2: found 1 fields"),
+        ('kind, speed [rpm]\n"resonance, 3\nresonance, 3\n', "line 2: found unexpected"),
         ("kind; speed [rpm]\nresonance; 3\n", "line 1"),
         ("kind, speed [rpm]\nresonance, -3\n", "line 2, speed"),
         ("kind, speed [rpm]\nresonance\n", "line 2: found 1 fields"),

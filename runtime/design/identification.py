@@ -184,7 +184,7 @@ def identify(
     }
     if all(told) and np.isfinite(scatter):
         checks["fit"] = Check(scatter, 3.0)
-    error = np.abs(last) + off
+    error = 2.0 * np.abs(last) + off
     deviation = np.where(spread.decided, np.maximum(spread.deviation, error), np.inf)
     shifts = spread.without_each(residual)
     return Identification(
@@ -233,10 +233,9 @@ class _Fit:
         def some(place: Array) -> Array:
             return self.residuals(place)[used]
 
-        here, moved, damping, slopes = some(place), np.inf, 1e-3, np.empty((0, 0))
+        here, damping = some(place), 1e-3
+        slopes, stale = self._slopes(some, place, here, ways), False
         for _ in range(_MOST):
-            if moved > _KEPT:
-                slopes = self._slopes(some, place, here, ways)
             left, effects, right = np.linalg.svd(slopes, full_matrices=False)
             least = max(_NO_EFFECT * float(effects[0]), 1e-300)
             gains = effects / (effects**2 + (damping * effects[0]) ** 2 + least**2)
@@ -244,15 +243,18 @@ class _Fit:
             step *= min(1.0, _LONGEST / max(float(np.max(np.abs(step))), 1e-300))
             step = np.clip(place + step, -_WHOLE, _WHOLE) - place
             size, ahead = float(np.max(np.abs(step))), some(place + step)
-            if np.sum(ahead**2) <= np.sum(here**2):
-                place, here, moved, damping = place + step, ahead, size, 0.1 * damping
-            elif moved <= _KEPT:
-                moved = np.inf  # once more, with derivatives from here
-                continue
-            else:
-                moved, damping = 0.0, max(damping, 1e-4) * 10.0
-            if size <= _SHORTEST:
+            falls = bool(np.sum(ahead**2) <= np.sum(here**2))
+            if falls:
+                place, here, damping = place + step, ahead, 0.1 * damping
+            elif not stale:
+                damping = max(damping, 1e-4) * 10.0
+            if size <= _SHORTEST and (falls or not stale):
                 break
+            # Derivatives are kept after a short step, as long as it leads down.
+            if size > _KEPT if falls else stale:
+                slopes, stale = self._slopes(some, place, here, ways), False
+            else:
+                stale = stale or falls
         return place
 
     def settled(self, place: Array) -> tuple[Array, Array, _Spread]:
@@ -300,9 +302,11 @@ class _Fit:
         self, some: Callable[[Array], Array], place: Array, here: Array, way: Array
     ) -> Array:
         """Return differences to both sides, to one where a point is lost."""
-        ahead, behind = (some(place + side * self.step * way) for side in (1.0, -1.0))
-        ahead, behind = (np.where(np.isfinite(each), each, here) for each in (ahead, behind))
-        return np.asarray((ahead - behind) / (2.0 * self.step))
+        sides = [some(place + side * self.step * way) for side in (1.0, -1.0)]
+        known = [np.isfinite(side) for side in sides]
+        ahead, behind = (np.where(k, side, here) for k, side in zip(known, sides, strict=True))
+        width = self.step * np.maximum(np.sum(known, axis=0), 1)
+        return np.asarray((ahead - behind) / width)
 
 
 def _checked_names(system: LinearPeriodic, unknown: Sequence[str]) -> tuple[str, ...]:

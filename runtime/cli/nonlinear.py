@@ -48,9 +48,9 @@ def _response(options: argparse.Namespace) -> int:
     if options.sweep is not None:
         return _sweep(options, scene, system, told)
     opt.refuse_unused(options, ("kicks",), "--sweep")
-    points = measured_points(options, "a parameter" if getattr(options, "in") else "speed")
     shown = opt.progress(options)
     varied = getattr(options, "in")
+    points = measured_points(options, "a parameter" if varied else "speed")
     if varied is None:
         name, bounds = "speed", speed_range(options.speed, scene, "--speed")
         speed = None

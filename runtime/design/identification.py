@@ -17,9 +17,7 @@ from ..core.results import Check, Result, provenance
 from .computed_points import Machines
 from .measured import Point, checked_points
 
-# Looks of a fit; the longest step of the logarithms, the one after which derivatives are kept, and
-# the last one; how far they may move in all.
-_MOST, _LONGEST, _KEPT, _SHORTEST, _WHOLE = 30, 0.5, 0.01, 1e-6, 3.5
+_MOST, _WHOLE = 40, 3.5  # looks of a fit, and how far the logarithms may move
 # Standard error, relative, beyond which a number is not decided; the part of the largest effect
 # below which a combination of numbers has none, by what the differences tell apart; by how many
 # logarithms that may be wrong; and deviation, relative, that is assumed where no point is to spare.
@@ -108,7 +106,7 @@ def identify(
     ends of unstable regions those of :func:`stability_edges`, deflections those of
     :func:`steady_state`.  To begin with each point is paired with the computed one of its kind that
     is nearest; then that is followed by its modes and order.  The logarithms of the numbers are
-    fitted, so that they stay positive, by Levenberg's and Marquardt's iteration.
+    fitted, so that they stay positive.
 
     Parameters
     ----------
@@ -227,35 +225,26 @@ class _Fit:
     def least(self, place: Array, ways: Array, used: NDArray[np.bool_]) -> Array:
         """Return the place of the least sum of squares of some residuals, along ways ``(n, m)``.
 
-        By Levenberg's and Marquardt's iteration; a step that loses a point is none.
+        A step that loses a point is none.
         """
+        from scipy.optimize import least_squares
 
-        def some(place: Array) -> Array:
-            return self.residuals(place)[used]
+        def some(shift: Array) -> Array:
+            return self.residuals(place + ways @ shift)[used]
 
-        here, damping = some(place), 1e-3
-        slopes, stale = self._slopes(some, place, here, ways), False
-        for _ in range(_MOST):
-            left, effects, right = np.linalg.svd(slopes, full_matrices=False)
-            least = max(_NO_EFFECT * float(effects[0]), 1e-300)
-            gains = effects / (effects**2 + (damping * effects[0]) ** 2 + least**2)
-            step = ways @ (right.T @ (np.where(effects > least, -gains, 0.0) * (left.T @ here)))
-            step *= min(1.0, _LONGEST / max(float(np.max(np.abs(step))), 1e-300))
-            step = np.clip(place + step, -_WHOLE, _WHOLE) - place
-            size, ahead = float(np.max(np.abs(step))), some(place + step)
-            falls = bool(np.sum(ahead**2) <= np.sum(here**2))
-            if falls:
-                place, here, damping = place + step, ahead, 0.1 * damping
-            elif not stale:
-                damping = max(damping, 1e-4) * 10.0
-            if size <= _SHORTEST and (falls or not stale):
-                break
-            # Derivatives are kept after a short step, as long as it leads down.
-            if size > _KEPT if falls else stale:
-                slopes, stale = self._slopes(some, place, here, ways), False
-            else:
-                stale = stale or falls
-        return place
+        def slopes(shift: Array) -> Array:
+            """Return forward differences, backward ones where a point is lost."""
+            here, columns = some(shift), []
+            for step in self.step * np.eye(len(shift)):
+                change = some(shift + step) - here
+                change = change if np.all(np.isfinite(change)) else here - some(shift - step)
+                columns.append(np.where(np.isfinite(change), change, 0.0) / self.step)
+            return np.stack(columns, axis=-1)
+
+        start = np.zeros(ways.shape[1])
+        ends = {"ftol": None, "xtol": 1e-7, "gtol": 1e-10, "max_nfev": _MOST}
+        found = least_squares(some, start, slopes, (-_WHOLE, _WHOLE), x_scale=0.3, **ends)
+        return np.asarray(place + ways @ found.x)
 
     def settled(self, place: Array) -> tuple[Array, Array, _Spread]:
         """Return the place at which what is not decided is as at first, with residuals and spread.
@@ -285,18 +274,6 @@ class _Fit:
         scatter = 1.0 if self.told else _scatter(here, len(place))
         known = bool(np.isfinite(scatter))
         return _Spread(np.stack(columns, axis=-1), scatter if known else _ASSUMED, known)
-
-    def _slopes(
-        self, some: Callable[[Array], Array], place: Array, here: Array, ways: Array
-    ) -> Array:
-        """Return forward differences along ways, backward ones where a point is lost."""
-        columns = []
-        for way in ways.T:
-            ahead = (some(place + self.step * way) - here) / self.step
-            if not np.all(np.isfinite(ahead)):
-                ahead = (here - some(place - self.step * way)) / self.step
-            columns.append(np.where(np.isfinite(ahead), ahead, 0.0))
-        return np.stack(columns, axis=-1)
 
     def _slope(
         self, some: Callable[[Array], Array], place: Array, here: Array, way: Array

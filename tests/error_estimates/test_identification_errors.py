@@ -14,7 +14,7 @@ NAMES = ("bending_stiffness", "follower_inertia")
 FLOOR = 1e-12
 
 
-@over_scenes(77, few=2, many=40)
+@over_scenes(77, few=None, many=40)
 def test_fitted_stiffness_and_inertia(rng):
     system = el.load_scene("smith_1972_5152_sixteenth_inch").system()
     start = np.array([system.parameters[name] for name in NAMES])

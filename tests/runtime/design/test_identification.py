@@ -94,8 +94,8 @@ def test_standard_errors_cover_planted_numbers(seed):
 DAMPED = (79.32853744, 80.04444889)  # ends of region 4 with a damping of 0.3 [rad/s]
 
 
-@pytest.mark.parametrize("told", [True, False])
-@pytest.mark.parametrize("start", [0.05, 0.2])
+@pytest.mark.parametrize("told", [True, pytest.param(False, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("start", [0.05, pytest.param(0.2, marks=pytest.mark.slow)])
 def test_damping_is_found_from_where_the_ends_hardly_feel_it(start, told):
     """Ends shift with its square: at 0.05 by a sixth of what they do at 0.3."""
     points = [
@@ -106,6 +106,7 @@ def test_damping_is_found_from_where_the_ends_hardly_feel_it(start, told):
     assert found.value == pytest.approx([0.3], rel=1e-6) and np.all(found.decided)
 
 
+@pytest.mark.slow
 def test_a_step_that_closes_the_region_is_none():
     """Ends known to a millionth, from far off: more damping leaves no region to compare."""
     point = Point("unstable from", DAMPED[0], deviation=1e-4)
@@ -182,6 +183,7 @@ def test_damping_that_no_point_depends_on_is_left_where_it_is():
     assert found.undecided == ("damping is not decided: the points hardly depend on it",)
 
 
+@pytest.mark.slow
 def test_values_without_a_point_are_those_of_a_fit_without_it():
     points = noisy(ends(), np.random.default_rng(5), 5e-4)
     found = identify(coupler(), points, [STIFFNESS, INERTIA])

@@ -83,7 +83,15 @@ def scene_from_document(
     complete(values, layout)
     read_only = {key: _read_only(key, table) for key, table in values.items()}
     title, source = str(tables.get("title", name)), str(tables.get("source", ""))
-    return Scene(name, title, source, ReadOnlyTable(name, read_only), layout)
+    return Scene(name, title, source, ReadOnlyTable(name, read_only), layout, tables)
+
+
+def changed_scene(scene: Scene, overrides: Mapping[str, Any]) -> Scene:
+    """Return a scene with other values by dotted key, as :func:`load_scene` puts them in.
+
+    What is given in it stays as given, what follows from that is computed anew.
+    """
+    return scene_from_document(scene.name, scene.document, overrides)
 
 
 def _read_only(name: str, table: Mapping[str, Any]) -> ReadOnlyTable:

@@ -7,7 +7,7 @@ import importlib
 import inspect
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from ...derive.spec import BEAM_FORMULATIONS, INEXTENSIBLE, ModelSpec
@@ -106,6 +106,8 @@ class Scene:
         By name; what follows from the given quantities is filled in.
     layout : Layout
         What the scene's mechanism and formulation call for.
+    document : mapping
+        Its tables as they were given, overrides put in.
     """
 
     name: str
@@ -113,6 +115,7 @@ class Scene:
     source: str
     tables: ReadOnlyTable
     layout: Layout
+    document: Mapping[str, Any] = field(repr=False, compare=False)
 
     def __getitem__(self, table: str) -> ReadOnlyTable:
         """Return one table."""

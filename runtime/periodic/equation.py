@@ -32,7 +32,7 @@ SPEED_POWER = {
     **{"f": 0, "h": -1, "p": -2},
 }
 # The field of the equation that an array belongs to, and its sign there.
-_FIELD = {
+FIELD = {
     **{"M": ("mass", 1.0), "A": ("gyroscopic", 1.0), "C": ("damping", 1.0)},
     **{"B": ("stiffness", 1.0), "D": ("stiffness", -1.0), "K": ("stiffness", -1.0)},
     **{"Kg": ("stiffness", -1.0), "f": ("force", 1.0), "h": ("force", 1.0), "p": ("force", 1.0)},
@@ -442,7 +442,7 @@ def equation_of(
             scale = np.broadcast_to(scale, batch).reshape(-1)
         factor = scale * flat**power
         if np.any(factor):
-            factors[place] = _FIELD[term.array][1] * factor
+            factors[place] = FIELD[term.array][1] * factor
     if not any(plain.terms[place].array == "M" for place in factors):
         raise bad("LinearPeriodic.terms", "no mass term M", "a positive definite M", "add the term")
     if known is None:
@@ -658,7 +658,7 @@ def _fields(known: SampledSystem, factors: Mapping[int, Array]) -> dict[str, Fie
     }
     acting = [place for place in factors if known.harmonics < 0 or np.any(values[place])]
     for name in ("mass", "gyroscopic", "damping", "stiffness", "force"):
-        members = [place for place in acting if _FIELD[system.terms[place].array][0] == name]
+        members = [place for place in acting if FIELD[system.terms[place].array][0] == name]
         if not members:
             continue
         constant: Array | None = None

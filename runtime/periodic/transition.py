@@ -17,7 +17,7 @@ each step is compared with the one before (:func:`refined`).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from math import lgamma
@@ -166,18 +166,40 @@ def segments_from(
     return whole
 
 
-def _solved(equation: Equation, left: Array, h: float, way: Method) -> tuple[Array, Array]:
-    """Return maps and slopes of segments that are solved in one batch of linear equations.
+@dataclass(frozen=True)
+class Stages:
+    """The equations of the slopes at the nodes of segments, and what they are made of.
 
-    The matrix is one product: the weights of the method times the fields at the nodes.  It is made
-    by columns, as LAPACK wants it, and so are right sides and solutions.
+    Attributes
+    ----------
+    columns : ndarray
+        Their matrix by columns: unknown slope (coordinate, node), equation (node, coordinate),
+        shape ``(nb, ns, s n, s n)``.
+    at_nodes : mapping
+        Fields times ``h`` to the power of :data:`_POWER` by columns, ``(nb, ns, n, s, n)``.
+    angles : ndarray
+        The nodes [rad], ``(ns s,)``.
+    table : ndarray or None
+        :func:`~.equation.waves` there, where the equation has Fourier series.
+    """
+
+    columns: Array
+    at_nodes: Mapping[str, Array]
+    angles: Array
+    table: Array | None
+
+
+def stages_of(equation: Equation, left: Array, h: float, way: Method) -> Stages:
+    """Return the equations of the slopes of segments that begin at angles ``(ns,)`` [rad].
+
+    The matrix is one product: the weights of the method times the fields at the nodes.
     """
     n, s = equation.size, way.stages
     angles = (left[:, None] + way.c * h).ravel()
     table: Array | None = None
     if equation.harmonics >= 0:
         table = waves(equation.harmonics, angles * (2 * np.pi / equation.period))
-    nb, ns, m = len(equation.speed), len(left), 2 * n + equation.forced
+    nb, ns = len(equation.speed), len(left)
     fields = {
         name: equation.at(name, angles, table)
         for name in ("mass", "stiffness", "gyroscopic")
@@ -196,27 +218,38 @@ def _solved(equation: Equation, left: Array, h: float, way: Method) -> tuple[Arr
         np.multiply(turned, h ** _POWER[name], out=stack[:, :, :, place])
         at_nodes[name] = stack[:, :, :, place]
     columns = way.weights(tuple(fields)) @ stack.reshape(nb, ns, n, len(fields) * s, n)
+    return Stages(columns.reshape(nb, ns, s * n, s * n), at_nodes, angles, table)
+
+
+def _solved(equation: Equation, left: Array, h: float, way: Method) -> tuple[Array, Array]:
+    """Return maps and slopes of segments that are solved in one batch of linear equations.
+
+    Matrices are made by columns, as LAPACK wants them, and so are right sides and solutions.
+    """
+    n, s = equation.size, way.stages
+    nb, ns, m = len(equation.speed), len(left), 2 * n + equation.forced
+    stages = stages_of(equation, left, h, way)
+    at_nodes = stages.at_nodes
     # Indices: member, segment, column, node, row.
     right = np.zeros((nb, ns, m, s, n))
     right[:, :, n : 2 * n] = np.eye(n)[:, None] * np.sum(way.inverse, axis=1)[:, None]
-    if "stiffness" in fields:
+    if "stiffness" in at_nodes:
         right[:, :, :n] = at_nodes["stiffness"] / h
-    if "gyroscopic" in fields:
+    if "gyroscopic" in at_nodes:
         right[:, :, :n] -= way.inverse @ at_nodes["gyroscopic"] / h
     if equation.forced:
-        force = np.broadcast_to(equation.at("force", angles, table), (nb, ns * s, n))
+        force = np.broadcast_to(equation.at("force", stages.angles, stages.table), (nb, ns * s, n))
         right[:, :, 2 * n] = h * force.reshape(nb, ns, s, n)
     # Slopes at the nodes: member, segment, column, coordinate, node.
-    unknown = _solution(
-        columns.reshape(nb, ns, s * n, s * n), right.reshape(nb, ns, m, s * n)
-    ).reshape(nb, ns, m, n, s)
+    solved = _solution(stages.columns, right.reshape(nb, ns, m, s * n))
+    unknown = solved.reshape(nb, ns, m, n, s)
     # By columns too: the state at the right end.
     ends = np.zeros((nb, ns, m, m))
     ends[..., :n] = (unknown.reshape(-1, s) @ (h * way.b)).reshape(nb, ns, m, n)
     if way.ends:
         # The last node is the end: its momentum is M q' + A q.
         rise = unknown[..., -1] @ at_nodes["mass"][..., -1, :]
-        if "gyroscopic" in fields:
+        if "gyroscopic" in at_nodes:
             moved = ends[..., :n].copy()
             moved[..., :n, :] += np.eye(n)
             rise += moved @ at_nodes["gyroscopic"][..., -1, :] / h
@@ -226,7 +259,7 @@ def _solved(equation: Equation, left: Array, h: float, way: Method) -> tuple[Arr
         places[..., :n, :, :] += np.eye(n)[..., None]
         # Gauss's weights add up the rate of the momentum, N q + (A^T - C/w) q' + F, at the nodes.
         for name, vectors in (("stiffness", places), ("feedback", unknown)):
-            if name in fields:
+            if name in at_nodes:
                 summed = (way.b[:, None] * at_nodes[name]).reshape(nb, ns, n * s, n)
                 rate = vectors.reshape(nb, ns, m, n * s) @ summed
                 ends[..., n : 2 * n] += rate * h ** (1 - _POWER[name])

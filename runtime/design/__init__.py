@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
+    from .differentiation import sensitivities as sensitivities
     from .effects import damping_effect as damping_effect
     from .effects import length_effect as length_effect
     from .effects import screen as screen
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 __all__, __getattr__, __dir__ = on_first_use(
     globals(),
     {
+        "differentiation": ("sensitivities",),
         "effects": ("damping_effect", "length_effect", "screen"),
         "fatigue_life": ("Material", "fatigue"),
         "identification": ("identify",),

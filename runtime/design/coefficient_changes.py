@@ -1,0 +1,218 @@
+"""How the coefficients of a linear periodic system change with the numbers it is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.errors import Problem, bad, refuse
+from ..core.families import Array, LinearPeriodic
+from ..core.inputs import names_in_a_row
+from ..periodic.equation import FIELD, SPEED_POWER, sampled
+from ..scenes import Scene, changed_scene
+
+ComplexArray = NDArray[np.complex128]
+# An array of the equation, and the extra power of the speed that a part of it carries.
+Part = tuple[str, int]
+Parts = dict[Part, Array]
+
+SPEED = "speed"
+_PLACES = np.arange(-4.0, 5.0)
+# Steps of the differences over the number: of parameters, in which coefficients are quotients of
+# polynomials, and of others, which may be close to lengths that do not assemble.  Of a number that
+# is 0 they are steps in its SI unit.
+_STEP, _SMALL_STEP = 1e-2, 2e-3
+
+
+class Effect(NamedTuple):
+    """Derivatives of functionals by the numbers, ``(nb, functionals, k)``, and by the speed."""
+
+    slope: ComplexArray
+    error: Array  # by the derivatives of the coefficients
+    bulk: Array  # what its parts would sum up to if they all had one sign
+    by_speed: ComplexArray  # (nb, functionals)
+
+
+@dataclass(frozen=True)
+class Changes:
+    """Fourier coefficients of the parts of the equation, and their derivatives by k numbers.
+
+    Attributes
+    ----------
+    by : tuple of str
+        Names of the numbers.
+    number, step : ndarray
+        Their values, and the steps of the differences, shape ``(k,)``; 1 for the speed.
+    parts : mapping
+        By part, coefficients in the order of :func:`~.periodic.equation.waves`, ``(2 H + 1, ...)``.
+    slopes, rough : mapping
+        Derivatives by the numbers, ``(k, 2 H + 1, ...)``, of orders eight and six.
+    harmonics : int
+        Number H of harmonics.
+    """
+
+    by: tuple[str, ...]
+    number: Array
+    step: Array
+    parts: Mapping[Part, Array]
+    slopes: Mapping[Part, Array]
+    rough: Mapping[Part, Array]
+    harmonics: int
+
+    def effect(
+        self, weights: Mapping[str, ComplexArray], speed: Array, *, held: bool = False
+    ) -> Effect:
+        """Return what the numbers do to functionals that have given weights, per unit of each.
+
+        At speeds ``(nb,)``, of weights ``(nb, functionals, 2 H + 1, ...)`` by field of the equation
+        or, with the crank ``held``, by array.
+        """
+        shape = (*next(iter(weights.values())).shape[:2], len(self.by))
+        total, rough = np.zeros(shape, dtype=complex), np.zeros(shape, dtype=complex)
+        by_speed = np.zeros(shape[:2], dtype=complex)
+        size, bulk = np.zeros(shape), np.zeros(shape)
+        for part, series in self.parts.items():
+            array, power = part
+            field, sign = (array, 1.0) if held else FIELD[array]
+            if field not in weights:
+                continue
+            if not held:
+                power += SPEED_POWER[array]
+            flat = weights[field].reshape(*shape[:2], -1)
+            flat = sign * speed[:, None, None] ** power * flat
+            if power:
+                by_speed += power / speed[:, None] * (flat @ series.ravel())
+            slope, other = (
+                values[part].reshape(len(self.by), -1) for values in (self.slopes, self.rough)
+            )
+            total += flat @ slope.T
+            rough += flat @ other.T
+            size += np.abs(flat) @ np.where(slope != 0.0, np.abs(series.ravel()), 0.0).T
+            bulk += np.abs(flat) @ np.abs(slope.T)
+        fast = [i for i, name in enumerate(self.by) if name == SPEED]
+        total[..., fast] = rough[..., fast] = by_speed[..., None]
+        error = np.abs(total - rough) + np.finfo(float).eps / self.step * size
+        return Effect(total, error, bulk, by_speed)
+
+
+def coefficient_changes(
+    machine: LinearPeriodic | Scene, system: LinearPeriodic, by: Sequence[str]
+) -> Changes:
+    """Return the derivatives of the coefficients of a system, by numbers of the machine.
+
+    These are ``speed``, names of parameters and of geometry of the system, and dotted keys where
+    the machine is a scene.  Coefficients are known in closed form: their derivatives are
+    differences of eighth order, good to some 1e-13.
+    """
+    names = _checked(machine, system, by)
+    harmonics = sampled(system, forcing=True).harmonics
+    if harmonics < 0:
+        found, expected = "coefficients that are not smooth", "smooth functions of the angle"
+        raise bad("sensitivities", found, expected, "round off their corners")
+    count = max(64, 4 * (harmonics // 2 + 1))
+    theta = system.period * np.arange(float(count)) / count
+    terms = _terms(system, theta)
+    parts = _parts(terms, system.scales(system.parameters))
+    slopes = {part: np.zeros((len(names), *series.shape)) for part, series in parts.items()}
+    rough = {part: zeros.copy() for part, zeros in slopes.items()}
+    number, steps = np.ones(len(names)), np.ones(len(names))
+    for i, name in enumerate(names):
+        if name == SPEED:
+            continue
+        inner = name in system.parameters
+        number[i] = value = _value(machine, system, name)
+        places = _PLACES if value or inner else _PLACES - _PLACES[0]
+        steps[i] = step = (_STEP if inner else _SMALL_STEP) * (abs(value) or 1.0)
+        values = value + step * places
+        if inner:
+            # Not within its limits: a damping that is 0 goes below.
+            moved = [_parts(terms, one) for one in _scales(system, name, values)]
+        else:
+            made = (_with_number(machine, system, name, float(one)) for one in values)
+            moved = [_parts(_terms(one, theta), one.scales(one.parameters)) for one in made]
+        for unused, target in ((0, slopes), (1, rough)):
+            weights = _weights(places, unused) / step
+            for part in parts:
+                table = np.stack([other[part] for other in moved])
+                target[part][i] = np.tensordot(weights, table - parts[part], axes=1)
+    return Changes(names, number, steps, parts, slopes, rough, count // 2 - 1)
+
+
+def _weights(places: Array, unused: int) -> Array:
+    """Return the weights of values at places in the derivative at 0, some at either end unused."""
+    used = places[unused : len(places) - unused]
+    powers = np.vander(used, increasing=True).T
+    return np.pad(np.linalg.solve(powers, np.eye(len(used))[1]), unused)
+
+
+def _value(machine: LinearPeriodic | Scene, system: LinearPeriodic, name: str) -> float:
+    for known in (system.parameters, system.geometry):
+        if name in known:
+            return float(known[name])
+    assert isinstance(machine, Scene)
+    return float(machine.get(name))
+
+
+def _with_number(
+    machine: LinearPeriodic | Scene, system: LinearPeriodic, name: str, value: float
+) -> LinearPeriodic:
+    if name in system.geometry:
+        return system.with_geometry(**{name: value})
+    assert isinstance(machine, Scene)
+    return changed_scene(machine, {name: value}).linear_system()
+
+
+def _scales(system: LinearPeriodic, name: str, values: Array) -> Iterator[dict[str, ArrayLike]]:
+    """Return the monomials at each value of a parameter."""
+    scales = system.scales({**system.parameters, name: values})
+    for j in range(len(values)):
+        yield {key: np.broadcast_to(scale, values.shape)[j] for key, scale in scales.items()}
+
+
+# A part, the monomial that multiplies it, and its Fourier coefficients.
+_Terms = list[tuple[Part, str | None, Array]]
+
+
+def _terms(system: LinearPeriodic, theta: Array) -> _Terms:
+    """Return the terms of the equation by their Fourier coefficients."""
+    found: _Terms = []
+    for term in system.terms:
+        if term.array in SPEED_POWER:
+            table = np.fft.rfft(term(theta), axis=0)[: len(theta) // 2] / len(theta)
+            waved = 2.0 * table[1:]
+            series = np.concatenate([table[:1].real, waved.real, -waved.imag])
+            found.append(((term.array, term.power), term.scale, series))
+    return found
+
+
+def _parts(terms: _Terms, scales: Mapping[str, ArrayLike]) -> Parts:
+    """Return the Fourier coefficients of the parts of the equation, for values of the monomials."""
+    parts: Parts = {}
+    for part, scale, series in terms:
+        value = series if scale is None else np.asarray(scales[scale]) * series
+        parts[part] = parts[part] + value if part in parts else value
+    return parts
+
+
+def _checked(
+    machine: LinearPeriodic | Scene, system: LinearPeriodic, by: Sequence[str]
+) -> tuple[str, ...]:
+    names = names_in_a_row("by", by)
+    known = [SPEED, *system.parameters, *system.geometry]
+    problems = []
+    for name in names:
+        if name in known:
+            continue
+        value = machine.get(name, None) if isinstance(machine, Scene) and "." in name else None
+        if not isinstance(value, float):
+            expected = f"one of {known}"
+            expected += ", or a key of the scene that is a number" * isinstance(machine, Scene)
+            problems.append(Problem("by", repr(name), expected, "correct the name"))
+    if not names or len(set(names)) < len(names):
+        problems.append(Problem("by", repr(names), "different names, at least one", "mend it"))
+    refuse(problems)
+    return names

@@ -1,0 +1,398 @@
+"""Derivatives of answers by the numbers of a machine, from one adjoint equation for all numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, ClassVar, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import bad
+from ..core.families import Array, LinearPeriodic
+from ..core.inputs import require_between
+from ..core.plotting import Axes, axes_or_new
+from ..core.results import Check, Result, provenance
+from ..frequencies.natural import NaturalFrequencies
+from ..periodic.adjoint import field_weights
+from ..periodic.equation import Equation, equation_of, waves
+from ..periodic.multipliers import FloquetMultipliers, multiplier_order, rounding_error
+from ..periodic.periodic_motion import SteadyState, steady_state
+from ..periodic.transition import (
+    Method,
+    choose,
+    product,
+    refined,
+    segments_from,
+)
+from ..scenes import Scene
+from ..stability import StabilityEdges
+from .coefficient_changes import SPEED, Changes, Effect, coefficient_changes
+
+ComplexArray = NDArray[np.complex128]
+Answer: TypeAlias = FloquetMultipliers | StabilityEdges | NaturalFrequencies | SteadyState
+
+# Round-off of a derivative, over itself, from which multipliers or frequencies count as one.
+_COLLIDED = 1e-6
+# The least that a derivative is told against, over what its parts are in sum.
+_CANCELLED = 1e-6
+# What the error of a motion, over its peak, may be to the derivatives at its peak's angle.
+_ANGLE = 8.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sensitivities(Result):
+    """Derivatives of an answer by numbers of the machine.
+
+    Attributes
+    ----------
+    by : tuple of str
+        Names of the k numbers.
+    number : ndarray, shape (k,)
+        Their values [SI]; of the speed NaN where there are several.
+    answer : str
+        What was differentiated, and its unit.
+    value : ndarray, shape S
+        The answer: multipliers ``(*batch, 2n)``; ends of regions ``(regions, 2)`` [rad/s]; natural
+        frequencies along their curves ``(nt, count)`` [rad/s]; peaks of coordinates, with their
+        sign, ``(*batch, n)``.
+    derivative, error : ndarray, shape (*S, k)
+        Derivatives, per SI unit of each number, and their errors.  NaN where there is none: of
+        multipliers or frequencies that coincide, of ends that are missing, of closed regions.
+    collided : ndarray of bool, shape S
+        Where two multipliers or frequencies are so close that they have no derivatives of their
+        own.
+    """
+
+    by: tuple[str, ...]
+    number: Array
+    answer: str
+    value: NDArray[Any]
+    derivative: NDArray[Any]
+    collided: NDArray[np.bool_]
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {"number": ("by",)}
+    exported: ClassVar[tuple[str, ...]] = ("relative",)
+
+    @property
+    def relative(self) -> NDArray[Any]:
+        """Change of the answer, over its size, for a change of each number, over itself."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(self.derivative * self.number / np.abs(self.value)[..., None])
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the largest relative change of the answer by each number as bars."""
+        ax = axes_or_new(ax)
+        sizes = np.abs(self.relative).reshape(-1, len(self.by))
+        ax.barh(self.by, np.max(np.where(np.isfinite(sizes), sizes, 0.0), axis=0, initial=0.0))
+        ax.set(xlabel=f"{self.answer}: per cent for one per cent of the number")
+        return ax
+
+
+def sensitivities(
+    machine: LinearPeriodic | Scene, answer: Answer, by: Sequence[str], *, rtol: float = 1e-9
+) -> Sensitivities:
+    """Return the derivatives of an answer by numbers of the machine, lengths included.
+
+    They are those of the equations that the answer was computed from: the adjoint of the
+    collocation over the period says what changes of the coefficients do, however many numbers there
+    are; the coefficients' own derivatives are those of the emitted functions.  Natural frequencies
+    change by ``u^T (dK - w^2 dM) u / 2 w``; ends of unstable regions as the speed at which X - rho
+    is singular; peaks of a motion at the angle at which they are.
+
+    Parameters
+    ----------
+    machine : LinearPeriodic or Scene
+        What the answer is of.
+    answer : FloquetMultipliers, StabilityEdges, NaturalFrequencies or SteadyState
+        What :func:`floquet_multipliers`, :func:`stability_edges`, :func:`natural_frequencies` or
+        :func:`steady_state` returned for it, without changed parameters.
+    by : sequence of str
+        Numbers: ``speed`` (not of ends), parameters and geometry of the system, and, where the
+        machine is a scene, its dotted keys, such as ``links.coupler``: what the scene gives stays
+        as given, what follows from it follows.
+    rtol : float
+        Wanted error of the derivatives by each number over the largest of them, 1e-12 to 1e-3.
+
+    Returns
+    -------
+    Sensitivities
+        Its check: ``converged``, the largest error over the largest derivative by its number.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, a name is no number of the machine, the answer is of another
+        kind or of a system of another size, or coefficients are not smooth.
+    """
+    system = machine.linear_system() if isinstance(machine, Scene) else machine
+    require_between("rtol", rtol, 1e-12, 1e-3, "try 1e-9")
+    if not isinstance(system, LinearPeriodic):
+        fix = "take the .system() of a linear scene"
+        raise bad("machine", type(machine).__name__, "a Scene or a linear system", fix)
+    if not isinstance(answer, Answer.__args__):
+        known = "multipliers, ends of regions, natural frequencies or a steady state"
+        raise bad("answer", type(answer).__name__, known, "differentiate one of these")
+    if isinstance(answer, StabilityEdges | NaturalFrequencies) and SPEED in by:
+        fix = "leave the speed out"
+        raise bad("by", "speed", "numbers that the answer depends on by itself", fix)
+    changes = coefficient_changes(machine, system, by)
+    name, differentiate = _KINDS[type(answer)]
+    value, derivative, error, collided = differentiate(system, answer, changes, rtol)
+    number = changes.number.copy()
+    if SPEED in by:
+        speeds = np.unique(answer.speed)
+        number[changes.by.index(SPEED)] = speeds[0] if len(speeds) == 1 else np.nan
+    return Sensitivities(
+        method="adjoint of the equation that the answer solves",
+        error=error,
+        error_norm="absolute, of each derivative",
+        checks={"converged": Check(_worst(derivative, error), max(1e-6, rtol))},
+        provenance=provenance(system.provenance),
+        by=changes.by,
+        number=number,
+        answer=name,
+        value=value,
+        derivative=derivative,
+        collided=collided,
+    )
+
+
+def _worst(derivative: NDArray[Any], error: Array) -> float:
+    """Return the largest error over the largest derivative by the same number."""
+    known = np.isfinite(error)
+    sizes = np.where(known, np.abs(derivative), 0.0)
+    largest = np.max(sizes, axis=tuple(range(error.ndim - 1)), initial=0.0)
+    gaps = np.divide(error, largest, out=np.zeros(error.shape), where=known & (largest > 0.0))
+    return float(np.max(gaps, initial=0.0))
+
+
+# Value, derivative, error and where two answers have collided.
+_Found = tuple[NDArray[Any], NDArray[Any], Array, NDArray[np.bool_]]
+
+
+class _Rows(NamedTuple):
+    """Functionals of the derivative of a transition matrix, and what is made of them."""
+
+    rows: ComplexArray  # (nb, functionals, m)
+    states: ComplexArray  # (nb, functionals, m)
+    # To derivatives and their errors, parts and round-off over the largest, ``(nb, answers, k)``.
+    finished: Callable[[Effect], tuple[NDArray[Any], Array, Array, Array]]
+
+
+@dataclass(frozen=True)
+class _Adjoint:
+    """Derivatives of what transition matrices of the period from an angle tell."""
+
+    changes: Changes
+    rows: Callable[[Equation, ComplexArray, int], _Rows]  # of members, their matrices, segments
+    begin: float = 0.0
+
+    def solved(self, equation: Equation, rtol: float) -> tuple[NDArray[Any], ...]:
+        """Return derivatives, errors, the largest, and round-off over it, ``(nb, answers, k)``."""
+        way = choose(equation, rtol)
+        members, shares, _ = refined(equation, way, rtol, partial(self._solve, way), _distance)
+        slope, error, top, shake = (np.array(column) for column in zip(*members, strict=True))
+        return slope, error + shares.reshape(slope.shape) * top, top, shake
+
+    def _solve(self, way: Method, equation: Equation, count: int) -> tuple[NDArray[Any], ...]:
+        h = equation.period / count
+        left = self.begin + h * np.arange(float(count))
+        segments = segments_from(equation, left, h, way, slopes=True)
+        matrix, power = product(segments.maps)
+        found = self.rows(equation, np.ldexp(matrix, power[:, None, None]), count)
+        weights = field_weights(
+            equation,
+            way,
+            segments,
+            found.rows,
+            found.states,
+            self.changes.harmonics,
+            begin=self.begin,
+        )
+        effect = self.changes.effect(weights, equation.speed)
+        slope, error, bulk, shake = found.finished(effect)
+        top = np.maximum(np.abs(slope), _CANCELLED * bulk)
+        top = np.maximum(np.max(top, axis=1, keepdims=True), np.finfo(float).tiny)
+        return slope, error, top, np.broadcast_to(shake, slope.shape)
+
+
+def _distance(
+    coarse: tuple[NDArray[Any], ...], fine: tuple[NDArray[Any], ...]
+) -> tuple[Array, Array]:
+    """Return the differences of derivatives and their round-off, over the largest."""
+    gap = np.abs(fine[0] - coarse[0]) / fine[2]
+    return gap.reshape(len(gap), -1), fine[3].reshape(len(gap), -1)
+
+
+def _of_multipliers(
+    system: LinearPeriodic, answer: FloquetMultipliers, changes: Changes, rtol: float
+) -> _Found:
+    equation, shape = equation_of(system, answer.speed), answer.multipliers.shape
+    slope, error, _, shake = _Adjoint(changes, _eigenvectors).solved(equation, rtol)
+    collided = np.max(shake, axis=-1) > _COLLIDED
+    slope[collided], error[collided] = np.nan, np.inf
+    turned = [one.reshape(*shape, -1) for one in (slope, error)]
+    return answer.multipliers, turned[0], turned[1], collided.reshape(shape)
+
+
+def _eigenvectors(equation: Equation, matrix: ComplexArray, count: int) -> _Rows:
+    values, vectors = (one.astype(complex) for one in np.linalg.eig(matrix))
+    with np.errstate(divide="ignore"):
+        order = multiplier_order(np.log(np.abs(values)), np.angle(values))
+    values = np.take_along_axis(values, order, -1)
+    vectors = np.take_along_axis(vectors, order[:, None, :], -1)
+    rows = np.linalg.pinv(vectors)  # of what coincides to the last digit no error, but no number
+    distance = np.abs(values[:, :, None] - values[:, None, :])
+    np.einsum("bii->bi", distance)[...] = np.inf
+    # Eigenvectors err by round-off over the distance of the nearest multiplier.
+    norm = np.linalg.norm(matrix, ord=2, axis=(-2, -1))[:, None]
+    near = norm / np.maximum(np.min(distance, axis=-1), np.finfo(float).eps * norm)
+    size = np.linalg.norm(rows, axis=-1) * np.linalg.norm(vectors, axis=-2)
+    shake = (rounding_error(equation, count)[:, None] * size * (1.0 + near))[..., None]
+    return _Rows(rows, vectors.mT, lambda found: (found.slope, found.error, found.bulk, shake))
+
+
+def _of_edges(
+    system: LinearPeriodic, answer: StabilityEdges, changes: Changes, rtol: float
+) -> _Found:
+    ends = np.stack([answer.lower, answer.upper], axis=1)
+    known = np.isfinite(ends) & (answer.width > 0.0)[:, None]
+    derivative = np.full((*ends.shape, len(changes.by)), np.nan)
+    error = np.full(derivative.shape, np.inf)
+    if np.any(known):
+        adjoint = _Adjoint(changes, _null_vectors)
+        slope, own, *_ = adjoint.solved(equation_of(system, ends[known]), rtol)
+        derivative[known], error[known] = slope[:, 0], own[:, 0]
+    return ends, derivative, error, np.isfinite(ends) & ~known
+
+
+def _null_vectors(equation: Equation, matrix: ComplexArray, count: int) -> _Rows:
+    """Return null vectors x and y of X - rho on both sides, at speeds where a region ends.
+
+    Without damping two multipliers meet there, y x = 0: the speed moves by the ratio of y dX x by
+    number and by speed.  With damping rho is alone, and its modulus moves by the real part of
+    y dX x / rho y x.  Round-off turns x and y towards the next vectors, which in a narrow region
+    tell nearly the same.
+    """
+    rho = np.array([_at_edge(np.linalg.eigvals(one), equation.damped) for one in matrix])
+    left, sizes, right = np.linalg.svd(matrix - rho[:, None, None] * np.eye(matrix.shape[-1]))
+    rows, states = left[:, :, [-1, -1, -2]].mT.conj(), right[:, [-1, -2, -1]].conj()
+    turned = rounding_error(equation, count) * sizes[:, 0] / sizes[:, -2]
+
+    def finished(found: Effect) -> tuple[NDArray[Any], Array, Array, Array]:
+        unit = found.by_speed[:, 0]
+        if equation.damped:
+            unit = rho * np.einsum("bi,bi->b", rows[:, 0], states[:, 0])
+        slopes = np.real(found.slope / unit[:, None, None])
+        paces = np.real(found.by_speed / unit[:, None])[..., None]
+        moved = -slopes[:, :1] / paces[:, :1]
+        aside = np.sum(np.abs(slopes[:, 1:] + moved * paces[:, 1:]), axis=1, keepdims=True)
+        size = np.abs(unit[:, None, None] * paces[:, :1])
+        shake = turned[:, None, None] * aside / np.abs(paces[:, :1])
+        bulk = found.bulk[:, :1] / size
+        top = np.maximum(np.abs(moved), _CANCELLED * bulk)
+        least = 2.0 * rounding_error(equation, count)[:, None, None]
+        shake = least + np.divide(shake, top, out=np.zeros(top.shape), where=top > 0.0)
+        return moved, found.error[:, :1] / size, bulk, shake
+
+    return _Rows(rows, states, finished)
+
+
+def _at_edge(values: ComplexArray, damped: bool) -> complex:
+    """Return the multiplier on the unit circle where a region begins."""
+    if damped:
+        return complex(values[np.argmin(np.abs(np.log(np.abs(values))))])
+    distance = np.abs(values[:, None] - values[None, :]) + 4.0 * np.eye(len(values))
+    i, j = np.unravel_index(np.argmin(distance), distance.shape)
+    middle = values[i] + values[j]
+    return complex(middle / abs(middle))
+
+
+def _of_peaks(system: LinearPeriodic, answer: SteadyState, changes: Changes, rtol: float) -> _Found:
+    # The angle of a peak is to be known as well as its derivatives.
+    fine = steady_state(system, answer.speed, rtol=1e-11)
+    motions, errors = fine.q.reshape(-1, *fine.q.shape[-2:]), fine.error.reshape(-1, system.size)
+    count, n = len(motions), system.size
+    value, derivative = np.empty((count, n)), np.full((count, n, len(changes.by)), np.nan)
+    error = np.full(derivative.shape, np.inf)
+    for i, speed in enumerate(answer.speed.ravel()):
+        equation = equation_of(system, speed, forcing=True)
+        for j in range(n):
+            angle, value[i, j] = _peak(motions[i, :, j], answer.period)
+            if np.isfinite(angle):
+                adjoint = _Adjoint(changes, partial(_at_angle, j), angle)
+                slope, own, top, _ = adjoint.solved(equation, rtol)
+                derivative[i, j] = slope[0, 0].real
+                # The peak's angle is known as the motion is.
+                error[i, j] = own[0, 0] + _ANGLE * errors[i, j] * top[0, 0]
+    shape = answer.error.shape
+    turned = [one.reshape(*shape, -1) for one in (derivative, error)]
+    return value.reshape(shape), turned[0], turned[1], np.zeros(shape, dtype=bool)
+
+
+def _peak(values: Array, period: float) -> tuple[float, float]:
+    """Return the angle of the largest size of a motion and its value there, by its series."""
+    if not np.all(np.isfinite(values)):
+        return np.nan, np.nan
+    count, place = len(values), int(np.argmax(np.abs(values)))
+    series = np.fft.rfft(values) / count
+    series[1:] *= 2.0
+    order = 1j * np.arange(len(series)) * 2.0 * np.pi / period
+    angle = start = period * place / count
+    for _ in range(50):
+        wave = series * np.exp(order * angle)
+        slope, bend = (float(np.sum(order**k * wave).real) for k in (1, 2))
+        step = -slope / bend if bend else 0.0
+        angle = min(max(angle + step, start - period / count), start + period / count)
+        if abs(step) < 1e-14 * period:
+            break
+    return angle % period, float(np.sum(series * np.exp(order * angle)).real)
+
+
+def _at_angle(coordinate: int, equation: Equation, matrix: ComplexArray, count: int) -> _Rows:
+    """Return what the motion at the beginning of a period is: ``(1 - X)^-1 z`` of a coordinate."""
+    m = 2 * equation.size
+    closing = np.eye(m) - matrix[:, :m, :m]
+    state = np.ones((len(matrix), 1, m + 1), dtype=complex)
+    state[:, 0, :m] = np.linalg.solve(closing, matrix[:, :m, m:])[..., 0]
+    rows = np.zeros(state.shape, dtype=complex)
+    unit = equation.scale[:, coordinate, None] * np.eye(m)[coordinate]
+    rows[:, 0, :m] = np.linalg.solve(closing.mT, unit[..., None])[..., 0]
+    shake = 2.0 * rounding_error(equation, count) * np.linalg.cond(closing)
+    whole = shake[:, None, None]
+    return _Rows(rows, state, lambda found: (found.slope, found.error, found.bulk, whole))
+
+
+def _of_frequencies(
+    system: LinearPeriodic, answer: NaturalFrequencies, changes: Changes, rtol: float
+) -> _Found:
+    """Return the derivatives along the curves, ``u^T (dK + dKg - w^2 dM) u / 2 w``."""
+    shapes, values = answer.shape.mT, answer.tracked
+    table = waves(changes.harmonics, answer.theta * (2.0 * np.pi / system.period))
+    outer = np.einsum("th,tki,tkj->tkhij", table, shapes, shapes) + 0j
+    stiffness = outer / (2.0 * values[..., None, None, None])
+    mass = -0.5 * values[..., None, None, None] * outer
+    speed = np.full(len(answer.theta), answer.speed if answer.speed > 0.0 else 1.0)
+    weights = {"M": mass, "K": stiffness}
+    if answer.speed > 0.0:
+        weights["Kg"] = stiffness
+    found = changes.effect(weights, speed, held=True)
+    distance = np.abs(values[:, :, None] - values[:, None, :]) / values[:, :, None]
+    np.einsum("tii->ti", distance)[...] = np.inf
+    near = np.maximum(np.min(distance, axis=-1), np.finfo(float).eps)
+    shake = (answer.error / values) * (1.0 + 1.0 / near)
+    collided = shake > _COLLIDED
+    slope = np.where(collided[..., None], np.nan, found.slope.real)
+    error = found.error + (64.0 * np.finfo(float).eps + shake[..., None]) * found.bulk
+    return values, slope, np.where(collided[..., None], np.inf, error), collided
+
+
+_KINDS: Mapping[type, tuple[str, Callable[..., _Found]]] = {
+    FloquetMultipliers: ("multipliers", _of_multipliers),
+    StabilityEdges: ("ends of unstable regions [rad/s]", _of_edges),
+    NaturalFrequencies: ("natural frequencies [rad/s]", _of_frequencies),
+    SteadyState: ("peaks of the coordinates", _of_peaks),
+}

@@ -1,0 +1,146 @@
+"""Derivatives of answers: against differences of the answers, laws that they obey, collisions."""
+
+import elastolink as el
+import numpy as np
+import pytest
+from elastolink.runtime.core.families import Term
+from elastolink.runtime.design import sensitivities
+from refusals import refused
+
+COUPLER = "smith_1972_5152_sixteenth_inch"
+# Of eighth order: (f(x + k h) - f(x - k h)) / h.
+EIGHTH = {1: 4 / 5, 2: -1 / 5, 3: 4 / 105, 4: -1 / 280}
+
+
+def coupler(**overrides):
+    return el.load_scene(COUPLER, {"model.modes": 2, **overrides})
+
+
+def differences(answer, value, part=1e-3):
+    """Return the derivative of an answer by differences of eighth order, and their step."""
+    step = part * value
+    pairs = (w * (answer(value + k * step) - answer(value - k * step)) for k, w in EIGHTH.items())
+    return sum(pairs) / step
+
+
+@pytest.mark.parametrize(
+    ("damping", "names"),
+    [
+        (0.3, ["links.crank"]),
+        pytest.param(0.3, ["links.coupler", "follower.inertia"], marks=pytest.mark.slow),
+        pytest.param(0.0, ["links.coupler", "follower.inertia"], marks=pytest.mark.slow),
+    ],
+)
+def test_ends_of_regions_by_numbers_of_the_drawing(damping, names):
+    def ends(**changes):
+        scene = coupler(**{"coupler.damping": damping, **changes})
+        found = el.stability_edges(scene.system(), (77.5, 105.0))
+        return scene, found
+
+    scene, found = ends()
+    wide = np.flatnonzero(found.width > 0.5)
+    made = sensitivities(scene, found, names)
+    assert made.passed
+    for i, name in enumerate(names):
+        value = scene.get(name)
+
+        def answer(x, name=name):
+            _, other = ends(**{name: x})
+            wide_ones = other.width > 0.5
+            return np.stack([other.lower[wide_ones], other.upper[wide_ones]], axis=1)
+
+        # Ends good to 1e-12 over steps of 1e-3.
+        expected = differences(answer, value) * value
+        assert np.allclose(made.derivative[wide, :, i] * value, expected, rtol=0, atol=3e-7)
+
+
+def test_a_stiffer_coupler_and_a_lighter_machine_are_one_and_the_same():
+    """Speeds scale with the root of stiffness over inertia, exactly."""
+    system = coupler().system()
+    names = [*system.parameters]
+    for answer in (el.stability_edges(system, (77.5, 105.0)), el.natural_frequencies(system, 0.7)):
+        found = sensitivities(system, answer, names)
+        known = np.isfinite(found.error[..., 0])
+        share = dict(zip(names, np.moveaxis(found.relative[known], -1, 0), strict=True))
+        masses = set(names) - {"bending_stiffness", "damping"}
+        assert np.allclose(share["bending_stiffness"], 0.5, atol=1e-10)
+        assert np.allclose(sum(share[name] for name in masses), -0.5, atol=1e-9)
+
+
+def test_geometry_of_a_system_that_has_some():
+    system = el.load_scene("beale_1992_flexible_rod").system()
+    answer = el.floquet_multipliers(system, 20.0, rtol=1e-12)
+    name = "crank_ratio"
+    found = sensitivities(system, answer, [name])
+    value = system.geometry[name]
+
+    def multipliers(x):
+        return el.floquet_multipliers(system, 20.0, rtol=1e-12, **{name: x}).multipliers
+
+    expected = differences(multipliers, value, 1e-5)
+    size = np.max(np.abs(expected))
+    assert np.allclose(found.derivative[:, 0], expected, rtol=0, atol=1e-7 * size)
+
+
+def test_peaks_of_a_steady_motion_by_lengths_and_the_speed():
+    scene = coupler(**{"coupler.damping": 3.0})
+    answer = el.steady_state(scene.system(), 60.0)
+    found = sensitivities(scene, answer, ["speed", "links.crank"])
+
+    def peaks(system, speed):
+        fine = el.steady_state(system, speed, rtol=1e-11, samples=512)
+        return fine.peak(np.array([0.5]))[0] / system.reference_length
+
+    # The middle of the coupler bends as the first sine less the third: with two modes the first.
+    by_speed = differences(lambda w: peaks(scene.system(), w), 60.0)
+    crank = scene.get("links.crank")
+    by_crank = differences(
+        lambda x: peaks(coupler(**{"coupler.damping": 3.0, "links.crank": x}).system(), 60.0), crank
+    )
+    sign = np.sign(found.value[0])
+    assert sign * found.derivative[0, 0] * 60.0 == pytest.approx(by_speed * 60.0, rel=1e-7)
+    assert sign * found.derivative[0, 1] * crank == pytest.approx(by_crank * crank, rel=1e-7)
+
+
+def test_what_coincides_has_no_derivative_of_its_own():
+    twin = (Term("M", None, np.eye(2)), Term("K", "k", np.eye(2)))
+    system = el.LinearPeriodic(2, twin, {"k": 2.0}, lambda values: {"k": values["k"]})
+    found = sensitivities(system, el.floquet_multipliers(system, 1.3), ["k"])
+    assert np.all(found.collided)
+    assert np.all(np.isnan(found.derivative))
+    held = sensitivities(system, el.natural_frequencies(system, 0.0), ["k"])
+    assert np.all(held.collided)
+
+
+def test_a_closed_region_has_none():
+    system = coupler().system()
+    answer = el.stability_edges(system, (62.0, 62.5))
+    found = sensitivities(system, answer, ["bending_stiffness"])
+    closed = answer.width == 0.0
+    assert np.all(np.isnan(found.derivative[closed])) and np.all(found.collided[closed])
+
+
+def test_it_draws(tmp_path):
+    scene = coupler()
+    answer = el.stability_edges(scene.system(), (77.5, 105.0))
+    ax = sensitivities(scene, answer, ["links.crank", "bending_stiffness"]).plot()
+    assert len(ax.patches) == 2 and "for one per cent" in ax.get_xlabel()
+
+
+SYSTEM = coupler().system()
+ANSWER = el.floquet_multipliers(SYSTEM, 90.0)
+HELD = el.natural_frequencies(SYSTEM, 0.0)
+test_refusals = refused(
+    sensitivities,
+    [
+        (SYSTEM, ANSWER, ["stiffness"], "by"),
+        (SYSTEM, ANSWER, ["links.crank"], "by"),
+        (coupler(), ANSWER, ["links.crnk"], "by"),
+        (coupler(), ANSWER, ["model.formulation"], "by"),
+        (SYSTEM, ANSWER, [], "by"),
+        (SYSTEM, ANSWER, ["speed", "speed"], "by"),
+        (SYSTEM, HELD, ["speed"], "by"),
+        (SYSTEM, 3.0, ["speed"], "answer"),
+        ("coupler", ANSWER, ["speed"], "machine"),
+    ],
+)

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import Problem, bad, refuse
 from ..core.families import Array, LinearPeriodic
 from ..core.inputs import names_in_a_row
-from ..periodic.equation import FIELD, SPEED_POWER, sampled
+from ..periodic.adjoint import FieldWeights
+from ..periodic.equation import FIELD, SPEED_POWER, sampled, waves
 from ..scenes import Scene, changed_scene
 
 ComplexArray = NDArray[np.complex128]
@@ -53,6 +54,8 @@ class Changes:
         Derivatives by the numbers, ``(k, 2 H + 1, ...)``, of orders eight and six.
     harmonics : int
         Number H of harmonics.
+    period : float
+        Period [rad].
     """
 
     by: tuple[str, ...]
@@ -62,41 +65,46 @@ class Changes:
     slopes: Mapping[Part, Array]
     rough: Mapping[Part, Array]
     harmonics: int
+    period: float
 
-    def effect(
-        self, weights: Mapping[str, ComplexArray], speed: Array, *, held: bool = False
-    ) -> Effect:
-        """Return what the numbers do to functionals that have given weights, per unit of each.
-
-        At speeds ``(nb,)``, of weights ``(nb, functionals, 2 H + 1, ...)`` by field of the equation
-        or, with the crank ``held``, by array.
-        """
-        shape = (*next(iter(weights.values())).shape[:2], len(self.by))
-        total, rough = np.zeros(shape, dtype=complex), np.zeros(shape, dtype=complex)
-        by_speed = np.zeros(shape[:2], dtype=complex)
-        size, bulk = np.zeros(shape), np.zeros(shape)
+    def effect(self, weights: FieldWeights, speed: Array) -> Effect:
+        """Return what the numbers do to functionals of members at speeds ``(nb,)``."""
+        shape = (*weights.shape, len(self.by))
+        total, by_speed = np.zeros(shape, dtype=complex), np.zeros(weights.shape, dtype=complex)
+        error, bulk = np.zeros(shape), np.zeros(shape)
+        table = self.table(weights.angles)
         for part, series in self.parts.items():
-            array, power = part
-            field, sign = (array, 1.0) if held else FIELD[array]
-            if field not in weights:
-                continue
-            if not held:
-                power += SPEED_POWER[array]
-            flat = weights[field].reshape(*shape[:2], -1)
-            flat = sign * speed[:, None, None] ** power * flat
+            field, sign = FIELD[part[0]]
+            power = SPEED_POWER[part[0]] + part[1]
+            pace = sign * speed[:, None] ** power
+            whole = series_at(table, series)
             if power:
-                by_speed += power / speed[:, None] * (flat @ series.ravel())
-            slope, other = (
-                values[part].reshape(len(self.by), -1) for values in (self.slopes, self.rough)
-            )
-            total += flat @ slope.T
-            rough += flat @ other.T
-            size += np.abs(flat) @ np.where(slope != 0.0, np.abs(series.ravel()), 0.0).T
-            bulk += np.abs(flat) @ np.abs(slope.T)
+                by_speed += power * pace / speed[:, None] * weights.effect(field, whole)
+            size = np.abs(pace) * weights.size(field, whole)
+            top = float(np.max(np.abs(series), initial=0.0)) or 1.0
+            for i, (slope, rough) in enumerate(
+                zip(self.slopes[part], self.rough[part], strict=True)
+            ):
+                change = float(np.max(np.abs(slope)))
+                if change:
+                    total[..., i] += pace * weights.effect(field, series_at(table, slope))
+                    # What is told of a sum's terms by their largest coefficient.
+                    bulk[..., i] += size * change / top
+                    gap = float(np.max(np.abs(slope - rough))) / top
+                    error[..., i] += size * (gap + np.finfo(float).eps / self.step[i])
         fast = [i for i, name in enumerate(self.by) if name == SPEED]
-        total[..., fast] = rough[..., fast] = by_speed[..., None]
-        error = np.abs(total - rough) + np.finfo(float).eps / self.step * size
+        total[..., fast] = by_speed[..., None]
+        bulk[..., fast] = np.abs(by_speed)[..., None]
         return Effect(total, error, bulk, by_speed)
+
+    def table(self, angles: Array) -> Array:
+        """Return the waves of the coefficients at angles [rad]."""
+        return waves(self.harmonics, angles * (2.0 * np.pi / self.period))
+
+
+def series_at(table: Array, series: Array) -> Array:
+    """Return sums of Fourier series ``(2 H + 1, ...)`` where the waves are ``(nt, 2 H + 1)``."""
+    return np.asarray(np.tensordot(table, series, axes=1))
 
 
 def coefficient_changes(
@@ -139,7 +147,7 @@ def coefficient_changes(
             for part in parts:
                 table = np.stack([other[part] for other in moved])
                 target[part][i] = np.tensordot(weights, table - parts[part], axes=1)
-    return Changes(names, number, steps, parts, slopes, rough, count // 2 - 1)
+    return Changes(names, number, steps, parts, slopes, rough, count // 2 - 1, system.period)
 
 
 def _weights(places: Array, unused: int) -> Array:

@@ -17,7 +17,7 @@ from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..frequencies.natural import NaturalFrequencies
 from ..periodic.adjoint import field_weights
-from ..periodic.equation import Equation, equation_of, waves
+from ..periodic.equation import Equation, equation_of
 from ..periodic.multipliers import FloquetMultipliers, multiplier_order, rounding_error
 from ..periodic.periodic_motion import SteadyState, steady_state
 from ..periodic.transition import (
@@ -29,7 +29,7 @@ from ..periodic.transition import (
 )
 from ..scenes import Scene
 from ..stability import StabilityEdges
-from .coefficient_changes import SPEED, Changes, Effect, coefficient_changes
+from .coefficient_changes import SPEED, Changes, Effect, coefficient_changes, series_at
 
 ComplexArray = NDArray[np.complex128]
 Answer: TypeAlias = FloquetMultipliers | StabilityEdges | NaturalFrequencies | SteadyState
@@ -188,14 +188,16 @@ class _Adjoint:
 
     changes: Changes
     rows: Callable[[Equation, ComplexArray, int], _Rows]  # of members, their matrices, segments
+    rtol: float
     begin: float = 0.0
 
-    def solved(self, equation: Equation, rtol: float) -> tuple[NDArray[Any], ...]:
+    def solved(self, equation: Equation) -> tuple[NDArray[Any], ...]:
         """Return derivatives, errors, the largest, and round-off over it, ``(nb, answers, k)``."""
-        way = choose(equation, rtol)
+        way, rtol = choose(equation, self.rtol), self.rtol
         members, shares, _ = refined(equation, way, rtol, partial(self._solve, way), _distance)
-        slope, error, top, shake = (np.array(column) for column in zip(*members, strict=True))
-        return slope, error + shares.reshape(slope.shape) * top, top, shake
+        slope, error, top, shake, unit = (np.array(one) for one in zip(*members, strict=True))
+        error = error + shares.reshape(slope.shape) * unit + shake * top
+        return slope, error, top, shake
 
     def _solve(self, way: Method, equation: Equation, count: int) -> tuple[NDArray[Any], ...]:
         h = equation.period / count
@@ -203,35 +205,30 @@ class _Adjoint:
         segments = segments_from(equation, left, h, way, slopes=True)
         matrix, power = product(segments.maps)
         found = self.rows(equation, np.ldexp(matrix, power[:, None, None]), count)
-        weights = field_weights(
-            equation,
-            way,
-            segments,
-            found.rows,
-            found.states,
-            self.changes.harmonics,
-            begin=self.begin,
-        )
+        rows, states = found.rows, found.states
+        weights = field_weights(equation, way, segments, rows, states, begin=self.begin)
         effect = self.changes.effect(weights, equation.speed)
         slope, error, bulk, shake = found.finished(effect)
         top = np.maximum(np.abs(slope), _CANCELLED * bulk)
         top = np.maximum(np.max(top, axis=1, keepdims=True), np.finfo(float).tiny)
-        return slope, error, top, np.broadcast_to(shake, slope.shape)
+        # No rung is nearer to another than round-off.
+        unit = top * np.maximum(1.0, 4.0 * shake / self.rtol)
+        return slope, error, top, np.broadcast_to(shake, slope.shape), unit
 
 
 def _distance(
     coarse: tuple[NDArray[Any], ...], fine: tuple[NDArray[Any], ...]
 ) -> tuple[Array, Array]:
-    """Return the differences of derivatives and their round-off, over the largest."""
-    gap = np.abs(fine[0] - coarse[0]) / fine[2]
-    return gap.reshape(len(gap), -1), fine[3].reshape(len(gap), -1)
+    """Return the differences of derivatives, over the largest or round-off; and none besides."""
+    gap = (np.abs(fine[0] - coarse[0]) / fine[4]).reshape(len(fine[0]), -1)
+    return gap, np.zeros(gap.shape)
 
 
 def _of_multipliers(
     system: LinearPeriodic, answer: FloquetMultipliers, changes: Changes, rtol: float
 ) -> _Found:
     equation, shape = equation_of(system, answer.speed), answer.multipliers.shape
-    slope, error, _, shake = _Adjoint(changes, _eigenvectors).solved(equation, rtol)
+    slope, error, _, shake = _Adjoint(changes, _eigenvectors, rtol).solved(equation)
     collided = np.max(shake, axis=-1) > _COLLIDED
     slope[collided], error[collided] = np.nan, np.inf
     turned = [one.reshape(*shape, -1) for one in (slope, error)]
@@ -263,8 +260,8 @@ def _of_edges(
     derivative = np.full((*ends.shape, len(changes.by)), np.nan)
     error = np.full(derivative.shape, np.inf)
     if np.any(known):
-        adjoint = _Adjoint(changes, _null_vectors)
-        slope, own, *_ = adjoint.solved(equation_of(system, ends[known]), rtol)
+        adjoint = _Adjoint(changes, _null_vectors, rtol)
+        slope, own, *_ = adjoint.solved(equation_of(system, ends[known]))
         derivative[known], error[known] = slope[:, 0], own[:, 0]
     return ends, derivative, error, np.isfinite(ends) & ~known
 
@@ -323,8 +320,8 @@ def _of_peaks(system: LinearPeriodic, answer: SteadyState, changes: Changes, rto
         for j in range(n):
             angle, value[i, j] = _peak(motions[i, :, j], answer.period)
             if np.isfinite(angle):
-                adjoint = _Adjoint(changes, partial(_at_angle, j), angle)
-                slope, own, top, _ = adjoint.solved(equation, rtol)
+                adjoint = _Adjoint(changes, partial(_at_angle, j), rtol, angle)
+                slope, own, top, _ = adjoint.solved(equation)
                 derivative[i, j] = slope[0, 0].real
                 # The peak's angle is known as the motion is.
                 error[i, j] = own[0, 0] + _ANGLE * errors[i, j] * top[0, 0]
@@ -370,24 +367,33 @@ def _of_frequencies(
     system: LinearPeriodic, answer: NaturalFrequencies, changes: Changes, rtol: float
 ) -> _Found:
     """Return the derivatives along the curves, ``u^T (dK + dKg - w^2 dM) u / 2 w``."""
-    shapes, values = answer.shape.mT, answer.tracked
-    table = waves(changes.harmonics, answer.theta * (2.0 * np.pi / system.period))
-    outer = np.einsum("th,tki,tkj->tkhij", table, shapes, shapes) + 0j
-    stiffness = outer / (2.0 * values[..., None, None, None])
-    mass = -0.5 * values[..., None, None, None] * outer
-    speed = np.full(len(answer.theta), answer.speed if answer.speed > 0.0 else 1.0)
-    weights = {"M": mass, "K": stiffness}
-    if answer.speed > 0.0:
-        weights["Kg"] = stiffness
-    found = changes.effect(weights, speed, held=True)
+    shapes, values = answer.shape, answer.tracked
+    table, speed = changes.table(answer.theta), answer.speed
+    slope, rough, size = (np.zeros((*values.shape, len(changes.by))) for _ in range(3))
+    for (array, power), series in changes.parts.items():
+        if array not in ("M", "K", "Kg") or (array == "Kg" and speed == 0.0 and power > 0):
+            continue
+        pace = speed**power if array == "Kg" else 1.0
+        factor = -0.5 * values if array == "M" else 0.5 * pace / values
+
+        def of(change: Array, shapes: Array = shapes, factor: Array = factor) -> Array:
+            return factor * np.einsum("tik,tij,tjk->tk", shapes, change, shapes)
+
+        whole = np.abs(of(np.abs(series_at(table, series)), np.abs(shapes)))
+        for i in range(len(changes.by)):
+            moved = series_at(table, changes.slopes[array, power][i])
+            slope[..., i] += of(moved)
+            rough[..., i] += of(series_at(table, changes.rough[array, power][i]))
+            size[..., i] += np.abs(of(np.abs(moved), np.abs(shapes)))
+            size[..., i] += np.any(moved) * whole * np.abs(1.0 / changes.step[i])
     distance = np.abs(values[:, :, None] - values[:, None, :]) / values[:, :, None]
     np.einsum("tii->ti", distance)[...] = np.inf
     near = np.maximum(np.min(distance, axis=-1), np.finfo(float).eps)
     shake = (answer.error / values) * (1.0 + 1.0 / near)
     collided = shake > _COLLIDED
-    slope = np.where(collided[..., None], np.nan, found.slope.real)
-    error = found.error + (64.0 * np.finfo(float).eps + shake[..., None]) * found.bulk
-    return values, slope, np.where(collided[..., None], np.inf, error), collided
+    error = np.abs(slope - rough) + (np.finfo(float).eps + shake[..., None]) * size
+    error[collided], slope[collided] = np.inf, np.nan
+    return values, slope, error, collided
 
 
 _KINDS: Mapping[type, tuple[str, Callable[..., _Found]]] = {

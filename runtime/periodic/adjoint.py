@@ -14,15 +14,56 @@ That is the derivative of the matrix X as it is computed, so that it converges a
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .equation import Equation, waves
+from .equation import Equation
 from .transition import Method, Segments, stages_of
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class FieldWeights:
+    """With what changes of the fields enter k functionals of each of nb members.
+
+    Attributes
+    ----------
+    angles : ndarray
+        Crank angles [rad] of all nodes of the period, shape ``(nt,)``.
+    pairs : mapping
+        By field, pairs of vectors in unscaled coordinates between which its change stands, summed
+        over the nodes, ``(nt, n, nb k)`` each; the second of the force is None.
+    shape : tuple of int
+        ``(nb, k)``.
+    """
+
+    angles: Array
+    pairs: Mapping[str, tuple[tuple[ComplexArray, ComplexArray | None], ...]]
+    shape: tuple[int, int]
+
+    def effect(self, field: str, change: Array) -> ComplexArray:
+        """Return what a change ``(nt, n, n)``, or ``(nt, n)`` of the force, does, ``(nb, k)``."""
+        total = np.zeros(self.shape[0] * self.shape[1], dtype=complex)
+        for left, right in self.pairs.get(field, ()):
+            if right is None:
+                total += np.einsum("tik,ti->k", left, change)
+            else:
+                # Real times complex in one product of real arrays.
+                moved = change @ right.view(float)
+                total += np.sum(left * moved.view(complex), axis=(0, 1))
+        return total.reshape(self.shape)
+
+    def size(self, field: str, change: Array) -> Array:
+        """Return what all terms of the sums add up to without signs, ``(nb, k)``."""
+        total = np.zeros(self.shape[0] * self.shape[1])
+        for left, right in self.pairs.get(field, ()):
+            moved = np.abs(change)[..., None] if right is None else np.abs(change) @ np.abs(right)
+            total += np.sum(np.abs(left) * moved, axis=(0, 1))
+        return total.reshape(self.shape)
 
 
 def field_weights(
@@ -31,21 +72,19 @@ def field_weights(
     segments: Segments,
     rows: ComplexArray,
     states: ComplexArray,
-    harmonics: int,
     *,
     begin: float = 0.0,
-) -> Mapping[str, ComplexArray]:
+) -> FieldWeights:
     """Return the weights with which changes of the fields enter ``rows dX states``.
 
     X is the transition matrix of the period in scaled states, by equal segments, with their
-    slopes, from an angle ``begin`` [rad].  Of k rows and states of each member, ``(nb, k, m)``,
-    come by field the weights of its Fourier coefficients in unscaled coordinates, in the order of
-    :func:`~.equation.waves`: ``(nb, k, 2 H + 1, n, n)``, and ``(nb, k, 2 H + 1, n)`` of the force.
+    slopes, from an angle ``begin`` [rad]; of each member there are k rows and states,
+    ``(nb, k, m)``.
     """
     maps, slopes = segments.maps, segments.slopes
     if slopes is None:
         raise ValueError("segments without slopes")
-    n, count = equation.size, maps.shape[1]
+    n, count, shape = equation.size, maps.shape[1], rows.shape[:2]
     h = equation.period / count
     left = begin + h * np.arange(float(count))
     before = np.empty((count, *states.shape), dtype=complex)
@@ -57,36 +96,27 @@ def field_weights(
         after[i] = rows
         rows = rows @ maps[:, i]
     # Indices: segment, member, functional, node, coordinate.
-    turned = np.moveaxis(slopes, 1, 0)
-    slope = np.einsum("gbsnm,gbkm->gbksn", turned, before)
-    place = before[..., None, :n] + h * np.einsum("ls,gbksn->gbkln", way.a, slope)
+    flat = np.moveaxis(slopes, 1, 0).reshape(count, shape[0], way.stages * n, -1)
+    slope = (before @ flat.mT).reshape(count, *shape, way.stages, n)
+    place = before[..., None, :n] + h * (way.a @ slope)
     load, momentum = _adjoint(equation, way, left, h, after)
-    table = waves(harmonics, (left[:, None] + way.c * h).ravel() * (2 * np.pi / equation.period))
 
-    def summed(*pairs: tuple[ComplexArray, ComplexArray]) -> ComplexArray:
-        """Return the waves' sums of products of vectors at the nodes, unscaled."""
-        unit = equation.scale[:, None, None]
-        flat = [_by_angle(one[..., :, None] * two[..., None, :]) for one, two in pairs]
-        outer = np.tensordot(table, sum(flat), axes=(0, 0)) if flat else np.zeros(0)
-        values = np.moveaxis(outer, 0, 2)
-        return np.asarray(values * unit[..., :, None] * unit[..., None, :])
+    def by_node(values: ComplexArray) -> ComplexArray:
+        """Return vectors in unscaled coordinates by node, ``(nt, n, nb k)``."""
+        unscaled = values * equation.scale[:, None, None, :]
+        turned = unscaled.transpose(0, 3, 4, 1, 2)
+        return np.ascontiguousarray(turned.reshape(count * way.stages, n, -1))
 
-    weights = {
-        "mass": summed((momentum, slope)),
-        "gyroscopic": summed((momentum, place), (h * slope, load)),
-        "damping": summed((-h * load, slope)),
-        "stiffness": summed((h * load, place)),
+    slope, place, load, momentum = map(by_node, (slope, place, h * load, momentum))
+    pairs: dict[str, tuple[tuple[ComplexArray, ComplexArray | None], ...]] = {
+        "mass": ((momentum, slope),),
+        "gyroscopic": ((momentum, place), (slope, load)),
+        "damping": ((-load, slope),),
+        "stiffness": ((load, place),),
     }
     if equation.forced:
-        force = np.tensordot(table, _by_angle(h * load), axes=(0, 0))
-        weights["force"] = np.moveaxis(force, 0, 2) * equation.scale[:, None, None]
-    return weights
-
-
-def _by_angle(values: ComplexArray) -> ComplexArray:
-    """Return values ``(segment, member, functional, node, ...)`` with the angles first."""
-    by_node = np.moveaxis(values, 3, 1)
-    return by_node.reshape(-1, *by_node.shape[2:])
+        pairs["force"] = ((load, None),)
+    return FieldWeights((left[:, None] + way.c * h).ravel(), pairs, (shape[0], shape[1]))
 
 
 def _adjoint(
@@ -96,14 +126,15 @@ def _adjoint(
     n, s = equation.size, way.stages
     stages = stages_of(equation, left, h, way)
     end = way.b @ way.inverse
-    row_q, row_p = (np.moveaxis(after[..., part], 0, 1) for part in (slice(n), slice(n, 2 * n)))
+    row_q, row_p = (
+        np.moveaxis(after[..., part], 0, 1).mT[:, :, None] for part in (slice(n), slice(n, 2 * n))
+    )
     # Indices: member, segment, coordinate, node, functional.
-    right = h * way.b[:, None] * row_q.mT[..., :, None, :]
-    through = np.einsum("bgcjr,bgkr->bgcjk", stages.at_nodes["mass"], row_p)
-    right = right + end[:, None] * through
+    right = h * way.b[:, None] * np.moveaxis(row_q, 2, 3)
+    right = right + end[:, None] * (stages.at_nodes["mass"] @ row_p)
     if "gyroscopic" in stages.at_nodes:
-        through = np.einsum("bgclr,bgkr->bgclk", stages.at_nodes["gyroscopic"], row_p)
-        right = right + np.einsum("l,lj,bgclk->bgcjk", end, way.a, through)
+        through = end[:, None] * (stages.at_nodes["gyroscopic"] @ row_p)
+        right = right + way.a.T @ through
     flat = right.reshape(*right.shape[:2], n * s, -1)
     parts = np.concatenate([flat.real, flat.imag], axis=-1)
     real, imaginary = np.split(np.linalg.solve(stages.columns, parts), 2, axis=-1)
@@ -111,5 +142,5 @@ def _adjoint(
     solved = (real + 1j * imaginary).reshape(*flat.shape[:2], s, n, -1)
     load = np.moveaxis(solved, (1, 4), (0, 2))
     momentum = end[:, None] * after[..., None, n : 2 * n]
-    momentum = momentum - np.einsum("lj,gbkln->gbkjn", way.inverse, load)
+    momentum = momentum - way.inverse.T @ load
     return load, momentum

@@ -117,12 +117,7 @@ def coefficient_changes(
     differences of eighth order, good to some 1e-13.
     """
     names = _checked(machine, system, by)
-    harmonics = sampled(system, forcing=True).harmonics
-    if harmonics < 0:
-        found, expected = "coefficients that are not smooth", "smooth functions of the angle"
-        raise bad("sensitivities", found, expected, "round off their corners")
-    count = max(64, 4 * (harmonics // 2 + 1))
-    theta = system.period * np.arange(float(count)) / count
+    theta = _even_angles(system)
     terms = _terms(system, theta)
     parts = _parts(terms, system.scales(system.parameters))
     slopes = {part: np.zeros((len(names), *series.shape)) for part, series in parts.items()}
@@ -132,7 +127,7 @@ def coefficient_changes(
         if name == SPEED:
             continue
         inner = name in system.parameters
-        number[i] = value = _value(machine, system, name)
+        number[i] = value = number_of(machine, system, name)
         places = _PLACES if value or inner else _PLACES - _PLACES[0]
         steps[i] = step = (_STEP if inner else _SMALL_STEP) * (abs(value) or 1.0)
         values = value + step * places
@@ -140,14 +135,37 @@ def coefficient_changes(
             # Not within its limits: a damping that is 0 goes below.
             moved = [_parts(terms, one) for one in _scales(system, name, values)]
         else:
-            made = (_with_number(machine, system, name, float(one)) for one in values)
+            made = (with_number(machine, system, name, float(one)) for one in values)
             moved = [_parts(_terms(one, theta), one.scales(one.parameters)) for one in made]
         for unused, target in ((0, slopes), (1, rough)):
             weights = _weights(places, unused) / step
             for part in parts:
                 table = np.stack([other[part] for other in moved])
                 target[part][i] = np.tensordot(weights, table - parts[part], axes=1)
-    return Changes(names, number, steps, parts, slopes, rough, count // 2 - 1, system.period)
+    return Changes(names, number, steps, parts, slopes, rough, len(theta) // 2 - 1, system.period)
+
+
+def varying_parts(system: LinearPeriodic) -> Changes:
+    """Return what the varying part of each array of the equation does, by the arrays' names."""
+    theta = _even_angles(system)
+    parts = _parts(_terms(system, theta), system.scales(system.parameters))
+    names = tuple(dict.fromkeys(array for array, _ in parts))
+    slopes = {}
+    for (array, power), series in parts.items():
+        own = (np.array(names) == array).reshape(-1, *(1,) * series.ndim)
+        slopes[array, power] = own * np.concatenate([0.0 * series[:1], series[1:]])
+    ones = np.ones(len(names))
+    return Changes(names, ones, ones, parts, slopes, slopes, len(theta) // 2 - 1, system.period)
+
+
+def _even_angles(system: LinearPeriodic) -> Array:
+    """Return angles [rad] that see all harmonics of the coefficients."""
+    harmonics = sampled(system, forcing=True).harmonics
+    if harmonics < 0:
+        found, expected = "coefficients that are not smooth", "smooth functions of the angle"
+        raise bad("sensitivities", found, expected, "round off their corners")
+    count = max(64, 4 * (harmonics // 2 + 1))
+    return np.asarray(system.period * np.arange(float(count)) / count)
 
 
 def _weights(places: Array, unused: int) -> Array:
@@ -157,7 +175,8 @@ def _weights(places: Array, unused: int) -> Array:
     return np.pad(np.linalg.solve(powers, np.eye(len(used))[1]), unused)
 
 
-def _value(machine: LinearPeriodic | Scene, system: LinearPeriodic, name: str) -> float:
+def number_of(machine: LinearPeriodic | Scene, system: LinearPeriodic, name: str) -> float:
+    """Return a number by its name."""
     for known in (system.parameters, system.geometry):
         if name in known:
             return float(known[name])
@@ -165,9 +184,12 @@ def _value(machine: LinearPeriodic | Scene, system: LinearPeriodic, name: str) -
     return float(machine.get(name))
 
 
-def _with_number(
+def with_number(
     machine: LinearPeriodic | Scene, system: LinearPeriodic, name: str, value: float
 ) -> LinearPeriodic:
+    """Return the system with another value of a number."""
+    if name in system.parameters:
+        return system.with_parameters(**{name: value})
     if name in system.geometry:
         return system.with_geometry(**{name: value})
     assert isinstance(machine, Scene)

@@ -29,7 +29,14 @@ from ..periodic.transition import (
 )
 from ..scenes import Scene
 from ..stability import StabilityEdges
-from .coefficient_changes import SPEED, Changes, Effect, coefficient_changes, series_at
+from .coefficient_changes import (
+    SPEED,
+    Changes,
+    Effect,
+    coefficient_changes,
+    series_at,
+    varying_parts,
+)
 
 ComplexArray = NDArray[np.complex128]
 Answer: TypeAlias = FloquetMultipliers | StabilityEdges | NaturalFrequencies | SteadyState
@@ -167,6 +174,19 @@ def _worst(derivative: NDArray[Any], error: Array) -> float:
     largest = np.max(sizes, axis=tuple(range(error.ndim - 1)), initial=0.0)
     gaps = np.divide(error, largest, out=np.zeros(error.shape), where=known & (largest > 0.0))
     return float(np.max(gaps, initial=0.0))
+
+
+def feeding_of(system: LinearPeriodic, edges: StabilityEdges) -> tuple[str, ...]:
+    """Return for each region the array whose varying part does most for its width.
+
+    By the derivatives of both ends; for a region that has none the name is empty.
+    """
+    changes = varying_parts(system)
+    _, slope, *_ = _of_edges(system, edges, changes, 1e-6)
+    shares = np.abs(slope[:, 1] - slope[:, 0])
+    return tuple(
+        changes.by[int(np.argmax(row))] if np.all(np.isfinite(row)) else "" for row in shares
+    )
 
 
 # Value, derivative, error and where two answers have collided.
@@ -377,7 +397,7 @@ def _of_frequencies(
         factor = -0.5 * values if array == "M" else 0.5 * pace / values
 
         def of(change: Array, shapes: Array = shapes, factor: Array = factor) -> Array:
-            return factor * np.einsum("tik,tij,tjk->tk", shapes, change, shapes)
+            return np.asarray(factor * np.einsum("tik,tij,tjk->tk", shapes, change, shapes))
 
         whole = np.abs(of(np.abs(series_at(table, series)), np.abs(shapes)))
         for i in range(len(changes.by)):

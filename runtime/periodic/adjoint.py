@@ -107,15 +107,15 @@ def field_weights(
         turned = unscaled.transpose(0, 3, 4, 1, 2)
         return np.ascontiguousarray(turned.reshape(count * way.stages, n, -1))
 
-    slope, place, load, momentum = map(by_node, (slope, place, h * load, momentum))
+    moved, placed, loaded, pushed = map(by_node, (slope, place, h * load, momentum))
     pairs: dict[str, tuple[tuple[ComplexArray, ComplexArray | None], ...]] = {
-        "mass": ((momentum, slope),),
-        "gyroscopic": ((momentum, place), (slope, load)),
-        "damping": ((-load, slope),),
-        "stiffness": ((load, place),),
+        "mass": ((pushed, moved),),
+        "gyroscopic": ((pushed, placed), (moved, loaded)),
+        "damping": ((-loaded, moved),),
+        "stiffness": ((loaded, placed),),
     }
     if equation.forced:
-        pairs["force"] = ((load, None),)
+        pairs["force"] = ((loaded, None),)
     return FieldWeights((left[:, None] + way.c * h).ravel(), pairs, (shape[0], shape[1]))
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
+    from .diagnosis import diagnose as diagnose
     from .differentiation import sensitivities as sensitivities
     from .effects import damping_effect as damping_effect
     from .effects import length_effect as length_effect
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from .measured import Point as Point
     from .measured import draw_points as draw_points
     from .measured import read_points as read_points
+    from .nearest_regions import margins as margins
     from .procedure import running_speed as running_speed
     from .quiet import quiet_speeds as quiet_speeds
     from .speed_profile import SpeedProfile as SpeedProfile
@@ -25,10 +27,12 @@ if TYPE_CHECKING:
 __all__, __getattr__, __dir__ = on_first_use(
     globals(),
     {
+        "diagnosis": ("diagnose",),
         "differentiation": ("sensitivities",),
         "effects": ("damping_effect", "length_effect", "screen"),
         "fatigue_life": ("Material", "fatigue"),
         "identification": ("identify",),
+        "nearest_regions": ("margins",),
         "measured": ("Point", "draw_points", "read_points"),
         "procedure": ("running_speed",),
         "quiet": ("quiet_speeds",),

@@ -73,6 +73,7 @@ class Diagnosis(Result):
             # A hair's breadth is drawn as one.
             width = max(near.width[i], 2e-3 * near.speed)
             ax.barh(name, width * RPM, left=left * RPM, height=0.5, color="#c05a1f")
+        ax.use_sticky_edges = False
         ax.axvline(self.speed * RPM, color="0.2", linestyle="--", linewidth=0.9)
         ax.set(xlabel="crank speed [rpm]; dashed: running speed, bars: unstable regions")
         return ax

@@ -211,7 +211,9 @@ def _at_place(
     function: Callable[..., Array], geometry: Mapping[str, float], theta: Array
 ) -> dict[str, Array]:
     """Return the support's place at each angle, where its integrals are to be kept beside it."""
-    place = np.asarray(function(theta, **geometry))
+    place = np.asarray(function(theta, **_beside(theta, geometry)))
+    if place.dtype == object:
+        return {"place": place}
     # A support at the very end, beyond it by rounding.
     round_off = 8.0 * float(np.finfo(float).eps)
     return {"place": np.where(place <= 1.0 + round_off, np.minimum(place, 1.0), place)}
@@ -231,7 +233,14 @@ def _kernel_values(
     theta: Array,
 ) -> dict[str, Array]:
     passed = {name: given(theta) for name, given in external.items()}
-    return _by_name(names, function(theta, **fixed, **passed))
+    return _by_name(names, function(theta, **_beside(theta, fixed), **passed))
+
+
+def _beside(theta: Array, numbers: Mapping[str, float]) -> Mapping[str, Any]:
+    """Return numbers of the kind of the angles: where these are balls, nothing is rounded."""
+    if theta.dtype != object:
+        return numbers
+    return {name: 0.0 * theta + value for name, value in numbers.items()}
 
 
 def _angle_kernels(

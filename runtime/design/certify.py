@@ -212,19 +212,17 @@ def _halves(low: float, high: float) -> tuple[tuple[float, float], tuple[float, 
 
 def _decided(matrices: Matrices, low: float, high: float, least: float) -> Iterator[_Piece]:
     """Yield the intervals of a range of speeds, halved where nothing is proved."""
-    from .enclosures import contracting, moduli, outside
+    from .enclosures import contracting, largest_modulus, outside
 
     over, last = matrices.over(low, high), high - low <= least
-    points = [matrices.over(speed, speed) for speed in (low, 0.5 * (low + high), high)]
-    largest = [float(np.max(moduli(point))) for point in points]
-    radius = max(largest)
+    moduli = {x: largest_modulus(over, x) for x in (0.0, -1.0, 1.0)}
+    radius, x = max((modulus, x) for x, modulus in moduli.items())
     for bound in (radius + _PART * (1.0 - radius), 1.0)[: 1 + last] if radius < 1.0 else ():
         if contracting(over, bound):
-            worst = points[largest.index(radius)]
-            reached = [radius - lower for lower in _LOWER if outside(worst, radius - lower)]
+            reached = [radius - less for less in _LOWER if outside(over, radius - less, 0.999 * x)]
             yield _Piece(low, high, True, bound, max(reached, default=0.0))
             return
-    if min(largest) > 1.0 and outside(over, 1.0):
+    if min(moduli.values()) > 1.0 and outside(over, 1.0):
         yield _Piece(low, high, False)
     elif last:
         yield _Piece(low, high, None)

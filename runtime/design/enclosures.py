@@ -38,7 +38,7 @@ Balls = NDArray[Any]
 # Radius of the discs over the half-width of a segment; segments at first, at the most; G R at most.
 _REACH, _FEWEST, _MOST, _STEEP = 6, 64, 1024, 12.0
 # Bits of bounds, of series and polynomials; points of interpolation of a segment, of coefficients.
-_COARSE, _FINE, _POINTS, _NODES = 64, 160, 16, 32
+_COARSE, _FINE, _POINTS, _NODES = 64, 160, 16, 24
 # Goals for the errors of a segment and of the coefficients; 1 and what sums of doubles round by.
 _SMALL, _GOAL, _UP, _EPS = 1e-14, 1e-9, 1.0 + 1e-11, 2.0**-53
 _ELLIPSES = (1.5, 2.0, 3.0, 4.0, 6.0, 10.0, 20.0, 50.0)
@@ -136,6 +136,10 @@ def _upper(value: Any) -> float:
 def _sizes(balls: Balls) -> Array:
     """Return bounds of absolute values."""
     return np.array([_upper(abs(ball.value)) for ball in balls.flat]).reshape(balls.shape)
+
+
+def _part_sizes(parts: Mapping[int, Balls]) -> dict[int, Array]:
+    return {power: _sizes(value) for power, value in parts.items()}
 
 
 def _exp(value: float) -> float:
@@ -240,13 +244,16 @@ class Revolution:
             with flint.ctx.workprec(_FINE):
                 self._half = period / (2 * self._count)
             self._width, reach = _upper(self._half), _upper(_REACH * self._half)
-            self._axis = self._parts(self._squares(None))
-            self._axis_sizes = {power: _sizes(value) for power, value in self._axis.items()}
-            strip = [self._parts(self._squares(row)) for row in range(_REACH // 2)]
-            sizes = [{power: _sizes(value) for power, value in parts.items()} for parts in strip]
-            self._steep = max(_largest(parts, 1.0 / low) for parts in sizes) * reach
-            finite = all(np.all(np.isfinite(size)) for size in self._axis_sizes.values())
-            if finite and self._steep <= _STEEP:
+            # The outermost squares first: where these meet a singularity the others need not be.
+            self._steep = 0.0
+            for row in reversed(range(_REACH // 2)):
+                sizes = _part_sizes(self._parts(self._squares(row)))
+                self._steep = max(self._steep, _largest(sizes, 1.0 / low) * reach)
+                if self._steep > _STEEP:
+                    break
+            else:
+                self._axis = self._parts(self._squares(None))
+                self._axis_sizes = _part_sizes(self._axis)
                 return
             self._count *= 2
             if self._count > _MOST:
@@ -459,12 +466,13 @@ class Band:
             each = max(tilt, 1.0 / tilt) * (self.error + 3.0 * m * _EPS * largest)
             each = each * _UP + 1.1 * m**2 * _EPS
             off = _exp(float(np.sum(real)) * _UP) * expm1(len(real) * each) * _UP
-            nodes = _chebyshev(count)
-            values = np.array([self._product(place.at(x), tilt) for x in nodes])
-            entries = [
-                [flint.arb_poly.interpolate(nodes, of.tolist()) for of in row]
-                for row in values.transpose(1, 2, 0)
-            ]
+            values = [self._product(place.at(x), tilt) for x in _chebyshev(count)]
+            with flint.ctx.workprec(2 * _FINE):  # powers lose digits
+                nodes = _chebyshev(count)
+                entries = [
+                    [flint.arb_poly.interpolate(nodes, of.tolist()) for of in row]
+                    for row in np.array(values).transpose(1, 2, 0)
+                ]
             return Matrices(place, entries, (missed + _lebesgue(count) * off) * _UP)
 
     def _product(self, u: Any, tilt: float) -> Array:
@@ -509,10 +517,13 @@ class Matrices:
             return found
 
 
-def moduli(matrices: Balls) -> Array:
-    """Return the moduli of the eigenvalues at the middle of a range, in doubles."""
-    middle = np.array([[float(of[0].mid()) for of in row] for row in matrices])
-    return np.abs(np.linalg.eigvals(middle))
+def largest_modulus(matrices: Balls, x: float) -> float:
+    """Return the largest modulus of the eigenvalues at a place of the range, in doubles."""
+    return float(np.max(np.abs(np.linalg.eigvals(_middle(matrices, x)))))
+
+
+def _middle(matrices: Balls, x: float) -> Array:
+    return np.array([[float(of(x).mid()) for of in row] for row in matrices])
 
 
 def contracting(matrices: Balls, radius: float) -> bool:
@@ -523,7 +534,7 @@ def contracting(matrices: Balls, radius: float) -> bool:
     """
     import flint
 
-    middle = np.array([[float(of[0].mid()) for of in row] for row in matrices]) / radius
+    middle = _middle(matrices, 0.0) / radius
     try:
         # V^T V - Phi^T V^T V Phi is then the unit matrix there.
         square = scipy.linalg.solve_discrete_lyapunov(middle.T, np.eye(len(middle)))
@@ -542,8 +553,10 @@ def contracting(matrices: Balls, radius: float) -> bool:
     return True
 
 
-def outside(matrices: Balls, radius: float) -> bool:
+def outside(matrices: Balls, radius: float, x: float | None = None) -> bool:
     """Return whether an eigenvalue is proved to be above a radius, at every speed of the range.
+
+    Or at one place x of it, from -1 to 1.
 
     By Schur and Cohn: a real polynomial with ``|b_0| < |b_m|`` has as many roots outside the unit
     circle as ``(b_m p(z) - b_0 z^m p(1/z)) / z``; one with ``|b_0| > |b_m|`` has some.
@@ -551,7 +564,8 @@ def outside(matrices: Balls, radius: float) -> bool:
     import flint
 
     with flint.ctx.workprec(_FINE):
-        span, scale = flint.arb(0, 1), flint.arb(radius)
+        span = flint.arb(0, 1) if x is None else flint.arb(x)
+        scale = flint.arb(radius)
         values = flint.arb_mat([[of(span) for of in row] for row in matrices])
         b = [c * scale**k for k, c in enumerate(values.charpoly().coeffs())]
         while len(b) > 1:

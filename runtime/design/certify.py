@@ -97,10 +97,10 @@ def certify(
 
     No speed is sampled.  The coefficients of the equation are enclosed in ball arithmetic, as
     functions of a complex crank angle; power series with proved rests give the matrices of
-    segments of the period, and interpolation with proved errors the coefficients of the
-    characteristic polynomial as polynomials of 1/speed.  On an interval of speeds Schur and Cohn's
-    test then shows that all multipliers, or not all, lie inside a circle.  Intervals are halved
-    until one or the other is proved, or they are short.
+    segments of the period, and interpolation with proved errors the matrix of the period as
+    polynomials of 1/speed.  On an interval of speeds a quadratic form is shown to fall over every
+    period, so that all multipliers lie inside a circle, or not all where it is not positive
+    (Stein).  Intervals are halved until one or the other is proved, or they are short.
 
     What is proved holds for the separated equation of the system.  Parameters and lengths are taken
     as exactly the given doubles, and so are the factors of the terms and constant arrays, as they
@@ -144,7 +144,7 @@ def certify(
     pieces = _merged(list(_pieces(revolution, low, high, float(least))))
     stable = [piece for piece in pieces if piece.stable]
     return Certificate(
-        method="characteristic polynomial in ball arithmetic, Schur and Cohn's test",
+        method="enclosed matrices of a period, quadratic forms that fall",
         error=np.array([piece.bound - piece.reached for piece in stable]),
         error_norm="of each bound, above the largest modulus that occurs, absolute",
         error_kind="bound",
@@ -212,17 +212,18 @@ def _halves(low: float, high: float) -> tuple[tuple[float, float], tuple[float, 
 
 def _decided(matrices: Matrices, low: float, high: float, least: float) -> Iterator[_Piece]:
     """Yield the intervals of a range of speeds, halved where nothing is proved."""
-    from .enclosures import contracting, largest_modulus, outside
+    from .enclosures import all_inside, largest_modulus
 
     over, last = matrices.over(low, high), high - low <= least
     moduli = {x: largest_modulus(over, x) for x in (0.0, -1.0, 1.0)}
     radius, x = max((modulus, x) for x, modulus in moduli.items())
     for bound in (radius + _PART * (1.0 - radius), 1.0)[: 1 + last] if radius < 1.0 else ():
-        if contracting(over, bound):
-            reached = [radius - less for less in _LOWER if outside(over, radius - less, 0.999 * x)]
+        if all_inside(over, bound):
+            lower = [radius - less for less in _LOWER]
+            reached = [r for r in lower if all_inside(over, r, 0.999 * x) is False]
             yield _Piece(low, high, True, bound, max(reached, default=0.0))
             return
-    if min(moduli.values()) > 1.0 and outside(over, 1.0):
+    if min(moduli.values()) > 1.0 and all_inside(over, 1.0) is False:
         yield _Piece(low, high, False)
     elif last:
         yield _Piece(low, high, None)

@@ -526,51 +526,33 @@ def _middle(matrices: Balls, x: float) -> Array:
     return np.array([[float(of(x).mid()) for of in row] for row in matrices])
 
 
-def contracting(matrices: Balls, radius: float) -> bool:
-    """Return whether all eigenvalues are proved to be below a radius, over the whole range.
+def all_inside(matrices: Balls, radius: float, x: float | None = None) -> bool | None:
+    """Return whether all eigenvalues are below a radius; False where one is above; None if open.
 
-    With a matrix V from the middle of the range, ``radius^2 V^T V - (V Phi)^T (V Phi)`` is shown to
-    be positive definite: its rows are dominated by their diagonal.  So ``|V Phi x| < radius |V x|``.
+    Proved for every speed of the range, or at a place x of it from -1 to 1.  With a symmetric P
+    from the middle, ``S = radius^2 P - Phi^T P Phi`` is shown to be positive definite: its rows
+    are dominated by their diagonal.  Then all are below if P is positive definite, too, and one is
+    above if P is negative in some direction (Stein): else the sum of what S takes would be P.
     """
     import flint
 
-    middle = _middle(matrices, 0.0) / radius
+    size, middle = len(matrices), _middle(matrices, x or 0.0) / radius
     try:
-        # V^T V - Phi^T V^T V Phi is then the unit matrix there.
-        square = scipy.linalg.solve_discrete_lyapunov(middle.T, np.eye(len(middle)))
-        factor = np.linalg.cholesky(0.5 * (square + square.T)).T
+        # S is the unit matrix there, times the square of the radius.
+        solution = scipy.linalg.solve_discrete_lyapunov(middle.T, np.eye(size), method="direct")
+        symmetric = 0.5 * (solution + solution.T)
+        lowest = np.linalg.eigh(symmetric)[1][:, 0]
     except (np.linalg.LinAlgError, ValueError):
-        return False
+        return None
     with flint.ctx.workprec(_FINE):
-        exact = np.frompyfunc(flint.arb, 1, 1)(factor)
-        moved = exact @ matrices
-        rest = exact.T @ exact * flint.arb(radius) ** 2 - moved.T @ moved
-        span = flint.arb(0, 1)
+        form, way = (np.frompyfunc(flint.arb, 1, 1)(part) for part in (symmetric, lowest))
+        rest = form * flint.arb(radius) ** 2 - matrices.T @ form @ matrices
+        span = flint.arb(0, 1) if x is None else flint.arb(x)
         for i, row in enumerate(rest):
             values = [of(span) for of in row]
             if not values[i] > sum(abs(value) for j, value in enumerate(values) if j != i):
-                return False
-    return True
-
-
-def outside(matrices: Balls, radius: float, x: float | None = None) -> bool:
-    """Return whether an eigenvalue is proved to be above a radius, at every speed of the range.
-
-    Or at one place x of it, from -1 to 1.
-
-    By Schur and Cohn: a real polynomial with ``|b_0| < |b_m|`` has as many roots outside the unit
-    circle as ``(b_m p(z) - b_0 z^m p(1/z)) / z``; one with ``|b_0| > |b_m|`` has some.
-    """
-    import flint
-
-    with flint.ctx.workprec(_FINE):
-        span = flint.arb(0, 1) if x is None else flint.arb(x)
-        scale = flint.arb(radius)
-        values = flint.arb_mat([[of(span) for of in row] for row in matrices])
-        b = [c * scale**k for k, c in enumerate(values.charpoly().coeffs())]
-        while len(b) > 1:
-            ratio = b[0] / b[-1]
-            if not abs(ratio) < 1:
-                return bool(abs(ratio) > 1)
-            b = [b[k] - ratio * b[-1 - k] for k in range(1, len(b))]
-    return False
+                return None
+        blocks = (flint.arb_mat(form[:k, :k].tolist()) for k in range(1, size + 1))
+        if all(block.det() > 0 for block in blocks):
+            return True
+        return False if way @ form @ way < 0 else None

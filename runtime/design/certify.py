@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
-from ..core.errors import BadInput, bad
+from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic, require_system
 from ..core.inputs import require_between, speed_span
 from ..core.plotting import RPM, axes_or_new
@@ -138,8 +138,9 @@ def certify(
     least = 1e-4 * (high - low) if resolution is None else resolution
     require_between("resolution", least, 1e-9 * high, high, "try 1/10000 of the range")
     _require_flint()
-    from .enclosures import Revolution
+    from .enclosures import Revolution, require_analytic
 
+    require_analytic(system)
     revolution = Revolution(system, low, high)
     pieces = _merged(list(_pieces(revolution, low, high, float(least))))
     stable = [piece for piece in pieces if piece.stable]

@@ -12,10 +12,10 @@ norms: the norm grows at most by the exponential of g, the integral of the large
 the Hermitian part of L (Wazewski's inequality).
 
 All speeds of a range.  The matrices of a segment and of the period are entire functions of u.
-They are interpolated at J of Chebyshev's points, with an error of at most 4 m / (rho^(J-1) (rho - 1)) where m bounds the function
-in Bernstein's ellipse of parameter rho (Trefethen, Approximation Theory and Approximation Practice,
-theorem 8.2): the exponential of g for complex u.  Errors at the points grow by Lebesgue's constant,
-which is at most 1 + 2/pi log J.
+They are interpolated at J of Chebyshev's points, with an error of at most
+4 m / (rho^(J-1) (rho - 1)) where m bounds the function in Bernstein's ellipse of parameter rho
+(Trefethen, Approximation Theory and Approximation Practice, theorem 8.2): the exponential of g for
+complex u.  Errors at the points grow by Lebesgue's constant, at most 1 + 2/pi log J.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from ..core.errors import bad
-from ..core.families import Array, LinearPeriodic
+from ..core.families import VECTORS, Array, LinearPeriodic
 from ..periodic.equation import SPEED_POWER
 
 Balls = NDArray[Any]
@@ -40,7 +40,7 @@ _REACH, _FEWEST, _MOST, _STEEP = 6, 64, 1024, 12.0
 # Bits of bounds, of series and polynomials; points of interpolation of a segment, of coefficients.
 _COARSE, _FINE, _POINTS, _NODES = 64, 160, 16, 24
 # Goals for the errors of a segment and of the coefficients; 1 and what sums of doubles round by.
-_SMALL, _GOAL, _UP, _EPS = 1e-14, 1e-9, 1.0 + 1e-11, 2.0**-53
+_SMALL, _GOAL, _UP, _EPS = 1e-13, 1e-9, 1.0 + 1e-11, 2.0**-53
 _ELLIPSES = (1.5, 2.0, 3.0, 4.0, 6.0, 10.0, 20.0, 50.0)
 
 
@@ -183,7 +183,7 @@ class Generator:
                 term,
             )
             for term in self._system.terms
-            if term.array == name
+            if term.array == name and (term.scale is None or float(self._scales[term.scale]) != 0.0)
         ]
 
     def _mean(self, name: str, angles: Array, speed: float) -> Array:
@@ -193,11 +193,15 @@ class Generator:
         return total
 
     def _field(self, name: str, theta: Balls) -> dict[int, Balls]:
-        """Return an array at angles by powers of u, each ``(nt, n, n)``."""
+        """Return an array at angles by powers of u, each ``(nt, n, n)``, or ``(1, n, n)``."""
         found: dict[int, Balls] = {}
         for power, factor, term in self._terms(name):
-            values = 0.0 * theta[:, None, None] + term(theta)
-            values = self._unit.T @ (values * factor) @ self._unit
+            some = theta[:1] if term.constant else theta
+            values = term(some)
+            if values.dtype != object:
+                values = 0.0 * some[:, None, None] + values
+            zero = 0.0 * theta[0]
+            values = self._unit.T @ values @ (self._unit * (zero + factor))
             found[power] = found[power] + values if power in found else values
         return found
 
@@ -206,9 +210,8 @@ class Generator:
         n, zero = self.size, 0.0 * theta[:, None, None]
         flexibility = _inverse(self._field("M", theta)[0])
         nothing = zero + np.zeros((n, n))
-        turning = self._field("A", theta).get(0, nothing)
-        back = np.swapaxes(turning, 1, 2) @ flexibility
-        parts = {0: np.block([[-flexibility @ turning, flexibility], [-back @ turning, back]])}
+        turning = self._field("A", theta).get(0)
+        parts = {0: np.block([[nothing, flexibility + nothing], [nothing, nothing]])}
 
         def add(power: int, block: tuple[slice, slice], value: Balls) -> None:
             if power not in parts:
@@ -217,18 +220,45 @@ class Generator:
             parts[power][where] = parts[power][where] + value
 
         q, p = slice(None, n), slice(n, None)
+        if turning is not None:
+            back = np.swapaxes(turning, 1, 2) @ flexibility
+            for block, value in (
+                ((q, q), -flexibility @ turning),
+                ((p, q), -back @ turning),
+                ((p, p), back),
+            ):
+                add(0, block, value)
         for name, sign in (("B", 1.0), ("D", -1.0), ("K", -1.0), ("Kg", -1.0)):
             for power, value in self._field(name, theta).items():
                 add(power, (p, q), sign * value)
         for power, value in self._field("C", theta).items():
             loss = value @ flexibility
             add(power, (p, p), -loss)
-            add(power, (p, q), loss @ turning)
+            if turning is not None:
+                add(power, (p, q), loss @ turning)
         return parts
 
 
+def require_analytic(system: LinearPeriodic) -> None:
+    """Refuse functions of the angle that do not take balls."""
+    import flint
+
+    for term in system.terms:
+        if term.array not in SPEED_POWER or term.constant or term.array in VECTORS:
+            continue
+        try:
+            term(_objects([Ball(flint.acb(0.1, 0.1))]))
+        except (TypeError, ValueError, AttributeError) as error:
+            found = f"term {term.array} ({term.scale}), whose function takes doubles only"
+            expected = "arithmetic, sine, cosine and roots of the angle, as emitted modules have"
+            fix = "choose another formulation, of the rod two_segment"
+            raise bad("system", found, expected, fix) from error
+        finally:
+            term(np.zeros(1))
+
+
 class Revolution:
-    """Enclosures of the characteristic polynomial of the matrix of a period, over the speed."""
+    """The equation over a period: bounds of its coefficients, and their power series."""
 
     def __init__(self, system: LinearPeriodic, low: float, high: float) -> None:
         import flint
@@ -310,9 +340,7 @@ class Revolution:
             for k in range(order)
         ]
 
-    def growth(
-        self, middle: Any, radii: Sequence[float], tilt: float = 1.0
-    ) -> list[Array]:
+    def growth(self, middle: Any, radii: Sequence[float], tilt: float = 1.0) -> list[Array]:
         """Return bounds of log |Phi| and log |Phi^-1| by segment, for each radius.
 
         In discs about an inverse speed, in coordinates of which the first half is ``tilt**0.5``
@@ -347,8 +375,10 @@ class Revolution:
         one = flint.arb_mat([[int(i == j) for j in range(self.size)] for i in range(self.size)])
         factors = {power: u**power for power in parts}
         order = len(parts[0])
-        rates = [sum((of[k] * factors[power] for power, of in parts.items()), 0 * one)
-                 for k in range(order)]
+        rates = [
+            sum((of[k] * factors[power] for power, of in parts.items()), 0 * one)
+            for k in range(order)
+        ]
         terms = [one]
         for k in range(order - 1):
             following = rates[0] * terms[k]

@@ -20,7 +20,7 @@ def add(commands: Any) -> None:
 def _certify(options: argparse.Namespace) -> int:
     """Prove a damped system of one to three modes stable at every speed of a range.
 
-    elastolink certify smith_1972_5152_sixteenth_inch --speed 300rpm:400rpm --set coupler.damping_ratio=0.011
+    elastolink certify smith_1972_5152_sixteenth_inch --speed 300:400rpm --set coupler.damping=0.1
     """
     from ..core.plotting import RPM
 

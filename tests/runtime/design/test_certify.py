@@ -63,7 +63,7 @@ def proved_at(found, speed):
     return any(low <= speed <= high for low, high in found.proved)
 
 
-@pytest.mark.parametrize("damping", [0.02, 0.1])
+@pytest.mark.parametrize("damping", [pytest.param(0.02, marks=pytest.mark.slow), 0.1])
 def test_a_tongue_inside_is_found_to_its_ends(damping):
     system, span = coupler(damping=damping), (740.0 * RPM, 790.0 * RPM)
     edges = el.stability_edges(system, span)
@@ -81,7 +81,9 @@ def test_a_tongue_inside_is_found_to_its_ends(damping):
     )
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize(
+    "seed", [0, *(pytest.param(k, marks=pytest.mark.slow) for k in range(1, 4))]
+)
 def test_narrow_tongues_of_random_equations_are_never_proved(seed):
     """The damping is chosen so that a tongue of the second order is all but closed."""
     rng = np.random.default_rng(seed)
@@ -159,6 +161,7 @@ def test_without_flint_one_error(monkeypatch):
         certify(coupler(), (30.0, 40.0))
 
 
+@pytest.mark.slow
 def test_it_is_drawn(tmp_path):
     axes = certify(coupler(damping=0.05), (750.0 * RPM, 770.0 * RPM), resolution=0.1).plot()
     assert axes.get_xlabel() == "crank speed [rpm]" and axes.get_legend() is not None

@@ -112,7 +112,7 @@ def test_a_rod_on_polynomials_is_proved_and_one_on_overhang_modes_refused():
         return el.load_scene("beale_1992_flexible_rod", overrides=overrides).system()
 
     assert certify(rod("two_segment"), (995.0, 1005.0)).stable
-    with pytest.raises(el.BadInput, match="whose function takes doubles only; .*two_segment"):
+    with pytest.raises(el.BadInput, match=r"whose function takes doubles only; .*two_segment"):
         certify(rod("overhang"), (995.0, 1005.0))
 
 

@@ -22,8 +22,9 @@ if TYPE_CHECKING:
     from .enclosures import Band, Matrices, Revolution
 
 # Part of the way from the largest multiplier to 1 at which a bound is tried; what a multiplier that
-# is told to occur is lowered by; speeds at which the bounds are compared with computed multipliers.
-_PART, _LOWER, _COMPARED = 0.1, (1e-6, 1e-4, 1e-2), 5
+# is told to occur is lowered by; speeds at which the bounds are compared with computed multipliers;
+# part of the range over which the matrix has to be enclosed.
+_PART, _LOWER, _COMPARED, _COARSE = 0.1, (1e-6, 1e-4, 1e-2), 5, 1.0 / 256.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,7 +105,8 @@ def certify(
 
     What is proved holds for the separated equation of the system.  Parameters and lengths are taken
     as exactly the given doubles, and so are the factors of the terms and constant arrays, as they
-    were computed.  It is assumed that the functions of the angle have the period of the system.
+    were computed.  It is assumed that the functions of the angle have the period of the system; one
+    that is 2 pi over a whole number as a double counts as that.
 
     Parameters
     ----------
@@ -142,7 +144,8 @@ def certify(
 
     require_analytic(system)
     revolution = Revolution(system, low, high)
-    pieces = _merged(list(_pieces(revolution, low, high, float(least))))
+    coarse = max(float(least), _COARSE * (high - low))
+    pieces = _merged(list(_pieces(revolution, low, high, float(least), coarse)))
     stable = [piece for piece in pieces if piece.stable]
     return Certificate(
         method="enclosed matrices of a period, quadratic forms that fall",
@@ -183,27 +186,34 @@ def _require_flint() -> None:
         raise bad("certify", "python-flint is not installed", "the extra fast", fix) from missing
 
 
-def _pieces(revolution: Revolution, low: float, high: float, least: float) -> Iterator[_Piece]:
-    """Yield intervals that cover a range, rising."""
+def _pieces(
+    revolution: Revolution, low: float, high: float, least: float, coarse: float
+) -> Iterator[_Piece]:
+    """Yield intervals that cover a range, rising.
+
+    What is not enclosed over ``coarse`` is left open; ``least``: of an interval not halved again.
+    """
     band = revolution.band(low, high)
     if band is not None:
-        yield from _pieces_of_band(band, low, high, least)
-    elif high - low <= least:
+        yield from _pieces_of_band(band, low, high, least, coarse)
+    elif high - low <= coarse:
         yield _Piece(low, high, None)
     else:
         for part in _halves(low, high):
-            yield from _pieces(revolution, *part, least)
+            yield from _pieces(revolution, *part, least, coarse)
 
 
-def _pieces_of_band(band: Band, low: float, high: float, least: float) -> Iterator[_Piece]:
+def _pieces_of_band(
+    band: Band, low: float, high: float, least: float, coarse: float
+) -> Iterator[_Piece]:
     matrices = band.over(low, high)
     if matrices is not None:
         yield from _decided(matrices, low, high, least)
-    elif high - low <= least:
+    elif high - low <= coarse:
         yield _Piece(low, high, None)
     else:
         for part in _halves(low, high):
-            yield from _pieces_of_band(band, *part, least)
+            yield from _pieces_of_band(band, *part, least, coarse)
 
 
 def _halves(low: float, high: float) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -39,8 +39,8 @@ Balls = NDArray[Any]
 _REACH, _FEWEST, _MOST, _STEEP = 6, 64, 1024, 12.0
 # Bits of bounds, of series and polynomials; points of interpolation of a segment, of coefficients.
 _COARSE, _FINE, _POINTS, _NODES = 64, 160, 16, 24
-# Goals for the errors of a segment and of the coefficients; 1 and what sums of doubles round by.
-_SMALL, _GOAL, _UP, _EPS = 1e-13, 1e-9, 1.0 + 1e-11, 2.0**-53
+# Goals for the errors of a segment and of the period; what is of no use; bounds of roundings.
+_SMALL, _GOAL, _LARGE, _UP, _EPS = 1e-13, 1e-9, 1e-3, 1.0 + 1e-11, 2.0**-53
 _ELLIPSES = (1.5, 2.0, 3.0, 4.0, 6.0, 10.0, 20.0, 50.0)
 
 
@@ -60,7 +60,7 @@ class Ball:
 
         if isinstance(other, Ball):
             return Ball(operation(self.value, other.value))
-        if isinstance(other, (int, float, np.integer, np.floating)):
+        if isinstance(other, (int, float, np.integer)):
             return Ball(operation(self.value, flint.arb(float(other))))
         return NotImplemented
 
@@ -359,7 +359,7 @@ class Revolution:
         for radius in radii:
             u = _upper(middle)
             change: Any = sum(
-                ((u + radius) ** power - u**power) * _UP * part * weights
+                power * radius * (u + radius) ** max(power - 1, 0) * _UP * part * weights
                 for power, part in self._axis_sizes.items()
             )
             change = np.broadcast_to(change, sizes.shape)
@@ -413,7 +413,7 @@ class Revolution:
         values = np.array([[[float(x.mid()) for x in row] for row in of] for of in balls])
         radius = max(_upper(x.rad()) for of in balls for row in of for x in row)
         largest = float(np.max(np.abs(values)))
-        known = self.size * (radius + _EPS * largest)
+        known = self.size * (radius + 2.0 * _EPS * largest)
         known += self.series_rest(place.middle, place.radius)
         summed = self.size * (count + 4) * _EPS * (largest + known)
         error = (missed + _lebesgue(count) * (known + summed)) * _UP
@@ -434,7 +434,7 @@ class _Place:
         import flint
 
         ends = [flint.arb(1) / flint.arb(speed) for speed in (high, low)]
-        half = (ends[1] - ends[0]) / 2 * (1 + flint.arb(2) ** -40)
+        half = (ends[1] - ends[0]) / 2 * (1 + flint.arb(2) ** -44)
         return cls((ends[1] + ends[0]) / 2, half, _upper(half))
 
     def at(self, x: Any) -> Any:
@@ -489,7 +489,7 @@ class Band:
             tilt = float((place.middle / self.place.middle).mid())
             real, *wide = self.of.growth(place.middle, [place.radius, *place.discs], tilt)
             count, missed = _points([float(np.sum(rates)) * _UP for rates in wide], _GOAL)
-            if count > _NODES:
+            if count > _NODES or not np.sum(real) < -log(_GOAL):
                 return None
             # Of the matrices in tilted coordinates, of these themselves, and of each product.
             largest = float(np.max(np.abs(self.values))) * _lebesgue(len(self.values)) + self.error
@@ -503,7 +503,8 @@ class Band:
                     [flint.arb_poly.interpolate(nodes, of.tolist()) for of in row]
                     for row in np.array(values).transpose(1, 2, 0)
                 ]
-            return Matrices(place, entries, (missed + _lebesgue(count) * off) * _UP)
+            error = (missed + _lebesgue(count) * off) * _UP
+            return Matrices(place, entries, error) if error < _LARGE else None
 
     def _product(self, u: Any, tilt: float) -> Array:
         """Return the matrix of the period at an inverse speed, in doubles."""

@@ -284,7 +284,8 @@ class Revolution:
             else:
                 self._axis = self._parts(self._squares(None))
                 self._axis_sizes = _part_sizes(self._axis)
-                return
+                if all(np.all(np.isfinite(size)) for size in self._axis_sizes.values()):
+                    return
             self._count *= 2
             if self._count > _MOST:
                 found = "coefficients that cannot be bounded beside the real axis of the angle"
@@ -489,7 +490,7 @@ class Band:
             tilt = float((place.middle / self.place.middle).mid())
             real, *wide = self.of.growth(place.middle, [place.radius, *place.discs], tilt)
             count, missed = _points([float(np.sum(rates)) * _UP for rates in wide], _GOAL)
-            if count > _NODES or not np.sum(real) < -log(_GOAL):
+            if count > _NODES or not np.sum(real) < -log(_GOAL) or not self.error < _LARGE:
                 return None
             # Of the matrices in tilted coordinates, of these themselves, and of each product.
             largest = float(np.max(np.abs(self.values))) * _lebesgue(len(self.values)) + self.error

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
+    from .certificates import certify as certify
     from .diagnosis import diagnose as diagnose
     from .differentiation import sensitivities as sensitivities
-    from .certify import certify as certify
     from .effects import damping_effect as damping_effect
     from .effects import length_effect as length_effect
     from .effects import screen as screen
@@ -30,7 +30,7 @@ __all__, __getattr__, __dir__ = on_first_use(
     {
         "diagnosis": ("diagnose",),
         "differentiation": ("sensitivities",),
-        "certify": ("certify",),
+        "certificates": ("certify",),
         "effects": ("damping_effect", "length_effect", "screen"),
         "fatigue_life": ("Material", "fatigue"),
         "identification": ("identify",),

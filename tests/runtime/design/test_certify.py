@@ -29,7 +29,7 @@ def mathieu(damping, depth=1.0):
 
 
 @pytest.mark.parametrize("modes", [1, pytest.param(2, marks=pytest.mark.slow)])
-def test_enclosed_matrices_hold_the_multipliers_computed_to_many_digits(modes):
+def test_enclosed_matrices_hold_the_computed_multipliers(modes):
     system = coupler(modes)
     low, high = 340.0 * RPM, 350.0 * RPM
     matrices = Revolution(system, low, high).band(low, high).over(low, high)
@@ -81,9 +81,8 @@ def test_a_tongue_inside_is_found_to_its_ends(damping):
     )
 
 
-@pytest.mark.parametrize(
-    "seed", [0, *(pytest.param(k, marks=pytest.mark.slow) for k in range(1, 4))]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(4))
 def test_narrow_tongues_of_random_equations_are_never_proved(seed):
     """The damping is chosen so that a tongue of the second order is all but closed."""
     rng = np.random.default_rng(seed)

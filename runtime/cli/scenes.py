@@ -84,6 +84,8 @@ def _lines(scene: Scene) -> list[str]:
             known = layout.key(key) if layout else None
             if isinstance(value, float) and dimension is not None:
                 text = describe(value, dimension)
+                width = scene.tolerances.get(f"{name}.{key}")
+                text += f" +- {width:.6g}" if width else ""
             elif isinstance(value, tuple) and dimension is not None:
                 listed = ", ".join(f"{number:.6g}" for number in value)
                 text = f"[{listed}] {DIMENSIONS[dimension].si}".rstrip()

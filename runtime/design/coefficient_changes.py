@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,7 +14,7 @@ from ..core.families import Array, LinearPeriodic
 from ..core.inputs import names_in_a_row
 from ..periodic.adjoint import FieldWeights
 from ..periodic.equation import FIELD, SPEED_POWER, sampled, waves
-from ..scenes import Scene, changed_scene
+from ..scenes import Scene, with_numbers
 
 ComplexArray = NDArray[np.complex128]
 # An array of the equation, and the extra power of the speed that a part of it carries.
@@ -193,7 +193,7 @@ def with_number(
     if name in system.geometry:
         return system.with_geometry(**{name: value})
     assert isinstance(machine, Scene)
-    return changed_scene(machine, {name: value}).linear_system()
+    return with_numbers(machine, {name: value}).linear_system()
 
 
 def _scales(system: LinearPeriodic, name: str, values: Array) -> Iterator[dict[str, ArrayLike]]:
@@ -237,10 +237,12 @@ def _checked(
     for name in names:
         if name in known:
             continue
-        value = machine.get(name, None) if isinstance(machine, Scene) and "." in name else None
+        value: Any = machine.given if isinstance(machine, Scene) and "." in name else None
+        for key in name.split("."):
+            value = value.get(key) if isinstance(value, Mapping) else None
         if not isinstance(value, float):
             expected = f"one of {known}"
-            expected += ", or a key of the scene that is a number" * isinstance(machine, Scene)
+            expected += ", or a key that the scene gives a number" * isinstance(machine, Scene)
             problems.append(Problem("by", repr(name), expected, "correct the name"))
     if not names or len(set(names)) < len(names):
         problems.append(Problem("by", repr(names), "different names, at least one", "mend it"))

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from .loader import changed_scene, list_scenes, load_scene, scene_from_document, scene_titles
+from .loader import list_scenes, load_scene, scene_from_document, scene_titles, with_numbers
 from .scene import ReadOnlyTable, Scene
 
 __all__ = [
     "ReadOnlyTable",
     "Scene",
-    "changed_scene",
     "list_scenes",
     "load_scene",
     "scene_from_document",
     "scene_titles",
+    "with_numbers",
 ]

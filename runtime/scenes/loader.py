@@ -6,16 +6,20 @@ import math
 import os
 import tomllib
 from collections.abc import Mapping
+from dataclasses import replace
+from functools import reduce
 from importlib import resources
+from operator import getitem
 from pathlib import Path
 from typing import Any
 
 from ...derive.spec import BEAM_FORMULATIONS
 from ..core.errors import Problem, bad, refuse, shown
 from .beam_tables import complete_beams, complete_crank, complete_rod
-from .checks import check_body, collecting
+from .checks import check_body, check_geometry, collecting
 from .scene import ReadOnlyTable, Scene
 from .schema import Layout
+from .tolerances import flat, half_widths, require_assembly, separated
 from .validation import find_layout, nearest, show, validate
 
 
@@ -47,7 +51,7 @@ def load_scene(
         Values that replace the file's, by dotted key:
         ``{"model.modes": 3, "links.crank": "0.12 m"}``.  A value that stands for the same thing as
         another key of the file (``coupler.mass_per_length`` for ``coupler.natural_frequency``)
-        replaces that key; None removes a key.
+        replaces that key; None removes a key.  Values may carry tolerances: ``"0.12 m +- 1 mm"``.
 
     Returns
     -------
@@ -79,19 +83,44 @@ def scene_from_document(
     """Return the scene of tables as a TOML file gives them; else as :func:`load_scene`."""
     tables = {key: dict(v) if isinstance(v, Mapping) else v for key, v in document.items()}
     _override(tables, overrides or {})
+    whole = tables
+    tables, marked = separated(tables)
+    own = "deviations" in (tables.get("schema") or {})
+    spread = {} if own else dict(flat(tables.pop("deviations", {})))
     layout, values = validate(tables)
-    complete(values, layout)
-    read_only = {key: _read_only(key, table) for key, table in values.items()}
+    problems: list[Problem] = []
+    with collecting(problems):
+        widths = half_widths(marked, values, layout)
+        require_assembly(values, widths, layout)
+    with collecting(problems):
+        deviations = half_widths(spread, values, layout, "deviations.")
+    refuse(problems)
     title, source = str(tables.get("title", name)), str(tables.get("source", ""))
-    return Scene(name, title, source, ReadOnlyTable(name, read_only), layout, tables)
+    bounds = ReadOnlyTable("tolerances", widths), ReadOnlyTable("deviations", deviations)
+    bare = Scene(name, title, source, ReadOnlyTable(name, {}), layout, whole, values)
+    return replace(with_numbers(bare, {}), tolerances=bounds[0], deviations=bounds[1])
 
 
-def changed_scene(scene: Scene, overrides: Mapping[str, Any]) -> Scene:
-    """Return a scene with other values by dotted key, as :func:`load_scene` puts them in.
+def with_numbers(scene: Scene, numbers: Mapping[str, float]) -> Scene:
+    """Return a scene with other numbers, exact ones, by dotted key [SI].
 
-    What is given in it stays as given, what follows from that is computed anew.
+    The keys are some of ``scene.given``; what follows from them is filled in anew.
     """
-    return scene_from_document(scene.name, scene.document, overrides)
+    given = _copied(scene.given)
+    for where, number in numbers.items():
+        table, _, name = where.rpartition(".")
+        reduce(getitem, table.split("."), given)[name] = number
+    values = _copied(given)
+    check_geometry(values, scene.layout)
+    complete(values, scene.layout)
+    tables = ReadOnlyTable(scene.name, {k: _read_only(k, table) for k, table in values.items()})
+    document = _copied(scene.document)
+    _override(document, numbers)
+    return Scene(scene.name, scene.title, scene.source, tables, scene.layout, document, given)
+
+
+def _copied(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {k: _copied(v) if isinstance(v, Mapping) else v for k, v in values.items()}
 
 
 def _read_only(name: str, table: Mapping[str, Any]) -> ReadOnlyTable:

@@ -8,6 +8,7 @@ import inspect
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ...derive.spec import BEAM_FORMULATIONS, INEXTENSIBLE, ModelSpec
@@ -107,7 +108,12 @@ class Scene:
     layout : Layout
         What the scene's mechanism and formulation call for.
     document : mapping
-        Its tables as they were given, overrides put in.
+        The tables as they were given, overrides among them, in the units of the file.
+    given : mapping
+        The same in SI units, defaults filled in and what follows from the numbers not.
+    tolerances, deviations : ReadOnlyTable
+        Half-widths of the bounds within which a number lies, and standard deviations, by dotted
+        key, in SI units.
     """
 
     name: str
@@ -115,7 +121,10 @@ class Scene:
     source: str
     tables: ReadOnlyTable
     layout: Layout
-    document: Mapping[str, Any] = field(repr=False, compare=False)
+    document: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
+    given: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
+    tolerances: ReadOnlyTable = field(default_factory=partial(ReadOnlyTable, "tolerances", {}))
+    deviations: ReadOnlyTable = field(default_factory=partial(ReadOnlyTable, "deviations", {}))
 
     def __getitem__(self, table: str) -> ReadOnlyTable:
         """Return one table."""
@@ -169,17 +178,17 @@ class Scene:
         table, _, name = key.partition(".")
         if table == "chart" and name.endswith("_range"):
             return self.layout.parameters.get(self.get(f"chart.{name[0]}"))
-        known = self.layout.table(table)
-        if known and known.named:
-            name = name.rpartition(".")[2]
-        found = known.key(name) if known else None
+        found = self.layout.key(key)
         if found is None:
-            return _DERIVED.get(name)
+            return _DERIVED.get(key.rpartition(".")[2])
         return found.dimension if found.kind in {"quantity", "quantities"} else None
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain dicts, lists, numbers and strings, ready for JSON."""
         tables = {name: _plain(table) for name, table in self.tables.items()}
+        for name in ("tolerances", "deviations"):
+            if getattr(self, name):
+                tables[name] = _plain(getattr(self, name))
         return {"name": self.name, "title": self.title, "source": self.source, **tables}
 
     def digest(self) -> str:

@@ -118,3 +118,11 @@ class Layout:
     def table(self, name: str) -> Table | None:
         """Return the table of that name, or None."""
         return next((table for table in self.all_tables() if table.name == name), None)
+
+    def key(self, where: str) -> Key | None:
+        """Return the key that a dotted name stands for, ``loads.NAME.couple`` too, or None."""
+        table, _, name = where.partition(".")
+        known = self.table(table)
+        if known and known.named:
+            name = name.rpartition(".")[2]
+        return known.key(name) if known else None

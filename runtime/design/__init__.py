@@ -1,4 +1,4 @@
-"""Choosing a running speed: quiet speeds, run-ups, damping, screening, fatigue, measured points."""
+"""Choosing a running speed, quiet speeds, run-ups, fatigue; measured points; tolerances."""
 
 from __future__ import annotations
 
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from .quiet import quiet_speeds as quiet_speeds
     from .speed_profile import SpeedProfile as SpeedProfile
     from .transient import run_through as run_through
+    from .within_tolerances import tolerance_bands as tolerance_bands
 
 __all__, __getattr__, __dir__ = on_first_use(
     globals(),
@@ -40,5 +41,6 @@ __all__, __getattr__, __dir__ = on_first_use(
         "quiet": ("quiet_speeds",),
         "speed_profile": ("SpeedProfile",),
         "transient": ("run_through",),
+        "within_tolerances": ("tolerance_bands",),
     },
 )

@@ -1,0 +1,306 @@
+"""What tolerances of a scene's numbers do to an answer: worst case, sampled spread, shares."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..core.errors import BadInput, bad
+from ..core.families import Array
+from ..core.inputs import require_kind, require_whole
+from ..core.plotting import Axes, axes_or_new
+from ..core.results import Check, Result, provenance
+from ..scenes import Scene, with_numbers
+from .tolerance_answers import Answer, Over, answer_of
+
+# Reserve over the largest remainder measured; corners and points inside that it is measured at;
+# what round-off leaves, and no number; standard deviations to the worst case without a bound.
+_SAFETY, _CORNERS, _INSIDE, _ROUND_OFF, _TINY, _REACH = 2.0, 16, 8, 1e-12, 1e-300, 3.0
+_SPREAD = ("standard_deviation", "likely_lower", "likely_upper")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ToleranceBands(Result):
+    """An answer with bands; its arrays are over rows and places, ``(nr, np)``.
+
+    ``lower`` and ``upper`` are bounds, proved, of a model of second order over all tolerances,
+    widened by ``reserve`` for what the model leaves out: twice the largest remainder measured at
+    corners and inside, an estimate.  ``error`` is how far they lie beyond values that were
+    computed: so much too wide the bands may be.
+
+    Attributes
+    ----------
+    numbers : tuple of str
+        Dotted keys of the n numbers.
+    half_width, deviation : ndarray, shape (n,)
+        Bounds, three standard deviations where none is given, and standard deviations, NaN of
+        uniform numbers [SI].
+    rows, units : tuple of str
+        Names and units of the rows.
+    place, across, quantity : ndarray, str, str
+        Places, for example crank angles [rad], what they are, and what the answer is.
+    value, lower, upper, reserve : ndarray
+        Answer of the scene itself, worst cases, and the part of either that is reserve.
+    standard_deviation, likely_lower, likely_upper : ndarray
+        Of the samples of the model; 95 of 100 lie between the two.
+    slope, share : ndarray, shape (nr, np, n)
+        Change by a half-width of each number, and its part in the variance, to first order.
+    """
+
+    numbers: tuple[str, ...]
+    half_width: Array
+    deviation: Array
+    rows: tuple[str, ...]
+    units: tuple[str, ...]
+    place: Array
+    across: str
+    quantity: str
+    value: Array
+    lower: Array
+    upper: Array
+    reserve: Array
+    standard_deviation: Array
+    likely_lower: Array
+    likely_upper: Array
+    slope: Array
+    share: Array
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **dict.fromkeys(("half_width", "deviation"), ("number",)),
+        "place": ("place",),
+        **dict.fromkeys(("value", "lower", "upper", "reserve", "error"), ("row", "place")),
+        **dict.fromkeys(_SPREAD, ("row", "place")),
+        **dict.fromkeys(("slope", "share"), ("row", "place", "number")),
+    }
+
+    def plot(self, ax: Axes | None = None, row: str | None = None) -> Axes:
+        """Draw one row, or those with its unit: worst case light, 95 of 100 samples darker."""
+        ax = axes_or_new(ax)
+        name = row or self.rows[0]
+        if name not in self.rows:
+            raise bad("row", repr(name), f"one of {', '.join(self.rows)}", "choose one")
+        unit = self.units[self.rows.index(name)]
+        chosen = [k for k, one in enumerate(self.rows) if row == one or not row]
+        for k in (k for k in chosen if self.units[k] == unit):
+            colour, x = f"C{k % 10}", self.place
+            x = np.degrees(x) if self.across.endswith("[rad]") else x
+            ends = (self.lower, self.upper, self.likely_lower, self.likely_upper, self.value)
+            low, high, likely_low, likely_high, value = (np.atleast_1d(end[k]) for end in ends)
+            if len(x) == 1:  # a bar of some width
+                x = np.array([k - 0.3, k + 0.3])
+            ax.fill_between(x, low, high, color=colour, alpha=0.25, lw=0)
+            ax.fill_between(x, likely_low, likely_high, color=colour, alpha=0.5, lw=0)
+            ax.plot(x, value + 0.0 * x, color=colour, lw=0.8, label=self.rows[k])
+        ax.set(
+            xlabel=self.across.replace("[rad]", "[deg]"), ylabel=f"{row or self.quantity} [{unit}]"
+        )
+        if len(self.place) == 1:
+            ax.set(xlabel="", xticks=[])
+        # Beside the bands, which may fill the axes.
+        above: Any = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "fontsize": "small"}
+        ax.legend(title="light: worst case; dark: 95 of 100", ncols=4, **above)
+        return ax
+
+
+def tolerance_bands(
+    scene: Scene,
+    answer: str | Callable[[Scene], ArrayLike],
+    at: ArrayLike | None = None,
+    *,
+    over: Over | None = None,
+    trials: int = 32,
+    samples: int = 10_000,
+    seed: int = 0,
+) -> ToleranceBands:
+    """Return worst case and sampled spread of an answer within the tolerances of a scene.
+
+    The scene is computed anew with n numbers moved, all that follows from them too: ``1 + 2 n +
+    n (n - 1) / 2`` times for a model of second order whose steps are the half-widths, some 32 times
+    for the reserve, ``trials`` times at random to check it.
+
+    Parameters
+    ----------
+    scene : Scene
+        With ``tolerances`` or ``deviations``.
+    answer : str or callable
+        ``"frequencies"`` with the crank held; ``"edges"`` of unstable regions; ``"boundaries"``
+        of a chart, which are edges over a second parameter; ``"stress"``, the largest of each beam
+        over the speed; ``"forces"`` of a rigid machine; or a function that makes numbers
+        ``(places,)`` or ``(rows, places)`` of a scene.
+    at : array_like, optional
+        Crank angles [rad] or speeds [rad/s], of edges and boundaries the lowest and the highest; by
+        default 73 over a turn, or 21 over ``operation.speed_range``.
+    over : tuple of str and array_like, optional
+        The second parameter and its values [SI]; by default five of the chart's y.
+    trials : int
+        Machines at random that check the reserve.
+    samples : int
+        Numbers at random for the spread, of which the model of second order makes the answers:
+        uniform within the bounds, or normal where a deviation is given, cut off at the bounds.
+    seed : int
+        Of all that is random.
+
+    Returns
+    -------
+    ToleranceBands
+        Its checks: ``held``, the part of the reserve that the worst trial used; ``narrow``, the
+        largest reserve over the largest half band of its row: tolerances are too wide for the
+        model, or the answer has kinks, if it is beyond 1/2.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, no number has a tolerance, or a machine within them cannot be.
+    """
+    require_kind("scene", scene, Scene, "use load_scene")
+    require_whole("trials", trials, 1, 10_000_000)
+    require_whole("samples", samples, 2, 10_000_000)
+    random = np.random.default_rng(require_whole("seed", seed, 0, 2**63))
+    box, asked = _Box.of(scene), answer_of(scene, answer, at, over)
+    shape = len(asked.rows), len(asked.place)
+    evaluate = partial(_values, scene, asked, box)
+    design = box.design()
+    first = evaluate(design)
+    model: Array = np.linalg.solve(_features(design), first).astype(float)
+    slope = model[1 : box.n + 1]
+    corners = box.corners(slope, random)
+    # What is cubic in one number is nought at the corners, and largest at 0.577 of the way.
+    inside = [corners[:_INSIDE] / np.sqrt(3.0), random.uniform(-1.0, 1.0, (_INSIDE, box.n))]
+    checked = np.concatenate([corners, *inside])
+    found = np.concatenate([first, evaluate(checked)])
+    remainder = np.abs(found[len(first) :] - _features(checked) @ model)
+    size = np.max(np.abs(first[0].reshape(shape)), axis=1)
+    left_out = _SAFETY * np.max(remainder, axis=0)
+    reserve = left_out + np.repeat(_ROUND_OFF * size, shape[1]) + _TINY
+    low, high = _bounds(model, box.n)
+    low, high = low - reserve, high + reserve
+    drawn = box.draw(trials, random)
+    used = np.abs(evaluate(drawn) - _features(drawn) @ model) / reserve
+    widest = [np.max(row.reshape(shape), axis=1) for row in (left_out, (high - low) / 2.0)]
+    points = box.draw(samples, random)
+    share = np.square(slope * np.std(points, axis=0)[:, None])
+    share /= np.maximum(np.sum(share, axis=0), _TINY)
+    too_wide = np.maximum(high - np.max(found, axis=0), np.min(found, axis=0) - low)
+    names = ("value", "lower", "upper", "reserve", "error", *_SPREAD)
+    rows = (first[0], low, high, reserve, too_wide, *_spread(points, model))
+    return ToleranceBands(
+        method="second order by differences of a half-width; remainder measured, doubled",
+        error_norm="how far too wide a band may be at either side, absolute",
+        checks={
+            "held": Check(float(np.max(used)), 1.0),
+            "narrow": Check(float(np.max(widest[0] / widest[1])), 0.5),
+        },
+        provenance=provenance({"scene": scene.name, "scene_digest": scene.digest()}),
+        numbers=box.names,
+        half_width=box.half,
+        deviation=box.deviation,
+        **{name: part for name, part in vars(asked).items() if name != "compute"},
+        slope=slope.T.reshape(*shape, box.n),
+        share=share.T.reshape(*shape, box.n),
+        **{name: row.reshape(shape) for name, row in zip(names, rows, strict=True)},
+    )
+
+
+@dataclass(frozen=True)
+class _Box:
+    """The numbers with tolerances; a point of the box has coordinates from -1 to 1."""
+
+    names: tuple[str, ...]
+    middle: Array
+    half: Array
+    deviation: Array
+
+    @classmethod
+    def of(cls, scene: Scene) -> _Box:
+        names = tuple(dict.fromkeys([*scene.tolerances, *scene.deviations]))
+        if not names:
+            fix = "write links.coupler = '381 mm +- 0.1 mm', or --set it"
+            raise bad(f"scene {scene.name}", "no tolerance", "a number with one", fix)
+        spread = np.array([scene.deviations.get(k, np.nan) for k in names])
+        half = np.array([scene.tolerances.get(k, np.nan) for k in names])
+        half[np.isnan(half)] = _REACH * spread[np.isnan(half)]
+        return cls(names, np.array([scene.get(k) for k in names]), half, spread)
+
+    @property
+    def n(self) -> int:
+        return len(self.names)
+
+    def design(self) -> Array:
+        """Return the points that fix a model of second order: middle, faces, edges."""
+        one = np.eye(self.n)
+        pairs = [one[i] + one[j] for i, j in itertools.combinations(range(self.n), 2)]
+        return np.concatenate([np.zeros((1, self.n)), one, -one, *([pairs] if pairs else [])])
+
+    def corners(self, slope: Array, random: np.random.Generator) -> Array:
+        """Return all corners where they are few, else those worst for most, and random ones."""
+        if 2**self.n <= _CORNERS:
+            return np.array(list(itertools.product((-1.0, 1.0), repeat=self.n)))
+        signs = np.where(slope.T >= 0.0, 1.0, -1.0)
+        worst, counts = np.unique(np.concatenate([signs, -signs]), axis=0, return_counts=True)
+        most = worst[np.argsort(-counts, kind="stable")[: 2 * _CORNERS]]
+        return np.concatenate([most, random.choice([-1.0, 1.0], (_CORNERS, self.n))])
+
+    def draw(self, count: int, random: np.random.Generator) -> Array:
+        """Return random points, normal in what has a deviation, uniform in the rest."""
+        from scipy.special import ndtr, ndtri
+
+        uniform = random.uniform(-1.0, 1.0, (count, self.n))
+        with np.errstate(invalid="ignore"):
+            cut = self.half / self.deviation
+            normal = ndtri(0.5 + uniform * (ndtr(cut) - 0.5)) / cut
+        return np.where(np.isnan(self.deviation), uniform, np.clip(normal, -1.0, 1.0))
+
+
+def _values(scene: Scene, asked: Answer, box: _Box, points: Array) -> Array:
+    """Return the answer at points of the box, ``(points, rows * places)``."""
+    rows = []
+    for point in points:
+        numbers = dict(zip(box.names, (box.middle + box.half * point).tolist(), strict=True))
+        told = ", ".join(f"{name} = {number:.6g}" for name, number in numbers.items())
+        try:
+            found = np.asarray(asked.compute(with_numbers(scene, numbers)), dtype=float).ravel()
+        except BadInput as refusal:
+            wrong = refusal.problems[0]
+            given = f"{wrong.found} with {told}"
+            raise bad(wrong.where, given, wrong.expected, "narrow the tolerances") from refusal
+        if len(found) != len(asked.rows) * len(asked.place) or not np.all(np.isfinite(found)):
+            expected = "the same finite numbers of every machine within the tolerances"
+            raise bad("answer", f"others with {told}", expected, "narrow the tolerances")
+        rows.append(found)
+    return np.array(rows)
+
+
+def _features(points: Array) -> Array:
+    """Return 1, coordinates, and their squares and products at points."""
+    n = points.shape[1]
+    pairs = [points[:, i] * points[:, j] for i, j in itertools.combinations(range(n), 2)]
+    return np.column_stack([np.ones(len(points)), points, points**2, *pairs])
+
+
+def _bounds(model: Array, n: int) -> tuple[Array, Array]:
+    """Return bounds of the model over the box: exact in each number, products at their worst."""
+    slope, curve = np.abs(model[1 : n + 1]), model[n + 1 : 2 * n + 1]
+
+    def top(curve: Array) -> Array:
+        inside = 2.0 * np.abs(curve) > slope
+        peak = np.square(slope) / (4.0 * np.where(inside, np.abs(curve), 1.0))
+        return np.asarray(np.sum(np.where(inside & (curve < 0.0), peak, slope + curve), axis=0))
+
+    products = np.sum(np.abs(model[2 * n + 1 :]), axis=0)
+    return model[0] - top(-curve) - products, model[0] + top(curve) + products
+
+
+def _spread(points: Array, model: Array) -> list[Array]:
+    """Return standard deviation and the ends of the middle 95 of 100 of the model at points."""
+    features, parts = _features(points), []
+    # Numbers in one array at a time.
+    for columns in np.array_split(model, 1 + len(points) * model.shape[1] // 2_000_000, axis=1):
+        values = features @ columns
+        parts.append([np.std(values, axis=0), *np.quantile(values, [0.025, 0.975], axis=0)])
+    return list(np.concatenate(parts, axis=1))

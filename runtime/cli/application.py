@@ -26,7 +26,8 @@ from .options import HelpFormatter, add, picture
 # Files of subcommands, in the order of the help.
 _GROUPS = (
     *("scenes", "linkages", "tolerances", "forces", "response", "nonlinear"),
-    *("beams", "stability", "boundaries", "diagnosis", "measured", "bands", "certified", "proofs"),
+    *("beams", "stability", "boundaries", "diagnosis", "stabilising"),
+    *("measured", "bands", "certified", "proofs"),
 )
 _BAD_INPUT = 2
 # Characters of a complaint; the longest list of choices has half as many.

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from .procedure import running_speed as running_speed
     from .quiet import quiet_speeds as quiet_speeds
     from .speed_profile import SpeedProfile as SpeedProfile
+    from .stabilising import stabilise as stabilise
     from .transient import run_through as run_through
     from .within_tolerances import tolerance_bands as tolerance_bands
 
@@ -40,6 +41,7 @@ __all__, __getattr__, __dir__ = on_first_use(
         "procedure": ("running_speed",),
         "quiet": ("quiet_speeds",),
         "speed_profile": ("SpeedProfile",),
+        "stabilising": ("stabilise",),
         "transient": ("run_through",),
         "within_tolerances": ("tolerance_bands",),
     },

@@ -24,7 +24,7 @@ from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic
 from ..core.inputs import numbers_in_a_row, require_between, speed_span
 from ..core.plotting import RPM, Axes, axes_or_new
-from ..core.results import Check, Result, provenance
+from ..core.results import Check, DeferredChecks, Result, provenance
 from ..periodic import Monodromy, monodromy
 from ..periodic.equation import SPEED_POWER, equation_of, sampled
 
@@ -492,11 +492,14 @@ def _result(
         method="eigenvalues of the Fourier matrix",
         error=error[order],
         error_norm="absolute, of each speed [rad/s]",
-        checks={
-            "truncation": Check(max(part.truncation for part in parts), limit),
-            "parity": parity(system, found, span, parameters),
-            **at_boundaries(system, speed[order], sign[order], error[order], parameters),
-        },
+        checks=DeferredChecks(
+            partial(
+                _checks,
+                Check(max(part.truncation for part in parts), limit),
+                (system, found, span, dict(parameters)),
+                (speed[order], sign[order], error[order]),
+            )
+        ),
         provenance=provenance(system.changed_provenance(**parameters)),
         speed=speed[order],
         multiplier=sign[order],
@@ -505,6 +508,19 @@ def _result(
         harmonics=harmonics,
         period=system.period,
     )
+
+
+def _checks(
+    truncation: Check,
+    given: tuple[LinearPeriodic, list[tuple[int, Array]], tuple[float, float], dict[str, float]],
+    boundaries: tuple[Array, NDArray[np.int64], Array],
+) -> dict[str, Check]:
+    system, found, span, parameters = given
+    return {
+        "truncation": truncation,
+        "parity": parity(system, found, span, parameters),
+        **at_boundaries(system, *boundaries, parameters),
+    }
 
 
 def at_boundaries(

@@ -10,20 +10,20 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ..core.errors import LINEAR_RANGE, LinearRangeWarning
+from ..core.errors import LINEAR_RANGE, BadInput, LinearRangeWarning
 from ..core.families import LinearPeriodic
 from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..periodic import floquet_multipliers, steady_state
 from ..recovery import stress
-from ..scenes import Scene
+from ..scenes import Scene, with_numbers
 from .nearest_regions import FASTEST, Margins, fastest_mode, margins
 
 # Tables that tell how a machine is run, seen or was measured, and not how it is made.
 _NOT_MADE = ("model", "operation", "measured", "chart", "loads", "motor")
 # How far from the running speed, over it, a region is wished to be; the largest change that is
 # spoken of; and up to which growth per turn a motion neither grows nor dies out.
-_AWAY, _LARGEST, _STILL = 0.1, 0.3, 1e-9
+_AWAY, _LARGEST, _STILL = 0.1, 0.2, 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -221,24 +221,35 @@ def _remedies(scene: Scene, near: Margins | None) -> Iterator[str]:
     """Tell the three smallest single changes that move the nearest region away from the speed."""
     if near is None or not near.region:
         return
-    away = np.sign(near.end[0] - near.speed)
-    if near.distance[0] < 0.0:
-        # The nearer end has to pass the speed, and go on.
-        away, wanted = -away, abs(near.distance[0]) + 0.01
-        title = "out of it, by 1 % of the speed, with one of"
-    else:
-        wanted = max(_AWAY - near.distance[0], 0.0)
-        title = f"{100.0 * _AWAY:.0f} % away from it with one of"
+    held, away = near.distance[0] < 0.0, np.sign(near.end[0] - near.speed)
+    # From within, the nearer end has to pass the speed, and go on.
+    wanted = abs(near.distance[0]) + 0.01 if held else max(_AWAY - near.distance[0], 0.0)
     if not wanted:
         return
     with np.errstate(divide="ignore"):
-        change = away * wanted / near.shift[0]
-    order = [int(m) for m in np.argsort(np.abs(change)) if abs(change[m]) <= _LARGEST][:3]
-    told = [f"{near.by[m]} {100.0 * change[m]:+.2g} %" for m in order]
+        change = (-away if held else away) * wanted / near.shift[0]
+    told: list[str] = []
+    for m in np.argsort(np.abs(change)).tolist():
+        helps = abs(change[m]) <= _LARGEST
+        if helps and held:
+            helps = _stable(scene, near.by[m], float(change[m]), near.speed)
+        if helps and len(told) < 3:
+            told.append(f"{near.by[m]} {100.0 * change[m]:+.2g} %")
+    goal = "out of it" if held else f"some {100.0 * _AWAY:.0f} % away from it"
     if told:
-        yield f"{title} (about; elastolink stabilise finds and verifies): {', '.join(told)}"
+        yield f"{goal} with one of (elastolink stabilise finds the least): {', '.join(told)}"
     else:
-        yield f"no single number moves it away by a change of up to {100.0 * _LARGEST:.0f} %"
+        yield f"no single number brings the machine {goal} by {100.0 * _LARGEST:.0f} % or less"
+
+
+def _stable(scene: Scene, name: str, change: float, speed: float) -> bool:
+    """Return whether a machine with a changed number is stable at a speed."""
+    value = scene.get(name) * (1.0 + change)
+    try:
+        changed = with_numbers(scene, {name: value}).linear_system()
+        return bool(floquet_multipliers(changed, speed).stable)
+    except BadInput:  # it does not turn
+        return False
 
 
 def _beams(system: LinearPeriodic) -> tuple[Any, ...]:

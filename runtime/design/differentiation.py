@@ -41,12 +41,11 @@ from .coefficient_changes import (
 ComplexArray = NDArray[np.complex128]
 Answer: TypeAlias = FloquetMultipliers | StabilityEdges | NaturalFrequencies | SteadyState
 
-# Round-off of a derivative, over itself, from which multipliers or frequencies count as one.
-_COLLIDED = 1e-6
-# The least that a derivative is told against, over what its parts are in sum.
-_CANCELLED = 1e-6
-# What the error of a motion, over its peak, may be to the derivatives at its peak's angle.
-_ANGLE = 8.0
+# Round-off of a derivative, over itself, from which multipliers or frequencies count as one; the
+# least that a derivative is told against, over what its parts are in sum; what the error of a
+# motion, over its peak, may be to the derivatives at its peak's angle; and what round-off of a
+# sum's terms leaves, over all of them without signs.
+_COLLIDED, _CANCELLED, _ANGLE, _SUMMED = 1e-6, 1e-6, 8.0, 8.0 * 2.0**-52
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -311,9 +310,9 @@ def _null_vectors(equation: Equation, matrix: ComplexArray, count: int) -> _Rows
         shake = turned[:, None, None] * aside / np.abs(paces[:, :1])
         bulk = found.bulk[:, :1] / size
         top = np.maximum(np.abs(moved), _CANCELLED * bulk)
-        least = 2.0 * rounding_error(equation, count)[:, None, None]
+        least = 0.5 * rounding_error(equation, count)[:, None, None]
         shake = least + np.divide(shake, top, out=np.zeros(top.shape), where=top > 0.0)
-        return moved, found.error[:, :1] / size, bulk, shake
+        return moved, found.error[:, :1] / size + _SUMMED * bulk, bulk, shake
 
     return _Rows(rows, states, finished)
 

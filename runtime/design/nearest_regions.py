@@ -26,8 +26,7 @@ from .differentiation import feeding_of, sensitivities
 _WIDE, FASTEST = 1e-5, 25.0
 # The largest change that is looked for, with how many trials; how closely it is solved for, and
 # what multipliers leave of it.
-_FAR, _MOST = 0.5, 24
-_ROOT, _GAP_ERROR = 1e-14, 3e-13
+_FAR, _MOST, _ROOT, _GAP_ERROR = 0.5, 24, 1e-14, 3e-13
 _FEEDS = {
     "M": "inertia that varies with the crank angle",
     "A": "Coriolis coupling",

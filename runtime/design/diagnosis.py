@@ -119,7 +119,7 @@ def diagnose(scene: Scene, speed: float, *, window: float = 0.3) -> Diagnosis:
         checks |= more
     lines = [
         _verdict(scene, speed, growth, stable),
-        *_nearby(near, system, speed),
+        *_nearby(near, system, speed, stable),
         *_motion(scene, system, deflection, largest, stable),
         *_remedies(scene, near),
     ]
@@ -179,13 +179,16 @@ def _verdict(scene: Scene, speed: float, growth: float, stable: bool) -> str:
     return f"{at} is stable: {100.0 * kept:.3g} % of a disturbance is left after a turn"
 
 
-def _nearby(near: Margins | None, system: LinearPeriodic, speed: float) -> Iterator[str]:
+def _nearby(
+    near: Margins | None, system: LinearPeriodic, speed: float, stable: bool
+) -> Iterator[str]:
     if near is None:
         turns = fastest_mode(system, speed)
-        yield (
-            f"unstable regions were not looked for: a mode turns {turns:.3g} times per revolution; "
-            "regions of so high an order are closed by very little damping"
-        )
+        rest = "regions of so high an order are closed by very little damping"
+        if not stable:
+            rest = "see elastolink chart for the region that this is"
+        told = f"unstable regions were not looked for: a mode turns {turns:.3g} times"
+        yield f"{told} per revolution; {rest}"
         return
     low, high = (end * RPM for end in near.window)
     if not near.region:

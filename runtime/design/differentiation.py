@@ -42,10 +42,10 @@ ComplexArray = NDArray[np.complex128]
 Answer: TypeAlias = FloquetMultipliers | StabilityEdges | NaturalFrequencies | SteadyState
 
 # Round-off of a derivative, over itself, from which multipliers or frequencies count as one; the
-# least that a derivative is told against, over what its parts are in sum; what the error of a
-# motion, over its peak, may be to the derivatives at its peak's angle; and what round-off of a
-# sum's terms leaves, over all of them without signs.
-_COLLIDED, _CANCELLED, _ANGLE, _SUMMED = 1e-6, 1e-6, 8.0, 8.0 * 2.0**-52
+# least that a derivative is told against, over what its parts are in sum; the error of a peak's
+# angle over that of the motion, over its peak; and what round-off of a sum's terms leaves, over all
+# of them without signs.
+_COLLIDED, _CANCELLED, _ANGLE, _SUMMED = 1e-6, 1e-6, 2.0, 8.0 * 2.0**-52
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -211,12 +211,12 @@ class _Adjoint:
     begin: float = 0.0
 
     def solved(self, equation: Equation) -> tuple[NDArray[Any], ...]:
-        """Return derivatives, errors, the largest, and round-off over it, ``(nb, answers, k)``."""
+        """Return derivatives, errors, and round-off over the largest, ``(nb, answers, k)``."""
         way, rtol = choose(equation, self.rtol), self.rtol
         members, shares, _ = refined(equation, way, rtol, partial(self._solve, way), _distance)
         slope, error, top, shake, unit = (np.array(one) for one in zip(*members, strict=True))
         error = error + shares.reshape(slope.shape) * unit + shake * top
-        return slope, error, top, shake
+        return slope, error, shake
 
     def _solve(self, way: Method, equation: Equation, count: int) -> tuple[NDArray[Any], ...]:
         h = equation.period / count
@@ -247,7 +247,7 @@ def _of_multipliers(
     system: LinearPeriodic, answer: FloquetMultipliers, changes: Changes, rtol: float
 ) -> _Found:
     equation, shape = equation_of(system, answer.speed), answer.multipliers.shape
-    slope, error, _, shake = _Adjoint(changes, _eigenvectors, rtol).solved(equation)
+    slope, error, shake = _Adjoint(changes, _eigenvectors, rtol).solved(equation)
     collided = np.max(shake, axis=-1) > _COLLIDED
     slope[collided], error[collided] = np.nan, np.inf
     turned = [one.reshape(*shape, -1) for one in (slope, error)]
@@ -280,8 +280,13 @@ def _of_edges(
     error = np.full(derivative.shape, np.inf)
     if np.any(known):
         adjoint = _Adjoint(changes, _null_vectors, rtol)
-        slope, own, *_ = adjoint.solved(equation_of(system, ends[known]))
+        slope, own, _ = adjoint.solved(equation_of(system, ends[known]))
         derivative[known], error[known] = slope[:, 0], own[:, 0]
+        if system.is_damped():
+            # Closing regions move with the root of the damping that is left: it and the end are
+            # known as well as the end beside the width.
+            near = (2.0 * answer.error / answer.width)[:, None, None] * np.abs(derivative)
+            error[known] += near[known]
     return ends, derivative, error, np.isfinite(ends) & ~known
 
 
@@ -339,11 +344,9 @@ def _of_peaks(system: LinearPeriodic, answer: SteadyState, changes: Changes, rto
         for j in range(n):
             angle, value[i, j] = _peak(motions[i, :, j], answer.period)
             if np.isfinite(angle):
-                adjoint = _Adjoint(changes, partial(_at_angle, j), rtol, angle)
-                slope, own, top, _ = adjoint.solved(equation)
-                derivative[i, j] = slope[0, 0].real
-                # The peak's angle is known as the motion is.
-                error[i, j] = own[0, 0] + _ANGLE * errors[i, j] * top[0, 0]
+                rows = partial(_at_angle, j, angle, _ANGLE * errors[i, j])
+                slope, own, _ = _Adjoint(changes, rows, rtol, angle).solved(equation)
+                derivative[i, j], error[i, j] = slope[0, 0].real, own[0, 0]
     shape = answer.error.shape
     turned = [one.reshape(*shape, -1) for one in (derivative, error)]
     return value.reshape(shape), turned[0], turned[1], np.zeros(shape, dtype=bool)
@@ -368,18 +371,29 @@ def _peak(values: Array, period: float) -> tuple[float, float]:
     return angle % period, float(np.sum(series * np.exp(order * angle)).real)
 
 
-def _at_angle(coordinate: int, equation: Equation, matrix: ComplexArray, count: int) -> _Rows:
-    """Return what the motion at the beginning of a period is: ``(1 - X)^-1 z`` of a coordinate."""
+def _at_angle(
+    coordinate: int, angle: float, off: float, equation: Equation, matrix: ComplexArray, count: int
+) -> _Rows:
+    """Return what a coordinate is at the beginning of a period: of ``(1 - X)^-1 z``.
+
+    A peak's angle is known to ``off`` [rad]: what that does, the derivatives of the rate tell.
+    """
     m = 2 * equation.size
     closing = np.eye(m) - matrix[:, :m, :m]
     state = np.ones((len(matrix), 1, m + 1), dtype=complex)
     state[:, 0, :m] = np.linalg.solve(closing, matrix[:, :m, m:])[..., 0]
-    rows = np.zeros(state.shape, dtype=complex)
-    unit = equation.scale[:, coordinate, None] * np.eye(m)[coordinate]
-    rows[:, 0, :m] = np.linalg.solve(closing.mT, unit[..., None])[..., 0]
+    unit = equation.scale[:, coordinate, None]
+    rate = equation.generator(np.array([angle]))[:, 0, coordinate, :m]
+    wanted = np.stack([unit * np.eye(m)[coordinate], unit * rate], axis=1)
+    rows = np.zeros((len(matrix), 2, m + 1), dtype=complex)
+    rows[..., :m] = np.linalg.solve(closing.mT, wanted.mT).mT
     shake = 2.0 * rounding_error(equation, count) * np.linalg.cond(closing)
-    whole = shake[:, None, None]
-    return _Rows(rows, state, lambda found: (found.slope, found.error, found.bulk, whole))
+
+    def finished(found: Effect) -> tuple[NDArray[Any], Array, Array, Array]:
+        error = found.error[:, :1] + off * np.abs(found.slope[:, 1:])
+        return found.slope[:, :1], error, found.bulk[:, :1], shake[:, None, None]
+
+    return _Rows(rows, np.repeat(state, 2, axis=1), finished)
 
 
 def _of_frequencies(

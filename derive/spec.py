@@ -12,7 +12,6 @@ import re
 import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
-from functools import lru_cache
 from pathlib import Path
 from typing import Any, Literal
 
@@ -228,17 +227,8 @@ def read_manifest(folder: Path) -> dict[str, Entry]:
     the module counts as missing, and the command that makes it writes the manifest anew.
     """
     try:
-        return dict(_entries((folder / MANIFEST).read_bytes()))
-    except OSError:
-        return {}
-
-
-@lru_cache(maxsize=8)
-def _entries(text: bytes) -> Mapping[str, Entry]:
-    """Return the entries of a manifest by spec key."""
-    try:
-        rows = json.loads(text)["modules"].items()
-    except (ValueError, LookupError, TypeError, AttributeError, RecursionError):
+        rows = json.loads((folder / MANIFEST).read_bytes())["modules"].items()
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
         return {}
     found: dict[str, Entry] = {}
     for key, row in rows:

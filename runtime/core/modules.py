@@ -7,14 +7,15 @@ import importlib
 import json
 import os
 import shlex
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from types import ModuleType
 
 from ... import generated
 from ..._files import run_module
-from ...derive.spec import Entry, ModelSpec, cache_folder, read_manifest
+from ...derive.spec import MANIFEST, Entry, ModelSpec, cache_folder, read_manifest
 from .errors import bad
 
 
@@ -70,7 +71,7 @@ def find_module(spec: ModelSpec, folders: Sequence[str | Path] = ()) -> EmittedM
     """
     candidates = (spec, spec.with_(modes=None)) if spec.modes is not None else (spec,)
     outdated = ""
-    manifests = {folder: read_manifest(folder) for folder in search_path(folders)}
+    manifests = {folder: _entries(folder) for folder in search_path(folders)}
     for dropped in ((), spec.drop) if spec.drop else ((),):
         for folder, known in manifests.items():
             for candidate in candidates:
@@ -87,6 +88,19 @@ def find_module(spec: ModelSpec, folders: Sequence[str | Path] = ()) -> EmittedM
                     return EmittedModule(entry, folder, module, dropped)
     found = f"no emitted module {spec.name()}{outdated}"
     raise bad("model", found, "one listed in a manifest", f"run: {_command(spec, folders)}")
+
+
+def _entries(folder: Path) -> Mapping[str, Entry]:
+    """Return the entries of a manifest, which is parsed anew where its text has changed."""
+    try:
+        return _parsed(folder, (folder / MANIFEST).read_bytes())
+    except OSError:
+        return {}
+
+
+@lru_cache(maxsize=8)
+def _parsed(folder: Path, text: bytes) -> Mapping[str, Entry]:
+    return read_manifest(folder)
 
 
 def _outdated(folder: Path, entry: Entry) -> bool:

@@ -85,7 +85,8 @@ def scene_from_document(
     _override(tables, overrides or {})
     whole = tables
     tables, marked = separated(tables)
-    own = "deviations" in (tables.get("schema") or {})
+    schema = tables.get("schema")
+    own = isinstance(schema, Mapping) and "deviations" in schema
     spread = {} if own else dict(flat(tables.pop("deviations", {})))
     layout, values = validate(tables)
     problems: list[Problem] = []

@@ -188,7 +188,8 @@ class _TwoSided(ABC):
         array of objects: then the tables count as exact.
         """
         require_array(name)
-        xi = place if place.dtype == object else self._places(place)
+        balls = isinstance(place, np.ndarray) and place.dtype == object
+        xi = place if balls else self._places(place)
         table = _table(self, name)
         polynomials = chebvander(2 * xi - 1, table.shape[1] - 1)
         factors = np.stack([factor for _, factor in self._parts(name, xi)], axis=-1)

@@ -45,7 +45,7 @@ Answer: TypeAlias = FloquetMultipliers | StabilityEdges | NaturalFrequencies | S
 # least that a derivative is told against, over what its parts are in sum; the error of a peak's
 # angle over that of the motion, over its peak; and what round-off of a sum's terms leaves, over all
 # of them without signs.
-_COLLIDED, _CANCELLED, _ANGLE, _SUMMED = 1e-6, 1e-6, 2.0, 8.0 * 2.0**-52
+_COLLIDED, _CANCELLED, _ANGLE, _SUMMED = 1e-6, 1e-6, 2.0, 4.0 * 2.0**-52
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -285,7 +285,7 @@ def _of_edges(
         if system.is_damped():
             # Closing regions move with the root of the damping that is left: it and the end are
             # known as well as the end beside the width.
-            near = (2.0 * answer.error / answer.width)[:, None, None] * np.abs(derivative)
+            near = (1.5 * answer.error / answer.width)[:, None, None] * np.abs(derivative)
             error[known] += near[known]
     return ends, derivative, error, np.isfinite(ends) & ~known
 
@@ -315,9 +315,9 @@ def _null_vectors(equation: Equation, matrix: ComplexArray, count: int) -> _Rows
         shake = turned[:, None, None] * aside / np.abs(paces[:, :1])
         bulk = found.bulk[:, :1] / size
         top = np.maximum(np.abs(moved), _CANCELLED * bulk)
-        least = 0.5 * rounding_error(equation, count)[:, None, None]
+        least = 0.25 * rounding_error(equation, count)[:, None, None]
         shake = least + np.divide(shake, top, out=np.zeros(top.shape), where=top > 0.0)
-        return moved, found.error[:, :1] / size + _SUMMED * bulk, bulk, shake
+        return moved, 0.5 * found.error[:, :1] / size + _SUMMED * bulk, bulk, shake
 
     return _Rows(rows, states, finished)
 

@@ -59,8 +59,8 @@ class Certificate(Result):
 
     @property
     def stable(self) -> bool:
-        """Whether the system is proved stable at every speed of the range."""
-        return len(self.open) == len(self.unstable) == 0
+        """Whether the system is proved stable at every speed of the range, and its check passed."""
+        return self.passed and len(self.open) == len(self.unstable) == 0
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the bounds of the multipliers over the speed, and what is not proved stable."""

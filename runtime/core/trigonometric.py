@@ -33,9 +33,16 @@ class Remembered(Generic[_Values]):
     def __call__(self, theta: Array) -> _Values:
         """Return the values at angles, the last ones where these are the same."""
         last = self._last
-        if last is None or not np.array_equal(last[0], theta):
+        if last is None or not _same(last[0], theta):
             last = self._last = (np.array(theta), self._function(theta))
         return last[1]
+
+
+def _same(one: Array, two: Array) -> bool:
+    """Return whether angles are the same; of objects, whether they are the same ones."""
+    if one.dtype != two.dtype or one.dtype != object:
+        return one.dtype == two.dtype and np.array_equal(one, two)
+    return one.shape == two.shape and all(a is b for a, b in zip(one.flat, two.flat, strict=True))
 
 
 def irregular_angles(count: int) -> Array:

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from .enclosures import Band, Matrices, Revolution
 
 # Part of the way from the largest multiplier to 1 at which a bound is tried; what a multiplier that
-# is told to occur is lowered by; speeds at which the bounds are compared with computed multipliers;
+# is told to occur is lowered by; intervals, and speeds of each, compared with computed multipliers;
 # part of the range over which the matrix has to be enclosed.
-_PART, _LOWER, _COMPARED, _COARSE = 0.1, (1e-6, 1e-4, 1e-2), 5, 1.0 / 256.0
+_PART, _LOWER, _COMPARED, _PLACES, _COARSE = 0.1, (1e-6, 1e-4, 1e-2), 5, 13, 1.0 / 256.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -122,8 +122,8 @@ def certify(
     -------
     Certificate
         Its ``error``: how far each bound may be above the largest multiplier of its interval,
-        proved.  Its check ``multipliers``: those of :func:`floquet_multipliers` at up to five
-        speeds in the middle of intervals, over the bounds.
+        proved.  Its check ``multipliers``: those of :func:`floquet_multipliers` at 13
+        speeds of each of the five longest intervals, over the bounds.
 
     Raises
     ------
@@ -264,7 +264,7 @@ def _compared(system: LinearPeriodic, stable: list[_Piece]) -> dict[str, Check]:
     if not stable:
         return {}
     longest = sorted(stable, key=lambda piece: piece.low - piece.high)[:_COMPARED]
-    middles = np.array([0.5 * (piece.low + piece.high) for piece in longest])
-    moduli = np.max(np.abs(floquet_multipliers(system, middles).multipliers), axis=-1)
-    worst = np.max(moduli / [piece.bound for piece in longest])
+    speeds = np.array([np.linspace(piece.low, piece.high, _PLACES) for piece in longest])
+    moduli = np.max(np.abs(floquet_multipliers(system, speeds).multipliers), axis=-1)
+    worst = np.max(moduli / np.array([piece.bound for piece in longest])[:, None])
     return {"multipliers": Check(float(worst), 1.0)}

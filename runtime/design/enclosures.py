@@ -32,6 +32,7 @@ from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.families import VECTORS, Array, LinearPeriodic
+from ..core.trigonometric import BETWEEN
 from ..periodic.equation import SPEED_POWER
 
 Balls = NDArray[Any]
@@ -47,7 +48,8 @@ _ELLIPSES = (1.5, 2.0, 3.0, 4.0, 6.0, 10.0, 20.0, 50.0)
 class Ball:
     """A number or series of python-flint as an element of NumPy's object arrays.
 
-    It has analytic operations only: a function that compares or takes absolute values fails.
+    It has analytic operations only: a function that compares, asks for the truth of a number or
+    takes absolute values fails.
     """
 
     __slots__ = ("value",)
@@ -83,6 +85,14 @@ class Ball:
         return self._with(other, lambda a, b: b / a)
 
     __radd__, __rmul__ = __add__, __mul__
+
+    def __eq__(self, other: object) -> bool:
+        raise TypeError("balls are not compared")
+
+    def __bool__(self) -> bool:
+        raise TypeError("a ball is neither true nor false")
+
+    __hash__ = object.__hash__
 
     def __neg__(self) -> Ball:
         return Ball(-self.value)
@@ -240,19 +250,36 @@ class Generator:
 
 
 def require_analytic(system: LinearPeriodic) -> None:
-    """Refuse functions of the angle that do not take balls."""
+    """Refuse functions of the angle that do not take balls, or are others on balls.
+
+    At some angles the balls have to hold, and hold tightly, what the doubles are; doubles may be
+    returned for balls by functions alone that do not depend on the angle.
+    """
     import flint
 
-    for term in system.terms:
+    angles = np.append(0.0, system.period * BETWEEN)
+    for row, term in enumerate(system.terms):
         if term.array not in SPEED_POWER or term.constant or term.array in VECTORS:
             continue
         try:
-            term(_objects([Ball(flint.acb(0.1, 0.1))]))
+            with flint.ctx.workprec(_FINE):
+                term(_objects([Ball(flint.acb(0.1, 0.1))]))
+                found = term(_objects([Ball(flint.acb(angle)) for angle in angles.tolist()]))
+            if found.dtype == object:
+                balls = (x.value.real.mid() if isinstance(x, Ball) else x for x in found.flat)
+                values = np.array([float(x) for x in balls])
+            elif len(system.spectrum(row)) == 1:
+                values = np.ravel(found)
+            else:
+                raise TypeError("doubles of balls")
+            doubles = np.ravel(np.broadcast_to(term(angles), found.shape))
+            if not np.allclose(values, doubles, rtol=0, atol=1e-9 * np.max(np.abs(doubles))):
+                raise TypeError("other values of balls")
         except (TypeError, ValueError, AttributeError) as error:
-            found = f"term {term.array} ({term.scale}), whose function takes doubles only"
+            told = f"term {term.array} ({term.scale}), whose function takes doubles only"
             expected = "arithmetic, sine, cosine and roots of the angle, as emitted modules have"
             fix = "choose another formulation, of the rod two_segment"
-            raise bad("system", found, expected, fix) from error
+            raise bad("system", told, expected, fix) from error
         finally:
             term(np.zeros(1))
 

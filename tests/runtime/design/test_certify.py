@@ -154,6 +154,24 @@ def test_what_compares_angles_is_refused():
         certify(system, (0.5, 0.6))
 
 
+@pytest.mark.parametrize(
+    "function",
+    [
+        lambda theta: np.where(0.0 * theta == 0.0, np.cos(theta), 0.0 * theta),
+        lambda theta: np.where(0.0 * theta, 0.0 * theta, np.cos(theta)),
+        lambda theta: np.zeros(len(theta)) if theta.dtype == object else np.cos(theta),
+        lambda theta: 0.0 * theta if theta.dtype == object else np.cos(theta),
+    ],
+)
+def test_a_function_that_is_another_on_balls_is_refused(function):
+    """With cos theta the system is unstable in this range, without it stable."""
+    one = np.eye(1)
+    terms = (Term("M", None, one), Term("K", None, 4.0 * one), Term("C", None, 0.1 * one))
+    wave = Term("K", None, lambda theta: function(theta)[:, None, None])
+    with pytest.raises(el.BadInput, match="takes doubles only"):
+        certify(LinearPeriodic(1, (*terms, wave)), (3.6, 5.6))
+
+
 def test_without_flint_one_error(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "flint", None)
     with pytest.raises(el.BadInput, match="python-flint is not installed"):

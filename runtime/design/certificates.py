@@ -63,12 +63,13 @@ class Certificate(Result):
         return self.passed and len(self.open) == len(self.unstable) == 0
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the bounds of the multipliers over the speed, and what is not proved stable."""
+        """Draw what is proved over the speed, and the bounds of the multipliers."""
         ax = axes_or_new(ax)
         for (low, high), bound in zip(self.proved * RPM, self.bound, strict=True):
             ax.plot((low, high), (bound, bound), color="tab:green")
         for name, color, spans in (
-            ("unstable", "tab:red", self.unstable),
+            ("proved stable", "tab:green", self.proved),
+            ("proved unstable", "tab:red", self.unstable),
             ("not proved", "0.5", self.open),
         ):
             for k, (low, high) in enumerate(spans * RPM):
@@ -76,8 +77,7 @@ class Certificate(Result):
                 ax.axvspan(low, high, color=color, alpha=0.3, label=label)
         ax.axhline(1.0, color="0.3", linewidth=0.8)
         ax.set(xlabel="crank speed [rpm]", ylabel="multipliers are proved to be below")
-        if len(self.unstable) or len(self.open):
-            ax.legend(frameon=False)
+        ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False)
         return ax
 
 

@@ -76,9 +76,14 @@ class Stabilisation(Result):
     }
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the sizes of the changes as bars."""
+        """Draw the sizes of the changes as bars, the least above."""
         ax = axes_or_new(ax)
-        ax.barh([", ".join(change.settings) for change in self.changes], 100.0 * self.size)
+        places = np.arange(1, len(self.changes) + 1)
+        ax.barh(places, 100.0 * self.size)
+        # A number and its change, without the values before and after.
+        names = ["\n".join(word.split(" (")[0] for word in one.words) for one in self.changes]
+        ax.set_yticks(places, names)
+        ax.invert_yaxis()
         ax.set(xlabel="size of the change [%]")
         return ax
 

@@ -96,7 +96,7 @@ class ToleranceBands(Result):
                 x = np.array([k - 0.3, k + 0.3])
             ax.fill_between(x, low, high, color=colour, alpha=0.25, lw=0)
             ax.fill_between(x, likely_low, likely_high, color=colour, alpha=0.5, lw=0)
-            ax.plot(x, value + 0.0 * x, color=colour, lw=0.8, label=self.rows[k])
+            ax.plot(x, value + 0.0 * x, color=colour, lw=0.8, label=self.rows[k].replace("_", " "))
         ax.set(
             xlabel=self.across.replace("[rad]", "[deg]"), ylabel=f"{row or self.quantity} [{unit}]"
         )

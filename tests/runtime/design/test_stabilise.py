@@ -228,3 +228,11 @@ def test_a_linkage_of_beams_keeps_a_stress():
     for speed in (27.2, 28.3, 29.7):
         assert np.max(el.stress(system, speed).stress) < limit
         assert np.max(np.abs(el.floquet_multipliers(system, speed).multipliers)) < 1.0
+
+
+def test_each_change_has_a_bar_of_its_own(found):
+    ax = found.plot()
+    assert len({bar.get_y() for bar in ax.patches}) == len(found.changes)
+    assert [one.get_text() for one in ax.get_yticklabels()][0].startswith(
+        found.changes[0].words[0].split(" (")[0]
+    )

@@ -233,6 +233,4 @@ def test_a_linkage_of_beams_keeps_a_stress():
 def test_each_change_has_a_bar_of_its_own(found):
     ax = found.plot()
     assert len({bar.get_y() for bar in ax.patches}) == len(found.changes)
-    assert [one.get_text() for one in ax.get_yticklabels()][0].startswith(
-        found.changes[0].words[0].split(" (")[0]
-    )
+    assert ax.get_yticklabels()[0].get_text() in found.changes[0].words[0]

@@ -282,11 +282,10 @@ def _of_edges(
         adjoint = _Adjoint(changes, _null_vectors, rtol)
         slope, own, _ = adjoint.solved(equation_of(system, ends[known]))
         derivative[known], error[known] = slope[:, 0], own[:, 0]
-        if system.is_damped():
-            # Closing regions move with the root of the damping that is left: it and the end are
-            # known as well as the end beside the width.
-            near = (1.5 * answer.error / answer.width)[:, None, None] * np.abs(derivative)
-            error[known] += near[known]
+        # An end that is off by a part of the width has as much of the other end's derivative.
+        apart = np.abs(np.diff(derivative, axis=1))
+        off = np.divide(answer.error, answer.width, out=np.zeros(len(ends)), where=known[:, 0])
+        error += off[:, None, None] * np.where(np.isfinite(apart), apart, 0.0)
     return ends, derivative, error, np.isfinite(ends) & ~known
 
 
@@ -412,13 +411,15 @@ def _of_frequencies(
         def of(change: Array, shapes: Array = shapes, factor: Array = factor) -> Array:
             return np.asarray(factor * np.einsum("tik,tij,tjk->tk", shapes, change, shapes))
 
-        whole = np.abs(of(np.abs(series_at(table, series)), np.abs(shapes)))
         for i in range(len(changes.by)):
-            moved = series_at(table, changes.slopes[array, power][i])
+            change = changes.slopes[array, power][i]
+            moved = series_at(table, change)
             slope[..., i] += of(moved)
             rough[..., i] += of(series_at(table, changes.rough[array, power][i]))
             size[..., i] += np.abs(of(np.abs(moved), np.abs(shapes)))
-            size[..., i] += np.any(moved) * whole * np.abs(1.0 / changes.step[i])
+            # Differences err by the round-off of the coefficients that move.
+            whole = series_at(np.abs(table), np.abs(np.where(change, series, 0.0)))
+            size[..., i] += np.abs(of(whole, np.abs(shapes)) / changes.step[i])
     distance = np.abs(values[:, :, None] - values[:, None, :]) / values[:, :, None]
     np.einsum("tii->ti", distance)[...] = np.inf
     near = np.maximum(np.min(distance, axis=-1), np.finfo(float).eps)

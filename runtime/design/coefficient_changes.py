@@ -22,11 +22,11 @@ Part = tuple[str, int]
 Parts = dict[Part, Array]
 
 SPEED = "speed"
-_PLACES = np.arange(-4.0, 5.0)
+PLACES = np.arange(-4.0, 5.0)
 # Steps of the differences over the number: of parameters, in which coefficients are quotients of
 # polynomials, and of others, which may be close to lengths that do not assemble.  Of a number that
 # is 0 they are steps in its SI unit.
-_STEP, _SMALL_STEP = 1e-2, 2e-3
+STEP, SMALL_STEP = 1e-2, 2e-3
 
 
 class Effect(NamedTuple):
@@ -116,7 +116,7 @@ def coefficient_changes(
     the machine is a scene.  Coefficients are known in closed form: their derivatives are
     differences of eighth order, good to some 1e-13.
     """
-    names = _checked(machine, system, by)
+    names = checked_names(machine, [SPEED, *system.parameters, *system.geometry], by)
     theta = _even_angles(system)
     terms = _terms(system, theta)
     parts = _parts(terms, system.scales(system.parameters))
@@ -128,8 +128,8 @@ def coefficient_changes(
             continue
         inner = name in system.parameters
         number[i] = value = number_of(machine, system, name)
-        places = _PLACES if value or inner else _PLACES - _PLACES[0]
-        steps[i] = step = (_STEP if inner else _SMALL_STEP) * (abs(value) or 1.0)
+        places = PLACES if value or inner else PLACES - PLACES[0]
+        steps[i] = step = (STEP if inner else SMALL_STEP) * (abs(value) or 1.0)
         values = value + step * places
         if inner:
             # Not within its limits: a damping that is 0 goes below.
@@ -138,7 +138,7 @@ def coefficient_changes(
             made = (with_number(machine, system, name, float(one)) for one in values)
             moved = [_parts(_terms(one, theta), one.scales(one.parameters)) for one in made]
         for unused, target in ((0, slopes), (1, rough)):
-            weights = _weights(places, unused) / step
+            weights = difference_weights(places, unused) / step
             for part in parts:
                 table = np.stack([other[part] for other in moved])
                 target[part][i] = np.tensordot(weights, table - parts[part], axes=1)
@@ -168,7 +168,7 @@ def _even_angles(system: LinearPeriodic) -> Array:
     return np.asarray(system.period * np.arange(float(count)) / count)
 
 
-def _weights(places: Array, unused: int) -> Array:
+def difference_weights(places: Array, unused: int) -> Array:
     """Return the weights of values at places in the derivative at 0, some at either end unused."""
     used = places[unused : len(places) - unused]
     powers = np.vander(used, increasing=True).T
@@ -228,11 +228,9 @@ def _parts(terms: _Terms, scales: Mapping[str, ArrayLike]) -> Parts:
     return parts
 
 
-def _checked(
-    machine: LinearPeriodic | Scene, system: LinearPeriodic, by: Sequence[str]
-) -> tuple[str, ...]:
+def checked_names(machine: object, known: Sequence[str], by: Sequence[str]) -> tuple[str, ...]:
+    """Return names of numbers: known ones, or dotted keys where the machine is a scene."""
     names = names_in_a_row("by", by)
-    known = [SPEED, *system.parameters, *system.geometry]
     problems = []
     for name in names:
         if name in known:
@@ -241,7 +239,7 @@ def _checked(
         for key in name.split("."):
             value = value.get(key) if isinstance(value, Mapping) else None
         if not isinstance(value, float):
-            expected = f"one of {known}"
+            expected = f"one of {list(known)}"
             expected += ", or a key that the scene gives a number" * isinstance(machine, Scene)
             problems.append(Problem("by", repr(name), expected, "correct the name"))
     if not names or len(set(names)) < len(names):

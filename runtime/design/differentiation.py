@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, ClassVar, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,8 +38,15 @@ from .coefficient_changes import (
     varying_parts,
 )
 
+if TYPE_CHECKING:
+    from ..core.families import Nonlinear
+    from ..nonlinear.response import ResponseCurve
+
 ComplexArray = NDArray[np.complex128]
-Answer: TypeAlias = FloquetMultipliers | StabilityEdges | NaturalFrequencies | SteadyState
+Machine: TypeAlias = "LinearPeriodic | Nonlinear | Scene"
+Answer: TypeAlias = (
+    "FloquetMultipliers | StabilityEdges | NaturalFrequencies | SteadyState | ResponseCurve"
+)
 
 # Round-off of a derivative, over itself, from which multipliers or frequencies count as one; the
 # least that a derivative is told against, over what its parts are in sum; the error of a peak's
@@ -98,7 +105,7 @@ class Sensitivities(Result):
 
 
 def sensitivities(
-    machine: LinearPeriodic | Scene, answer: Answer, by: Sequence[str], *, rtol: float = 1e-9
+    machine: Machine, answer: Answer, by: Sequence[str], *, rtol: float = 1e-9
 ) -> Sensitivities:
     """Return the derivatives of an answer by numbers of the machine, lengths included.
 
@@ -112,9 +119,9 @@ def sensitivities(
     ----------
     machine : LinearPeriodic or Scene
         What the answer is of.
-    answer : FloquetMultipliers, StabilityEdges, NaturalFrequencies or SteadyState
-        What :func:`floquet_multipliers`, :func:`stability_edges`, :func:`natural_frequencies` or
-        :func:`steady_state` returned for it, without changed parameters.
+    answer : FloquetMultipliers, StabilityEdges, NaturalFrequencies, SteadyState or ResponseCurve
+        What :func:`floquet_multipliers`, :func:`stability_edges`, :func:`natural_frequencies`,
+        :func:`steady_state` or :func:`response_curve` returned for it, without changed parameters.
     by : sequence of str
         Numbers: ``speed`` (not of ends), parameters and geometry of the system, and, where the
         machine is a scene, its dotted keys, such as ``links.coupler``: what the scene gives stays
@@ -133,22 +140,22 @@ def sensitivities(
         If an argument is unusable, a name is no number of the machine, the answer is of another
         kind or of a system of another size, or coefficients are not smooth.
     """
-    system = machine.linear_system() if isinstance(machine, Scene) else machine
     require_between("rtol", rtol, 1e-12, 1e-3, "try 1e-9")
+    if not isinstance(answer, tuple(_KINDS)):
+        return _of_a_curve(machine, answer, by)
+    system = machine.linear_system() if isinstance(machine, Scene) else machine
     if not isinstance(system, LinearPeriodic):
         fix = "take the .system() of a linear scene"
         raise bad("machine", type(machine).__name__, "a Scene or a linear system", fix)
-    if not isinstance(answer, Answer.__args__):
-        known = "multipliers, ends of regions, natural frequencies or a steady state"
-        raise bad("answer", type(answer).__name__, known, "differentiate one of these")
     if isinstance(answer, StabilityEdges | NaturalFrequencies) and SPEED in by:
         fix = "leave the speed out"
         raise bad("by", "speed", "numbers that the answer depends on by itself", fix)
-    changes = coefficient_changes(machine, system, by)
+    source = machine if isinstance(machine, Scene) else system
+    changes = coefficient_changes(source, system, by)
     name, differentiate = _KINDS[type(answer)]
     value, derivative, error, collided = differentiate(system, answer, changes, rtol)
     number = changes.number.copy()
-    if SPEED in by:
+    if SPEED in by and isinstance(answer, FloquetMultipliers | SteadyState):
         speeds = np.unique(answer.speed)
         number[changes.by.index(SPEED)] = speeds[0] if len(speeds) == 1 else np.nan
     return Sensitivities(
@@ -163,6 +170,33 @@ def sensitivities(
         value=value,
         derivative=derivative,
         collided=collided,
+    )
+
+
+def _of_a_curve(machine: Machine, answer: Any, by: Sequence[str]) -> Sensitivities:
+    """Return the derivatives of the special points of a response curve."""
+    # What stays in the linear range imports nothing of this.
+    from ..nonlinear.response import ResponseCurve
+    from .special_points import special_numbers, special_slopes
+
+    if not isinstance(answer, ResponseCurve):
+        known = "multipliers, ends of regions, natural frequencies, a steady state or a response"
+        raise bad("answer", type(answer).__name__, f"{known} curve", "differentiate one of these")
+    numbers = special_numbers(machine, answer, by)
+    derivative, error = special_slopes(answer, numbers)
+    unit = "rad/s" if answer.parameter == "speed" else "SI"
+    return Sensitivities(
+        method="motions that close, or leave the unit circle, along the branch",
+        error=error,
+        error_norm="absolute, of each derivative",
+        checks={"converged": Check(_worst(derivative, error), 1e-6)},
+        provenance=provenance(answer.source.problem.system.provenance),
+        by=tuple(by),
+        number=np.array([number.value for number in numbers]),
+        answer=f"{answer.parameter} at special points [{unit}]",
+        value=answer.special_value,
+        derivative=derivative,
+        collided=np.zeros(error.shape[:1], dtype=bool),
     )
 
 

@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.families import Term
 from elastolink.runtime.design import sensitivities
+from elastolink.runtime.scenes import with_numbers
+from oscillators import oscillators
 from refusals import refused
 
 COUPLER = "smith_1972_5152_sixteenth_inch"
@@ -120,6 +122,55 @@ def test_a_closed_region_has_none():
     assert np.all(np.isnan(found.derivative[closed])) and np.all(found.collided[closed])
 
 
+def _softening(**changes):
+    return oscillators(damping=0.02, cubic=-0.3, **{"force": 0.03, **changes})
+
+
+def test_folds_of_a_response_curve_by_numbers_and_by_their_differences():
+    system = _softening()
+    curve = el.response_curve(system, "speed", (0.6, 1.1), rtol=1e-10)
+    found = sensitivities(system, curve, ["force", "damping"])
+    assert found.passed and found.answer == "speed at special points [rad/s]"
+    step = 1e-4
+    up, down = (
+        el.response_curve(_softening(force=0.03 + h), "speed", (0.6, 1.1), rtol=1e-10)
+        for h in (step, -step)
+    )
+    assert up.special == down.special == curve.special == ("fold", "fold")
+    by_difference = (up.special_value - down.special_value) / (2.0 * step)
+    np.testing.assert_allclose(found.derivative[:, 0], by_difference, rtol=1e-4)
+    # More force folds earlier, more damping later, on the way down the softening resonance.
+    assert found.derivative[1, 0] < 0.0 < found.derivative[1, 1]
+
+
+def test_a_fold_over_the_force_moves_with_the_speed_as_the_inverse():
+    over_force = el.response_curve(_softening(), "force", (0.001, 0.2), speed=0.85)
+    by_speed = sensitivities(_softening(), over_force, ["speed"]).derivative[:, 0]
+    for force, slope in zip(over_force.special_value, by_speed, strict=True):
+        system = _softening(force=float(force))
+        over_speed = el.response_curve(system, "speed", (0.6, 1.1))
+        by_force = sensitivities(system, over_speed, ["force"]).derivative[:, 0]
+        place = int(np.argmin(np.abs(over_speed.special_value - 0.85)))
+        assert over_speed.special_value[place] == pytest.approx(0.85, abs=1e-8)
+        assert slope * by_force[place] == pytest.approx(1.0, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_lengths_of_a_rig_move_its_folds():
+    changes = {"model.formulation": "inextensible", "coupler.damping_ratio": 0.03}
+    name, speeds = "smith_1972_101104_thirtysecond_inch", (36.0, 39.0)
+    scene = el.load_scene(name, overrides=changes)
+    curve = el.response_curve(scene.system(), "speed", speeds)
+    found = sensitivities(scene, curve, ["links.follower"])
+    length = scene.given["links"]["follower"]
+    places = []
+    for part in (1e-4, -1e-4):
+        moved = with_numbers(scene, {"links.follower": length * (1.0 + part)})
+        places.append(el.response_curve(moved.system(), "speed", speeds).special_value)
+    by_difference = (places[0] - places[1]) / (2e-4 * length)
+    np.testing.assert_allclose(found.derivative[:, 0], by_difference, rtol=1e-4)
+
+
 def test_it_draws(tmp_path):
     scene = coupler()
     answer = el.stability_edges(scene.system(), (77.5, 105.0))
@@ -130,6 +181,8 @@ def test_it_draws(tmp_path):
 SYSTEM = coupler().system()
 ANSWER = el.floquet_multipliers(SYSTEM, 90.0)
 HELD = el.natural_frequencies(SYSTEM, 0.0)
+OSCILLATOR = _softening()
+CURVE = el.response_curve(OSCILLATOR, "speed", (0.6, 0.7))
 test_refusals = refused(
     sensitivities,
     [
@@ -142,5 +195,8 @@ test_refusals = refused(
         (SYSTEM, HELD, ["speed"], "by"),
         (SYSTEM, 3.0, ["speed"], "answer"),
         ("coupler", ANSWER, ["speed"], "machine"),
+        (OSCILLATOR, CURVE, ["speed"], "by"),
+        (_softening(force=0.02), CURVE, ["force"], "machine"),
+        (SYSTEM, CURVE, ["force"], "machine"),
     ],
 )

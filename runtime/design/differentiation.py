@@ -73,10 +73,10 @@ class Sensitivities(Result):
         sign, ``(*batch, n)``.
     derivative, error : ndarray, shape (*S, k)
         Derivatives, per SI unit of each number, and their errors.  NaN where there is none: of
-        multipliers or frequencies that coincide, of ends that are missing, of closed regions.
+        ends that are missing, of closed regions, of points where branches cross.
     collided : ndarray of bool, shape S
-        Where two multipliers or frequencies are so close that they have no derivatives of their
-        own.
+        Where multipliers or frequencies are so close that they have no derivatives of their own:
+        those given are of their mean.
     """
 
     by: tuple[str, ...]
@@ -283,26 +283,99 @@ def _of_multipliers(
     equation, shape = equation_of(system, answer.speed), answer.multipliers.shape
     slope, error, shake = _Adjoint(changes, _eigenvectors, rtol).solved(equation)
     collided = np.max(shake, axis=-1) > _COLLIDED
-    slope[collided], error[collided] = np.nan, np.inf
+    some = np.flatnonzero(np.any(collided, axis=1))
+    if some.size:
+        own, off, _ = _Adjoint(changes, _subspaces, rtol).solved(equation.take(some))
+        where = collided[some][..., None]
+        slope[some] = np.where(where, own, slope[some])
+        error[some] = np.where(where, off, error[some])
     turned = [one.reshape(*shape, -1) for one in (slope, error)]
     return answer.multipliers, turned[0], turned[1], collided.reshape(shape)
 
 
 def _eigenvectors(equation: Equation, matrix: ComplexArray, count: int) -> _Rows:
+    values, vectors = _eigen(matrix)
+    rows = _dual(vectors)
+    shake, _ = _shaken(equation, matrix, count, values, rows, vectors)
+    return _Rows(
+        rows, vectors.mT, lambda found: (found.slope, found.error, found.bulk, shake[..., None])
+    )
+
+
+def _dual(vectors: ComplexArray) -> ComplexArray:
+    """Return the rows that belong to columns; of what coincides to the last digit no error."""
+    return np.asarray(np.linalg.pinv(vectors), dtype=complex)
+
+
+def _eigen(matrix: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+    """Return multipliers in their order, and the vectors as columns."""
     values, vectors = (one.astype(complex) for one in np.linalg.eig(matrix))
     with np.errstate(divide="ignore"):
         order = multiplier_order(np.log(np.abs(values)), np.angle(values))
     values = np.take_along_axis(values, order, -1)
-    vectors = np.take_along_axis(vectors, order[:, None, :], -1)
-    rows = np.linalg.pinv(vectors)  # of what coincides to the last digit no error, but no number
-    distance = np.abs(values[:, :, None] - values[:, None, :])
-    np.einsum("bii->bi", distance)[...] = np.inf
-    # Eigenvectors err by round-off over the distance of the nearest multiplier.
-    norm = np.linalg.norm(matrix, ord=2, axis=(-2, -1))[:, None]
-    near = norm / np.maximum(np.min(distance, axis=-1), np.finfo(float).eps * norm)
+    return values, np.take_along_axis(vectors, order[:, None, :], -1)
+
+
+def _shaken(
+    equation: Equation,
+    matrix: ComplexArray,
+    count: int,
+    values: ComplexArray,
+    rows: ComplexArray,
+    vectors: ComplexArray,
+    alike: NDArray[np.bool_] | None = None,
+) -> tuple[Array, Array]:
+    """Return round-off of derivatives over the largest, and that by each other multiplier.
+
+    Vectors err by round-off over the distance of the others, but those that are taken as one.
+    """
+    alike = np.eye(values.shape[1], dtype=bool) if alike is None else alike
+    distance = np.where(alike, np.inf, np.abs(values[:, :, None] - values[:, None, :]))
+    norm = np.linalg.norm(matrix, ord=2, axis=(-2, -1))[:, None, None]
     size = np.linalg.norm(rows, axis=-1) * np.linalg.norm(vectors, axis=-2)
-    shake = (rounding_error(equation, count)[:, None] * size * (1.0 + near))[..., None]
-    return _Rows(rows, vectors.mT, lambda found: (found.slope, found.error, found.bulk, shake))
+    rounding = rounding_error(equation, count)[:, None, None] * size[..., None]
+    each = rounding * norm / np.maximum(distance, np.finfo(float).eps * norm)
+    return rounding[..., 0] + np.max(each, axis=-1), each
+
+
+def _together(near: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return which of m belong together, ``(..., m, m)``, by neighbours of neighbours."""
+    m = near.shape[-1]
+    links = np.linalg.matrix_power((near | near.mT) + np.eye(m), m)
+    return np.asarray(links > 0.0)
+
+
+def _subspaces(equation: Equation, matrix: ComplexArray, count: int) -> _Rows:
+    """Return the functionals of the means of multipliers that coincide.
+
+    These alone are smooth: with bases V of what belongs to them and W of the dual, ``W V = 1``,
+    their mean moves by the trace of ``W dX V`` over their number.
+    """
+    from scipy.linalg import schur
+
+    values, vectors = _eigen(matrix)
+    each = _shaken(equation, matrix, count, values, _dual(vectors), vectors)[1]
+    alike = _together(each > 0.5 * _COLLIDED)
+    for one, close, own, columns in zip(matrix, alike, values, vectors, strict=True):
+        for group in np.unique(close, axis=0):
+            if np.sum(group) > 1:
+                middle = np.mean(own[group])
+                reach = 1.5 * np.max(np.abs(own[group] - middle)) + np.finfo(float).eps
+
+                def within(value: complex, middle: complex = middle, reach: float = reach) -> bool:
+                    return abs(value - middle) <= reach
+
+                _, basis, known = schur(one, "complex", sort=within)
+                if known == np.sum(group):
+                    columns[:, group] = basis[:, :known]
+    rows = _dual(vectors)
+    shake, _ = _shaken(equation, matrix, count, values, rows, vectors, alike)
+    mean = alike / np.sum(alike, axis=-1, keepdims=True)
+
+    def finished(found: Effect) -> tuple[NDArray[Any], Array, Array, Array]:
+        return mean @ found.slope, mean @ found.error, mean @ found.bulk, shake[..., None]
+
+    return _Rows(rows, vectors.mT, finished)
 
 
 def _of_edges(
@@ -455,13 +528,15 @@ def _of_frequencies(
             whole = series_at(np.abs(table), np.abs(np.where(change, series, 0.0)))
             size[..., i] += np.abs(of(whole, np.abs(shapes)) / changes.step[i])
     distance = np.abs(values[:, :, None] - values[:, None, :]) / values[:, :, None]
-    np.einsum("tii->ti", distance)[...] = np.inf
-    near = np.maximum(np.min(distance, axis=-1), np.finfo(float).eps)
-    shake = (answer.error / values) * (1.0 + 1.0 / near)
-    collided = shake > _COLLIDED
+    distance = np.maximum(distance, np.finfo(float).eps)
+    own = answer.error / values
+    alike = _together(own[:, :, None] / distance > _COLLIDED)
+    distance[alike] = np.inf
+    shake = own * (1.0 + 1.0 / np.min(distance, axis=-1))
     error = np.abs(slope - rough) + (np.finfo(float).eps + shake[..., None]) * size
-    error[collided], slope[collided] = np.inf, np.nan
-    return values, slope, error, collided
+    # Of those that coincide the mean is smooth.
+    mean = alike / np.sum(alike, axis=-1, keepdims=True)
+    return values, mean @ slope, mean @ error, np.sum(alike, axis=-1) > 1
 
 
 _KINDS: Mapping[type, tuple[str, Callable[..., _Found]]] = {

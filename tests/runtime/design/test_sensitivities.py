@@ -104,14 +104,51 @@ def test_peaks_of_a_steady_motion_by_lengths_and_the_speed():
     assert sign * found.derivative[0, 1] * crank == pytest.approx(by_crank * crank, rel=1e-7)
 
 
-def test_what_coincides_has_no_derivative_of_its_own():
+def test_of_what_coincides_the_mean_has_a_derivative():
+    # Two equal oscillators: exp(+-2 pi i w), w = sqrt(k) / speed, each twice.
     twin = (Term("M", None, np.eye(2)), Term("K", "k", np.eye(2)))
     system = el.LinearPeriodic(2, twin, {"k": 2.0}, lambda values: {"k": values["k"]})
-    found = sensitivities(system, el.floquet_multipliers(system, 1.3), ["k"])
-    assert np.all(found.collided)
-    assert np.all(np.isnan(found.derivative))
+    answer = el.floquet_multipliers(system, 1.3)
+    found = sensitivities(system, answer, ["k"])
+    assert np.all(found.collided) and np.all(found.error < 1e-9)
+    turned = np.sign(answer.multipliers.imag) * 1j * np.pi / (1.3 * np.sqrt(2.0))
+    by_hand = answer.multipliers * turned * np.sign(np.sin(2.0 * np.pi * np.sqrt(2.0) / 1.3))
+    np.testing.assert_allclose(found.derivative[:, 0], by_hand, rtol=1e-9)
     held = sensitivities(system, el.natural_frequencies(system, 0.0), ["k"])
     assert np.all(held.collided)
+    np.testing.assert_allclose(held.derivative, 0.5 / np.sqrt(2.0), rtol=1e-12)
+
+
+def test_two_multipliers_that_meet_have_a_mean_that_moves_smoothly():
+    # At an end of a region of Mathieu's equation two meet at -1, and one vector is left of two:
+    # their mean is half the trace.
+    system = el.LinearPeriodic(
+        1,
+        (
+            Term("M", None, np.eye(1)),
+            Term("K", "k", np.eye(1)),
+            Term("K", "e", lambda theta: np.cos(theta)[:, None, None]),
+        ),
+        {"k": 1.0, "e": 0.3},
+        dict,
+    )
+    edges = el.stability_edges(system, (1.5, 2.5))
+    speed = float(edges.lower[0])
+    answer = el.floquet_multipliers(system, speed)
+    found = sensitivities(system, answer, ["speed", "k", "e"])
+    assert np.all(found.collided) and np.all(np.isfinite(found.derivative))
+
+    def half_trace(speed, **changes):
+        moved = system.with_parameters(**changes)
+        return 0.5 * np.trace(el.monodromy(moved, speed).matrix.reshape(2, 2))
+
+    h = 1e-4
+    by_difference = [
+        (half_trace(speed + h) - half_trace(speed - h)) / (2.0 * h),
+        (half_trace(speed, k=1.0 + h) - half_trace(speed, k=1.0 - h)) / (2.0 * h),
+        (half_trace(speed, e=0.3 + h) - half_trace(speed, e=0.3 - h)) / (2.0 * h),
+    ]
+    np.testing.assert_allclose(found.derivative[0], by_difference, rtol=1e-6)
 
 
 def test_a_closed_region_has_none():

@@ -1,4 +1,4 @@
-"""Processor seconds of every command that the README shows, each in a process of its own.
+"""Processor seconds of every command of ``docs/commands.md``, each in a process of its own.
 
     python tests/benchmarks/commands.py [--store] [WORD]
 
@@ -17,14 +17,14 @@ import tempfile
 from pathlib import Path
 
 HERE = Path(__file__).parent
-README = HERE.parents[1] / "README.md"
+PAGE = HERE.parents[1] / "docs" / "commands.md"
 STORED = HERE / "commands.json"
 SKIPPED = ("reproduce",)
 
 
 def commands() -> list[str]:
-    """Return what follows ``elastolink`` in the README's list of commands."""
-    lines = re.findall(r"^    elastolink (.*?)(?:\s+#.*)?$", README.read_text(), re.MULTILINE)
+    """Return what follows ``elastolink`` in the list of commands."""
+    lines = re.findall(r"^    elastolink (.*?)(?:\s+#.*)?$", PAGE.read_text(), re.MULTILINE)
     return [line.strip() for line in lines if not line.startswith(SKIPPED)]
 
 

@@ -1,4 +1,4 @@
-"""Every command of the README in a folder full of files of others, which must stay as they are."""
+"""Every command of docs/commands.md among files of others, which must stay as they are."""
 
 import re
 import shlex
@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from elastolink.runtime.cli import main
 
-README = Path(__file__).parents[3] / "README.md"
+PAGE = Path(__file__).parents[3] / "docs" / "commands.md"
 # Names that commands, stores and galleries have a use for themselves.
 FOREIGN = (
     *("manifest.json", "chart.npz", "notes.txt", ".chart.npz.abcdefgh", "motion.png.bak"),
@@ -17,8 +17,8 @@ FOREIGN = (
 
 
 def commands() -> list[list[str]]:
-    """Return the arguments of each command of the README, and of two that write folders."""
-    lines = re.findall(r"^    elastolink (.*?)(?:\s+#.*)?$", README.read_text(), re.MULTILINE)
+    """Return the arguments of each command of the page, and of two that write folders."""
+    lines = re.findall(r"^    elastolink (.*?)(?:\s+#.*)?$", PAGE.read_text(), re.MULTILINE)
     found = [shlex.split(line) for line in lines]
     # What takes long and writes nothing, and what takes minutes.
     slow = ("running-speed", "reproduce")

@@ -209,7 +209,7 @@ PLAIN = (
     "stress aannaque_1996_table_4_1 --speed 30 --set mesh.elements=1",
 )
 # For motions beyond the linear range alone; the first page of their room has but the names.
-BEYOND = ("runtime.nonlinear.", "runtime.systems.inextensible", "runtime.systems.rod.driven")
+BEYOND = ("runtime.nonlinear.", "runtime.systems.inextensible")
 
 
 def beyond_the_linear_range(*lines: str) -> list[str]:

@@ -364,9 +364,7 @@ def linear_system(
 
 
 def _remeshed(
-    structure: Structure,
-    options: Mapping[str, Any],
-    change: Callable[[Structure], Structure],
+    structure: Structure, options: Mapping[str, Any], change: Callable[[Structure], Structure]
 ) -> LinearPeriodic:
     """Return the system of a changed structure, made with the same options."""
     return linear_system(change(structure), **options)

@@ -123,12 +123,7 @@ def _searched(
     for part in (0.25, 0.5, 0.75):
         value = bounds[0] + part * (bounds[1] - bounds[0])
         found = nonlinear.coexisting_motions(
-            system,
-            name,
-            value,
-            speed=speed,
-            turns=options.turns,
-            progress=opt.progress(options),
+            system, name, value, speed=speed, turns=options.turns, progress=opt.progress(options)
         )
         starts += [(value, motion) for motion in found.motions]
         for kind, count in found.searched.items():

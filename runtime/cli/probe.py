@@ -17,7 +17,6 @@ from typing import Any, TypeAlias
 HEAVY = ("sympy", "jinja2", "mpmath", "matplotlib", "pint", "tqdm", "xarray", "numba", "heyoka")
 EMITTED = ("elastolink.generated.", "elastolink_emitted_")
 _COMMAND = __name__.rpartition(".")[0]
-_ANGLES = 64
 
 Step: TypeAlias = Callable[[str], AbstractContextManager[None]]
 
@@ -121,7 +120,7 @@ def _rigid(stage: Step, scene: Any) -> None:
         linkage = scene.mechanism()
         low, high = linkage.crank_ranges()[0]
         inset = 0.0 if linkage.crank_turns else 0.02 * (high - low)
-        theta = np.linspace(low + inset, high - inset, _ANGLES, endpoint=False)
+        theta = np.linspace(low + inset, high - inset, 64, endpoint=False)
         linkage.motion(theta)
     with stage("machine"):
         machine = scene.machine()

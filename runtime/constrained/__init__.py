@@ -13,9 +13,4 @@ from .motion import consistent_state, constrained_motion
 from .multipliers import orbit_multipliers
 from .orbits import periodic_orbit
 
-__all__ = [
-    "consistent_state",
-    "constrained_motion",
-    "orbit_multipliers",
-    "periodic_orbit",
-]
+__all__ = ["consistent_state", "constrained_motion", "orbit_multipliers", "periodic_orbit"]

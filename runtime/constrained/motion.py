@@ -189,10 +189,7 @@ def _free(system: Constrained, hold: Iterable[str | int]) -> Array:
     number, most = system.size - int(free.sum()), max(system.size - system.constraints, 0)
     if number > most:
         raise bad(
-            "hold",
-            f"{number} coordinates",
-            f"at most {most}, the degrees of freedom",
-            "hold fewer",
+            "hold", f"{number} coordinates", f"at most {most}, the degrees of freedom", "hold fewer"
         )
     return free
 

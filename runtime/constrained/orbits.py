@@ -17,15 +17,7 @@ from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..periodic.ring import solve_ring
 from .collocation import Nodes, at_places, nodes, stage_matrix
-from .equations import (
-    EPS,
-    Array,
-    Equations,
-    Linearised,
-    NoConvergence,
-    constraint_norms,
-    solved,
-)
+from .equations import EPS, Array, Equations, Linearised, NoConvergence, constraint_norms, solved
 from .motion import linear_range, march
 
 STAGES = 12
@@ -485,11 +477,7 @@ def periodic_orbit(
 
 
 def _result(
-    source: OrbitSource,
-    guess: _Guess,
-    error: float,
-    iterations: int,
-    accuracy: Check,
+    source: OrbitSource, guess: _Guess, error: float, iterations: int, accuracy: Check
 ) -> PeriodicOrbit:
     shot, equations = source.fine, source.shooting.equations
     ring, system, columns = shot.ring, equations.system, equations.columns

@@ -16,8 +16,6 @@ Array: TypeAlias = NDArray[np.float64]
 
 # pi/2 as a sum of three floats, exact to 2^-160.
 _QUARTER = (1.5707963267948966, 6.123233995736766e-17, -1.4973849048591833e-33)
-# Terms of the sine and cosine up to pi/4: the next one is below 1e-34.
-_TERMS = 27
 
 
 def _sum(a: Any, b: Any) -> tuple[Any, Any]:
@@ -140,7 +138,8 @@ def _turned(angle: Twofold) -> tuple[Twofold, Twofold]:
         rest = rest - Twofold(quarters) * part
     square = rest * rest
     cosine = sine = Twofold(1.0)
-    for k in range(_TERMS, 2, -2):
+    # Up to pi/4 the next term is below 1e-34.
+    for k in range(27, 2, -2):
         sine = 1.0 - square * sine / float((k - 1) * k)
         cosine = 1.0 - square * cosine / float(k * (k + 1))
     sine, cosine = rest * sine, 1.0 - 0.5 * square * cosine

@@ -77,11 +77,7 @@ class StressEffect(Result):
 
 
 def damping_effect(
-    system: LinearPeriodic,
-    speeds: ArrayLike,
-    ratios: Sequence[float],
-    *,
-    rtol: float = 1e-3,
+    system: LinearPeriodic, speeds: ArrayLike, ratios: Sequence[float], *, rtol: float = 1e-3
 ) -> StressEffect:
     """Return the largest stresses for several ratios of modal damping (Aannaque 7.4.2).
 

@@ -182,11 +182,7 @@ class Campbell(Result):
 
 
 def campbell(
-    system: LinearPeriodic,
-    speed: ArrayLike,
-    *,
-    modes: int | None = None,
-    progress: bool = False,
+    system: LinearPeriodic, speed: ArrayLike, *, modes: int | None = None, progress: bool = False
 ) -> Campbell:
     """Return the frequencies of a mechanism against its crank speed, and where orders meet them.
 

@@ -385,7 +385,7 @@ class FrameFrequencies(Result):
     problem: Transcendental
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("frequencies", "multiplicity", "error", "hertz"), ("mode",)),
+        **dict.fromkeys(("frequencies", "multiplicity", "error", "hertz"), ("mode",))
     }
     exported: ClassVar[tuple[str, ...]] = ("hertz",)
 
@@ -478,10 +478,7 @@ def bisected(problem: Transcendental, upto: float | None, count: int | None) -> 
 
 
 def wittrick_williams(
-    problem: Transcendental,
-    *,
-    upto: float | None = None,
-    count: int | None = None,
+    problem: Transcendental, *, upto: float | None = None, count: int | None = None
 ) -> FrameFrequencies:
     """Return the natural frequencies of a transcendental eigenproblem, all of them.
 

@@ -363,10 +363,7 @@ def without_stretch(local: Array, rigid: NDArray[np.bool_]) -> Array:
 
 
 def element_matrices(
-    structure: Structure,
-    theta: float = 0.0,
-    *,
-    inextensible: bool | tuple[str, ...] = False,
+    structure: Structure, theta: float = 0.0, *, inextensible: bool | tuple[str, ...] = False
 ) -> tuple[Array, Array, Array]:
     """Return mass and stiffness of the structure's own elements at a crank angle [rad].
 

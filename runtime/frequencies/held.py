@@ -132,11 +132,7 @@ _HALVINGS = 24
 
 
 def cycle_mean(
-    values: Values,
-    period: float,
-    breaks: Sequence[float] = (),
-    *,
-    enough: float = 1e-12,
+    values: Values, period: float, breaks: Sequence[float] = (), *, enough: float = 1e-12
 ) -> tuple[Array, Array]:
     """Return means over the period and their errors, ``(k,)`` each, to a relative ``enough``.
 

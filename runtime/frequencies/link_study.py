@@ -111,12 +111,7 @@ def pinned_frequency(section: Section, length: float) -> float:
 
 
 def link_frequencies(
-    system: LinearPeriodic,
-    link: str,
-    quantity: str,
-    value: ArrayLike,
-    *,
-    count: int = 1,
+    system: LinearPeriodic, link: str, quantity: str, value: ArrayLike, *, count: int = 1
 ) -> LinkFrequencies:
     """Return the mean natural frequencies against the length or section of a link of a linkage.
 

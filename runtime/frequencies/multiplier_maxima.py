@@ -25,8 +25,6 @@ ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
 
 _MOST_SAMPLES = 4000
-# Angles at which the mechanism is looked at with its crank held.
-_ANGLES = 256
 # Error of the transition matrices: the place of a maximum is open by the root of it.
 _RTOL = 1e-9
 # Step beside a maximum, over the speed: of its fourth power the place is off; the same of J_N as a
@@ -64,7 +62,7 @@ def multiplier_maxima(
     that are kept put it.
     """
     low, high = speed_range
-    held = np.sqrt(still_modes(system, _ANGLES).squares[:, :wanted])
+    held = np.sqrt(still_modes(system, 256).squares[:, :wanted])
     top = float(np.max(held))
     # The highest mode turns by 0.35 rad between two samples.
     number = int(np.ceil(top * system.period * (1 / low - 1 / high) / 0.35)) + 8

@@ -19,7 +19,6 @@ from .checks import Array, axes_over, finite
 
 Kind = Literal["a", "b"]
 
-_LARGEST_NUMBER = 500
 _LARGEST_Q = 1e6
 
 
@@ -89,7 +88,7 @@ class Mathieu:
         """
         if kind not in ("a", "b"):
             raise bad("kind", repr(kind), "'a' or 'b'", "choose one")
-        m = require_whole("m", m, 0 if kind == "a" else 1, _LARGEST_NUMBER)
+        m = require_whole("m", m, 0 if kind == "a" else 1, 500)
         values = finite("q", q)
         if values.size and float(np.abs(values).max()) > _LARGEST_Q:
             raise bad("q", float(np.abs(values).max()), f"at most {_LARGEST_Q:g}", "correct it")

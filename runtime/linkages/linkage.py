@@ -32,8 +32,6 @@ TINY = float(np.finfo(float).tiny)
 ROUND_OFFS = 1.5 * EPS
 # A position that a round-off of the lengths moves so far [rad] is a change point.
 UNDECIDED = 0.5
-# Angles at which the rates of a motion are judged.
-_JUDGED = 64
 # What names of rates contain.
 _RATES = {"speeds": ("omega", "velocity"), "accelerations": ("alpha", "acceleration")}
 _LATER = DeferredField()
@@ -644,7 +642,8 @@ def _checks(linkage: Linkage, m: Mapping[str, Array]) -> dict[str, Check]:
         "folds within the angles": Check(float(linkage._folds(m["theta2"])), 0.0),
     }
     # Round-off of the rates is judged at the angles at which the position is known worst.
-    judged = np.argsort(np.ravel(error))[-_JUDGED:]
+    # Rates are judged at these angles.
+    judged = np.argsort(np.ravel(error))[-64:]
     exact = _without_rounding(linkage, np.ravel(m["theta2"])[judged])
     for name, terms in zip(_RATES, rates, strict=True):
         size = np.maximum(sum(np.abs(term) for term in terms), np.finfo(float).tiny)

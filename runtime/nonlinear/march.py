@@ -13,8 +13,6 @@ from .segments import Motion, NotFinite, Problem, Ramp, chained, sweep
 # Newton's iteration of a revolution: how many corrections, after how many none may be large, and
 # what it may leave, over the wanted error.
 _ITERATIONS, _PATIENCE, _LEFT = 12, 5, 0.03
-_SETTLING = 30  # revolutions from rest to a motion that Newton's iteration does not find from there
-_FIRST = 6  # steps of a revolution at first, for each coordinate
 
 
 @dataclass(frozen=True)
@@ -61,7 +59,8 @@ class Marcher:
         runs, n = len(states), states.shape[1] // 2
         if before is not None and before.runs == runs:
             return replace(before, begin=0.0)
-        steps = steps or _FIRST * max(n, 1)
+        # Six steps of a revolution at first, for each coordinate.
+        steps = steps or 6 * max(n, 1)
         x, v = (np.repeat(part, steps, axis=0) for part in (states[:, :n], states[:, n:]))
         return Motion(1, x, 0.0 * v, np.zeros((runs * steps, STAGES, n)), runs=runs)
 
@@ -104,7 +103,8 @@ def from_rest(marcher: Marcher, value: float) -> Motion:
     """
     motion = None
     state = np.zeros((1, 2 * marcher.problem.system.size))
-    for _ in range(_SETTLING):
+    # Revolutions from rest to a motion that Newton's iteration does not find from there.
+    for _ in range(30):
         motion = marcher.revolution(value, state, motion)
         state = end(motion)
     assert motion is not None

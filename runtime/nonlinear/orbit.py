@@ -249,12 +249,7 @@ class Solver:
             before = size
         raise Lost("no periodic motion was found near the guess")
 
-    def corrected(
-        self,
-        value: float,
-        motion: Motion,
-        direction: Direction,
-    ) -> tuple[Orbit, float]:
+    def corrected(self, value: float, motion: Motion, direction: Direction) -> tuple[Orbit, float]:
         """Return the motion nearest to a guess across a direction, and the first correction.
 
         Raises `Lost` where there is none near.
@@ -390,10 +385,7 @@ class Solver:
         return self.refined(orbit, direction)
 
     def refined(
-        self,
-        orbit: Orbit,
-        direction: Direction | None = None,
-        measure: Measure | None = None,
+        self, orbit: Orbit, direction: Direction | None = None, measure: Measure | None = None
     ) -> tuple[Orbit, Measure]:
         """Return a motion on as many steps as its error wants, and that error.
 

@@ -19,22 +19,11 @@ from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from .branch import CLOSED, JOINED, Branch, Limits, crossing, doubled, followed
 from .march import Marcher, from_rest
-from .orbit import (
-    FAILURES,
-    FIRST_STEPS,
-    MOST_STEPS,
-    STAGES,
-    Measure,
-    Orbit,
-    Solver,
-    closed,
-    taken,
-)
+from .orbit import FAILURES, FIRST_STEPS, MOST_STEPS, STAGES, Measure, Orbit, Solver, closed, taken
 from .segments import Motion, Problem, sweep
 
 _POINTS, _BRANCHES = 2000, 24  # points of one branch, and branches
 SAMPLES = 128  # of a revolution, for extremes
-_POLISHED = 5  # parabolas about the highest sample, each a tenth as wide where it holds the top
 # Relative distance within which motions are one: within its steps a motion is right to 1e-5 or so.
 _SAME = 1e-4
 # Places drawn between two points of a branch, and values of the linear answer.
@@ -495,7 +484,8 @@ def tops(
     which, rows, samples = np.nonzero((inner >= signed[..., :-2]) & (inner >= signed[..., 2:]))
     places, signs = angles[samples], 2.0 * which - 1.0
     widths, thrice = np.full(places.shape, width), np.repeat(rows, 3)
-    for _ in range(_POLISHED):
+    # Parabolas about the highest sample, each a tenth as wide where it holds the top.
+    for _ in range(5):
         around = places[:, None] + np.multiply.outer(widths, [-1.0, 0.0, 1.0])
         near = deflection(thrice, around.ravel()).reshape(-1, 3)
         left, middle, right = (signs[:, None] * near).T
@@ -514,10 +504,7 @@ def tops(
 
 
 def _result(
-    solver: Solver,
-    branches: list[Branch],
-    bounds: tuple[float, float],
-    missed: tuple[float, ...],
+    solver: Solver, branches: list[Branch], bounds: tuple[float, float], missed: tuple[float, ...]
 ) -> ResponseCurve:
     problem = solver.problem
     points = [point for branch in branches for point in branch.points]

@@ -31,7 +31,6 @@ _MARCHED, _SETTLING, _NEAR = 12, 120, 1e-2
 _ROUGHLY, _MARCHED_STEPS = 1e-4, 96
 # Corrections of a start, relative correction of what is worth to be settled, starts together.
 _ITERATIONS, _ARRIVED, _AT_ONCE = 40, 1e-6, 24
-_LARGEST = 50.0  # size of a motion over that of the largest start beyond which a search is given up
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -131,7 +130,8 @@ def coexisting_motions(
     solver = Solver(problem, max(abs(value), 1e-6), rtol)
     starts = _starts(solver, value, turns, largest, np.random.default_rng(seed))
     counts = {kind: len(motions) for kind, motions in starts.items()}
-    bound = _LARGEST * largest
+    # A motion that is so much larger than the largest start is given up.
+    bound = 50.0 * largest
     found: list[Motion] = []
     with bar(progress, len(starts) + 1, unit="kind of start") as tick:
         for number, motions in enumerate(starts.values()):

@@ -626,10 +626,6 @@ def _check_arguments(
         raise bad("rtol", rtol, "a number from 1e-14 to 1", "choose 1e-8")
 
 
-# Phase of a mode between given angles from which they do not tell its part of an integral.
-_MOST_PHASE = 0.5
-
-
 def energy_balance(
     equation: Equation, theta: Array, q: Array, slope: Array, error: float
 ) -> Check | None:
@@ -644,7 +640,8 @@ def energy_balance(
         return None
     step = float(theta[1] - theta[0])
     # Modes too fast for the angles have to be dead: the balance begins where the last of them is.
-    fast = step * equation.frequency[0] > _MOST_PHASE
+    # From this phase on given angles do not tell a mode's part of an integral.
+    fast = step * equation.frequency[0] > 0.5
     decay = float(np.min(equation.decay[0], initial=np.inf, where=fast))
     dead = _DEAD / max(decay, 1e-300) * equation.period / step
     begin = ceil(min(dead, len(theta)))

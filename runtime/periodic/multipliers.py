@@ -553,11 +553,7 @@ def _cuts(turn: Array) -> list[int]:
 
 
 def _matrix_checks(
-    equation: Equation,
-    scaled: Array,
-    exponent: NDArray[np.int64],
-    error: Array,
-    allowed: Array,
+    equation: Equation, scaled: Array, exponent: NDArray[np.int64], error: Array, allowed: Array
 ) -> Mapping[str, Check]:
     """Convergence, Liouville's determinant and symplecticity, at the worst member."""
     if not len(error):

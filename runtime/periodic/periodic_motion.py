@@ -532,10 +532,6 @@ def quiet_state(
         return steady_state(system, speeds, rtol=rtol, **changes)
 
 
-# Unknowns up to which harmonics are added: a matrix of 400 MiB.
-_MOST_UNKNOWNS = 5000
-
-
 def balanced_motion(
     equation: Equation, rtol: float, samples: int
 ) -> tuple[Array, Array, Array, float]:
@@ -560,7 +556,8 @@ def balanced_motion(
         error = gap + 8.0 * _EPS * min(condition, 1.0 / _EPS)
         more = (3 * harmonics) // 2
         enough = bool(np.all(error <= rtol)) or not np.isfinite(condition)
-        if enough or (2 * more + 1) * equation.size > _MOST_UNKNOWNS:
+        # Unknowns up to which harmonics are added: a matrix of 400 MiB.
+        if enough or (2 * more + 1) * equation.size > 5000:
             return q, slope, error, condition
         before, harmonics = waves, more
 

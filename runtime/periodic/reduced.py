@@ -14,8 +14,6 @@ from .moving_basis import RESOLVED, MovingBasis, moving_basis
 
 # Even angles from which the reduced arrays are interpolated.
 _FEWEST, _MOST = 128, 2048
-# Part of what it was that an error has to fall to, for more angles to be worth it.
-_STALLED = 0.1
 # Angles at which the arrays are compared with their definition, and how much worse they may be
 # elsewhere.
 _COMPARED, _ELSEWHERE = 61, 4.0
@@ -187,7 +185,8 @@ def _moving_terms(system: LinearPeriodic, phi: MovingBasis) -> tuple[Term, ...]:
         found = _sampled_terms(system, phi, even_angles(system.period, count))
         worst = max(map(tail, found.values()), default=0.0)
         # What stays as it is by twice as many angles is the round-off of a stiff system.
-        if worst <= RESOLVED or worst > _STALLED * before or 2 * count > _MOST:
+        # More angles are worth it where the error falls to a tenth of what it was.
+        if worst <= RESOLVED or worst > 0.1 * before or 2 * count > _MOST:
             break
         count, before = 2 * count, worst
     return tuple(

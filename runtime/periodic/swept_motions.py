@@ -24,8 +24,6 @@ from .tables import Table, flows_at, octaves
 from .transition import cheapest
 from .truncation import TruncatedSystem, arrays_at, modes_offered, truncated_on
 
-# Nodes of the table of an octave to begin with: at errors of 1e-7 most need no more.
-_NODES = 16
 # Speeds whose motions are lifted together.
 _TOGETHER = 64
 # Even angles at which the modes are carried round, at the least and the most, and the upper
@@ -180,7 +178,8 @@ class Truncations:
         truncated, known = self._required(modes, angles)
         low, high = span
         maker = TableMaker(known, (low * high) ** 0.5, {}, stiff=False)
-        table, errors, motion = maker.table(1.0 / high, 1.0 / low, angles, rtol, _NODES)
+        # To begin with: at errors of 1e-7 most octaves need no more.
+        table, errors, motion = maker.table(1.0 / high, 1.0 / low, angles, rtol, 16)
         worst = float(np.max(motion))
         return SweptMotions(truncated, table, maker.scale, errors.largest, worst)
 

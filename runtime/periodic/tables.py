@@ -25,8 +25,6 @@ _EPS = float(np.finfo(float).eps)
 # Chebyshev nodes of small states: more than the segments need, so that their products can be
 # tables, too.  Of large ones as many as a few segments need; of any at the most.
 _SMALL, _NODES, _TRIED, _TRIAL_NODES, _MOST_NODES = 12, 32, 4, 24, 72
-# Ratio of the ends of one table: nodes for an octave cost two thirds of those for its halves.
-_RATIO = 2.0
 # Numbers in a table: 480 MB.
 _MOST_FLOATS = 60_000_000
 # Values that are evaluated together, in numbers of their matrices.
@@ -157,7 +155,8 @@ def table_of(
 
 def octaves(low: float, high: float) -> Array:
     """Return the ends of parts of a range for one table each, equal ratios of at most 2."""
-    count = max(1, ceil(log(high / low) / log(_RATIO) - 1e-9))
+    # Nodes for an octave cost two thirds of those for its halves.
+    count = max(1, ceil(log(high / low) / log(2.0) - 1e-9))
     edges: Array = low * (high / low) ** (np.arange(count + 1) / count)
     edges[[0, -1]] = low, high
     return edges

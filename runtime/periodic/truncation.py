@@ -28,10 +28,6 @@ from .reduced import projections
 
 ComplexArray = NDArray[np.complex128]
 
-# Even angles at which the gaps between frequencies are looked at.
-_LOOKED_AT = 64
-# Least ratio of the first frequency left out to the last one kept, at every angle.
-_GAP = 1.02
 # Static corrections of a lifted motion: the first takes a hundredth, the second a hundredth of it.
 _CORRECTIONS = 2
 
@@ -94,9 +90,10 @@ class TruncatedSystem(LinearPeriodic):
 
 def modes_offered(system: LinearPeriodic, least: int) -> list[int]:
     """Return the numbers of modes with a gap to the next frequency at every angle, rising."""
-    squares = still_modes(system, _LOOKED_AT).squares
+    squares = still_modes(system, 64).squares
     ratio = np.sqrt(np.min(squares[:, 1:] / squares[:, :-1], axis=0))
-    numbers = [m for m in range(least, system.size) if ratio[m - 1] >= _GAP]
+    # At every angle the first frequency left out is beyond the last one kept.
+    numbers = [m for m in range(least, system.size) if ratio[m - 1] >= 1.02]
     return [*numbers, system.size]
 
 

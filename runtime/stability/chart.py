@@ -498,8 +498,6 @@ _SHADES = {
     1: ("#e0a070", "even regions (multiplier above 1)"),
     2: ("#b9a3d6", "combination (complex multipliers)"),
 }
-# Relative width up to which a region is drawn as a hair.
-_NARROW = 1e-4
 _EDGES = {"principal": "#8c2d04", "sum": "#5b2d8c", "difference": "#1f6f6b"}
 
 
@@ -529,7 +527,8 @@ def _draw_edges(ax: Axes, chart: StabilityChart, edges: EdgeCurves) -> None:
     low, high = (RPM * v for v in ((chart.x if horizontal else chart.y)[[0, -1]]))
     for i, kind in enumerate(edges.kind):
         with np.errstate(invalid="ignore"):
-            narrow = not np.any(edges.upper[i] - edges.lower[i] > _NARROW * edges.lower[i])
+            # Such a region is drawn as a hair.
+            narrow = not np.any(edges.upper[i] - edges.lower[i] > 1e-4 * edges.lower[i])
         for ends in (edges.lower[i], edges.upper[i]):
             pair = (ends * RPM, at) if horizontal else (at, ends * RPM)
             label = None if kind in seen else f"{kind} regions, traced"

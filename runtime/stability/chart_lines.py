@@ -143,8 +143,6 @@ def relative_error(error: Array, values: Array) -> float:
 
 # Wanted error of the matrices, and what mirrored coefficients may differ, over the largest.
 _RTOL, _ALIKE = 1e-12, 1e-13
-# Chebyshev nodes of a line to begin with: at most lines of the scenes' charts they are enough.
-_NODES = 12
 _EPS = float(np.finfo(float).eps)
 # Nodes to begin with on a line, and lines across it.
 _FIRST, _FEWEST_LINES = 32, 9
@@ -296,7 +294,8 @@ class Lines:
             speed = np.broadcast_to(point.pop("speed", self.speed), values.shape)
             return equation_of(known, speed, point)
 
-        ends, nodes = (low, high), _NODES if high > low else 1
+        # To begin with: at most lines of the scenes' charts twelve nodes are enough.
+        ends, nodes = (low, high), 12 if high > low else 1
         judged = plain(places(ends, nodes))
         unit = judged.scale[len(judged.scale) // 2]
         # A bound of what modes that no segment resolves make of waves doubles a chart's time, for

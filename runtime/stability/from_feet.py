@@ -22,8 +22,6 @@ Whole = NDArray[np.int64]
 
 # Where the feet are, as a share of the least value; and how far their speeds may be off the range.
 _FOOT, _BEYOND = 1e-6, 1.3
-# Places across an open tongue at which its growth is taken.
-_ACROSS = np.linspace(0.1, 0.9, 9)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -231,7 +229,7 @@ def _growth(system: LinearPeriodic, at: Mapping[str, float], edges: StabilityEdg
     growth = np.where(np.isfinite(edges.width), 0.0, np.nan)
     wide = np.flatnonzero(edges.width > 2 * edges.error)
     if len(wide):
-        speed = edges.lower[wide] + np.multiply.outer(_ACROSS, edges.width[wide])
+        speed = edges.lower[wide] + np.multiply.outer(np.linspace(0.1, 0.9, 9), edges.width[wide])
         growth[wide] = np.max(floquet_multipliers(system, speed, **at).growth, axis=0)
     return growth
 

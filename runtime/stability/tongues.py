@@ -309,8 +309,6 @@ class Several:
 _EPS = float(np.finfo(float).eps)
 # Factor on either side of a resonance within which its like at other parameter values is sought.
 _NEAR = 3.0
-# Distance of exponents that meet exactly, but for round-off.
-_EXACT = 1e-10
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -534,7 +532,8 @@ def _detunings(
     centre, half = expected(operator.polynomials(1, undamped=True))
     damped = operator.damped and not undamped
     lossless = False if damped else True if operator.conservative else None
-    together = float(np.max(np.abs(operator.gaps))) <= _EXACT
+    # Exponents that meet exactly, but for round-off.
+    together = float(np.max(np.abs(operator.gaps))) <= 1e-10
     out = []
     for degree in range(1, order + BEYOND + 1):
         matrices = operator.polynomials(degree, undamped=undamped)

@@ -19,8 +19,6 @@ from ..core.trigonometric import GOLDEN
 from .pieces import Grid
 
 FORMAT = 2
-# Angles by the golden section, at which functions of the angle are told apart.
-_ANGLES = 16
 
 
 class _Hash(Protocol):
@@ -111,7 +109,8 @@ def _feed_system(found: _Hash, system: LinearPeriodic, inner: tuple[int, ...]) -
     """Add what a system does: its numbers, and its functions at some angles and parameters."""
     numbers = (system.size, system.period, system.labels, system.reference_length)
     _feed(found, (*numbers, dict(system.parameters), dict(system.geometry)), inner)
-    theta = np.asarray(system.period * (np.arange(_ANGLES) * GOLDEN % 1.0), dtype=np.float64)
+    # By the golden section: functions of the angle are told apart there.
+    theta = np.asarray(system.period * (np.arange(16) * GOLDEN % 1.0), dtype=np.float64)
     for term in system.terms:
         _feed(found, (term.array, term.scale, term.power, term.constant), inner)
         _feed_numbers(found, _rounded(term(theta)))

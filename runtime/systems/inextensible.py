@@ -13,6 +13,7 @@ import numpy as np
 from ...generated import beam_tangent_harmonics
 from ..core.errors import bad
 from ..core.families import Array
+from ..core.families.linear_periodic import PLACES
 from ..core.families.nonlinear import Drive, Equations, Nonlinear, Reduced
 from ..core.families.stations import AtStations, Stations
 from ..core.modules import find_module
@@ -122,7 +123,7 @@ class InextensibleCoupler:
 
     def largest(self, q: Array) -> Array:
         """Return the largest deflection from the chord over the coupler's length; shape batch."""
-        return np.asarray(np.max(np.abs(self.shape(q, _PLACES)), axis=-1))
+        return np.asarray(np.max(np.abs(self.shape(q, PLACES)), axis=-1))
 
     def shape(self, q: Array, places: Array) -> Array:
         """Return deflections from the chord over the length at places s, ``(*batch, ns)``."""
@@ -132,9 +133,6 @@ class InextensibleCoupler:
         weights = _integrals(angle.shape[-1], tuple(places.tolist()))
         found: Array = (y @ weights * along - x @ weights * across) / np.hypot(along, across)
         return found
-
-
-_PLACES = np.linspace(0.0, 1.0, 41)
 
 
 @lru_cache(maxsize=64)

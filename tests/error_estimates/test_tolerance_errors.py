@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.design import tolerance_bands
-from elastolink.runtime.design.tolerance_answers import answer_of
+from elastolink.runtime.design.within_tolerances import answer_of
 from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.linkages.length_tolerances import tolerances
 from elastolink.runtime.scenes import with_numbers

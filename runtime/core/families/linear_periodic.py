@@ -25,7 +25,7 @@ VECTORS = ("f", "h", "g", "p")
 # basis carries along.
 DAMPING = ("C", "D")
 # Places along a link at which its deflection is watched: a third sine is missed by 0.7 % at most.
-_PLACES = np.linspace(0.0, 1.0, 41)
+PLACES = np.linspace(0.0, 1.0, 41)
 # What a limit of a parameter's values allows.
 _LIMITS: Mapping[str, Callable[[Array], NDArray[np.bool_]]] = {
     "positive": lambda values: values > 0.0,
@@ -192,7 +192,7 @@ class LinearPeriodic:
         fixed = np.asarray(self.shape(x), dtype=float)
         return np.broadcast_to(fixed, (len(theta), *fixed.shape))
 
-    def deflection_rows(self, theta: Array, places: Array = _PLACES) -> Array | None:
+    def deflection_rows(self, theta: Array, places: Array = PLACES) -> Array | None:
         """Return what turns coordinates into deflections over the length of their link.
 
         Parameters

@@ -150,11 +150,7 @@ class _Evaluated:
     """The emitted functions of a module at numbers and angles of the drive ``(N,)``."""
 
     def __init__(
-        self,
-        module: ModuleType,
-        stations: Stations,
-        drive: Drive,
-        parameters: Mapping[str, float],
+        self, module: ModuleType, stations: Stations, drive: Drive, parameters: Mapping[str, float]
     ) -> None:
         self.module, self.stations = module, stations
         self.tangent: tuple[Array, Array]  # cosines and sines of the angles, (Q, N)

@@ -46,13 +46,7 @@ _ROUND = float(np.finfo(float).eps)
 _TINY = float(np.finfo(float).tiny)
 _KEPT = 8  # arrays of places whose modes and integrals are remembered
 # Over two modes: name, and the sign that an exchange of the modes brings.
-_PAIRS = {
-    "drift": -1,
-    "drift_drift": 1,
-    "bending_drift": -1,
-    "tension": 1,
-    "drift_rate": -1,
-}
+_PAIRS = {"drift": -1, "drift_drift": 1, "bending_drift": -1, "tension": 1, "drift_rate": -1}
 
 
 @lru_cache(maxsize=8)
@@ -256,12 +250,7 @@ class OverhangBasis:
         return self._modes(place).roots
 
     def frequencies(
-        self,
-        place: ArrayLike,
-        *,
-        length: float,
-        bending_stiffness: float,
-        mass_per_length: float,
+        self, place: ArrayLike, *, length: float, bending_stiffness: float, mass_per_length: float
     ) -> OverhangFrequencies:
         """Return the natural frequencies of the rod with the block held still (Beale & Scott 7).
 

@@ -12,6 +12,7 @@ from itertools import pairwise
 import elastolink as el
 import numpy as np
 import pytest
+from driven_rod import driven_rod
 from elastolink.runtime.core.families import Drive, Nonlinear, Varied
 from elastolink.runtime.nonlinear.branch import special_points
 from elastolink.runtime.nonlinear.orbit import STAGES, Solver
@@ -20,7 +21,6 @@ from elastolink.runtime.nonlinear.response import tops
 from elastolink.runtime.nonlinear.segments import Motion, Problem
 from elastolink.runtime.systems import free_free_rod
 from elastolink.runtime.systems.rod import FreeFreeBasis, rod_system
-from elastolink.runtime.systems.rod.driven import driven_rod
 from free_free_loads import ROD
 from orders import slope
 from oscillators import extremes, marched, oscillators, shot, shot_special, shot_where

@@ -1,4 +1,7 @@
-"""The free-free rod of a quick-return in coordinates without constraints: its modes alone."""
+"""The free-free rod of a quick-return in coordinates without constraints: its modes alone.
+
+An oracle: the constrained equations, reduced at run time, for response curves of the rod.
+"""
 
 from __future__ import annotations
 
@@ -6,13 +9,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-
-from ...core.errors import bad
-from ...core.families import Array, Constrained, Drive, Nonlinear
-from ...core.families.nonlinear import Reduced
-from ...linkages import QuickReturn
-from .floating import FreeFreeRod, rod_equations
-from .free_free import FreeFreeModes
+from elastolink import QuickReturn
+from elastolink.runtime.core.families import Array, Constrained, Drive, Nonlinear
+from elastolink.runtime.core.families.nonlinear import Reduced
+from elastolink.runtime.systems.rod.floating import FreeFreeRod, rod_equations
+from elastolink.runtime.systems.rod.free_free import FreeFreeModes
 
 
 @dataclass(frozen=True)
@@ -20,15 +21,13 @@ class DrivenRod:
     """Makes the constrained system of a rod at numbers and a drive of steady speed."""
 
     modes: FreeFreeModes
-    dropped: tuple[str, ...]
 
     def __call__(self, parameters: Mapping[str, float], drive: Drive) -> Constrained:
         """Return the system; its equations hold at a steady speed."""
         speed = float(np.ravel(drive.speed)[0])
-        if np.any(drive.acceleration) or np.any(np.asarray(drive.speed) != speed):
-            fix = "use response_curve, or a coupler"
-            raise bad("drive", "a speed that changes", "a steady one for this rod", fix)
-        return rod_equations(self.modes, _linkage(parameters), speed, parameters, self.dropped)
+        assert not np.any(drive.acceleration)
+        assert np.all(np.asarray(drive.speed) == speed)
+        return rod_equations(self.modes, _linkage(parameters), speed, parameters, ())
 
     def undeformed(self, q: Array, drive: Drive, parameters: Mapping[str, float]) -> Array:
         """Return mean position and direction of the undeformed rod, ``(*batch, 3)``."""
@@ -43,26 +42,13 @@ def _linkage(parameters: Mapping[str, float]) -> QuickReturn:
     return QuickReturn(frame=frame, crank=crank, rod=parameters["length"])
 
 
-def driven_rod(rod: FreeFreeRod, drop: tuple[str, ...] = ()) -> Nonlinear:
+def driven_rod(rod: FreeFreeRod) -> Nonlinear:
     """Return a free-free rod as a nonlinear system of its modes (Beale & Scott (29)-(49)).
 
     Pin and block determine the mean position and direction of the rod, which go.  Without damping,
     as the constrained equations are.
-
-    Parameters
-    ----------
-    rod : FreeFreeRod
-        As :func:`free_free_rod` makes it; its speed does not matter.
-    drop : tuple of str
-        ``("tension",)`` where the rod was made so.
-
-    Returns
-    -------
-    Nonlinear
-        Coordinates ``f1 ... fN``; parameters ``crank_ratio``, ``frame``, ``length``,
-        ``bending_stiffness``, ``mass_per_length``.
     """
-    linkage, made = rod.linkage, DrivenRod(rod.modes, drop)
+    linkage, made = rod.linkage, DrivenRod(rod.modes)
     count = rod.modes.size
     return Nonlinear(
         size=count,

@@ -23,7 +23,7 @@ PIL clarabel matplotlib mpl_toolkits pint tqdm xarray exudyn heyoka numba flint 
 # From bottom to top; `docs/architecture.md` shows the same.
 LAYERS = """
 core linkages rigid beams systems scenes hill periodic recovery constrained frequencies
-stability nonlinear design sweeps gallery cli
+stability nonlinear design report sweeps gallery cli
 """
 
 

@@ -27,7 +27,7 @@ from .options import HelpFormatter, add, picture
 _GROUPS = (
     *("scenes", "linkages", "tolerances", "forces", "response", "nonlinear"),
     *("beams", "stability", "boundaries", "diagnosis", "stabilising"),
-    *("measured", "bands", "certified", "proofs"),
+    *("measured", "bands", "certified", "proofs", "report"),
 )
 _BAD_INPUT = 2
 # Characters of a complaint; the longest list of choices has half as many.

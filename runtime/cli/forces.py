@@ -56,6 +56,8 @@ def _forces(options: argparse.Namespace) -> int:
     elastolink forces smith_1972_12_6_12_12 --speed '10 rad/s' --joint 34 --plot f34.png
     elastolink forces slider_crank_example --speed '1500 rpm' --fluctuation 0.02
     """
+    from ..rigid.peaks import LABELS
+
     if options.plot is None:
         opt.refuse_unused(options, ("joint",), "--plot FILE beside it")
     scene = opt.load(options)
@@ -69,22 +71,13 @@ def _forces(options: argparse.Namespace) -> int:
     peaks = rigid.force_peaks(machine, speed, acceleration, span=span)
     # No minus before a zero.
     table = opt.columns(
-        ("quantity", "", [_LABELS[name] for name in peaks]),
+        ("quantity", "", ["{} [{}]".format(*LABELS[name]) for name in peaks]),
         ("peak", "z.6g", [peak.value for peak in peaks.values()]),
         ("crank angle [deg]", "z.2f", [degrees(peak.crank_angle) for peak in peaks.values()]),
     )
     more = {"peaks": {name: asdict(peak) for name, peak in peaks.items()}, **numbers}
     draw = partial(found.plot, joint=options.joint)
     return opt.finish(options, found, [*table, "", *even], draw, more=more, beside=beside)
-
-
-_LABELS = {
-    **{f"f{joint}": f"pin force {joint} [N]" for joint in ("12", "23", "34", "41")},
-    "torque": "driving torque [N m]",
-    "shaking_force": "force on the frame [N]",
-    "shaking_moment": "moment on the frame [N m]",
-    **{f"couple{joint}": f"couple of the slide {joint} [N m]" for joint in ("34", "41")},
-}
 
 
 def _evenness(

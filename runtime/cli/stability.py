@@ -137,6 +137,8 @@ def _chart(options: argparse.Namespace) -> int:
     elastolink chart mathieu --x lam2=-0.5:30:4000 --y mu=0:4:2500 --store fine.npz
     """
     count = _check_scale(options)
+    from ..stability.chart_axes import measured_marks
+
     scene = opt.load(options)
     system = scene.linear_system()
     x, y = (_axis(getattr(options, axis), axis, scene) for axis in ("x", "y"))
@@ -158,18 +160,11 @@ def _chart(options: argparse.Namespace) -> int:
             order=options.order,
             edges=options.edges,
             speed=speed,
-            marks=_marks(scene, y),
+            marks=measured_marks(scene, y),
             workers=map if executor is None else in_order(executor),
             frequency_name=name or "natural frequency",
         )
     return opt.finish(options, chart, _chart_lines(chart, scene), with_points(points, chart.plot))
-
-
-def _marks(scene: Scene, y: Axis) -> dict[str, tuple[float, ...]]:
-    """Return the measured follower inertias within the chart, where they lie along y."""
-    measured = scene.get("measured.follower_inertias", ())
-    shown = tuple(value for value in measured if y[1][0] <= value <= y[1][-1])
-    return {"measured follower inertias": shown} if y[0] == "follower_inertia" and shown else {}
 
 
 def _chart_lines(chart: stability.StabilityChart, scene: Scene) -> list[str]:
@@ -250,21 +245,15 @@ def _axis(given: str | None, axis: str, scene: Scene) -> Axis:
 
 
 def _default_axis(axis: str, scene: Scene) -> Axis:
-    """Return the axis of ``[chart]``, or of the speed range and the measured inertias."""
-    name = scene.get(f"chart.{axis}", None)
-    ends = scene.get(f"chart.{axis}_range", None)
-    points = scene.get(f"chart.{axis}_points", 201)
-    if name is not None and ends is not None:
-        return name, opt.spaced(ends[0], ends[1], max(points, 2))
-    speeds = scene.get("operation.speed_range", None)
-    if axis == "x" and name in {None, "speed"} and speeds:
-        return "speed", opt.spaced(speeds[0], speeds[1], max(points, 2))
-    inertias = scene.get("measured.follower_inertias", None)
-    if axis == "y" and name in {None, "follower_inertia"} and inertias:
-        return "follower_inertia", opt.spaced(0.9 * min(inertias), 1.1 * max(inertias), points)
-    found = f"no chart.{axis}_range in scene {scene.name}"
-    fix = f"give --{axis} NAME=START:STOP:COUNT"
-    raise bad(f"--{axis}", found, "a parameter and its values", fix)
+    """Return the axis of the scene, refused where there is none."""
+    from ..stability.chart_axes import axis_of_scene
+
+    found = axis_of_scene(scene, axis)
+    if found is None:
+        told = f"no chart.{axis}_range in scene {scene.name}"
+        fix = f"give --{axis} NAME=START:STOP:COUNT"
+        raise bad(f"--{axis}", told, "a parameter and its values", fix)
+    return found
 
 
 def _check_scale(options: argparse.Namespace) -> int:

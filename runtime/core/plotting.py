@@ -69,10 +69,15 @@ def require_writable(target: Path) -> Path:
 
 def save_figure(figure: Figure, path: str | Path) -> Path:
     """Write a figure as PNG, SVG or PDF, whole or not at all, the same bytes each time."""
+    target = check_picture_path(path)
+    return write_whole(target, figure_bytes(figure, target.suffix))
+
+
+def figure_bytes(figure: Figure, ending: str) -> bytes:
+    """Return a figure as a file of that ending; the same bytes each time."""
     import matplotlib as mpl
 
-    target = check_picture_path(path)
     buffer = io.BytesIO()
     with mpl.rc_context({"svg.hashsalt": "elastolink"}):
-        figure.savefig(buffer, format=target.suffix[1:], dpi=150, metadata=_METADATA[target.suffix])
-    return write_whole(target, buffer.getvalue())
+        figure.savefig(buffer, format=ending[1:], dpi=150, metadata=_METADATA[ending])
+    return buffer.getvalue()

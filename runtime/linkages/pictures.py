@@ -167,9 +167,9 @@ class _Film:
 
     def picture(self, s: float) -> Any:
         """Return the picture at one position, bytes of shape (height, width, 3)."""
-        for link, line in _bars(self._motion, s).items():
+        for link, line in bars_at(self._motion, s).items():
             self._links[link].set_data(line.real, line.imag)
-        at = _pins(self._motion, s)
+        at = pins_at(self._motion, s)
         self._links["pins"].set_data(at.real, at.imag)
         for i, (curve, place) in enumerate(zip(self._curves, self._places, strict=True)):
             line = _point_bar(self._motion, s, curve.link, place)
@@ -187,9 +187,9 @@ def _trace(motion: Circuit, curve: CouplerCurve) -> Complex:
     return np.asarray(motion.scale * motion.path(s, curve.link, place, 0).c[0])
 
 
-def _bars(motion: Circuit, s: float) -> dict[str, Complex]:
+def bars_at(motion: Circuit, s: float) -> dict[str, Complex]:
     """Return the moving parts at one position as lines through complex places, blocks last."""
-    here, unit = np.array([s]), _unit(motion)
+    here, unit = np.array([s]), half_width(motion)
     joints, links = motion.joints(here), motion.links(here, 0)
     bars = {}
     for link, letters in sorted(motion.linkage.bars.items(), key=lambda bar: -len(bar[1])):
@@ -199,7 +199,8 @@ def _bars(motion: Circuit, s: float) -> dict[str, Complex]:
     return bars
 
 
-def _pins(motion: Circuit, s: float) -> Complex:
+def pins_at(motion: Circuit, s: float) -> Complex:
+    """Return the moving pins at one position."""
     at = motion.joints(np.array([s]))
     names = ("B",) if motion.linkage.mechanism == "quick_return" else ("B", "C")
     return np.array([complex(at[name][0]) for name in names])
@@ -217,7 +218,7 @@ def _point_bar(motion: Circuit, s: float, link: str, place: complex) -> Complex:
 
 def _draw_frame(ax: Axes, motion: Circuit, places: Iterable[Complex] = ()) -> None:
     """Draw what stands still, and set the limits so that the whole motion is seen."""
-    unit = _unit(motion)
+    unit = half_width(motion)
     joints = motion.joints(np.arange(181) * 2 * pi / 181)
     pivots = [0j, *([complex(joints["D"][0])] if "D" in joints else [])]
     for pivot in pivots:
@@ -240,12 +241,12 @@ def _draw_frame(ax: Axes, motion: Circuit, places: Iterable[Complex] = ()) -> No
 def _draw_linkage(ax: Axes, motion: Circuit, s: float, alpha: float = 1.0) -> dict[str, Any]:
     """Draw the moving parts at one position; return the artists by link, and "pins"."""
     artists: dict[str, Any] = {}
-    for link, line in _bars(motion, s).items():
+    for link, line in bars_at(motion, s).items():
         width = 2.5 if len(line) == 2 else 1.5
         (artists[link],) = ax.plot(
             line.real, line.imag, color=_COLOURS[link], lw=width, alpha=alpha, zorder=3
         )
-    at = _pins(motion, s)
+    at = pins_at(motion, s)
     (artists["pins"],) = ax.plot(
         at.real, at.imag, "o", color="w", mec="0.2", ms=5, alpha=alpha, zorder=4
     )
@@ -259,7 +260,7 @@ def _mark(ax: Axes, places: Array, marker: str, colour: str, label: str) -> None
         )
 
 
-def _unit(motion: Circuit) -> float:
+def half_width(motion: Circuit) -> float:
     """Return the half-width of a drawn block."""
     joints = motion.joints(np.arange(8) * pi / 4)
     places = np.concatenate(list(joints.values()))

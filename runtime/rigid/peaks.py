@@ -14,6 +14,15 @@ from .machine import Machine
 TERMS = ("shaking_force", "shaking_moment", "torque", "f12", "f23", "f34", "f41")
 COUPLES = ("couple34", "couple41")
 
+# Each of them in words, with its unit.
+LABELS = {
+    **{f"f{joint}": (f"pin force {joint}", "N") for joint in ("12", "23", "34", "41")},
+    "torque": ("driving torque", "N m"),
+    "shaking_force": ("force on the frame", "N"),
+    "shaking_moment": ("moment on the frame", "N m"),
+    **{f"couple{joint}": (f"couple of the slide {joint}", "N m") for joint in ("34", "41")},
+}
+
 _DEGREE = 12
 _NODES = np.cos(np.pi * np.arange(_DEGREE + 1) / _DEGREE)
 _ORDERS = np.arange(_DEGREE + 1.0)[:, np.newaxis]

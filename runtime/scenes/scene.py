@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...derive.spec import BEAM_FORMULATIONS, INEXTENSIBLE, ModelSpec
 from ..core.errors import bad
-from .schema import Layout
+from .schema import Layout, Table
 from .validation import nearest
 
 if TYPE_CHECKING:
@@ -172,6 +172,16 @@ class Scene:
             if default is _MISSING:
                 raise
             return default
+
+    def described(self) -> Iterator[tuple[str, Table | None, Mapping[str, Any]]]:
+        """Yield every table with its description; those under a name of their own one by one."""
+        for name, table in self.tables.items():
+            layout = self.layout.table(name)
+            if layout is None or not layout.named:
+                yield name, layout, table
+                continue
+            for inner, content in table.items():
+                yield f"{name}.{inner}", layout, content
 
     def dimension(self, key: str) -> str | None:
         """Return the dimension of a dotted key, or None where it is no quantity."""

@@ -14,6 +14,7 @@ from ..core.periodic_function import PeriodicFunction
 from ..hill import HillForm
 from ..hill.form import is_hill
 from ..periodic.equation import SPEED_POWER, at_geometry
+from ..scenes import Scene
 
 Names = tuple[str, str]
 Axes = tuple[Array, Array]
@@ -23,6 +24,30 @@ _PROBES = (1.0, 2.0, 5.0, 0.37)
 _ANGLES = np.linspace(0.0, 2.0 * np.pi, 17)
 
 PlainAxes = tuple[int, PeriodicFunction, Callable[[Array], Array], Callable[[Array], Array]]
+
+
+def axis_of_scene(scene: Scene, axis: str) -> tuple[str, Array] | None:
+    """Return the axis of ``[chart]``, or of the speed range and the measured inertias."""
+    name = scene.get(f"chart.{axis}", None)
+    ends = scene.get(f"chart.{axis}_range", None)
+    points = scene.get(f"chart.{axis}_points", 201)
+    speeds = scene.get("operation.speed_range", None)
+    inertias = scene.get("measured.follower_inertias", None)
+    if name is None or ends is None:
+        if axis == "x" and name in {None, "speed"} and speeds:
+            name, ends = "speed", speeds
+        elif axis == "y" and name in {None, "follower_inertia"} and inertias:
+            name, ends = "follower_inertia", (0.9 * min(inertias), 1.1 * max(inertias))
+        else:
+            return None
+    return name, np.linspace(ends[0], ends[1], max(points, 2))
+
+
+def measured_marks(scene: Scene, y: tuple[str, Array]) -> dict[str, tuple[float, ...]]:
+    """Return the measured follower inertias within a chart, where they lie along y."""
+    measured = scene.get("measured.follower_inertias", ())
+    shown = tuple(value for value in measured if y[1][0] <= value <= y[1][-1])
+    return {"measured follower inertias": shown} if y[0] == "follower_inertia" and shown else {}
 
 
 def on_grid(names: Names, axes: Axes, fixed: float = 1.0) -> tuple[Array, dict[str, Array]]:

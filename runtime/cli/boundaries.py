@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from .. import hill, stability
 from ..core.errors import BadInput, bad
 from . import options as opt
-from .linkages import speed_of, speed_range
+from .linkages import around, moving_scene, speed_of, speed_range
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,7 +37,7 @@ def add(commands: Any) -> None:
             "--mu VALUES": "of a Hill equation: a number or START:STOP:COUNT (--mu=-1:1:5 where it"
             " begins with a minus); default parameters.mu",
             "--speed LOW:HIGH": "crank speeds of a linkage whose modes are several or damped, such"
-            " as 300rpm:900rpm; default operation.speed_range",
+            " as 300rpm:900rpm; default operation.speed_range, or chosen by the scene",
         },
     )
     beside = f"beside the exact ones those by perturbation, order 1 to {_HIGHEST}"
@@ -86,7 +86,7 @@ def _boundaries(options: argparse.Namespace) -> int:
     from ..hill.form import is_hill
 
     regions = _regions(options.regions)
-    scene = opt.load(options)
+    scene = moving_scene(options)
     if scene.model["mechanism"] == "hill":
         opt.refuse_unused(options, ("speed",), "a scene of a linkage")
         return _of_hill(options, scene, hill.hill_form(scene.linear_system()), regions)
@@ -98,7 +98,7 @@ def _boundaries(options: argparse.Namespace) -> int:
             return _of_mode(options, form, regions)
     unused = ("regions", "order", "certified")
     opt.refuse_unused(options, unused, "one undamped mode, and no range of speeds")
-    return _of_modes(options, system, speed_range(options.speed, scene, "--speed"))
+    return _of_modes(options, scene, system)
 
 
 def _of_hill(
@@ -141,10 +141,27 @@ def _of_mode(options: argparse.Namespace, form: hill.HillForm, regions: tuple[in
     return opt.finish(options, found[0], lines, draw, more=more)
 
 
-def _of_modes(
-    options: argparse.Namespace, system: LinearPeriodic, speeds: tuple[float, float]
-) -> int:
-    edges = stability.stability_edges(system, speeds)
+def _range(
+    options: argparse.Namespace, scene: Scene
+) -> tuple[tuple[float, float], tuple[str, ...]]:
+    """Return a range of crank speeds, and the line that says how it was chosen."""
+    from ..core.units import describe
+
+    if options.speed is None and scene.get("operation.speed_range", None) is None:
+        if scene.get("chart.x", None) == "speed" and scene.get("chart.x_range", None):
+            low, high = scene["chart"]["x_range"]
+            middle = 0.5 * (low + high)
+            ends = " to ".join(describe(end, "frequency") for end in (middle, high))
+            return (middle, high), (f"speed {ends}, chosen: the upper half of chart.x_range", "")
+        if speed := scene.get("operation.speed", None):
+            low, high, told = around("speed", speed, "frequency")
+            return (low, high), (told, "")
+    return speed_range(options.speed, scene, "--speed"), ()
+
+
+def _of_modes(options: argparse.Namespace, scene: Scene, system: LinearPeriodic) -> int:
+    span, said = _range(options, scene)
+    edges = stability.stability_edges(system, span)
     rows = [
         (f"{label} ?" if doubtful else label, _rpm(first), _rpm(last), _rpm(last - first, 3))
         for label, doubtful, first, last, error in zip(
@@ -153,7 +170,7 @@ def _of_modes(
         if not last - first <= 2.0 * error
     ]
     closed = len(edges.labels) - len(rows)
-    lines = opt.table(("region", "from", "to", "width"), rows)
+    lines = [*said, *opt.table(("region", "from", "to", "width"), rows)]
     if any(row[0].endswith("?") for row in rows):
         lines.append("?: so far from the resonances of the mean motion that the name is a guess")
     if closed:

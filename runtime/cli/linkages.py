@@ -262,6 +262,16 @@ def speed_range(text: str | None, scene: Scene, where: str) -> tuple[float, floa
     return low, high
 
 
+def around(name: str, value: float, dimension: str) -> tuple[float, float, str]:
+    """Return half and one and a half times a scene's value, and the line that says so."""
+    from ..core.units import describe
+
+    low, high = 0.5 * value, 1.5 * value
+    ends = (describe(end, dimension) for end in (low, high))
+    told = "operation.speed" if name == "speed" else "its value"
+    return low, high, f"{name} {' to '.join(ends)}, chosen: 0.5 to 1.5 times {told} in the scene"
+
+
 def moving_scene(options: argparse.Namespace) -> Scene:
     """Return the scene that the options name; one without a crank is refused."""
     scene = opt.load(options)

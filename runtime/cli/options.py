@@ -37,9 +37,14 @@ class HelpFormatter(argparse.RawDescriptionHelpFormatter):
 
 
 def command(
-    commands: Any, name: str, run: Callable[[argparse.Namespace], int], *, scene: bool = True
+    commands: Any,
+    name: str,
+    run: Callable[[argparse.Namespace], int],
+    *,
+    scene: bool = True,
+    draws: bool = True,
 ) -> argparse.ArgumentParser:
-    """Add a subcommand that ``run`` does, on a scene.
+    """Add a subcommand that ``run`` does, on a scene, and with a picture.
 
     The docstring of ``run`` is its help: a line, and below it worked examples.
     """
@@ -51,9 +56,10 @@ def command(
         epilog="example:\n  " + examples.replace("\n", "\n  "),
         formatter_class=HelpFormatter,
     )
-    parser.set_defaults(run=run, command=name)
+    parser.set_defaults(run=run, command=name, plot=None)
     switches(parser, {"--json": "print JSON instead of text"})
-    add(parser, {"--plot FILE": "draw it: a .png, .svg or .pdf file"})
+    if draws:
+        add(parser, {"--plot FILE": "draw it: a .png, .svg or .pdf file"})
     if scene:
         scene_options(parser)
     return parser

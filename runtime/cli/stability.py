@@ -7,13 +7,23 @@ from __future__ import annotations
 
 import argparse
 from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from .. import periodic, stability, sweeps
 from ..core.errors import bad
 from . import options as opt
-from .linkages import at_speed, is_constrained, speed_of, speeds_of, speeds_option, without_crank
+from .linkages import (
+    around,
+    at_speed,
+    is_constrained,
+    moving_scene,
+    speed_of,
+    speeds_of,
+    speeds_option,
+    without_crank,
+)
 from .measured import measured_points, points_option, with_points
 
 if TYPE_CHECKING:
@@ -28,11 +38,14 @@ if TYPE_CHECKING:
 
     Axis = tuple[str, Array]
 
+# Speeds over a range that nobody divided.
+_SPEEDS = 61
+
 
 def add(commands: Any) -> None:
     """Add the two subcommands."""
     multipliers = opt.command(commands, "stability", _stability)
-    opt.add(multipliers, speeds_option("operation.speed, 1 without crank"))
+    opt.add(multipliers, speeds_option("operation.speed or .speed_range, 1 without crank"))
     chart = opt.command(commands, "chart", _chart)
     order = "order of the perturbation boundaries of one mode, 1 to 8; default 1"
     opt.add(chart, {"--order N": order}, type=int, default=1)
@@ -52,7 +65,7 @@ def add(commands: Any) -> None:
     estimate = "with --store: tell time and memory, and work nothing out"
     opt.switches(chart, {"--estimate": estimate})
     for axis in ("x", "y"):
-        along = f"parameter along {axis}; default from the scene's [chart] and [operation]"
+        along = f"parameter along {axis}; default from the scene"
         opt.add(chart, {f"--{axis} NAME=START:STOP:COUNT[UNIT]": along})
 
 
@@ -62,13 +75,20 @@ def _stability(options: argparse.Namespace) -> int:
     elastolink stability smith_1972_5152_sixteenth_inch --speed '500 rpm'
     elastolink stability smith_1972_5152_sixteenth_inch --speed 300:900:61rpm
     """
-    scene = opt.load(options)
+    scene = moving_scene(options)
     if is_constrained(scene):
         return _about_orbit(options, scene)
-    speeds: Any = [1.0] if without_crank(options, scene) else speeds_of(options, scene)
-    system = scene.linear_system()
+    system, said = scene.linear_system(), []
+    span = scene.get("operation.speed_range", None)
+    if without_crank(options, scene):
+        speeds: Any = [1.0]
+    elif options.speed is None and span and scene.get("operation.speed", None) is None:
+        speeds = opt.spaced(span[0], span[1], _SPEEDS)
+        said = [f"{_SPEEDS} speeds, chosen: operation.speed_range, for there is no one speed"]
+    else:
+        speeds = speeds_of(options, scene)
     result = periodic.floquet_multipliers(system, speeds if len(speeds) > 1 else speeds[0])
-    return opt.finish(options, result, _multiplier_lines(result, scene))
+    return opt.finish(options, result, [*said, *_multiplier_lines(result, scene)])
 
 
 def _about_orbit(options: argparse.Namespace, scene: Scene) -> int:
@@ -139,16 +159,20 @@ def _chart(options: argparse.Namespace) -> int:
     count = _check_scale(options)
     from ..stability.chart_axes import measured_marks
 
-    scene = opt.load(options)
+    scene = moving_scene(options)
     system = scene.linear_system()
-    x, y = (_axis(getattr(options, axis), axis, scene) for axis in ("x", "y"))
+    axes = _Axes(scene, system)
+    other = (options.y or "").partition("=")[0].strip() or scene.get("chart.y", None)
+    x, told_x = axes.chosen(options.x, "x", other)
+    y, told_y = axes.chosen(options.y, "y", x[0])
+    said = [told for told in (told_x, told_y) if told]
     if x[0] == y[0]:
         raise bad("--y", repr(y[0]), "another parameter than along x", "choose one")
     points = measured_points(options, x[0])
     unset = "speed" in (x[0], y[0]) or scene.get("operation.speed", None) is None
     speed = None if options.speed is None and unset else speed_of(options, scene)
     if options.store is not None:
-        return _stored(options, system, (x, y), speed, count, points)
+        return _stored(options, system, (x, y), speed, count, points, said)
     from ..core.workers import in_order
 
     name = "coupler frequency" if tuple(scene.get("model.flexible", ())) == ("coupler",) else None
@@ -164,7 +188,8 @@ def _chart(options: argparse.Namespace) -> int:
             workers=map if executor is None else in_order(executor),
             frequency_name=name or "natural frequency",
         )
-    return opt.finish(options, chart, _chart_lines(chart, scene), with_points(points, chart.plot))
+    lines = [*said, *_chart_lines(chart, scene)]
+    return opt.finish(options, chart, lines, with_points(points, chart.plot))
 
 
 def _chart_lines(chart: stability.StabilityChart, scene: Scene) -> list[str]:
@@ -227,33 +252,46 @@ def _brief(value: float, dimension: str) -> str:
     return text.partition("(")[2].rstrip(")") or text
 
 
-def _axis(given: str | None, axis: str, scene: Scene) -> Axis:
-    """Return the name and the values of one axis, from the option or from the scene."""
-    known = scene.layout.parameters
-    if given is None:
-        return _default_axis(axis, scene)
-    name, sign, text = given.partition("=")
-    name = name.strip()
-    if name not in known:
-        from ..scenes.validation import nearest
+@dataclass(frozen=True)
+class _Axes:
+    """The axes of a scene's charts; each comes with the line that says how it was chosen."""
 
-        fix = nearest(name, known, "use one of these")
-        raise bad(f"--{axis}", repr(name), f"a parameter of {sorted(known)}", fix)
-    if not sign:
-        raise bad(f"--{axis}", repr(given), "NAME=START:STOP:COUNT[UNIT]", "add the values")
-    return name, opt.values(text, known[name], f"--{axis}")
+    scene: Scene
+    system: LinearPeriodic
 
+    def chosen(self, given: str | None, axis: str, other: str | None) -> tuple[Axis, str]:
+        """Return name and values along an axis, from the option or from the scene."""
+        known = self.scene.layout.parameters
+        if given is None:
+            return self._by_scene(axis, other)
+        name, sign, text = given.partition("=")
+        name = name.strip()
+        if name not in known:
+            from ..scenes.validation import nearest
 
-def _default_axis(axis: str, scene: Scene) -> Axis:
-    """Return the axis of the scene, refused where there is none."""
-    from ..stability.chart_axes import axis_of_scene
+            fix = nearest(name, known, "use one of these")
+            raise bad(f"--{axis}", repr(name), f"a parameter of {sorted(known)}", fix)
+        if not sign:
+            raise bad(f"--{axis}", repr(given), "NAME=START:STOP:COUNT[UNIT]", "add the values")
+        return (name, opt.values(text, known[name], f"--{axis}")), ""
 
-    found = axis_of_scene(scene, axis)
-    if found is None:
-        told = f"no chart.{axis}_range in scene {scene.name}"
-        fix = f"give --{axis} NAME=START:STOP:COUNT"
-        raise bad(f"--{axis}", told, "a parameter and its values", fix)
-    return found
+    def _by_scene(self, axis: str, other: str | None) -> tuple[Axis, str]:
+        """Return the axis that the scene gives, or one around a value."""
+        from ..stability.chart_axes import axis_of_scene
+
+        scene = self.scene
+        found = axis_of_scene(scene, axis)
+        if found is not None:
+            return found, ""
+        name, points = scene.get(f"chart.{axis}", None), scene.get(f"chart.{axis}_points", 201)
+        values = {**self.system.parameters, "speed": scene.get("operation.speed", 0.0)}
+        for one, dimension in scene.layout.parameters.items():
+            if one == (name or one) != other and values.get(one, 0.0) > 0.0:
+                low, high, told = around(one, values[one], dimension)
+                return (one, opt.spaced(low, high, max(points, 2))), told
+        missing = f"no chart.{axis}_range in scene {scene.name}, nor a value to choose it by"
+        fix = f"give --{axis} NAME=START:STOP:COUNT, or operation.speed"
+        raise bad(f"--{axis}", missing, "a parameter and its values", fix)
 
 
 def _check_scale(options: argparse.Namespace) -> int:
@@ -288,6 +326,7 @@ def _stored(
     speed: float | None,
     count: int,
     points: tuple[Point, ...],
+    said: list[str],
 ) -> int:
     """Work out a chart piece by piece, or estimate what that takes."""
     (x, _), (y, _) = axes
@@ -302,6 +341,7 @@ def _stored(
         chart = sweeps.sweep(*what, options=fixed, **told)
     left = 100.0 * float((chart["undecided"] == 1).mean())
     lines = [
+        *said,
         *_shares((x, y), chart["stable"], chart["kind"]),
         f"{left:.3g} % undecided",
         f"{chart.pieces} pieces, {chart.resumed} of them found there, in {chart.store}: "

@@ -14,7 +14,8 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
@@ -98,7 +99,8 @@ _USUAL = {
     **{"rpm": "1 turn/min", "kHz": "1000 Hz"},
 }
 _OPEN = frozenset("*/·(")
-_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?)")
+_UNSIGNED = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?"
+_NUMBER = re.compile(rf"\s*([+-]?{_UNSIGNED})")
 _COMMA = re.compile(r"\s*[+-]?\d+,\d+(?!\d*[,.])")
 _TOKEN = re.compile(r"\s*(?:(\*\*|\^)\s*([+-]?\d{1,2})(?!\d)|([*/()·])|([^\W\d_]\w*|1(?!\d)))")
 
@@ -148,6 +150,46 @@ def expected(dimension: str) -> str:
     if not kind.si:
         return f"{kind.words}, such as {kind.example}"
     return f"{kind.words} in {kind.si}, or text such as '{kind.example}'"
+
+
+@lru_cache(maxsize=128)
+def text_pattern(dimension: str, limit: str = "any", *, tolerance: bool = True) -> str:
+    """Return a regular expression of the texts that stand for a quantity, for other programs.
+
+    It lets pass what :func:`to_si` reads, and whatever it cannot judge: products of units, and
+    units that only pint knows.  The ``limit`` is ``any``, ``positive`` or ``non-negative``; a
+    ``tolerance`` may follow.
+    """
+    zero = r"(?:0+\.?0*|\.0+)(?![\d.])"
+    signs = {"positive": rf"\+?(?!{zero})", "non-negative": rf"(?:\+?|-(?={zero}))"}
+    sign, number = signs.get(limit, "[+-]?"), rf"{_UNSIGNED}(?!\d|[eE][+-]?\d)"
+    known = "|".join(sorted({*_BASE, *_USUAL}, key=lambda name: (-len(name), name)))
+    single = rf"(?:1\s*/\s*)?(?:{known})(?:\s*(?:\*\*|\^)\s*[2-4])?"
+    other = r"(?:[^\d\s+±,.:%^)-]|1(?!\d))(?:[^+±,.:%]|(?:\*\*|\^)\s*\+)*"
+    fitting = "".join(f"{form}|" for form in _fitting_units(dimension))
+    unit = rf"(?:{fitting}(?!{single}\s*(?:$|[+±])){other})"
+    width = r"(?:(?:\+/?-|±).*)?" if tolerance else ""
+    return rf"^\s*{sign}{number}\s*{unit}?\s*{width}$"
+
+
+def _fitting_units(dimension: str) -> Iterator[str]:
+    """Yield regular expressions of the usual units that have a dimension, and of their powers."""
+    forms = [(over, power) for over in ("", "1/") for power in ("", "**2", "**3", "**4")]
+    for over, power in forms:
+        names = []
+        for name in (*_BASE, *_USUAL):
+            unit = f"{over}{name}{power}"
+            if _product(f for f in _factors(unit, "", "") if f[0] != "1").powers != _powers(
+                dimension
+            ):
+                continue
+            with suppress(BadInput):
+                to_si(f"1 {unit}", dimension)
+                names.append(name)
+        if names:
+            above = r"1\s*/\s*" if over else ""
+            exponent = rf"\s*(?:\*\*|\^)\s*{power[2:]}" if power else ""
+            yield f"{above}(?:{'|'.join(names)}){exponent}"
 
 
 def _split(text: str, dimension: str, where: str) -> tuple[str, str]:

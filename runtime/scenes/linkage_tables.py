@@ -17,7 +17,9 @@ def _length(name: str, meaning: str) -> Key:
 
 
 _CRANK = _length("crank", "length of the driven link")
-_ASSEMBLY = choice("assembly", "closure", "open", "crossed", default="open")
+_ASSEMBLY = choice(
+    "assembly", "which of the two closed positions", "open", "crossed", default="open"
+)
 FOUR_BAR_LENGTHS = Table(
     "links",
     "lengths between the pins, and which of the two closures",
@@ -181,7 +183,7 @@ def chart_table(parameters: Mapping[str, str]) -> Table:
     for axis in ("x", "y"):
         axes += [
             choice(axis, f"parameter along {axis}", *names),
-            quantities(f"{axis}_range", "first and last value", length=2, rising=True),
+            quantities(f"{axis}_range", "first and last value", length=2, rising=True, axis=True),
             Key(f"{axis}_points", "number of values", "count", default=201, least=2, most=20000),
         ]
     return Table("chart", "the stability chart that is drawn by default", tuple(axes))

@@ -33,7 +33,7 @@ def scene_titles() -> dict[str, tuple[str, str]]:
     """Return title and source of each built-in scene by name, without reading its quantities."""
     found = {}
     for name in list_scenes():
-        document = _parse(_built_in(name), name)
+        document = parse(_built_in(name), name)
         found[name] = (str(document.get("title", "")), str(document.get("source", "")))
     return found
 
@@ -74,7 +74,7 @@ def load_scene(
         fix = 'say {"links.crank": "0.1 m"}, for example'
         raise bad("overrides", shown(given), "a mapping from keys", fix)
     name, text = _find(name_or_path)
-    return scene_from_document(name, _parse(text, name), given)
+    return scene_from_document(name, parse(text, name), given)
 
 
 def scene_from_document(
@@ -190,7 +190,8 @@ def _built_in(name: str) -> bytes:
     return (resources.files(__package__) / "data" / f"{name}.toml").read_bytes()
 
 
-def _parse(content: bytes, name: str) -> dict[str, Any]:
+def parse(content: bytes, name: str) -> dict[str, Any]:
+    """Return the tables of a TOML file; what is broken in it is refused."""
     where = f"scene {name}"
     try:
         return tomllib.loads(content.decode())

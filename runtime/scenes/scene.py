@@ -15,6 +15,7 @@ from ...derive.spec import BEAM_FORMULATIONS, INEXTENSIBLE, ModelSpec
 from ..core.errors import bad
 from .schema import Layout, Table
 from .validation import nearest
+from .writing import toml_text
 
 if TYPE_CHECKING:
     from ..core.families import Constrained, LinearPeriodic, Nonlinear
@@ -200,6 +201,13 @@ class Scene:
             if getattr(self, name):
                 tables[name] = _plain(getattr(self, name))
         return {"name": self.name, "title": self.title, "source": self.source, **tables}
+
+    def to_toml(self) -> str:
+        """Return the scene as the text of a TOML file, in the units in which it was given.
+
+        Loaded again under the same name it is an equal scene.
+        """
+        return toml_text(self.document)
 
     def digest(self) -> str:
         """Return 16 hexadecimal digits that stand for every number of the scene."""

@@ -26,6 +26,7 @@ class Key:
     rising: bool = False  # whether a list must increase
     least: int | None = None  # smallest and largest count that make sense
     most: float | None = None
+    axis: bool = False  # whether its dimension is that of the chart's axis
 
 
 def positive(name: str, meaning: str, dimension: str = "dimensionless", **more: Any) -> Key:
@@ -62,6 +63,11 @@ class Table:
     # Whether it holds any number of such tables, each under a name of its own: [springs.NAME].
     named: bool = False
 
+    @property
+    def heading(self) -> str:
+        """How the table begins in a file."""
+        return f"[{self.name}.NAME]" if self.named else f"[{self.name}]"
+
     def key(self, name: str) -> Key | None:
         """Return the key of that name, or None."""
         return next((key for key in self.keys if key.name == name), None)
@@ -96,7 +102,7 @@ class Layout:
         """The ``[model]`` table of this layout."""
         return Table(
             "model",
-            "what is derived; read by both sides",
+            "what is derived",
             (
                 Key("mechanism", "kind of mechanism", "text", required=True),
                 Key("formulation", "named assumptions", "text", required=True),

@@ -233,8 +233,7 @@ def _quantities(value: object, key: Key, where: str) -> tuple[float, ...]:
     items = _list(value, key, where)
     if len(items) == 0:
         raise bad(where, "an empty list", _expectation(key), "add a value")
-    # A chart's own axis decides the dimension of its range; see check_chart.
-    if key.name in {"x_range", "y_range"}:
+    if key.axis:  # see check_chart
         return tuple(items)
     numbers = _each(_quantity, items, key, where)
     if key.rising and any(b <= a for a, b in pairwise(numbers)):
@@ -309,7 +308,7 @@ def _complete_model(model: dict[str, Any], layout: Layout) -> list[Problem]:
     return problems
 
 
-_FIELDS = ("meaning", "kind", "dimension", "default", "limit", "choices", "required")
+KEY_FIELDS = ("meaning", "kind", "dimension", "default", "limit", "choices", "required")
 
 
 def declared_layout(
@@ -377,9 +376,9 @@ def _key(table: str, name: str, entry: object, problems: list[Problem]) -> Key:
     for found, allowed in ((kind, kinds), (dimension, sorted(DIMENSIONS)), (limit, limits)):
         if not isinstance(found, str) or found not in allowed:
             refuse(repr(found)[:60], f"one of {allowed}", "correct it")
-    unknown = sorted(set(entry) - set(_FIELDS))
+    unknown = sorted(set(entry) - set(KEY_FIELDS))
     if unknown:
-        refuse(f"unknown {unknown}", f"some of {_FIELDS}", "remove them")
+        refuse(f"unknown {unknown}", f"some of {KEY_FIELDS}", "remove them")
     if not isinstance(choices, list) or not all(isinstance(choice, str) for choice in choices):
         refuse(repr(choices)[:60], "choices as a list of texts", "correct it")
     if len(problems) > before:

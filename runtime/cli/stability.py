@@ -284,8 +284,13 @@ class _Axes:
         if found is not None:
             return found, ""
         name, points = scene.get(f"chart.{axis}", None), scene.get(f"chart.{axis}_points", 201)
-        values = {**self.system.parameters, "speed": scene.get("operation.speed", 0.0)}
-        for one, dimension in scene.layout.parameters.items():
+        given = {k: v for table in scene.tables.values() for k, v in table.items()}
+        speed = scene.get("operation.speed", 0.0)
+        values = {**given, **self.system.parameters, "speed": speed}
+        known = scene.layout.parameters
+        if axis == "x" and name is None and other != "speed" and "speed" in known:
+            name = "speed"
+        for one, dimension in known.items():
             if one == (name or one) != other and values.get(one, 0.0) > 0.0:
                 low, high, told = around(one, values[one], dimension)
                 return (one, opt.spaced(low, high, max(points, 2))), told

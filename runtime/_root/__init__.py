@@ -66,6 +66,7 @@ _PUBLIC = {
     "hill_form": "hill",
     "linkage_system": "beams",
     "list_scenes": "scenes",
+    "load": "core.results",
     "load_scene": "scenes",
     "mobility": "linkages",
     "monodromy": "periodic",

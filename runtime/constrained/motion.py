@@ -16,8 +16,8 @@ from ..core.errors import LINEAR_RANGE, LinearRangeWarning, Problem, RedundantCo
 from ..core.families import Constrained, Guard
 from ..core.families.multipliers import check_rank, scaling
 from ..core.inputs import numbers, require_kind
-from ..core.plotting import Axes, axes_or_new
-from ..core.results import FAIR, Check, Result, provenance
+from ..core.plotting import Axes, axes_or_new, coordinates_label
+from ..core.results import BROADCAST, FAIR, Check, Result, provenance
 from .collocation import collocation
 from .equations import (
     EPS,
@@ -67,6 +67,12 @@ class ConsistentState(Result):
     acceleration_norm: Array
     iterations: int
     labels: tuple[str, ...]
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **dict.fromkeys(("q", "qd", "qdd", "moved"), ("...", "coordinate")),
+        **dict.fromkeys(("t", *(f"{level}_norm" for level in LEVELS)), BROADCAST),
+        "multipliers": ("...", "constraint"),
+    }
 
 
 def consistent_state(
@@ -289,7 +295,7 @@ class ConstrainedMotion(Result):
         ax = axes_or_new(ax)
         for label, values in zip(self.labels, self.q.T, strict=True):
             ax.plot(self.time, values, label=label, linewidth=0.9)
-        ax.set(xlabel="time [s]", ylabel="coordinate")
+        ax.set(xlabel="time [s]", ylabel=coordinates_label(self.labels))
         if len(self.labels) > 1:
             ax.legend()
         return ax

@@ -69,6 +69,7 @@ class ConstrainedMultipliers(Result):
         "basis": ("state", "tangent"),
     }
     exported: ClassVar[tuple[str, ...]] = ("stable", "largest", "growth")
+    column_units: ClassVar = {"s": "period"}
 
     @property
     def multipliers(self) -> ComplexArray:

@@ -12,8 +12,9 @@ from numpy.typing import ArrayLike
 from ..core.errors import SelfCheckFailed, bad
 from ..core.families import Constrained
 from ..core.families.multipliers import check_rank, scaling
+from ..core.files import NOT_SAVED
 from ..core.inputs import numbers, require_kind
-from ..core.plotting import Axes, axes_or_new
+from ..core.plotting import Axes, axes_or_new, coordinates_label
 from ..core.results import Check, Result, provenance
 from ..periodic.ring import solve_ring
 from .collocation import Nodes, at_places, nodes, stage_matrix
@@ -373,7 +374,7 @@ class PeriodicOrbit(Result):
     moved: float
     message: str
     labels: tuple[str, ...]
-    source: OrbitSource = field(repr=False)
+    source: OrbitSource = field(repr=False, metadata=NOT_SAVED)
 
     dimensions: ClassVar = {
         "t": ("t",),
@@ -381,6 +382,7 @@ class PeriodicOrbit(Result):
         "multipliers": ("t", "constraint"),
         "advance": ("coordinate",),
     }
+    column_units: ClassVar = {"s": "period"}
 
     @property
     def converged(self) -> bool:
@@ -402,11 +404,12 @@ class PeriodicOrbit(Result):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the coordinates over one period, each less its mean, and return the axes."""
         ax = axes_or_new(ax)
-        t = np.linspace(0.0, self.period, 1001)
-        q = self.at(t)[0] - np.multiply.outer(t / self.period, self.advance)
+        t = np.append(self.t / self.period, 1.0)
+        q = self.q - np.multiply.outer(t[:-1], self.advance)
         for values, name in zip((q - q.mean(axis=0)).T, self.labels, strict=True):
-            ax.plot(t / self.period, values, linewidth=1.0, label=name)
-        ax.set(xlabel="time over period", ylabel="coordinates less their means")
+            ax.plot(t, np.append(values, values[0]), linewidth=1.0, label=name)
+        names = coordinates_label(self.labels)
+        ax.set(xlabel="time over period", ylabel=f"{names}, less their means")
         ax.legend(frameon=False, fontsize="small")
         return ax
 

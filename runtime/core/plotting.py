@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import base64
 import io
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .errors import bad
-from .results import write_whole
+from .files import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes as Axes
@@ -39,6 +41,12 @@ def axes_or_new(ax: Axes | None) -> Axes:
     return new_figure().add_subplot() if ax is None else ax
 
 
+def coordinates_label(labels: Sequence[str]) -> str:
+    """Return the label of an axis of coordinates: their names, of many the first and the last."""
+    names = labels if len(labels) < 4 else (*labels[:2], "...", labels[-1])
+    return ", ".join(names) + ("" if all("/" in name for name in labels) else " [SI]")
+
+
 def multiplier_plane(ax: Axes | None) -> Axes:
     """Return axes for Floquet multipliers, in ``ax`` or new, with the unit circle drawn."""
     ax = axes_or_new(ax)
@@ -65,6 +73,16 @@ def require_writable(target: Path) -> Path:
         found = "a place that cannot be written"
         raise bad(str(target), found, "a writable folder", "choose another")
     return target
+
+
+def inline_picture(plot: Callable[[Axes], object]) -> str:
+    """Return what a function draws into axes as an ``<img>`` element of HTML."""
+    figure = new_figure(6.0, 4.0)
+    plot(figure.add_subplot())
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=100, metadata=_METADATA[".png"])
+    figure.clear()
+    return f'<img src="data:image/png;base64,{base64.b64encode(buffer.getvalue()).decode()}">'
 
 
 def save_figure(figure: Figure, path: str | Path) -> Path:

@@ -9,13 +9,16 @@ import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from functools import cached_property, partial
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
-from ..._files import write_whole as _write_whole
-from .errors import SelfCheckFailed, bad
+from .errors import BadInput, ElastolinkError, SelfCheckFailed, bad
+from .files import Find, Keep, class_name, inline, inlined, pack, told, unpack, write_whole
+from .tables import BROADCAST as BROADCAST
+from .tables import LABELS, UNITS, by_name, depth_of, dims_of, tables, with_unit
 
 if TYPE_CHECKING:
     import xarray
@@ -23,8 +26,10 @@ if TYPE_CHECKING:
 
 ErrorKind = Literal["bound", "estimate"]
 
-# The dimensions of arrays that broadcast with each other, whatever their shapes.
-BROADCAST = ("...",)
+# What a file of a result calls its record, and the number of the record's form.
+_RECORD, _FORMAT = "elastolink", 1
+# Every class of results that is defined, by its name in files.
+_CLASSES: dict[str, type[Result]] = {}
 # Error of a motion, over its size, with which it is still given.
 FAIR = 0.01
 _NUMBERS = (bool, int, float, complex, np.ndarray, np.generic)
@@ -149,7 +154,8 @@ class Result:
     -----
     A class names the dimensions of its arrays in ``dimensions`` (extra axes count up: ``mu``,
     ``mu_1``; :data:`BROADCAST` for arrays that broadcast with each other), and in ``exported`` the
-    properties that leave with the fields: to JSON, CSV, NPZ.
+    properties that leave with the fields: to JSON, CSV, NPZ.  ``column_units`` holds names of
+    its arrays by their unit, where they are not among :data:`.tables.UNITS`.
     """
 
     method: str
@@ -161,6 +167,7 @@ class Result:
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {}
     exported: ClassVar[tuple[str, ...]] = ()
+    column_units: ClassVar[Mapping[str, str]] = {}
 
     def __post_init__(self) -> None:
         """Make the arrays the result's own, and read-only: what comes after changes no answer."""
@@ -173,29 +180,53 @@ class Result:
     def __init_subclass__(cls, **given: Any) -> None:
         """Keep :meth:`__repr__` for every result, before a dataclass makes one of all digits."""
         super().__init_subclass__(**given)
+        _CLASSES[class_name(cls)] = cls
         if "__repr__" not in vars(cls):
             cls.__repr__ = Result.__repr__  # type: ignore[method-assign]
 
     def __repr__(self) -> str:
         """Return ten lines at most: method, arrays by shape and range, error and checks."""
+        lines = [
+            f"  {': '.join(row) if row[0] != 'and' else ' '.join(row)}" for row in self._rows()
+        ]
+        return "\n".join([f"{type(self).__name__}: {self.method}", *lines])
+
+    def _rows(self) -> list[tuple[str, str]]:
+        """Return what is shown of the result, by name."""
         arrays = {
             item.name: np.asarray(value)
             for item in fields(self)
             if item.name != "error" and isinstance(value := getattr(self, item.name), _NUMBERS)
         }
-        lines = [f"{type(self).__name__}: {self.method}"]
         shown, others = list(arrays)[:6], list(arrays)[6:]
-        lines += [f"  {name}: {_brief(arrays[name])}" for name in shown]
+        rows = [(name, _brief(arrays[name])) for name in shown]
         if others:
-            lines.append(f"  and {', '.join(others)}")
-        lines.append(f"  error: {_brief(np.asarray(self.error))} ({self.error_norm})")
+            rows.append(("and", ", ".join(others)))
+        rows.append(("error", f"{_brief(np.asarray(self.error))} ({self.error_norm})"))
         checks = self.checks
         if isinstance(checks, DeferredChecks) and not checks.made:
-            lines.append("  checks: made when they are looked at")
-        else:
-            failed = [name for name, check in checks.items() if not check.passed]
-            lines.append(f"  checks: {'failed: ' + ', '.join(failed) if failed else 'passed'}")
-        return "\n".join(lines)
+            return [*rows, ("checks", "made when they are looked at")]
+        failed = [name for name, check in checks.items() if not check.passed]
+        return [*rows, ("checks", f"failed: {', '.join(failed)}" if failed else "passed")]
+
+    def _repr_html_(self) -> str:
+        """Return a table of the same, and the picture if there is one, for a notebook."""
+        units = self.units_of_columns()
+        cells = [(with_unit(name, units.get(name, "")), text) for name, text in self._rows()]
+        body = "".join(f"<tr><th>{escape(k)}</th><td>{escape(v)}</td></tr>" for k, v in cells)
+        title = escape(f"{type(self).__name__}: {self.method}")
+        return f"<table><caption>{title}</caption>{body}</table>{self._picture()}"
+
+    def _picture(self) -> str:
+        """Return the picture as an element of HTML; empty where there is none."""
+        if type(self).plot is Result.plot:
+            return ""
+        from .plotting import inline_picture
+
+        try:
+            return inline_picture(self.plot)
+        except ElastolinkError:
+            return ""
 
     @property
     def passed(self) -> bool:
@@ -231,7 +262,8 @@ class Result:
     def to_dict(self) -> dict[str, Any]:
         """Return plain lists, numbers and strings, ready for JSON; NaN becomes None."""
         out: dict[str, Any] = {}
-        for name in (*(item.name for item in fields(self)), *self.exported):
+        saved = [item.name for item in fields(self) if item.metadata.get("saved", True)]
+        for name in (*saved, *self.exported):
             value = _jsonable(getattr(self, name))
             if value is not None:
                 out[name] = value
@@ -251,11 +283,12 @@ class Result:
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the result; the ending chooses npz, json, csv or nc (NetCDF).
 
-        The file appears whole or not at all.  A CSV file has long form: one row for each point,
-        arrays of fewer dimensions repeated, the columns of an axis that no array gives counted
-        from 0.  Arrays that do not fit together stand in blocks, an empty line between them, each
-        with a header of its own.  In NetCDF a complex array stands as two, ``name_real`` and
-        ``name_imag``.
+        All but CSV files come back by :func:`elastolink.load`.  Each file appears whole or not at
+        all.  A CSV file is one table in long form, as ``pandas.read_csv`` reads it: one row for
+        each point, units in the header, arrays of fewer dimensions repeated, the columns of an
+        axis that no array gives counted from 0.  Arrays that have other axes stand in files beside
+        it, ``edges.region_mode.csv`` beside ``edges.csv``.  In CSV and NetCDF a complex array
+        stands as two, ``name_real`` and ``name_imag``.
 
         Raises
         ------
@@ -263,11 +296,47 @@ class Result:
             If the ending is unknown or the folder cannot be written.
         """
         target = Path(path)
-        writers = {".npz": _npz, ".json": _json, ".csv": _csv, ".nc": _netcdf}
+        if target.suffix == ".csv":
+            for name, table in self._tables().items():
+                ending = f".{name}.csv" if name else ".csv"
+                write_whole(target.with_suffix(ending), table.encode())
+            return target
+        writers = {".npz": _npz, ".json": _json, ".nc": _netcdf}
         if target.suffix not in writers:
-            expected = f"an ending of {sorted(writers)}"
+            expected = f"an ending of {sorted([*writers, '.csv'])}"
             raise bad("save", repr(target.suffix), expected, "rename the file")
         return write_whole(target, writers[target.suffix](self))
+
+    def _dimensions(self) -> Mapping[str, tuple[str, ...]]:
+        """Return the dimensions of the arrays; of a class whose arrays differ, of these."""
+        return self.dimensions
+
+    def _own_units(self) -> dict[str, str]:
+        """Return the units that only the instance knows."""
+        return {}
+
+    def units_of_columns(self) -> dict[str, str]:
+        """Return the units of the arrays by name; what has none is not there."""
+        units = by_name(UNITS) | by_name(self.column_units) | self._own_units()
+        return {name: units[name] for name in self.arrays() if units.get(name)}
+
+    def _tables(self) -> dict[str, str]:
+        """Return tables of comma-separated values; of a result without axes one row of all."""
+        arrays = self.arrays()
+        if not any(array.ndim for array in arrays.values()):
+            for item in fields(self)[len(fields(Result)) :]:
+                value = getattr(self, item.name)
+                rows = value.items() if isinstance(value, Mapping) else [("", value)]
+                for key, one in rows:
+                    if isinstance(one, str) or (key and isinstance(one, _NUMBERS)):
+                        arrays[f"{item.name} {key}".strip()] = np.asarray(one)
+        dimensions = dict(self._dimensions())
+        used = {label for labels in dimensions.values() for label in labels}
+        for name, axes in LABELS.items():
+            value, along = getattr(self, name, None), [axis for axis in axes if axis in used]
+            if isinstance(value, tuple) and along and name not in arrays:
+                arrays[name], dimensions[name] = np.asarray(value), (along[0],)
+        return tables(arrays, dimensions, self.units_of_columns())
 
     def to_xarray(self) -> xarray.Dataset:
         """Return the numeric fields as an :class:`xarray.Dataset` (extra ``data``)."""
@@ -286,15 +355,6 @@ def _brief(array: np.ndarray[Any, Any]) -> str:
         return f"shape {array.shape}, none finite"
     some = "" if finite.size == values.size else f", {values.size - finite.size} not finite"
     return f"shape {array.shape}{of} {np.min(finite):.6g} to {np.max(finite):.6g}{some}"
-
-
-def write_whole(path: Path, content: bytes) -> Path:
-    """Write a file whole or not at all; refuse a place that cannot be written."""
-    try:
-        return _write_whole(path, content)
-    except OSError as refusal:
-        found, fix = refusal.strerror or "an error", "choose another path"
-        raise bad(str(path), found, "a writable place", fix) from refusal
 
 
 def _jsonable(value: object) -> Any:
@@ -323,99 +383,161 @@ def _plain(value: np.ndarray[Any, Any]) -> Any:
 
 
 def _npz(result: Result) -> bytes:
+    arrays = result.arrays()
+    names = {id(array): name for name, array in arrays.items()}
+
+    def keep(path: str, array: np.ndarray[Any, Any]) -> dict[str, Any]:
+        arrays[name := names.get(id(array), path)] = array
+        return {**told(array), "in": name}
+
+    record = _record(result, keep).encode()
     buffer = io.BytesIO()
-    np.savez_compressed(buffer, **result.arrays())  # type: ignore[arg-type]
+    np.savez_compressed(buffer, **{**arrays, _RECORD: np.array(record)})  # type: ignore[arg-type]
     return buffer.getvalue()
 
 
 def _json(result: Result) -> bytes:
-    return (json.dumps(result.to_dict(), indent=1, sort_keys=True) + "\n").encode()
+    plain = result.to_dict()
+    names = {id(array): name for name, array in result.arrays().items()}
 
+    def keep(path: str, array: np.ndarray[Any, Any]) -> dict[str, Any]:
+        name = names.get(id(array), "")
+        exact = array.dtype.kind in "biufU" and plain.get(name) == array.tolist()
+        return {**told(array), "in": name} if exact else inline(path, array)
 
-def _csv(result: Result) -> bytes:
-    arrays = result.arrays()
-    axes = _axes(arrays, result.dimensions)
-    wholes: list[dict[str, int]] = []
-    for own in sorted(axes.values(), key=len, reverse=True):
-        if not any(own.items() <= whole.items() for whole in wholes):
-            wholes.append(own)
-    return "\n".join(_block(arrays, axes, whole) for whole in wholes).encode()
-
-
-def _axes(
-    arrays: Mapping[str, np.ndarray[Any, Any]], dimensions: Mapping[str, tuple[str, ...]]
-) -> dict[str, dict[str, int]]:
-    """Return label and length of the axes of each array, less those of length 1.
-
-    Arrays without declared dimensions belong together where their shapes are the same.
-    """
-    joined = [array.ndim for name, array in arrays.items() if dimensions.get(name) == BROADCAST]
-    depth = max(joined, default=0)
-    found = {}
-    for name, array in arrays.items():
-        n, names = array.ndim, dimensions.get(name, ())
-        if names == BROADCAST:
-            labels = tuple(f"axis_{depth - n + i}" for i in range(n))
-        elif names:
-            extra = tuple(f"{names[-1]}_{i}" for i in range(1, n - len(names) + 1))
-            labels = (*names, *extra)[:n]
-        else:
-            shape = "x".join(map(str, array.shape))
-            labels = tuple(f"axis_{i}_of_{shape}" for i in range(n))
-        found[name] = {k: size for k, size in zip(labels, array.shape, strict=True) if size != 1}
-    return found
-
-
-def _block(
-    arrays: Mapping[str, np.ndarray[Any, Any]],
-    axes: Mapping[str, Mapping[str, int]],
-    whole: Mapping[str, int],
-) -> str:
-    """Return header and rows of the arrays that broadcast to the axes of one of them."""
-    shape = tuple(whole.values())
-    arrays = {name: arrays[name] for name in arrays if axes[name].items() <= whole.items()}
-    columns: dict[str, np.ndarray[Any, Any]] = {}
-    for place, label in enumerate(whole):
-        if not any(list(axes[name]) == [label] for name in arrays):
-            columns[label] = np.indices(shape)[place].ravel()
-    for name, array in arrays.items():
-        own = [label for label in whole if label in axes[name]]
-        # The order of an array's own axes may be another than that of the block.
-        turned = array.squeeze().transpose([list(axes[name]).index(label) for label in own])
-        spread = turned.reshape([whole[label] if label in own else 1 for label in whole])
-        columns[name] = np.broadcast_to(spread, shape).ravel()
-    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
-    lines = [",".join(columns), *(",".join(map(repr, row)) for row in rows)]
-    return "\n".join(lines) + "\n"
-
-
-def _dataset(result: Result, *, split: bool) -> xarray.Dataset:
-    """Return the arrays with their dimensions; complex ones as two where they are to be split."""
-    try:
-        import xarray as xr
-    except ImportError as missing:
-        fix = "pip install 'elastolink[data]'"
-        raise bad("to_xarray", "no xarray", "xarray installed", fix) from missing
-    data = {}
-    for name, value in result.arrays().items():
-        dims = result.dimensions.get(name)
-        if dims is None or len(dims) != value.ndim or dims == BROADCAST:
-            dims = tuple(f"{name}_{i}" for i in range(value.ndim))
-        if split and np.iscomplexobj(value):
-            data[f"{name}_real"], data[f"{name}_imag"] = (dims, value.real), (dims, value.imag)
-        else:
-            data[name] = (dims, value)
-    attributes = {"method": result.method, "error_norm": result.error_norm}
-    return xr.Dataset(data, attrs={**attributes, **result.provenance})
+    plain[_RECORD] = _record(result, keep)
+    return (json.dumps(plain, indent=1, sort_keys=True) + "\n").encode()
 
 
 def _netcdf(result: Result) -> bytes:
     # The file format knows no complex numbers.
     data = _dataset(result, split=True)
+    names = {id(array): name for name, array in result.arrays().items()}
+
+    def keep(path: str, array: np.ndarray[Any, Any]) -> dict[str, Any]:
+        name = names.get(id(array), "")
+        exact = array.dtype.str in ("<f8", "<c16") and name
+        return {**told(array), "in": name} if exact else inline(path, array)
+
+    data[_RECORD] = ((), np.array(_record(result, keep).encode()))
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "result.nc"
         data.to_netcdf(path)
         return path.read_bytes()
+
+
+def _record(result: Result, keep: Keep) -> str:
+    head = {"format": _FORMAT, "elastolink": _version()}
+    return json.dumps({**head, "result": pack(result, keep)}, allow_nan=False)
+
+
+def _read_npz(path: Path) -> tuple[Any, Find]:
+    with path.open("rb") as stream, np.load(stream) as held:
+        arrays = dict(held)
+    return json.loads(arrays[_RECORD][()]), lambda tree: arrays[tree["in"]]
+
+
+def _read_json(path: Path) -> tuple[Any, Find]:
+    plain = json.loads(path.read_bytes())
+    return json.loads(plain[_RECORD]), lambda tree: inlined(
+        {**tree, "of": np.ravel(plain[tree["in"]])}
+    )
+
+
+def _read_netcdf(path: Path) -> tuple[Any, Find]:
+    xr = _xarray("load")
+    data = xr.load_dataset(path, decode_times=False, mask_and_scale=False)
+
+    def find(tree: Mapping[str, Any]) -> np.ndarray[Any, Any]:
+        array = np.empty(tree["shape"], tree["type"])
+        if array.dtype.kind == "c":
+            array.real, array.imag = (data[f"{tree['in']}_{part}"] for part in ("real", "imag"))
+        else:
+            array[...] = data[tree["in"]]
+        return array
+
+    return json.loads(data[_RECORD].values[()]), find
+
+
+def _xarray(who: str) -> Any:
+    try:
+        import xarray
+    except ImportError as missing:
+        fix = "pip install 'elastolink[data]'"
+        raise bad(who, "no xarray", "xarray installed", fix) from missing
+    return xarray
+
+
+def _dataset(result: Result, *, split: bool) -> xarray.Dataset:
+    """Return the arrays with their dimensions; complex ones as two where they are to be split."""
+    xr = _xarray("to_xarray")
+    data: dict[str, Any] = {}
+    sizes: dict[str, int] = {}
+    arrays, units = result.arrays(), result.units_of_columns()
+    labels = result._dimensions()
+    depth = depth_of(arrays, labels)
+    for name, value in arrays.items():
+        dims = dims_of(name, value, labels, depth)
+        if dims is None or any(
+            sizes.get(k, n) != n for k, n in zip(dims, value.shape, strict=True)
+        ):
+            dims = tuple(f"{name}_{i}" for i in range(value.ndim))
+        sizes |= dict(zip(dims, value.shape, strict=True))
+        about = {"units": units[name]} if name in units else {}
+        if split and np.iscomplexobj(value):
+            data[f"{name}_real"] = (dims, value.real, about)
+            data[f"{name}_imag"] = (dims, value.imag, about)
+        else:
+            data[name] = (dims, value, about)
+    attributes = {"method": result.method, "error_norm": result.error_norm}
+    return xr.Dataset(data, attrs={**attributes, **result.provenance})
+
+
+def load(path: str | os.PathLike[str]) -> Result:
+    """Return the result that :meth:`Result.save` wrote to an npz, JSON or NetCDF file.
+
+    It is equal to the saved one in every number, text and check.  What a result keeps of its
+    equations are functions, which no file holds: ``SteadyState.shapes``, ``ResponseCurve.source``
+    and their like refuse to be used.  Nothing in the file is run: arrays are read without pickle,
+    and classes are elastolink's own, or results that are defined already.
+
+    Raises
+    ------
+    BadInput
+        If there is no such file, it is damaged or no file of a result, another version of
+        elastolink wrote it with other fields, or it is a CSV file, which holds numbers alone.
+    """
+    if not isinstance(path, (str, os.PathLike)):
+        raise bad("path", type(path).__name__, "a path", "name a file that save() wrote")
+    source = Path(path)
+    readers = {".npz": _read_npz, ".json": _read_json, ".nc": _read_netcdf}
+    if source.suffix not in readers:
+        expected = f"an ending of {sorted(readers)}; CSV files hold the numbers alone"
+        raise bad("load", repr(source.suffix), expected, "save the result as npz")
+    if not source.is_file():
+        raise bad(str(source), "no such file", "a file that save() wrote", "correct the path")
+    written = ""
+    try:
+        record, find = readers[source.suffix](source)
+        written = f", of elastolink {record['elastolink']}"
+        if record["format"] != _FORMAT:
+            raise ValueError(f"format {record['format']}")
+        result = unpack(record["result"], find, _CLASSES)
+        if not isinstance(result, Result):
+            raise TypeError(type(result).__name__)
+    except BadInput:
+        raise
+    except Exception as damage:  # a damaged file fails in as many ways as it has bytes
+        found = f"what cannot be read{written} ({type(damage).__name__}: {damage})"
+        expected = f"a file that save() of elastolink {_version()} wrote"
+        raise bad(str(source), found, expected, "save the result anew") from damage
+    return result
+
+
+def _version() -> str:
+    from ... import __version__
+
+    return __version__
 
 
 def provenance(extra: Mapping[str, str] | None = None) -> dict[str, str]:
@@ -423,6 +545,4 @@ def provenance(extra: Mapping[str, str] | None = None) -> dict[str, str]:
 
     That is ``extra``: scene, module hash, changed parameters, lengths.
     """
-    from ... import __version__
-
-    return {**(extra or {}), "elastolink": __version__, "numpy": np.__version__}
+    return {**(extra or {}), "elastolink": _version(), "numpy": np.__version__}

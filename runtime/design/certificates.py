@@ -56,6 +56,7 @@ class Certificate(Result):
         "open": ("open", "end"),
         "unstable": ("unstable", "end"),
     }
+    column_units: ClassVar = {"rad/s": "proved open unstable"}
 
     @property
     def stable(self) -> bool:
@@ -76,7 +77,7 @@ class Certificate(Result):
                 label = name if k == 0 else None
                 ax.axvspan(low, high, color=color, alpha=0.3, label=label)
         ax.axhline(1.0, color="0.3", linewidth=0.8)
-        ax.set(xlabel="crank speed [rpm]", ylabel="multipliers are proved to be below")
+        ax.set(xlabel="crank speed [rpm]", ylabel="bound of the multipliers")
         ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False)
         return ax
 

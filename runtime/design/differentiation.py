@@ -14,7 +14,7 @@ from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic
 from ..core.inputs import require_between
 from ..core.plotting import Axes, axes_or_new
-from ..core.results import Check, Result, provenance
+from ..core.results import BROADCAST, Check, Result, provenance
 from ..frequencies.natural import NaturalFrequencies
 from ..periodic.adjoint import field_weights
 from ..periodic.equation import Equation, equation_of
@@ -86,7 +86,11 @@ class Sensitivities(Result):
     derivative: NDArray[Any]
     collided: NDArray[np.bool_]
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {"number": ("by",)}
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **dict.fromkeys(("value", "collided"), BROADCAST),
+        **dict.fromkeys(("derivative", "error", "relative"), ("...", "by")),
+        "number": ("by",),
+    }
     exported: ClassVar[tuple[str, ...]] = ("relative",)
 
     @property
@@ -100,7 +104,8 @@ class Sensitivities(Result):
         ax = axes_or_new(ax)
         sizes = np.abs(self.relative).reshape(-1, len(self.by))
         ax.barh(self.by, np.max(np.where(np.isfinite(sizes), sizes, 0.0), axis=0, initial=0.0))
-        ax.set(xlabel=f"{self.answer}: per cent for one per cent of the number")
+        answer = self.answer.partition(" [")[0]
+        ax.set(xlabel=f"change of {answer} for 1 % more of the number [%]")
         return ax
 
 

@@ -55,11 +55,11 @@ class StressEffect(Result):
     dimensions: ClassVar[dict[str, tuple[str, ...]]] = {
         "values": ("value",),
         "speed": ("speed",),
-        "maximum": ("value", "speed", "link"),
-        "error": ("value", "speed", "link"),
+        **dict.fromkeys(("maximum", "error", "change"), ("value", "speed", "link")),
         "transmission": ("value", "end"),
     }
     exported: ClassVar[tuple[str, ...]] = ("change",)
+    column_units: ClassVar = {"Pa": "maximum", "rad": "transmission"}
 
     @property
     def change(self) -> Array:
@@ -72,7 +72,7 @@ class StressEffect(Result):
         for value, rows in zip(self.values, self.maximum, strict=True):
             ax.semilogy(self.speed, np.max(rows, axis=1) / 1e6, label=f"{value:g}", linewidth=0.9)
         ax.set(xlabel="crank speed [rad/s]", ylabel="largest stress [MPa]")
-        ax.legend(title=self.name)
+        ax.legend(title=self.name.replace("_", " "))
         return ax
 
 
@@ -213,6 +213,7 @@ class Screening(Result):
         "speed": ("speed",),
         **dict.fromkeys(("maximum", "quasi_static"), ("speed", "link")),
     }
+    column_units: ClassVar = {"Pa": "maximum"}
 
 
 def screen(system: LinearPeriodic, speeds: ArrayLike, *, damping: float) -> Screening:

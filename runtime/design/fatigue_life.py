@@ -85,6 +85,7 @@ class Fatigue(Result):
         **dict.fromkeys(("amplitude", "safety", "damage"), ("fibre", "station")),
     }
     exported: ClassVar[tuple[str, ...]] = ("revolutions", "hours")
+    column_units: ClassVar = {"Pa": "amplitude", "h": "hours"}
 
     @property
     def revolutions(self) -> float:

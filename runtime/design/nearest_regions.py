@@ -100,6 +100,7 @@ class Margins(Result):
         **dict.fromkeys(("shift", "change", "change_error"), ("region", "by")),
         "number": ("by",),
     }
+    column_units: ClassVar = {"rad/s": "end width error"}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the changes that bring the nearest regions to the speed as bars."""

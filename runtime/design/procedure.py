@@ -62,6 +62,7 @@ class RunningSpeed(Result):
     links: tuple[str, ...] = field(default=())
 
     dimensions: ClassVar[dict[str, tuple[str, ...]]] = {}
+    column_units: ClassVar = {"m": "run_up_length"}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the stresses over their limits with the quiet bands and the running speed."""

@@ -84,6 +84,7 @@ class QuietSpeeds(Result):
         "critical": ("critical",),
         "limiting": ("limiting",),
     }
+    column_units: ClassVar = {"rad/s": "critical limiting"}
 
     @property
     def worst(self) -> Array:

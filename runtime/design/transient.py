@@ -247,7 +247,9 @@ class Transient(Result):
         "q": ("sample", "coordinate"),
         "qd": ("sample", "coordinate"),
         "stress": ("sample", "link"),
+        "error": ("link",),
     }
+    column_units: ClassVar = {"1/s": "qd", "Pa": "stress"}
 
     @property
     def largest(self) -> dict[str, float]:
@@ -261,7 +263,7 @@ class Transient(Result):
             ax.plot(self.time, values / 1e6, linewidth=0.7, label=link)
         beside = ax.twinx()
         beside.plot(self.time, self.speed, color="0.4", linestyle="--", linewidth=0.9)
-        beside.set_ylabel("crank speed [rad/s]")
+        beside.set_ylabel("crank speed, dashed [rad/s]")
         ax.set(xlabel="time [s]", ylabel="largest stress [MPa]")
         ax.legend(loc="upper left")
         return ax

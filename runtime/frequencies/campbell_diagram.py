@@ -152,6 +152,7 @@ class Campbell(Result):
             ("crossing_speed", "crossing_mode", "crossing_order", "crossing_error"), ("crossing",)
         ),
     }
+    column_units: ClassVar = {"rad/s": "error", "1/s": "growth"}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the diagram and return the axes."""
@@ -177,7 +178,7 @@ class Campbell(Result):
         if self.buckling < self.speed[-1]:
             ax.axvline(self.buckling, color="0.5", lw=0.8, ls=":")
         ax.set(xlim=(self.speed[0], self.speed[-1]), ylim=(0.0, 1.05 * top))
-        ax.set(xlabel="crank speed [rad/s]", ylabel="frequency [rad/s]")
+        ax.set(xlabel="crank speed [rad/s]", ylabel="natural frequency [rad/s]; dashed: crank held")
         return ax
 
 

@@ -388,6 +388,7 @@ class FrameFrequencies(Result):
         **dict.fromkeys(("frequencies", "multiplicity", "error", "hertz"), ("mode",))
     }
     exported: ClassVar[tuple[str, ...]] = ("hertz",)
+    column_units: ClassVar = {"rad/s": "error"}
 
     @property
     def hertz(self) -> Array:
@@ -454,6 +455,7 @@ class FrameFrequencies(Result):
         axes.plot(number[several], self.hertz[several], "s", ms=9, mfc="none", label="multiple")
         if several.any():
             axes.legend()
+        axes.locator_params(axis="x", integer=True)
         axes.set(xlabel="mode", ylabel="natural frequency [Hz]")
         return axes
 

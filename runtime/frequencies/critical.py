@@ -67,6 +67,7 @@ class CriticalSpeeds(Result):
         "mean_frequency": ("frequency",),
         **dict.fromkeys(("scan_speed", "scan"), ("scan",)),
     }
+    column_units: ClassVar = {"rad/s": "error"}
 
     @property
     def labels(self) -> tuple[tuple[int, int], ...]:

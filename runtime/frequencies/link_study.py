@@ -51,6 +51,7 @@ class LinkFrequencies(Result):
         **dict.fromkeys(("mean", "least", "largest", "error"), ("value", "mode")),
         "pinned": ("value", "link"),
     }
+    column_units: ClassVar = {"rad/s": "least largest pinned error"}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the means with their ranges, and the pinned links dashed (Fig. 9.1)."""

@@ -95,6 +95,10 @@ class NaturalFrequencies(Result):
         **dict.fromkeys(_ENCOUNTERS, ("encounter",)),
     }
     exported: ClassVar[tuple[str, ...]] = _ENCOUNTERS
+    column_units: ClassVar = {
+        "rad/s": "error encounter_gap",
+        "rad": "encounter_angle encounter_width",
+    }
 
     @property
     def encounter_angle(self) -> Array:

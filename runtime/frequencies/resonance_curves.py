@@ -74,6 +74,7 @@ class ResonanceCurve(Result):
         ),
         "mean_frequency": ("frequency",),
     }
+    column_units: ClassVar = {"m": "peak maxima_peak", "rad/s": "maxima maxima_error"}
 
     @property
     def joined(self) -> tuple[Array, Array]:
@@ -86,9 +87,10 @@ class ResonanceCurve(Result):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the curve with its maxima labelled by n and return the axes."""
         ax = axes_or_new(ax)
-        ax.semilogy(*self.joined, linewidth=0.9)
+        speeds, peaks = self.joined
+        ax.semilogy(speeds, 1e3 * peaks, linewidth=0.9)
         for speed, peak, order, mode in zip(
-            self.maxima, self.maxima_peak, self.order, self.mode, strict=True
+            self.maxima, 1e3 * self.maxima_peak, self.order, self.mode, strict=True
         ):
             ax.annotate(
                 rf"$\omega_{mode}/{order}$" if order > 1 else rf"$\omega_{mode}$",
@@ -98,7 +100,7 @@ class ResonanceCurve(Result):
                 ha="center",
                 fontsize=7,
             )
-        ax.set(xlabel="crank speed [rad/s]", ylabel="largest deflection [m]")
+        ax.set(xlabel="crank speed [rad/s]", ylabel="largest deflection [mm]")
         return ax
 
 

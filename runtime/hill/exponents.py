@@ -77,7 +77,7 @@ class CharacteristicExponents(Result):
             return ax
         ax.plot(across, np.ravel(self.growth), label="growth")
         ax.plot(across, np.ravel(self.nu), label=r"$\nu$")
-        ax.set_xlabel(r"$\lambda^2$")
+        ax.set(xlabel=r"$\lambda^2$", ylabel="parts of the exponent [1/rad]")
         ax.legend()
         return ax
 

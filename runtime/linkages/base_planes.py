@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +50,11 @@ class BasePlane(Result):
     numbers: NDArray[np.int64]
     regions: Mapping[str, Array]
     outline: Array
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **{"x": ("x",), "y": ("y",), "numbers": ("y", "x")},
+        "outline": ("corner", "ratio"),
+    }
 
     @property
     def shares(self) -> dict[str, float]:

@@ -453,6 +453,10 @@ class ClearanceRange(Result):
         """Unit of the places: rad, or m for a slider."""
         return "m" if self.link == "slider" else "rad"
 
+    def _own_units(self) -> dict[str, str]:
+        names = "nominal lower upper below above width small nominal_error error"
+        return dict.fromkeys(names.split(), self.unit)
+
     def plot(self, ax: Axes | None = None, *, label: str | None = None) -> Axes:
         """Draw the width against the crank angle, as in Smith's Fig. 10.
 

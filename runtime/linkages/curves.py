@@ -113,6 +113,14 @@ class CouplerCurve(Result):
         "double_position": ("double_point", "axis"),
         "crossing_angle": ("double_point",),
     }
+    column_units: ClassVar = {
+        "m": "position centre length length_error along across cusp_position double_position error",
+        "m/rad": "velocity",
+        "m/rad^2": "acceleration",
+        "1/m": "curvature",
+        "m^2": "area area_error",
+        "rad": "parameter cusp_parameter cusp_theta2 double_parameter double_theta2 crossing_angle",
+    }
 
     def cognates(self) -> tuple[Cognate, Cognate]:
         """Return the two other four-bars that trace the path (Roberts and Chebyshev).

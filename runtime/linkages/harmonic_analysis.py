@@ -66,6 +66,7 @@ class Harmonics(Result):
         **dict.fromkeys(("a", "b", "amplitude", "phase"), ("harmonic",))
     }
     exported: ClassVar[tuple[str, ...]] = ("amplitude", "phase")
+    column_units: ClassVar = {"rad": "phase"}
 
     @property
     def order(self) -> int:
@@ -99,7 +100,10 @@ class Harmonics(Result):
         ax.bar(m + 0.2, self.b[1:], 0.38, color="tab:orange", label="sine $b_m$")
         ax.axhline(0.0, color="0.4", lw=0.8)
         growth = f", growing by {self.secular:g} per radian" if self.secular else ""
-        ax.set(title=f"{self.name}: mean {self.a[0]:.6g}{growth}", xlabel="harmonic")
+        mean = self.a[0] if abs(self.a[0]) > self.error else 0.0
+        ax.set(
+            title=f"{self.name}: mean {mean:.6g}{growth}", xlabel="harmonic", ylabel="coefficient"
+        )
         if self.order <= 24:
             ax.set_xticks(m)
         ax.legend()

@@ -158,7 +158,6 @@ class Motion(Result, ABC):
         """
         ax = axes_or_new(ax)
         degrees = np.degrees(self.theta2)
-        units: dict[str, None] = {}
         over = {"omega": r"/\omega_2", "alpha": r"/\omega_2^2"} if self.relative else {}
         for name in self.drawn:
             values, unit = getattr(self, name), self.unit(name)
@@ -169,10 +168,11 @@ class Motion(Result, ABC):
             scaled = peak > 0.0 and not self.relative
             power = int(np.floor(np.log10(peak))) if scaled else 0
             size = f"$10^{{{power}}}$ " if power else ""
-            units[size + unit] = None
             label = words if unit == "1" else f"{words} [{size}{unit}]"
             ax.plot(degrees, values / 10.0**power, label=label)
-        ax.set(xlabel="crank angle [deg]", ylabel=", ".join(units))
+        first = "angle" if self.unit(self.drawn[0]) == "rad" else "position"
+        rates = "rates over the crank's" if self.relative else "rates"
+        ax.set(xlabel="crank angle [deg]", ylabel=f"{first} and {rates}, units in the legend")
         ax.legend()
         return ax
 
@@ -296,6 +296,9 @@ class Motion(Result, ABC):
         Of an angle it is 1 then.
         """
         return self.unit_of(name, self.relative)
+
+    def _own_units(self) -> dict[str, str]:
+        return {name: self.unit(name).strip("1") for name in (*self.places, *self.rates)}
 
     @classmethod
     def unit_of(cls, name: str, relative: bool = False) -> str:

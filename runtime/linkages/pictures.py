@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..core.errors import bad
+from ..core.files import write_whole
 from ..core.inputs import require_kind, require_whole
 from ..core.plotting import Axes, new_figure, require_writable
-from ..core.results import write_whole
 from .circuits import Circuit, Complex
 from .linkage import Array, Linkage, require_linkage
 

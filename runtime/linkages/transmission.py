@@ -10,7 +10,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import fsum, pi, tau
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from ..core.errors import bad, shown
 from ..core.inputs import are_finite
 from ..core.plotting import Axes, axes_or_new
-from ..core.results import Check, Result, provenance
+from ..core.results import BROADCAST, Check, Result, provenance
 from .four_bar import FourBar, LoopSums
 from .linkage import EPS, Array, require_linkage
 from .quick_return import QuickReturn
@@ -90,6 +90,10 @@ class TransmissionAngle(Result):
     time_ratio: float | None
     lengths: Mapping[str, float]
     linkage: FourBar | SliderCrank | QuickReturn = field(repr=False)
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **{"at_least": ("place",), "at_greatest": ("place_1",), "crank_ranges": ("range", "end")}
+    }
+    column_units: ClassVar = {"rad": "least greatest error output_range"}
 
     @property
     def worst(self) -> float:
@@ -179,6 +183,11 @@ class MechanicalAdvantage(Result):
     advantage: Array
     speed_ratio: Array
     poles: Array
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **dict.fromkeys(("theta2", "advantage", "speed_ratio", "error"), BROADCAST),
+        "poles": ("pole",),
+    }
+    column_units: ClassVar = {"rad": "poles"}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the mechanical advantage against the crank angle, its poles dotted."""

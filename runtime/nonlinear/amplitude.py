@@ -56,6 +56,7 @@ class AmplitudeLaw(Result):
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
         ("theta", "transmission_angle", "coefficient", "error"), ("angle",)
     )
+    column_units: ClassVar = {"m": "length"}
 
     def at(self, amplitude: ArrayLike) -> Array:
         """Return the frequency [rad/s] at amplitudes of the mode's deflection [m]."""

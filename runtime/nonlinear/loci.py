@@ -55,6 +55,10 @@ class SpecialCurve(Result):
         ("first", "second", "error"), ("point",)
     )
 
+    def _own_units(self) -> dict[str, str]:
+        names = zip(("first", "second"), self.parameters, strict=True)
+        return {name: "rad/s" for name, of in names if of == "speed"}
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the curve; speeds in rpm, as in stability charts."""
         ax = axes_or_new(ax)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..core.families import Array
+from ..core.files import NOT_SAVED
 from .segments import Motion, NotFinite, Problem, Sweep, chained, sweep
 
 EPS = float(np.finfo(float).eps)
@@ -88,7 +89,7 @@ class Orbit:
 
     value: float
     motion: Motion
-    swept: Sweep  # its steps, linearised
+    swept: Sweep = field(metadata=NOT_SAVED)  # its steps, linearised
     # whole, added: (m + 1, 2n, 2n), (m + 1, 2n, 2): states at all ends by the first one, by what
     # is wrong and by the parameter
     whole: Array

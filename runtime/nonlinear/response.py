@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
+from functools import partial
 from itertools import groupby, pairwise
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.families import Array, Nonlinear
+from ..core.files import NOT_SAVED
 from ..core.inputs import is_finite, numbers, require_between, require_kind, require_whole
 from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.progress import bar
-from ..core.results import Check, Result, provenance
+from ..core.results import Check, DeferredField, DeferredGroup, Result, provenance
+from ..core.tables import with_unit
 from .branch import CLOSED, JOINED, Branch, Limits, crossing, doubled, followed
 from .march import Marcher, from_rest
 from .orbit import FAILURES, FIRST_STEPS, MOST_STEPS, STAGES, Measure, Orbit, Solver, closed, taken
@@ -28,6 +30,10 @@ SAMPLES = 128  # of a revolution, for extremes
 _SAME = 1e-4
 # Places drawn between two points of a branch, and values of the linear answer.
 _DRAWN, _LINEAR = 8, 120
+# Fields that are computed when one of them is first looked at.
+_LINEARISED = {
+    name: DeferredField() for name in ("linear_value", "linear_lowest", "linear_highest")
+}
 _STYLE = {"fold": "o", "doubling": "s", "branch point": "D", "torus": "^"}
 
 
@@ -99,7 +105,10 @@ class ResponseCurve(Result):
     unit: str = ""
     orbits: tuple[Orbit, ...] = ()
     special_orbits: tuple[Orbit, ...] = ()
-    source: Solver
+    linear_value: Any = _LINEARISED["linear_value"]
+    linear_lowest: Any = _LINEARISED["linear_lowest"]
+    linear_highest: Any = _LINEARISED["linear_highest"]
+    source: Solver = field(repr=False, metadata=NOT_SAVED)
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
         **dict.fromkeys(
@@ -111,32 +120,10 @@ class ResponseCurve(Result):
         "multiplier_error": ("point", "multiplier"),
         **dict.fromkeys(("special_value", "special_error", "special_branch"), ("special_point",)),
         **dict.fromkeys(("special_lowest", "special_highest"), ("special_point",)),
-        **dict.fromkeys(("linear_value", "linear_lowest", "linear_highest"), ("linear_point",)),
+        **dict.fromkeys(_LINEARISED, ("linear_point",)),
         "special": ("special_point",),
     }
-    exported: ClassVar[tuple[str, ...]] = (
-        *("stable", "peak_to_peak"),
-        *("linear_value", "linear_lowest", "linear_highest"),
-    )
-
-    @cached_property
-    def _linear(self) -> tuple[Array, Array, Array]:
-        return _linear(self.source.problem, self.bounds)
-
-    @property
-    def linear_value(self) -> Array:
-        """Values at which the linear answer is given, shape ``(l,)``."""
-        return self._linear[0]
-
-    @property
-    def linear_lowest(self) -> Array:
-        """Lowest deflection of the linear answer, shape ``(l,)``."""
-        return self._linear[1]
-
-    @property
-    def linear_highest(self) -> Array:
-        """Highest deflection of the linear answer, shape ``(l,)``."""
-        return self._linear[2]
+    exported: ClassVar[tuple[str, ...]] = ("stable", "peak_to_peak")
 
     @property
     def stable(self) -> NDArray[np.bool_]:
@@ -147,6 +134,15 @@ class ResponseCurve(Result):
     def peak_to_peak(self) -> Array:
         """Highest less lowest deflection, shape ``(k,)``."""
         return self.highest - self.lowest
+
+    def _own_units(self) -> dict[str, str]:
+        along = ("value", "special_value", "special_error", "linear_value")
+        sizes = (
+            *("lowest", "highest", "peak_to_peak", "peak_error"),
+            *("special_lowest", "special_highest", "linear_lowest", "linear_highest"),
+        )
+        speed = dict.fromkeys(along, "rad/s") if self.parameter == "speed" else {}
+        return {**speed, **dict.fromkeys(sizes, self.unit)}
 
     @property
     def _axes(self) -> tuple[float, str, float, str]:
@@ -218,7 +214,8 @@ class ResponseCurve(Result):
             )
             seen.add(kind)
         largest = size * float(np.max(self.peak_to_peak, initial=0.0))
-        ax.set(xlabel=axis, ylabel=f"peak-to-peak deflection [{unit}]", ylim=(0.0, 1.1 * largest))
+        height = with_unit("peak-to-peak deflection", unit)
+        ax.set(xlabel=axis, ylabel=height, ylim=(0.0, 1.1 * largest))
         ax.legend(frameon=False, fontsize="small")
         return ax
 
@@ -514,6 +511,7 @@ def _result(
     at_special = _all_extremes(problem, [point.orbit for point in special])
     error = np.array([measure.error for _, measure in points])
     peak_error = [measure.peak_error for _, measure in points]
+    linearised = DeferredGroup(partial(_linear, problem, bounds))
     return ResponseCurve(
         method="Gauss collocation with 12 stages, pseudo-arclength continuation",
         error=error,
@@ -544,10 +542,13 @@ def _result(
         orbits=tuple(orbit for orbit, _ in points),
         special_orbits=tuple(point.orbit for point in special),
         source=solver,
+        linear_value=linearised.later("linear_value"),
+        linear_lowest=linearised.later("linear_lowest"),
+        linear_highest=linearised.later("linear_highest"),
     )
 
 
-def _linear(problem: Problem, bounds: tuple[float, float]) -> tuple[Array, Array, Array]:
+def _linear(problem: Problem, bounds: tuple[float, float]) -> dict[str, Array]:
     """Return values and extremes of the motion by the equations linearised about no deflection."""
     values = np.linspace(*bounds, _LINEAR)
     rest = first_motion(problem)
@@ -557,7 +558,7 @@ def _linear(problem: Problem, bounds: tuple[float, float]) -> tuple[Array, Array
         motion = linear_motion(problem, value, rest)
         shown = problem.system.shown(motion.at(angles)[0], problem.at(value)[1])
         low[i], high[i] = np.min(shown), np.max(shown)
-    return values, low, high
+    return dict(zip(_LINEARISED, (values, low, high), strict=True))
 
 
 def linear_motion(problem: Problem, value: float, rest: Motion) -> Motion:

@@ -62,9 +62,12 @@ class CoexistingMotions(Result):
     unit: str = ""
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
-        ("turns", "lowest", "highest", "multiplier", "error"), ("motion",)
+        ("turns", "lowest", "highest", "multiplier", "error", "stable"), ("motion",)
     )
     exported: ClassVar[tuple[str, ...]] = ("stable",)
+
+    def _own_units(self) -> dict[str, str]:
+        return dict.fromkeys(("lowest", "highest"), self.unit)
 
     @property
     def stable(self) -> NDArray[np.bool_]:

@@ -17,6 +17,7 @@ from ..core.inputs import is_finite, numbers_in_a_row, require_between, require_
 from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
+from ..core.tables import with_unit
 from .march import Marcher, between_ends, end, from_rest, unresolved
 from .orbit import EPS, Lost, Solver
 from .response import SAMPLES, checked_problem, first_motion, tops
@@ -69,10 +70,13 @@ class SweepResponse(Result):
     unit: str = ""
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("speed", "rising", "lowest", "highest", "peak_to_peak"), ("revolution",)),
+        **dict.fromkeys(
+            ("speed", "rising", "lowest", "highest", "peak_to_peak", "error"), ("revolution",)
+        ),
         **dict.fromkeys(("jump_speed", "jump_rising", "jump_ratio"), ("jump",)),
     }
     exported: ClassVar[tuple[str, ...]] = ("peak_to_peak",)
+    column_units: ClassVar = {"rad/s^2": "rate"}
 
     @property
     def peak_to_peak(self) -> Array:
@@ -89,6 +93,9 @@ class SweepResponse(Result):
         below = down[down <= up[0]]
         return float(up[0] - np.max(below)) if below.size else float("nan")
 
+    def _own_units(self) -> dict[str, str]:
+        return dict.fromkeys(("lowest", "highest", "peak_to_peak"), self.unit)
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the peak-to-peak deflection over the speed, up and down."""
         ax = axes_or_new(ax)
@@ -98,7 +105,7 @@ class SweepResponse(Result):
             if np.any(at):
                 values = size * self.peak_to_peak[at]
                 ax.plot(self.speed[at] * RPM, values, color=colour, linewidth=1.0, label=label)
-        ax.set(xlabel="crank speed [rpm]", ylabel=f"peak-to-peak deflection [{unit}]")
+        ax.set(xlabel="crank speed [rpm]", ylabel=with_unit("peak-to-peak deflection", unit))
         ax.legend(frameon=False, fontsize="small")
         return ax
 
@@ -307,6 +314,9 @@ class Basins(Result):
         "motion": ("rate", "q"),
         **dict.fromkeys(("peak_to_peak", "turns"), ("attractor",)),
     }
+
+    def _own_units(self) -> dict[str, str]:
+        return {"peak_to_peak": self.unit}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the basins in colours."""

@@ -97,6 +97,7 @@ class Trajectory(Result):
         "qd": ("sample", "coordinate"),
         "error": ("coordinate",),
     }
+    column_units: ClassVar = {"1/s": "qd"}
 
     @property
     def success(self) -> bool:
@@ -110,13 +111,13 @@ class Trajectory(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the coordinates over the revolutions of the crank and return the axes."""
-        from ..core.plotting import axes_or_new
+        from ..core.plotting import axes_or_new, coordinates_label
 
         ax = axes_or_new(ax)
         for label, values in zip(self.labels, self.q.T, strict=True):
             ax.plot(self.theta / (2 * np.pi), values, label=label, linewidth=0.9)
         ax.set_xlabel("revolutions of the crank")
-        ax.set_ylabel("coordinate")
+        ax.set_ylabel(coordinates_label(self.labels))
         if len(self.labels) > 1:
             ax.legend()
         return ax

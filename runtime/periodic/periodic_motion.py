@@ -24,10 +24,19 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.collocation import legendre_integrals
 from ..core.errors import LINEAR_RANGE, LinearRangeWarning, bad, warn_of_large_deflection
 from ..core.families import Array, LinearPeriodic
+from ..core.files import NOT_SAVED, NotSaved
 from ..core.inputs import is_one_of, numbers, require_between
 from ..core.maxima import largest_size
 from ..core.progress import bar
-from ..core.results import Check, DeferredChecks, DeferredField, DeferredGroup, Result, provenance
+from ..core.results import (
+    BROADCAST,
+    Check,
+    DeferredChecks,
+    DeferredField,
+    DeferredGroup,
+    Result,
+    provenance,
+)
 from .equation import Equation, equation_of
 from .multipliers import floquet_multipliers
 from .ring import solve_ring
@@ -117,9 +126,18 @@ class SteadyState(Result):
     period: float
     labels: tuple[str, ...]
     reference_length: float
-    shapes: Callable[[Array, Array], Array | None] | None = field(default=None, repr=False)
+    shapes: Callable[[Array, Array], Array | None] | None = field(
+        default=None, repr=False, metadata=NOT_SAVED
+    )
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {"theta": ("sample",)}
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **dict.fromkeys(("speed", "stable", "distance", "sensitivity"), BROADCAST),
+        **dict.fromkeys(("multipliers", "multiplier_error"), ("...", "multiplier")),
+        **dict.fromkeys(("q", "qd"), ("...", "sample", "coordinate")),
+        "theta": ("sample",),
+        "error": ("...", "coordinate"),
+    }
+    column_units: ClassVar = {"1/s": "qd", "rad": "period", "m": "reference_length"}
 
     @property
     def coefficients(self) -> ComplexArray:
@@ -199,11 +217,12 @@ class SteadyState(Result):
         Of motions at several speeds of a system with mode shapes the largest deflections are drawn
         over the speed, else the first motion.
         """
-        from ..core.plotting import axes_or_new
+        from ..core.plotting import axes_or_new, coordinates_label
 
         ax = axes_or_new(ax)
         ends = np.array([0.0, 1.0])
-        deflects = self.shapes is not None and self.shapes(ends, self.theta[:1]) is not None
+        shapes = None if isinstance(self.shapes, NotSaved) else self.shapes
+        deflects = shapes is not None and shapes(ends, self.theta[:1]) is not None
         if self.speed.ndim == 1 and self.speed.size > 1 and deflects:
             return self._plot_peaks(ax)
         first = self.q.reshape(-1, *self.q.shape[-2:])[0]
@@ -211,7 +230,7 @@ class SteadyState(Result):
         for label, values in zip(self.labels, np.vstack([first, first[:1]]).T, strict=True):
             ax.plot(angles, values, label=label, linewidth=0.9)
         ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel("coordinate")
+        ax.set_ylabel(coordinates_label(self.labels))
         if len(self.labels) > 1:
             ax.legend()
         return ax
@@ -219,14 +238,14 @@ class SteadyState(Result):
     def _plot_peaks(self, ax: Axes) -> Axes:
         shapes = self.reference_length * self._shapes_at(np.linspace(0.0, 1.0, 41))
         bent = (np.einsum("txn,tn->tx", shapes, one) for one in self.q)
-        peaks = np.array([np.max(np.abs(one)) for one in bent])
+        peaks = 1e3 * np.array([np.max(np.abs(one)) for one in bent])
         ax.semilogy(self.speed, peaks, linewidth=0.9)
         unstable = ~self.stable
         if np.any(unstable):
             ax.semilogy(self.speed[unstable], peaks[unstable], "r.", markersize=3, label="unstable")
             ax.legend()
         ax.set_xlabel("crank speed [rad/s]")
-        ax.set_ylabel("largest deflection [m]")
+        ax.set_ylabel("largest deflection [mm]")
         return ax
 
 

@@ -244,6 +244,7 @@ class BeamForces(StationResult):
         "error": ("force",),
         **dict.fromkeys(QUANTITIES, ("sample", "station")),
     }
+    column_units: ClassVar = {"m": "along across", "rad": "slope", "N": "axial shear"}
 
     def of(self, link: str, quantity: str) -> Array:
         """Return one quantity along one beam, ``(nt, its stations)``.

@@ -45,6 +45,7 @@ class ElasticCurve(BeamResult):
         **BeamResult.dimensions,
         **dict.fromkeys(("rigid", "elastic"), ("sample", "direction")),
     }
+    column_units: ClassVar = {"m": "rigid elastic along across error"}
 
     @property
     def displacement(self) -> Array:

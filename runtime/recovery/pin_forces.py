@@ -66,6 +66,14 @@ class PinReactions(BeamResult):
             found |= {f"ground on {node} {p}": value[:, k] for k, p in enumerate(_PARTS)}
         return found
 
+    def _dimensions(self) -> dict[str, tuple[str, ...]]:
+        return {**dict.fromkeys(self.arrays(), ("sample",)), **self.dimensions}
+
+    def _own_units(self) -> dict[str, str]:
+        forces = (name for name in self.arrays() if " on " in name)
+        units = {name: "N m" if name.endswith("moment") else "N" for name in forces}
+        return {**units, "drag": "N", "error": "N"}
+
     def force(self, node: str, beam: str) -> Array:
         """Return the force of a node on a beam [N], ``(nt, 2)``.
 

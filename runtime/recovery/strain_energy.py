@@ -230,6 +230,7 @@ class BeamEnergies(BeamResult):
         ),
     }
     exported: ClassVar[tuple[str, ...]] = ("total",)
+    column_units: ClassVar = {"J": "error total", "W": "dissipated loads drive"}
 
     @property
     def total(self) -> Array:

@@ -85,6 +85,7 @@ class StressCurve(Result):
         **dict.fromkeys(("multiplier", "multiplier_error"), ("speed",)),
         **dict.fromkeys(("maximum", "theta", "place", "fibre", "error"), ("speed", "link")),
     }
+    column_units: ClassVar = {"Pa": "maximum"}
 
     @property
     def stable(self) -> NDArray[np.bool_] | None:

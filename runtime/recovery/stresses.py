@@ -244,6 +244,10 @@ class StressResult(StationResult):
         ),
     }
     exported: ClassVar[tuple[str, ...]] = ("stress",)
+    column_units: ClassVar = {
+        "Pa": "axial bending static_axial static_bending stress error motion_error mesh_error",
+        "rad": "period",
+    }
 
     @property
     def stress(self) -> Array:

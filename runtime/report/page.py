@@ -16,9 +16,10 @@ import numpy as np
 
 from ... import __version__
 from ..core.errors import bad, printable
+from ..core.files import write_whole
 from ..core.inputs import require_kind
 from ..core.plotting import require_writable
-from ..core.results import Check, Result, write_whole
+from ..core.results import Check, Result
 from ..scenes import Scene
 from .parts import Figure, Markup, Section, Table, small
 from .sections import sections, subject_of

@@ -86,7 +86,8 @@ class Balancing(Result):
         names = list(self.relative)
         counted = [self.weights.get(name, 0.0) > 0.0 for name in names]
         colours = ["tab:blue" if weighted else "lightsteelblue" for weighted in counted]
-        bars = ax.bar(names, [self.relative[name] for name in names], color=colours)
+        words = [name.replace("_", " ") for name in names]
+        bars = ax.bar(words, [self.relative[name] for name in names], color=colours)
         ax.bar_label(bars, fmt="%.3f", padding=2)
         ax.axhline(1.0, color="black", linewidth=0.8)
         ax.set(ylabel="peak over that of the unbalanced linkage", title="pale: without a weight")

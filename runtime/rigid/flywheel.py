@@ -62,6 +62,7 @@ class TorqueFluctuation(Result):
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
         ("theta", "torque", "energy"), ("theta",)
     )
+    column_units: ClassVar = {"rad": "slowest fastest", "J": "error"}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the torque and its mean against the crank angle."""
@@ -149,6 +150,7 @@ class Flywheel(Result):
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
         ("theta", "speeds"), ("theta",)
     )
+    column_units: ClassVar = {"kg m^2": "error first_order"}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the crank speed with the flywheel against the crank angle."""

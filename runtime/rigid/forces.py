@@ -114,6 +114,10 @@ class RigidForces(Result):
         """Return the numeric fields and the values by name."""
         return {**super().arrays(), **self.values}
 
+    def _own_units(self) -> dict[str, str]:
+        turning = ("couple", "torque", "shaking_moment")
+        return {name: "N m" if name.startswith(turning) else "N" for name in self.values}
+
     def to_dict(self) -> dict[str, Any]:
         """Return plain lists, numbers and strings, ready for JSON."""
         plain = super().to_dict()

@@ -18,9 +18,10 @@ from typing import Any, ClassVar, Literal, TypeAlias
 import numpy as np
 
 from ..core.errors import BadInput, Problem, bad, refuse, shown
+from ..core.files import NOT_SAVED
 from ..core.inputs import is_finite, is_whole, number_problems
 from ..core.plotting import Axes, axes_or_new
-from ..core.results import Check, DeferredChecks, Result, provenance
+from ..core.results import Check, Deferred, DeferredChecks, DeferredField, Result, provenance
 from ..linkages.linkage import EPS, TURN, Array
 from .forces import RigidForces, rigid_forces
 from .machine import Machine, finite_number, require_machine
@@ -285,6 +286,7 @@ def _root(rule: Callable[[Array], float], piece: Any, begin: float, end: float) 
 
 
 _LONGEST = TURN / 24.0
+_LATER = DeferredField()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -313,6 +315,9 @@ class RunUp(Result):
         The same in a sentence.
     steps : int
         Steps of the integrator.
+    fluctuation : float or None
+        Speed fluctuation in the last revolution, (greatest - least) / mean of the two, computed
+        when it is first looked at; None where the run made less than a revolution.
     """
 
     machine: Machine
@@ -326,37 +331,20 @@ class RunUp(Result):
     status: Status
     message: str
     steps: int
-    run: Run = field(repr=False, compare=False)
+    fluctuation: Any = _LATER  # float | None
+    run: Run = field(repr=False, compare=False, metadata=NOT_SAVED)
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
         ("time", "angle", "speed", "acceleration", "torque", "energy"), ("time",)
     )
 
-    exported: ClassVar[tuple[str, ...]] = ("revolutions", "fluctuation")
+    exported: ClassVar[tuple[str, ...]] = ("revolutions",)
+    column_units: ClassVar = {"rad": "error"}
 
     @property
     def revolutions(self) -> float:
         """Revolutions made, negative backwards."""
         return float((self.angle[-1] - self.angle[0]) / (2.0 * np.pi))
-
-    @property
-    def fluctuation(self) -> float | None:
-        """Speed fluctuation in the last revolution, (greatest - least) / mean of the two.
-
-        None where the run made less than a revolution.
-        """
-        last = float(self.angle[-1])
-        nodes = self.run.at(self.run.times)[0]
-        before = np.nonzero(np.abs(nodes - last) >= TURN * (1.0 - 1e-12))[0]
-        if before.size == 0:
-            return None
-        begin = int(before[-1])
-        # Times at which the speeds of the last revolution are taken.
-        time = np.linspace(self.run.times[begin], self.run.end, 2001)
-        angle, speed, _ = self.run.at(time)
-        speeds = np.abs(speed[np.abs(angle - last) <= TURN * (1.0 + 1e-12)])
-        high, low = float(np.max(speeds)), float(np.min(speeds))
-        return 2.0 * (high - low) / (high + low)
 
     def at(self, time: Any) -> tuple[Array, Array]:
         """Return crank angle [rad] and speed [rad/s] at times [s] within the run.
@@ -492,6 +480,7 @@ def run_up(
         status=fine.status,
         message=fine.message,
         steps=fine.steps,
+        fluctuation=Deferred(partial(_fluctuation, fine, float(angle[-1]))),
         run=fine,
         method=f"DOP853, tolerance {tolerance:g}",
         error=float(np.max(gap)) + astray + 16.0 * EPS * (1.0 + float(np.max(np.abs(angle)))),
@@ -499,6 +488,18 @@ def run_up(
         checks=DeferredChecks(partial(_checks, defect, fine.status, coarse.status)),
         provenance=provenance({**machine.provenance, "torque": _name(torque)}),
     )
+
+
+def _fluctuation(run: Run, last: float) -> float | None:
+    """Return the speed fluctuation in the last revolution, which ends at an angle."""
+    before = np.nonzero(np.abs(run.at(run.times)[0] - last) >= TURN * (1.0 - 1e-12))[0]
+    if before.size == 0:
+        return None
+    # Times at which the speeds of the last revolution are taken.
+    angle, speed, _ = run.at(np.linspace(run.times[int(before[-1])], run.end, 2001))
+    speeds = np.abs(speed[np.abs(angle - last) <= TURN * (1.0 + 1e-12)])
+    high, low = float(np.max(speeds)), float(np.min(speeds))
+    return 2.0 * (high - low) / (high + low)
 
 
 def _checks(defect: float, status: Status, other: Status) -> dict[str, Check]:

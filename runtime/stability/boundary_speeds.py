@@ -195,6 +195,7 @@ class SpeedBoundaries(Result):
         **dict.fromkeys(("speed", "multiplier", "error"), ("boundary",)),
         **dict.fromkeys(("cosine", "sine"), ("boundary", "harmonic", "coordinate")),
     }
+    column_units: ClassVar = {"rad/s": "error", "rad": "period"}
 
     def motion(self, index: int, theta: ArrayLike) -> Array:
         """Return the motion of one boundary at crank angles ``(nt,)``, shape ``(nt, n)``."""

@@ -144,6 +144,10 @@ class StabilityChart(Result):
         "invariants": ("y", "x", "invariant"),
     }
 
+    def _own_units(self) -> dict[str, str]:
+        names = {"x": self.x_name, "y": self.y_name}
+        return {axis: "rad/s" for axis, name in names.items() if name == "speed"}
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Shade the unstable regions by kind and draw the boundaries; speeds in rpm."""
         ax = axes_or_new(ax)

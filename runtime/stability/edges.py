@@ -96,12 +96,14 @@ class StabilityEdges(Result):
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
         **dict.fromkeys(
-            ("lower", "upper", "multiplier", "harmonic", "detuning", "shift", "error"), ("region",)
+            ("lower", "upper", "multiplier", "harmonic", "detuning", "shift", "error", "width"),
+            ("region",),
         ),
         "modes": ("region", "mode"),
         "kind": ("region",),
     }
     exported: ClassVar[tuple[str, ...]] = ("width",)
+    column_units: ClassVar = {"rad/s": "lower upper shift error width least_width"}
 
     @property
     def width(self) -> Array:

@@ -66,10 +66,11 @@ class TongueCurves(Result):
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
         "at": ("value",),
         **dict.fromkeys(("foot", "harmonic", "labels"), ("tongue",)),
-        **dict.fromkeys(("lower", "upper", "error", "growth"), ("tongue", "value")),
+        **dict.fromkeys(("lower", "upper", "error", "growth", "width"), ("tongue", "value")),
         "modes": ("tongue", "mode"),
     }
     exported: ClassVar[tuple[str, ...]] = ("width",)
+    column_units: ClassVar = {"rad/s": "foot lower upper error width", "1/s": "growth"}
 
     @property
     def width(self) -> Array:

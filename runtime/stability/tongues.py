@@ -352,6 +352,7 @@ class Tongue(Result):
     operators: tuple[ResonantOperator, ...]
 
     exported: ClassVar[tuple[str, ...]] = ("width",)
+    column_units: ClassVar = {"rad/s": "lower upper error width"}
 
     @property
     def width(self) -> Array:
@@ -383,7 +384,7 @@ class Tongue(Result):
                 ax.axvspan(left, right, alpha=0.4, label=self.label)
             ax.set_yticks([])
         ax.set_xlabel("crank speed [rpm]")
-        ax.legend()
+        ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), frameon=False)
         return ax
 
 

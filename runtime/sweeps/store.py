@@ -17,7 +17,7 @@ import numpy as np
 
 from ..._files import whole_file
 from ..core.errors import BadInput, bad
-from ..core.results import write_whole
+from ..core.files import write_whole
 from .pieces import Grid
 from .requests import digest
 from .tasks import AnyArray, Piece, blank

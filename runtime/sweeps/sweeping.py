@@ -21,6 +21,7 @@ from ..core.inputs import require_mapping
 from ..core.plotting import Axes, axes_or_new
 from ..core.progress import bar
 from ..core.results import Result, provenance
+from ..core.tables import with_unit
 from ..core.workers import check_executor, check_workers, run_on
 from ..scenes import Scene
 from .pieces import Grid, grid_of
@@ -102,14 +103,21 @@ class Sweep(Result):
         }
         return {**out, "store": str(self.store)}
 
+    def _dimensions(self) -> dict[str, tuple[str, ...]]:
+        names = tuple(self.axes)
+        return {f"axis_{name}": (name,) for name in names} | {
+            name: (*names, *(f"{name}_{i}" for i in range(array.ndim - len(names))))
+            for name, array in self.outputs.items()
+        }
+
+    def _own_units(self) -> dict[str, str]:
+        return {"axis_speed": "rad/s"}
+
     def to_xarray(self) -> xarray.Dataset:
         """Return the outputs over their axes as an :class:`xarray.Dataset` (extra ``data``)."""
         plain = super().to_xarray()
-        names = tuple(self.axes)
-        data = {
-            name: ((*names, *(f"{name}_{i}" for i in range(array.ndim - len(names)))), array)
-            for name, array in self.outputs.items()
-        }
+        labels = self._dimensions()
+        data = {name: (labels[name], array) for name, array in self.outputs.items()}
         coordinates = {name: (name, values) for name, values in self.axes.items()}
         return type(plain)(data, coords=coordinates, attrs=plain.attrs)
 
@@ -138,7 +146,7 @@ class Sweep(Result):
         thin = [slice(None, None, -(-len(v) // 1200)) for v in self.axes.values()]
         values = [axis[part] for axis, part in zip(self.axes.values(), thin, strict=True)]
         shown = np.asarray(self[name][tuple(thin)])
-        labels = list(self.axes)
+        labels = [with_unit(name, "rad/s" if name == "speed" else "") for name in self.axes]
         ax.set_xlabel(labels[-1])
         if len(labels) == 1:
             ax.plot(values[0], shown.reshape(len(shown), -1), linewidth=0.9)

@@ -154,6 +154,7 @@ class OverhangFrequencies(Result):
         "place": ("place",),
         **dict.fromkeys(("roots", "frequencies", "error"), ("place", "mode")),
     }
+    column_units: ClassVar = {"rad/s": "error"}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies against the block's place."""

@@ -148,6 +148,10 @@ def _table(
     """Return header and rows of the arrays that broadcast to some axes."""
     shape = tuple(whole.values())
     chosen = [n for n in arrays if n in single or (axes[n] and axes[n].items() <= whole.items())]
+    # What names a point stands first, and how well it is known last.
+    places = (next((n for n in chosen if list(axes[n]) == [k]), "") for k in whole)
+    named = [name for name in places if name and name != "error"]
+    chosen = sorted(chosen, key=lambda name: (name == "error", name not in named))
     columns: dict[str, AnyArray] = {}
     for place, label in enumerate(whole):
         if not any(list(axes[name]) == [label] for name in chosen):

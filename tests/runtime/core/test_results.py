@@ -43,13 +43,13 @@ def test_csv_repeats_what_has_fewer_dimensions_and_parts_what_does_not_fit(tmp_p
     first = sample().save(tmp_path / "s.csv").read_text()
     second = (tmp_path / "s.odd.csv").read_text()
     assert first.splitlines() == [
-        "error,x,y,table,largest",
-        "0.5,1.0,10.0,11.0,23.0",
-        "0.5,2.0,10.0,12.0,23.0",
-        "0.5,3.0,10.0,13.0,23.0",
-        "0.5,1.0,20.0,21.0,23.0",
-        "0.5,2.0,20.0,22.0,23.0",
-        "0.5,3.0,20.0,23.0,23.0",
+        "x,y,table,largest,error",
+        "1.0,10.0,11.0,23.0,0.5",
+        "2.0,10.0,12.0,23.0,0.5",
+        "3.0,10.0,13.0,23.0,0.5",
+        "1.0,20.0,21.0,23.0,0.5",
+        "2.0,20.0,22.0,23.0,0.5",
+        "3.0,20.0,23.0,23.0,0.5",
     ]
     assert second.splitlines() == ["odd", "7", "8"]
 
@@ -77,7 +77,7 @@ def test_csv_keeps_batches_and_matrices_apart(tmp_path):
     first = plain.save(tmp_path / "p.csv").read_text().splitlines()
     second = (tmp_path / "p.axis_0_of_2x2_axis_1_of_2x2.csv").read_text().splitlines()
     assert second[0] == "axis_0_of_2x2,axis_1_of_2x2,table"
-    assert first[:2] == ["error,x,y,odd,largest", "0.0,1.0,1.0,1.0,1.0"]
+    assert first[:2] == ["x,y,odd,largest,error", "1.0,1.0,1.0,1.0,0.0"]
 
 
 def test_csv_of_an_empty_axis_is_its_header(tmp_path):

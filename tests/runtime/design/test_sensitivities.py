@@ -212,7 +212,7 @@ def test_it_draws(tmp_path):
     scene = coupler()
     answer = el.stability_edges(scene.system(), (77.5, 105.0))
     ax = sensitivities(scene, answer, ["links.crank", "bending_stiffness"]).plot()
-    assert len(ax.patches) == 2 and "for one per cent" in ax.get_xlabel()
+    assert len(ax.patches) == 2 and "for 1 % more" in ax.get_xlabel()
 
 
 SYSTEM = coupler().system()

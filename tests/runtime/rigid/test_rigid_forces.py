@@ -160,7 +160,8 @@ def test_files_and_copies(tmp_path) -> None:
     assert told["passed"] and "values" not in told
     rows = found.save(tmp_path / "f.csv").read_text().splitlines()
     assert len(rows) == 7
-    assert {"theta2", "x12", "torque", "shaking_moment", "error"} <= set(rows[0].split(","))
+    names = {"theta2 [rad]", "x12 [N]", "torque [N m]", "shaking_moment [N m]", "error"}
+    assert names <= set(rows[0].split(","))
     with np.load(found.save(tmp_path / "f.npz")) as stored:
         np.testing.assert_array_equal(stored["y41"], found["y41"])
     copy = pickle.loads(pickle.dumps(found))

@@ -28,7 +28,7 @@ def _bands(options: argparse.Namespace) -> int:
     r"""Worst case and spread of an answer within tolerances of any of a scene's numbers.
 
     elastolink tolerance-bands smith_1972_12_6_12_12 --of forces \
-        --set 'links.coupler=381 mm +- 0.1 mm' --plot bands.png
+        --set 'links.coupler=304.8 mm +- 0.1 mm' --plot bands.png
     elastolink tolerance-bands smith_1972_5152_sixteenth_inch --of edges --at 600:900:2rpm \
         --set 'follower.inertia=655e-6 kg*m**2 +- 2 %'
     """

@@ -132,7 +132,8 @@ def sensitivities(
         machine is a scene, its dotted keys, such as ``links.coupler``: what the scene gives stays
         as given, what follows from it follows.
     rtol : float
-        Wanted error of the derivatives by each number over the largest of them, 1e-12 to 1e-3.
+        Wanted error of the derivatives by each number over the largest of them, 1e-12 to 1e-3; of
+        a response curve they are as good as its motions.
 
     Returns
     -------

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -79,27 +80,41 @@ class Changes:
             pace = sign * speed[:, None] ** power
             whole = series_at(table, series)
             if power:
-                by_speed += power * pace / speed[:, None] * weights.effect(field, whole)
+                by_speed += power * pace / speed[:, None] * weights.effect(field, whole[None])[0]
+            # What is told of a sum's terms by their largest coefficient.
+            change, off = self._sizes[part]
             size = np.abs(pace) * weights.size(field, whole)
-            top = float(np.max(np.abs(series), initial=0.0)) or 1.0
-            for i, (slope, rough) in enumerate(
-                zip(self.slopes[part], self.rough[part], strict=True)
-            ):
-                change = float(np.max(np.abs(slope)))
-                if change:
-                    total[..., i] += pace * weights.effect(field, series_at(table, slope))
-                    # What is told of a sum's terms by their largest coefficient.
-                    bulk[..., i] += size * change / top
-                    gap = float(np.max(np.abs(slope - rough))) / top
-                    error[..., i] += size * (gap + np.finfo(float).eps / self.step[i])
+            bulk += size[..., None] * change
+            error += size[..., None] * off
+            slopes, moving = self.slopes[part], np.flatnonzero(change)
+            if moving.size:
+                moved = np.moveaxis(np.tensordot(table, slopes[moving], axes=(1, 1)), 1, 0)
+                found = weights.effect(field, moved)
+                total[..., moving] += pace[..., None] * np.moveaxis(found, 0, -1)
         fast = [i for i, name in enumerate(self.by) if name == SPEED]
         total[..., fast] = by_speed[..., None]
         bulk[..., fast] = np.abs(by_speed)[..., None]
         return Effect(total, error, bulk, by_speed)
 
+    @cached_property
+    def _sizes(self) -> Mapping[Part, tuple[Array, Array]]:
+        """By part the largest derivatives of a coefficient and their errors, over its size."""
+        found = {}
+        for part, series in self.parts.items():
+            top = float(_largest(series[None])[0]) or 1.0
+            change = _largest(self.slopes[part]) / top
+            gap = _largest(self.slopes[part] - self.rough[part]) / top
+            found[part] = change, gap + np.finfo(float).eps / self.step * (change > 0.0)
+        return found
+
     def table(self, angles: Array) -> Array:
         """Return the waves of the coefficients at angles [rad]."""
         return waves(self.harmonics, angles * (2.0 * np.pi / self.period))
+
+
+def _largest(series: Array) -> Array:
+    """Return the largest size of the coefficients of each of some series."""
+    return np.asarray(np.max(np.abs(series), axis=tuple(range(1, series.ndim)), initial=0.0))
 
 
 def series_at(table: Array, series: Array) -> Array:
@@ -133,15 +148,16 @@ def coefficient_changes(
         values = value + step * places
         if inner:
             # Not within its limits: a damping that is 0 goes below.
-            moved = [_parts(terms, one) for one in _scales(system, name, values)]
+            moved = _parts(terms, system.scales({**system.parameters, name: values}))
         else:
-            made = (with_number(machine, system, name, float(one)) for one in values)
-            moved = [_parts(_terms(one, theta), one.scales(one.parameters)) for one in made]
+            made = [with_number(machine, system, name, float(one)) for one in values]
+            each = [_parts(_terms(one, theta), one.scales(one.parameters)) for one in made]
+            moved = {part: np.stack([other[part] for other in each]) for part in parts}
         for unused, target in ((0, slopes), (1, rough)):
             weights = difference_weights(places, unused) / step
-            for part in parts:
-                table = np.stack([other[part] for other in moved])
-                target[part][i] = np.tensordot(weights, table - parts[part], axes=1)
+            for part, series in parts.items():
+                if moved[part].ndim > series.ndim:
+                    target[part][i] = np.tensordot(weights, moved[part] - series, axes=1)
     return Changes(names, number, steps, parts, slopes, rough, len(theta) // 2 - 1, system.period)
 
 
@@ -196,13 +212,6 @@ def with_number(
     return with_numbers(machine, {name: value}).linear_system()
 
 
-def _scales(system: LinearPeriodic, name: str, values: Array) -> Iterator[dict[str, ArrayLike]]:
-    """Return the monomials at each value of a parameter."""
-    scales = system.scales({**system.parameters, name: values})
-    for j in range(len(values)):
-        yield {key: np.broadcast_to(scale, values.shape)[j] for key, scale in scales.items()}
-
-
 # A part, the monomial that multiplies it, and its Fourier coefficients.
 _Terms = list[tuple[Part, str | None, Array]]
 
@@ -220,10 +229,13 @@ def _terms(system: LinearPeriodic, theta: Array) -> _Terms:
 
 
 def _parts(terms: _Terms, scales: Mapping[str, ArrayLike]) -> Parts:
-    """Return the Fourier coefficients of the parts of the equation, for values of the monomials."""
+    """Return the Fourier coefficients of the parts of the equation, for values of the monomials.
+
+    Monomials at several values, ``(k,)``, make the parts that they enter ``(k, 2 H + 1, ...)``.
+    """
     parts: Parts = {}
     for part, scale, series in terms:
-        value = series if scale is None else np.asarray(scales[scale]) * series
+        value = series if scale is None else np.multiply.outer(scales[scale], series)
         parts[part] = parts[part] + value if part in parts else value
     return parts
 

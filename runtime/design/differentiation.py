@@ -303,9 +303,19 @@ def _eigenvectors(equation: Equation, matrix: ComplexArray, count: int) -> _Rows
     values, vectors = _eigen(matrix)
     rows = _dual(vectors)
     shake, _ = _shaken(equation, matrix, count, values, rows, vectors)
-    return _Rows(
-        rows, vectors.mT, lambda found: (found.slope, found.error, found.bulk, shake[..., None])
-    )
+    # One of two conjugate multipliers tells of both.
+    kept = np.flatnonzero(np.any(values.imag >= 0.0, axis=0))
+    gaps = np.abs(values[:, :, None] - values[:, None, kept].conj())
+    place, other = np.arange(values.shape[1]), kept[np.argmin(gaps, axis=-1)]
+    source = np.searchsorted(kept, np.where(np.isin(place, kept), place, other))[..., None]
+
+    def finished(found: Effect) -> tuple[NDArray[Any], Array, Array, Array]:
+        slope = np.take_along_axis(found.slope, source, 1)
+        error, bulk = (np.take_along_axis(one, source, 1) for one in (found.error, found.bulk))
+        slope = np.where(np.isin(place, kept)[:, None], slope, slope.conj())
+        return slope, error, bulk, shake[..., None]
+
+    return _Rows(rows[:, kept], vectors.mT[:, kept], finished)
 
 
 def _dual(vectors: ComplexArray) -> ComplexArray:

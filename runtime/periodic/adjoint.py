@@ -13,17 +13,20 @@ That is the derivative of the matrix X as it is computed, so that it converges a
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .equation import Equation
-from .transition import Method, Segments, stages_of
+from .transition import Method, Segments, blocks, stages_of
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+# Entries of weights that are made at once: they stay in the cache.
+_BLOCK = 1 << 15
 
 
 @dataclass(frozen=True)
@@ -45,25 +48,35 @@ class FieldWeights:
     pairs: Mapping[str, tuple[tuple[ComplexArray, ComplexArray | None], ...]]
     shape: tuple[int, int]
 
-    def effect(self, field: str, change: Array) -> ComplexArray:
-        """Return what a change ``(nt, n, n)``, or ``(nt, n)`` of the force, does, ``(nb, k)``."""
-        total = np.zeros(self.shape[0] * self.shape[1], dtype=complex)
-        for left, right in self.pairs.get(field, ()):
-            if right is None:
-                total += np.einsum("tik,ti->k", left, change)
-            else:
-                # Real times complex in one product of real arrays.
-                moved = change @ right.view(float)
-                total += np.sum(left * moved.view(complex), axis=(0, 1))
-        return total.reshape(self.shape)
+    def effect(self, field: str, changes: Array) -> ComplexArray:
+        """Return what changes do, ``(c, nb, k)``.
+
+        They are ``(c, nt, n, n)``, or ``(c, nt, n)`` of the force.
+        """
+        return self._summed(field, changes, lambda values: values).reshape(-1, *self.shape)
 
     def size(self, field: str, change: Array) -> Array:
         """Return what all terms of the sums add up to without signs, ``(nb, k)``."""
-        total = np.zeros(self.shape[0] * self.shape[1])
+        return self._summed(field, np.abs(change)[None], np.abs).real.reshape(self.shape)
+
+    def _summed(
+        self, field: str, changes: Array, of: Callable[[ComplexArray], NDArray[Any]]
+    ) -> ComplexArray:
+        """Return sums over the nodes of changes between vectors, or their sizes, ``(c, nb k)``."""
+        count, nodes = changes.shape[:2]
+        total = np.zeros((count, self.shape[0] * self.shape[1]), dtype=complex)
+        together = max(1, _BLOCK // (changes[0, 0].size * total.shape[1]))
         for left, right in self.pairs.get(field, ()):
-            moved = np.abs(change)[..., None] if right is None else np.abs(change) @ np.abs(right)
-            total += np.sum(np.abs(left) * moved, axis=(0, 1))
-        return total.reshape(self.shape)
+            for begin in range(0, nodes, together):
+                some = slice(begin, begin + together)
+                entries = of(left[some])
+                if right is not None:
+                    entries = entries[:, :, None] * of(right[some])[:, None]
+                flat = changes[:, some].reshape(count, -1)
+                # Real times complex in one product of real arrays.
+                table = entries.reshape(flat.shape[1], -1).astype(complex, copy=False)
+                total += (flat @ table.view(float)).view(complex)
+        return total
 
 
 def field_weights(
@@ -99,7 +112,8 @@ def field_weights(
     flat = np.moveaxis(slopes, 1, 0).reshape(count, shape[0], way.stages * n, -1)
     slope = (before @ flat.mT).reshape(count, *shape, way.stages, n)
     place = before[..., None, :n] + h * (way.a @ slope)
-    load, momentum = _adjoint(equation, way, left, h, after)
+    solved = [_adjoint(equation, way, left[i], h, after[i]) for i in blocks(equation, way, count)]
+    load, momentum = map(np.concatenate, zip(*solved, strict=True))
 
     def by_node(values: ComplexArray) -> ComplexArray:
         """Return vectors in unscaled coordinates by node, ``(nt, n, nb k)``."""
@@ -123,24 +137,24 @@ def _adjoint(
     equation: Equation, way: Method, left: Array, h: float, after: ComplexArray
 ) -> tuple[ComplexArray, ComplexArray]:
     """Return lambda and mu of rows at the right ends, ``(segments, nb, k, s, n)`` each."""
-    n, s = equation.size, way.stages
+    n, s, k = equation.size, way.stages, after.shape[2]
     stages = stages_of(equation, left, h, way)
     end = way.b @ way.inverse
-    row_q, row_p = (
-        np.moveaxis(after[..., part], 0, 1).mT[:, :, None] for part in (slice(n), slice(n, 2 * n))
-    )
-    # Indices: member, segment, coordinate, node, functional.
-    right = h * way.b[:, None] * np.moveaxis(row_q, 2, 3)
-    right = right + end[:, None] * (stages.at_nodes["mass"] @ row_p)
+    # Indices: member, segment, functional (real parts, then imaginary), coordinate, node.
+    parts = np.concatenate([after.real, after.imag], axis=2).swapaxes(0, 1)
+    row_p = np.ascontiguousarray(parts[..., n : 2 * n])
+    shape = (*row_p.shape, s)
+
+    def at_nodes(field: str) -> Array:
+        by_row = stages.at_nodes[field].reshape(*shape[:2], n * s, n)
+        return np.asarray(end * (row_p @ by_row.mT).reshape(shape))
+
+    right = at_nodes("mass") + h * way.b * parts[..., :n, None]
     if "gyroscopic" in stages.at_nodes:
-        through = end[:, None] * (stages.at_nodes["gyroscopic"] @ row_p)
-        right = right + way.a.T @ through
-    flat = right.reshape(*right.shape[:2], n * s, -1)
-    parts = np.concatenate([flat.real, flat.imag], axis=-1)
-    real, imaginary = np.split(np.linalg.solve(stages.columns, parts), 2, axis=-1)
+        right += at_nodes("gyroscopic") @ way.a
     # Equations are (node, coordinate).
-    solved = (real + 1j * imaginary).reshape(*flat.shape[:2], s, n, -1)
-    load = np.moveaxis(solved, (1, 4), (0, 2))
-    momentum = end[:, None] * after[..., None, n : 2 * n]
-    momentum = momentum - way.inverse.T @ load
+    flat = right.reshape(*shape[:3], n * s)
+    solved = np.linalg.solve(stages.columns, flat.mT).mT.reshape(*shape[:3], s, n)
+    load = (solved[:, :, :k] + 1j * solved[:, :, k:]).swapaxes(0, 1)
+    momentum = end[:, None] * after[..., None, n : 2 * n] - way.inverse.T @ load
     return load, momentum

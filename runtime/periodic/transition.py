@@ -149,14 +149,18 @@ def segments_from(
     nb, n, ns = len(equation.speed), equation.size, len(left)
     m = 2 * n + equation.forced
     whole = Segments(np.empty((nb, ns, m, m)), np.empty((nb, ns, s, n, m)) if slopes else None)
-    together = max(1, _BLOCK // ((s * n) ** 2 * nb))
-    for begin in range(0, ns, together):
-        part = slice(begin, begin + together)
+    for part in blocks(equation, way, ns):
         ends, unknown = _solved(equation, left[part], h, way)
         whole.maps[:, part] = ends
         if whole.slopes is not None:
             whole.slopes[:, part] = unknown
     return whole
+
+
+def blocks(equation: Equation, way: Method, segments: int) -> list[slice]:
+    """Return which segments are solved at once, so that their equations stay in the cache."""
+    together = max(1, _BLOCK // ((way.stages * equation.size) ** 2 * len(equation.speed)))
+    return [slice(begin, begin + together) for begin in range(0, segments, together)]
 
 
 @dataclass(frozen=True)

@@ -135,8 +135,11 @@ def test_estimates_of_sweeps_hold_and_are_not_idle(rng):
         found = sweep_response(system, (speed, reached), rise, "up", kicks=0.0, rtol=1e-5)
     except el.BadInput:
         return None
-    # The motion that it begins with is the one near rest, as DOP853 finds it.
-    state, multipliers = shot(system, speed, np.zeros(2 * n))
+    # The motion that it begins with is the one near rest, where DOP853 finds it from there.
+    try:
+        state, multipliers = shot(system, speed, np.zeros(2 * n))
+    except ArithmeticError:
+        return None
     if max(abs(multipliers)) > 0.99 or len(found.speed) != 1:
         return None
     path = marched(system, speed, state, 1, samples=2048, rise=rise)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import LinearRangeWarning, Problem, bad, refuse
-from ..core.families import Array, LinearPeriodic
+from ..core.families import Array, LinearPeriodic, Nonlinear
 from ..core.inputs import names_in_a_row, require_between, require_kind
 from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.results import Check, Result, provenance
@@ -19,7 +19,12 @@ from ..frequencies import critical_speeds
 from ..frequencies.response_maxima import response_maxima
 from ..periodic import steady_state
 from ..stability import stability_edges
-from .measured import Point, checked_points
+from .measured import Computed, Point, checked_points, nearest
+
+if TYPE_CHECKING:
+    from .measured_branches import BranchRun
+
+Machine: TypeAlias = "LinearPeriodic | Nonlinear"
 
 _MOST, _WHOLE = 40, 3.5  # looks of a fit, and how far the logarithms may move
 # Standard error, relative, beyond which a number is not decided; the part of the largest effect
@@ -98,19 +103,21 @@ class Identification(Result):
 
 
 def identify(
-    system: LinearPeriodic, points: Sequence[Point], unknown: Sequence[str], *, window: float = 0.15
+    system: Machine, points: Sequence[Point], unknown: Sequence[str], *, window: float = 0.15
 ) -> Identification:
     """Fit numbers of a machine to measured points by least squares.
 
     Speeds of resonance are maxima of the steady deflection (:func:`critical_speeds`, ``response``),
     ends of unstable regions those of :func:`stability_edges`, deflections those of
-    :func:`steady_state`.  To begin with each point is paired with the computed one of its kind that
-    is nearest; then that is followed by its modes and order.  The logarithms of the numbers are
+    :func:`steady_state`.  By a nonlinear equation, jumps are folds of :func:`response_curve` at
+    which a stable motion of one revolution ends, ends of unstable ranges its doublings.  To begin
+    with each point is paired with the computed one of its kind that is nearest; then that is
+    followed, by its modes and order or along with the numbers.  The logarithms of the numbers are
     fitted, so that they stay positive.
 
     Parameters
     ----------
-    system : LinearPeriodic
+    system : LinearPeriodic or Nonlinear
         With values to start from; forced and damped where resonances or deflections are measured.
     points : sequence of Point
         Measured points, for example of :func:`read_points`.  Standard deviations are those that
@@ -140,11 +147,13 @@ def identify(
     LinearRangeWarning
         If a deflection passes 5 % of the length with the values.
     """
-    require_kind("system", system, LinearPeriodic, "take the .system() of a linear scene")
+    fix = "take the .system() of a scene of one flexible link or of beams"
+    require_kind("system", system, (LinearPeriodic, Nonlinear), fix)
     measured = checked_points(points)
     names = _checked_names(system, unknown)
     require_between("window", window, 1e-3, 0.9, "try 0.15")
-    shown = system.shape or system.moving_shape
+    linear = system if isinstance(system, LinearPeriodic) else None
+    shown = linear and (linear.shape or linear.moving_shape)
     if shown is None and any(point.kind == "deflection" for point in measured):
         fix = "fit speeds alone"
         raise bad("points", "deflections", "a system of one flexible link, by its shapes", fix)
@@ -163,7 +172,8 @@ def identify(
 
     residuals(np.zeros(len(names)))  # what has no counterpart is refused
     # What is computed for a structure of beams is good to 1e-6, else to 1e-9.
-    fit = _Fit(residuals, 1e-4 if system.structure is None else 3e-3, all(told))
+    beams = linear is not None and linear.structure is not None
+    fit = _Fit(residuals, 3e-3 if beams else 1e-4, all(told))
     speeds = np.array([point.kind != "deflection" for point in measured])
     fitted = np.zeros(len(names))
     # A deflection beside a resonance tells the way only where that all but stands at its place.
@@ -286,7 +296,7 @@ class _Fit:
         return np.asarray((ahead - behind) / width)
 
 
-def _checked_names(system: LinearPeriodic, unknown: Sequence[str]) -> tuple[str, ...]:
+def _checked_names(system: Machine, unknown: Sequence[str]) -> tuple[str, ...]:
     names = names_in_a_row("unknown", unknown)
     problems = []
     if not names or len(set(names)) < len(names):
@@ -388,38 +398,6 @@ class _Spread:
 _NEAR, _EXPECTED, _BLUNT = (0.003, 0.001, 0.0003), 6, 1e-3
 
 
-@dataclass(frozen=True)
-class Computed:
-    """What is computed at k points.
-
-    Attributes
-    ----------
-    values, errors : ndarray, shape (k,)
-        Speeds [rad/s] and deflections [m], NaN where there is none; and their errors.
-    checks : mapping
-        The worst check of each name.
-    """
-
-    values: Array
-    errors: Array
-    checks: Mapping[str, Check] = field(default_factory=dict)
-
-
-@dataclass
-class _Found:
-    """What is computed, as it is filled in."""
-
-    values: Array
-    errors: Array
-    checks: dict[str, Check] = field(default_factory=dict)
-
-    def add(self, checks: Mapping[str, Check]) -> None:
-        for name, check in checks.items():
-            known = self.checks.get(name)
-            if known is None or check.value * known.limit > known.value * check.limit:
-                self.checks[name] = check
-
-
 class Machines:
     """Measured points computed with other numbers, each on the machine as it was run.
 
@@ -428,38 +406,47 @@ class Machines:
     """
 
     def __init__(
-        self, system: LinearPeriodic, names: tuple[str, ...], points: Sequence[Point], window: float
+        self, system: Machine, names: tuple[str, ...], points: Sequence[Point], window: float
     ) -> None:
         runs: dict[tuple[tuple[str, float], ...], list[int]] = {}
         for i, point in enumerate(points):
             runs.setdefault(tuple(sorted(point.given.items())), []).append(i)
         self.names, self.size = names, len(points)
         self._runs = [
-            _Run(_run_with(system, names, given, at[0]), [(i, points[i]) for i in at], window)
+            _run_of(_run_with(system, names, given, at[0]), [(i, points[i]) for i in at], window)
             for given, at in runs.items()
         ]
 
     def __call__(self, values: Array, quiet: bool = True) -> Computed:
         """Return what is computed with values of the named parameters."""
         numbers = dict(zip(self.names, values.tolist(), strict=True))
-        found = _Found(np.full(self.size, np.nan), np.full(self.size, np.nan))
+        found = Computed(np.full(self.size, np.nan), np.full(self.size, np.nan))
         with warnings.catch_warnings():
             if quiet:  # a fit passes values that are not those of the machine
                 warnings.simplefilter("ignore", LinearRangeWarning)
             for run in self._runs:
                 run.fill(found, numbers)
-        return Computed(found.values, found.errors, found.checks)
+        return found
 
 
 def _run_with(
-    system: LinearPeriodic, names: tuple[str, ...], given: tuple[tuple[str, float], ...], place: int
-) -> LinearPeriodic:
+    system: Machine, names: tuple[str, ...], given: tuple[tuple[str, float], ...], place: int
+) -> Machine:
     """Return the system with what the machine was run with, refused where that is not known."""
     wrong = [name for name, _ in given if name in names or name not in system.parameters]
     if wrong:
         known = f"one of {sorted(set(system.parameters) - set(names))}: known or unknown, not both"
         raise bad(f"point {place + 1}", repr(wrong[0]), known, "correct the column")
     return system.with_parameters(**dict(given)) if given else system
+
+
+def _run_of(system: Machine, points: list[tuple[int, Point]], window: float) -> _Run | BranchRun:
+    if isinstance(system, LinearPeriodic):
+        return _Run(system, points, window)
+    # What stays in the linear range imports nothing of this.
+    from .measured_branches import BranchRun
+
+    return BranchRun(system, points, window)
 
 
 class _Run:
@@ -469,10 +456,15 @@ class _Run:
         self, system: LinearPeriodic, points: list[tuple[int, Point]], window: float
     ) -> None:
         self.system, self.points, self.window = system, points, window
+        for i, point in points:
+            if point.kind.startswith("jump"):
+                expected = "no jump of a linear machine"
+                fix = "take the scene with model.formulation 'inextensible'"
+                raise bad(f"point {i + 1}", point.kind, expected, fix)
         # By point: mode and ratio of a resonance, the name of a region.
         self._paired: dict[int, Any] = {}
 
-    def fill(self, found: _Found, numbers: Mapping[str, float]) -> None:
+    def fill(self, found: Computed, numbers: Mapping[str, float]) -> None:
         """Fill in what is computed with other numbers."""
         system = self.system.with_parameters(**numbers)
         if at := self._of("unstable from", "unstable to"):
@@ -490,7 +482,7 @@ class _Run:
     def _of(self, *kinds: str) -> list[tuple[int, Point]]:
         return [(i, point) for i, point in self.points if point.kind in kinds]
 
-    def _ends(self, system: LinearPeriodic, at: list[tuple[int, Point]], found: _Found) -> None:
+    def _ends(self, system: LinearPeriodic, at: list[tuple[int, Point]], found: Computed) -> None:
         speeds = [point.speed for _, point in at]
         span = min(speeds) * (1.0 - self.window), max(speeds) * (1.0 + self.window)
         edges = stability_edges(system, span)
@@ -499,7 +491,7 @@ class _Run:
             ends = edges.lower if point.kind == "unstable from" else edges.upper
             seen = np.flatnonzero(np.isfinite(ends) & (edges.lower != edges.upper)).tolist()
             if i not in self._paired:
-                k = seen[self._nearest(i, point, ends[seen].tolist())]
+                k = seen[nearest(i, point, ends[seen].tolist(), self.window)]
                 self._paired[i] = edges.names[k]
             named = [k for k in seen if edges.names[k] == self._paired[i]]
             if named:
@@ -507,7 +499,7 @@ class _Run:
                 found.values[i], found.errors[i] = ends[k], edges.error[k]
 
     def _resonances(
-        self, system: LinearPeriodic, at: list[tuple[int, Point]], found: _Found
+        self, system: LinearPeriodic, at: list[tuple[int, Point]], found: Computed
     ) -> None:
         for i, point in at:
             if i not in self._paired:
@@ -532,25 +524,8 @@ class _Run:
         rows = [*zip(places.tolist(), near.mode[order].tolist(), strict=True)]
         rows += [*zip(scanned.speed.tolist(), scanned.mode.tolist(), strict=True)]
         rows = [row for row in rows if np.isfinite(row[0])]
-        place, mode = rows[self._nearest(i, point, [place for place, _ in rows])]
+        place, mode = rows[nearest(i, point, [place for place, _ in rows], self.window)]
         return mode, place / float(near.mean_frequency[mode - 1])
-
-    def _nearest(self, i: int, point: Point, speeds: list[float]) -> int:
-        """Return which speed is nearest to that of a point; refused where it is not clear."""
-        off = np.abs(np.array(speeds) - point.speed)
-        order = np.argsort(off, kind="stable")
-        words = f"{point.kind} at {point.speed * RPM:.6g} rpm"
-        fix = "start from other values, or change the window"
-        if not len(off) or off[order[0]] > self.window * point.speed:
-            expected = f"a computed one within {100 * self.window:g} % of the speed"
-            refuse([Problem(f"point {i + 1}", words, expected, fix)])
-        first = int(order[0])
-        others = [k for k in order.tolist() if abs(speeds[k] - speeds[first]) > 1e-6 * point.speed]
-        if others and off[first] > 0.5 * off[others[0]]:
-            both = " and ".join(f"{speeds[k] * RPM:.6g}" for k in (first, others[0]))
-            found = f"{words}, and computed ones at {both} rpm"
-            refuse([Problem(f"point {i + 1}", found, "one that is clearly the nearest", fix)])
-        return first
 
 
 def _maxima(system: LinearPeriodic, expected: Array) -> tuple[Array, Array]:

@@ -12,11 +12,20 @@ from pathlib import Path
 from typing import Any
 
 from ..core.errors import BadInput, Problem, bad, refuse
+from ..core.families import Array
 from ..core.inputs import is_finite
 from ..core.plotting import RPM, Axes
+from ..core.results import Check
 from ..core.units import DIMENSIONS, to_si
 
-KINDS = ("resonance", "unstable from", "unstable to", "deflection")
+KINDS = (
+    "resonance",
+    "unstable from",
+    "unstable to",
+    "deflection",
+    "jump rising",
+    "jump falling",
+)
 # Columns of a file by their dimension; None for the one that holds words.
 _COLUMNS: Mapping[str, str | None] = {
     "kind": None,
@@ -26,7 +35,8 @@ _COLUMNS: Mapping[str, str | None] = {
     "deflection deviation": "length",
 }
 _COLOUR = "#5e3c99"
-_STYLES = dict(zip(KINDS, (":", "--", "-.", "-"), strict=True))
+_LINES: tuple[Any, ...] = (":", "--", "-.", "-", (0, (4, 1)), (0, (1, 1)))
+_STYLES = dict(zip(KINDS, _LINES, strict=True))
 _FORM = "kind, speed [rpm], deflection [mm], speed deviation [rpm], deflection deviation [mm]"
 
 
@@ -39,7 +49,8 @@ class Point:
     kind : str
         ``"resonance"``: the speed at which the steady deflection is largest; ``"unstable from"``
         and ``"unstable to"``: a speed at which an unstable region begins or ends, upwards;
-        ``"deflection"``: the largest steady deflection at a speed.
+        ``"deflection"``: the largest steady deflection at a speed; ``"jump rising"`` and ``"jump
+        falling"``: a speed at which the motion jumps as the speed rises or falls.
     speed : float
         Crank speed [rad/s].
     deflection : float, optional
@@ -176,6 +187,48 @@ def _point(
     except BadInput as refused:
         problems = (replace(p, where=f"{where}, {p.where}") for p in refused.problems)
         raise BadInput(*problems) from refused
+
+
+@dataclass
+class Computed:
+    """What is computed at k points, as it is filled in.
+
+    Attributes
+    ----------
+    values, errors : ndarray, shape (k,)
+        Speeds [rad/s] and deflections [m], NaN where there is none; and their errors.
+    checks : mapping
+        The worst check of each name.
+    """
+
+    values: Array
+    errors: Array
+    checks: dict[str, Check] = field(default_factory=dict)
+
+    def add(self, checks: Mapping[str, Check]) -> None:
+        """Keep the worse of the checks of each name."""
+        for name, check in checks.items():
+            known = self.checks.get(name)
+            if known is None or check.value * known.limit > known.value * check.limit:
+                self.checks[name] = check
+
+
+def nearest(i: int, point: Point, speeds: Sequence[float], window: float) -> int:
+    """Return which speed is nearest to that of point ``i``; refused where it is not clear."""
+    off = [abs(speed - point.speed) for speed in speeds]
+    order = sorted(range(len(off)), key=off.__getitem__)
+    words = f"{point.kind} at {point.speed * RPM:.6g} rpm"
+    fix = "start from other values, or change the window"
+    if not off or off[order[0]] > window * point.speed:
+        expected = f"a computed one within {100 * window:g} % of the speed"
+        raise bad(f"point {i + 1}", words, expected, fix)
+    first = order[0]
+    others = [k for k in order if abs(speeds[k] - speeds[first]) > 1e-6 * point.speed]
+    if others and off[first] > 0.5 * off[others[0]]:
+        both = " and ".join(f"{speeds[k] * RPM:.6g}" for k in (first, others[0]))
+        found = f"{words}, and computed ones at {both} rpm"
+        raise bad(f"point {i + 1}", found, "one that is clearly the nearest", fix)
+    return first
 
 
 def draw_points(ax: Axes, points: Iterable[Point]) -> None:

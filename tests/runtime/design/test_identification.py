@@ -229,6 +229,97 @@ def test_what_cannot_be_fitted_is_refused(change, words):
     assert words in str(refused.value)
 
 
+RIG = "smith_1972_101104_thirtysecond_inch"
+LBF_IN_S2 = 0.112984829  # kg m^2, to nine digits
+# Section 9.5.3 of Smith (1972): what is seen, the speed [rpm], the inertia [lbf in s^2].
+QUOTED = (
+    ("jump rising", 360.0, 0.0058),
+    ("unstable from", 460.0, 0.0058),
+    ("unstable to", 480.0, 0.0058),
+    ("jump rising", 350.0, 0.00783),
+    ("jump rising", 360.0, 0.0079),
+    ("unstable from", 450.0, 0.0079),
+)
+
+
+def bent(formulation: str = "inextensible", inertia: float = 0.0058, **changes: float):
+    """Return Smith's rig whose coupler bends most, by its measured decrement."""
+    numbers = {
+        "model.formulation": formulation,
+        "model.modes": 1,
+        "coupler.damping_ratio": 0.2 / (2.0 * np.pi),
+        "follower.inertia": inertia * LBF_IN_S2,
+    }
+    return el.load_scene(RIG, numbers).system().with_parameters(**changes)
+
+
+def seen(system) -> dict[str, float]:
+    """Return what is seen, as a curve shows it: its lowest folds and its doublings."""
+    curve = el.response_curve(system, "speed", (330.0 * RPM, 500.0 * RPM))
+    folds, doublings = (
+        np.sort(curve.special_value[[name == kind for name in curve.special]])
+        for kind in ("fold", "doubling")
+    )
+    assert len(doublings) == 2
+    names = ("jump falling", "jump rising", "unstable from", "unstable to")
+    return dict(zip(names, [*folds[:2].tolist(), *doublings.tolist()], strict=True))
+
+
+@pytest.mark.slow
+def test_planted_stiffness_and_damping_are_found_from_jumps_and_doublings():
+    system, names = bent(), (STIFFNESS, "damping")
+    points = [Point(kind, speed) for kind, speed in seen(system).items()]
+    found = identify(started(system, **dict(zip(names, (1.02, 0.95), strict=True))), points, names)
+    wanted = [system.parameters[name] for name in names]
+    assert np.all(found.decided)
+    assert np.abs(found.value / wanted - 1.0) == pytest.approx(0.0, abs=1e-7)
+    assert np.all(np.abs(found.value / wanted - 1.0) <= found.error + 1e-9)
+
+
+@pytest.mark.slow
+def test_chapter_nine_wants_the_drawings_stiffness_by_the_nonlinear_equation_alone():
+    """By jumps and doublings the coupler is as stiff as drawn, by the linear equation a tenth less.
+
+    What the text calls resonance is a jump by the one, the largest deflection by the other.
+    """
+    points = [
+        Point(kind, speed * RPM, given={INERTIA: inertia * LBF_IN_S2})
+        for kind, speed, inertia in QUOTED
+    ]
+    found = identify(bent(), points, [STIFFNESS])
+    assert found.value[0] / found.start[0] == pytest.approx(1.0223, abs=5e-4)
+    assert found.deviation[0] / found.value[0] == pytest.approx(0.016, abs=5e-4)
+    peaks = [replace(p, kind=p.kind.replace("jump rising", "resonance")) for p in points]
+    linear = identify(bent("complete"), peaks, [STIFFNESS])
+    assert linear.value[0] / linear.start[0] == pytest.approx(0.8989, abs=5e-4)
+    assert linear.deviation[0] / linear.value[0] == pytest.approx(0.020, abs=5e-4)
+    assert linear.scatter > 1.2 * found.scatter
+
+    # Squares of curves that are made anew, beside the place: least there, as a parabola tells.
+    def squares(factor: float) -> float:
+        stiffness = factor * float(found.value[0])
+        curves = {
+            inertia: seen(bent(inertia=inertia, **{STIFFNESS: stiffness}))
+            for _, _, inertia in QUOTED
+        }
+        gaps = [1.0 - curves[inertia][kind] / (speed * RPM) for kind, speed, inertia in QUOTED]
+        return float(np.sum(np.square(gaps)))
+
+    sides = [squares(factor) for factor in (0.99, 1.0, 1.01)]
+    assert sides[1] / 5.0 == pytest.approx(found.scatter**2, rel=1e-7)
+    vertex = 0.5 * (sides[0] - sides[2]) / (sides[0] - 2.0 * sides[1] + sides[2])
+    assert abs(vertex) * 0.01 < 2e-4
+
+
+def test_what_one_equation_does_not_know_is_refused():
+    with pytest.raises(BadInput, match="point 1: found jump rising; expected no jump of a linear"):
+        identify(coupler(), [Point("jump rising", 60.0)], [STIFFNESS])
+    with pytest.raises(BadInput, match="point 1: found resonance; expected one of"):
+        identify(bent(), [Point("resonance", 36.0)], [STIFFNESS])
+    with pytest.raises(BadInput, match="expected a computed one within 2 % of the speed"):
+        identify(bent(), [Point("jump rising", 44.0)], [STIFFNESS], window=0.02)
+
+
 @pytest.mark.parametrize(
     "wrong",
     [

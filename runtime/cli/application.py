@@ -26,7 +26,7 @@ from .options import HelpFormatter, add, picture
 # Files of subcommands, in the order of the help.
 _GROUPS = (
     *("scenes", "linkages", "tolerances", "forces", "response", "nonlinear"),
-    *("beams", "stability", "boundaries", "diagnosis", "stabilising"),
+    *("beams", "stability", "boundaries", "studies", "diagnosis", "stabilising"),
     *("measured", "bands", "certified", "proofs", "report"),
 )
 _BAD_INPUT = 2

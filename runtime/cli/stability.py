@@ -176,7 +176,7 @@ def _chart(options: argparse.Namespace) -> int:
     from ..core.workers import in_order
 
     name = "coupler frequency" if tuple(scene.get("model.flexible", ())) == ("coupler",) else None
-    with _workers(count) as executor:
+    with pool_of(count) as executor:
         chart = stability.stability_chart(
             system,
             x=x,
@@ -301,14 +301,7 @@ class _Axes:
 
 def _check_scale(options: argparse.Namespace) -> int:
     """Refuse options that do not go together, and return the number of processes."""
-    count = 1
-    if options.workers is not None:
-        from ..core.workers import check_workers
-
-        text = options.workers.strip()
-        count = check_workers(
-            int(text) if text.isdecimal() and len(text) < 10 else text, "--workers"
-        )
+    count = worker_count(options)
     if options.store is None:
         opt.refuse_unused(options, ("estimate",), "--store PATH")
         return count
@@ -319,7 +312,17 @@ def _check_scale(options: argparse.Namespace) -> int:
     return count
 
 
-def _workers(count: int) -> AbstractContextManager[Executor | None]:
+def worker_count(options: argparse.Namespace) -> int:
+    """Return the number of processes of ``--workers``, 1 without it."""
+    if options.workers is None:
+        return 1
+    from ..core.workers import check_workers
+
+    text = options.workers.strip()
+    return check_workers(int(text) if text.isdecimal() and len(text) < 10 else text, "--workers")
+
+
+def pool_of(count: int) -> AbstractContextManager[Executor | None]:
     """Open as many processes; none for one."""
     return nullcontext() if count == 1 else sweeps.process_pool(count)
 
@@ -341,7 +344,7 @@ def _stored(
         found = sweeps.estimate_sweep(*what, options=fixed, workers=count)
         return opt.say(options, vars(found), str(found))
     shown = opt.progress(options)
-    with _workers(count) as pool:
+    with pool_of(count) as pool:
         told = {"executor": pool, "store": options.store, "progress": shown}
         chart = sweeps.sweep(*what, options=fixed, **told)
     left = 100.0 * float((chart["undecided"] == 1).mean())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -12,7 +11,13 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.errors import LINEAR_RANGE, LinearRangeWarning, Problem, RedundantConstraints, bad
+from ..core.errors import (
+    LINEAR_RANGE,
+    Problem,
+    RedundantConstraints,
+    bad,
+    warn_of_large_deflection,
+)
 from ..core.families import Constrained, Guard
 from ..core.families.multipliers import check_rank, scaling
 from ..core.inputs import numbers, require_kind
@@ -371,12 +376,7 @@ def constrained_motion(
         return found
     reached = linear_range(system.watch, found.q, found.time)
     if not reached.passed:
-        warnings.warn(
-            f"deflection reaches {reached.value:.3g} of the link's length; small deflections "
-            f"were assumed, to about {LINEAR_RANGE}: lower the load or the speed",
-            LinearRangeWarning,
-            stacklevel=2,
-        )
+        warn_of_large_deflection(reached.value, "the link's length", "lower the load or the speed")
     return replace(found, checks={**found.checks, "linear range": reached})
 
 

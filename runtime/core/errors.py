@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import unicodedata
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 
 # Deflection over the length of its link beyond which linear equations are no longer believed.
@@ -104,6 +106,20 @@ def refuse(problems: Sequence[Problem]) -> None:
         raise BadInput(*problems)
 
 
+_beyond: ContextVar[list[float] | None] = ContextVar("beyond", default=None)
+
+
+@contextmanager
+def deflections_beyond() -> Iterator[list[float]]:
+    """Collect the deflections of which this thread would warn here, in place of the warnings."""
+    found: list[float] = []
+    token = _beyond.set(found)
+    try:
+        yield found
+    finally:
+        _beyond.reset(token)
+
+
 def warn_of_large_deflection(
     largest: float | None,
     length: str = "the reference length",
@@ -117,6 +133,9 @@ def warn_of_large_deflection(
     ``nonlinear``: the formulation, if any, in which the same scene has nonlinear equations.
     """
     if largest is not None and largest > LINEAR_RANGE:
+        if (beyond := _beyond.get()) is not None:
+            beyond.append(largest)
+            return
         if nonlinear:
             fix += f"; formulation '{nonlinear}' goes on: `elastolink response`, docs/nonlinear.md"
         warnings.warn(

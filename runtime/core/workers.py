@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import pickle
+import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import (
@@ -14,7 +15,8 @@ from concurrent.futures import (
     ThreadPoolExecutor,
     wait,
 )
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from importlib import import_module
 from itertools import islice
 from typing import Any
 
@@ -45,14 +47,12 @@ def run_on(
         return
     here = isinstance(executor, ThreadPoolExecutor)
     given = (work,) if here else (_call, _pickled(work))
-    # Dask's executor does not tell how many workers it has.
-    count = getattr(executor, "_max_workers", None) or os.cpu_count() or 1
     submit: Any = executor.submit
     waiting: dict[Future[Any], int] = {}
     try:
         while True:
             # Two pieces for each worker: one being done and one waiting.
-            for number, item in islice(queue, 2 * int(count) - len(waiting)):
+            for number, item in islice(queue, max(0, 2 * at_once(executor) - len(waiting))):
                 with _refusals(of=RuntimeError):
                     waiting[submit(*given, item)] = number
             if not waiting:
@@ -66,6 +66,15 @@ def run_on(
     finally:
         for future in waiting:
             future.cancel()
+
+
+def at_once(executor: Executor) -> int:
+    """Return how many items an executor does at once; workers of a cluster come and go."""
+    count = getattr(executor, "_max_workers", None)
+    client = getattr(executor, "_client", None)
+    if not count and client is not None:  # Dask's
+        count = sum(client.nthreads().values())
+    return int(count or os.cpu_count() or 1)
 
 
 def in_order(executor: Executor) -> Callable[..., Iterable[Any]]:
@@ -116,9 +125,26 @@ def process_pool(workers: int) -> Iterator[Executor]:
     # The libraries read it as they load, in the processes that start here.
     with (
         environment(dict.fromkeys(THREADS, "1")),
-        ProcessPoolExecutor(max_workers=count, mp_context=context) as pool,
+        ProcessPoolExecutor(
+            max_workers=count, mp_context=context, initializer=_end_with_parent
+        ) as pool,
     ):
         yield pool
+
+
+def _end_with_parent() -> None:
+    """End this worker when the process that began it was killed: it would wait for ever."""
+    from multiprocessing import parent_process
+
+    parent = parent_process()
+    if parent is None:
+        return
+
+    def watch() -> None:
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 def check_workers(workers: object, where: str = "workers") -> int:
@@ -136,14 +162,31 @@ def _call(sent: bytes, item: Any) -> Any:
     return _kept.work(item)
 
 
+_UNPICKLABLE = (pickle.PicklingError, AttributeError, TypeError)
+
+
 def _pickled(work: Callable[[Any], Any]) -> bytes:
+    """Return work that a worker can read, where cloudpickle is installed also from a notebook."""
     try:
-        return pickle.dumps(work)
-    except (pickle.PicklingError, AttributeError, TypeError) as reason:
-        found = f"a subject or function that cannot be sent to another process ({reason})"
-        expected = "functions of a module, and systems and scenes made of such"
-        fix = "define them at the top of a file, or use a ThreadPoolExecutor"
-        raise bad("executor", found, expected, fix) from reason
+        sent, refusal = pickle.dumps(work), None
+    except _UNPICKLABLE as reason:
+        sent, refusal = b"", reason
+    # What a script or a notebook defines is a mere name to pickle, unknown to workers elsewhere.
+    if refusal is not None or b"__main__" in sent:
+        with suppress(ImportError, *_UNPICKLABLE):
+            return bytes(import_module("cloudpickle").dumps(work))
+    if refusal is None:
+        return sent
+    found = f"a subject or function that cannot be sent to another process ({refusal})"
+    expected = "functions of a module, and systems and scenes made of such"
+    fix = "define them at the top of a file, install cloudpickle, or use a ThreadPoolExecutor"
+    raise bad("executor", found, expected, fix) from refusal
+
+
+def _lost() -> tuple[type[Exception], ...]:
+    """Return what executors raise whose workers end, Dask's where a piece ends them repeatedly."""
+    told = getattr(sys.modules.get("distributed"), "KilledWorker", None)
+    return (BrokenExecutor,) if told is None else (BrokenExecutor, told)
 
 
 @contextmanager
@@ -151,7 +194,7 @@ def _refusals(of: type[RuntimeError] = BrokenExecutor) -> Iterator[None]:
     """Say in the toolkit's words that workers ended, or ``of`` an executor that takes no work."""
     try:
         yield
-    except BrokenExecutor as reason:
+    except _lost() as reason:
         raise WorkersLost(
             f"executor: found workers that ended ({reason}); expected them to live until the work "
             "is done; give fewer workers or smaller chunks, and the same store to go on from there"

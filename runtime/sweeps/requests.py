@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import pickle
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from functools import partial
 from pathlib import PurePath
-from types import BuiltinFunctionType, FunctionType, MethodType
+from types import BuiltinFunctionType, CodeType, FunctionType, MethodType
 from typing import Any, Protocol
 
 import numpy as np
@@ -17,8 +17,12 @@ from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.trigonometric import GOLDEN
 from .pieces import Grid
+from .tasks import Task
 
-FORMAT = 2
+FORMAT = 3
+
+# What a function may take from its file and is known by its content, beside records.
+_CONSTANTS = (bool, int, float, complex, str, tuple, list, dict, set, np.generic, np.ndarray)
 
 
 class _Hash(Protocol):
@@ -26,7 +30,7 @@ class _Hash(Protocol):
 
 
 def request_of(
-    task: str,
+    task: Task,
     subject: object,
     grid: Grid,
     options: Mapping[str, object],
@@ -47,7 +51,8 @@ def request_of(
     ]
     return {
         "format": FORMAT,
-        "task": task,
+        "task": task.name,
+        "function": None if task.function is None else digest(task.function),
         "subject": digest(subject),
         "values": axes,
         "pieces": list(grid.parts),
@@ -142,17 +147,56 @@ def _feed_callable(found: _Hash, value: Callable[..., Any], inner: tuple[int, ..
     elif isinstance(value, MethodType):
         _feed(found, (value.__func__.__qualname__, value.__self__), inner)
     elif isinstance(value, FunctionType):
-        code = value.__code__
         found.update(f"{value.__module__}.{value.__qualname__}".encode())
-        found.update(code.co_code)
-        _feed(found, tuple(c for c in code.co_consts if not hasattr(c, "co_code")), inner)
-        cells = tuple(cell.cell_contents for cell in value.__closure__ or ())
-        _feed(found, (cells, value.__defaults__, value.__kwdefaults__), inner)
+        _feed_function(found, value, inner)
+        for name, held in sorted(_reached(value).items()):
+            found.update(name.encode())
+            if isinstance(held, FunctionType):
+                _feed_function(found, held, inner)
+            else:
+                _feed(found, held, inner)
     elif isinstance(value, (type, BuiltinFunctionType, np.ufunc)):
         name = getattr(value, "__qualname__", "") or value.__name__
         found.update(f"{getattr(value, '__module__', '')}.{name}".encode())
     else:
         _feed_pickled(found, value)
+
+
+def _feed_function(found: _Hash, function: FunctionType, inner: tuple[int, ...]) -> None:
+    """Add what a function does by itself; not its docstring, nor where it stands in its file."""
+    for code in _codes(function.__code__):
+        found.update(code.co_code)
+        constants = (c for c in code.co_consts if not isinstance(c, CodeType))
+        told = tuple(c for c in constants if c is None or c != function.__doc__)
+        _feed(found, (code.co_names, code.co_varnames, code.co_freevars, told), inner)
+    cells = tuple(cell.cell_contents for cell in function.__closure__ or ())
+    _feed(found, (cells, function.__defaults__, function.__kwdefaults__), inner)
+
+
+def _codes(code: CodeType) -> Iterator[CodeType]:
+    """Yield the code of a function and of those inside it."""
+    yield code
+    for held in code.co_consts:
+        if isinstance(held, CodeType):
+            yield from _codes(held)
+
+
+def _reached(function: FunctionType) -> dict[str, object]:
+    """Return by name the functions and constants of its file that a function uses, near or far."""
+    found: dict[str, object] = {}
+    left = [function]
+    while left:
+        codes = _codes(left.pop().__code__)
+        for name in {name for code in codes for name in code.co_names} - {*found}:
+            held = function.__globals__.get(name)
+            if isinstance(held, FunctionType) and held.__module__ == function.__module__:
+                left.append(held)
+            elif not isinstance(held, _CONSTANTS) and (
+                isinstance(held, type) or not is_dataclass(held)
+            ):
+                continue
+            found[name] = held
+    return found
 
 
 def _feed_pickled(found: _Hash, value: object) -> None:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+import re
 import time
 import tracemalloc
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
+from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import BadInput, ElastolinkWarning, bad, warn_of_large_deflection
 from ..core.families import LinearPeriodic
-from ..core.inputs import require_mapping
+from ..core.inputs import require_mapping, require_whole
 from ..core.plotting import Axes, axes_or_new
 from ..core.progress import bar
 from ..core.results import Result, provenance
@@ -27,10 +29,13 @@ from ..scenes import Scene
 from .pieces import Grid, grid_of
 from .requests import request_of
 from .store import Store
-from .tasks import NAMED, AnyArray, Outputs, Piece, Task, blank, holding, task_of
+from .tasks import NAMED, AnyArray, Outputs, Piece, Task, blank, holding, scene_numbers, task_of
 
 if TYPE_CHECKING:
     import xarray
+
+
+_NUMBER = re.compile(r"-?\d+\.?\d*(?:e[-+]?\d+)?")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,6 +88,31 @@ class Sweep(Result):
             raise bad("sweep", f"output {name!r}", f"one of {sorted(self.outputs)}", fix)
         return self.outputs[name]
 
+    def point(self, place: int) -> dict[str, float]:
+        """Return the values along each axis at a place in the flattened grid, as of a failure.
+
+        Raises
+        ------
+        BadInput
+            If the grid has no such place.
+        """
+        shape = tuple(map(len, self.axes.values()))
+        at = require_whole("place", place, 0, prod(shape) - 1, "give one of the failures")
+        places = np.unravel_index(at, shape)
+        pairs = zip(self.axes.items(), places, strict=True)
+        return {name: float(values[k]) for (name, values), k in pairs}
+
+    def reasons(self) -> dict[str, tuple[int, ...]]:
+        """Return the places of failures by error, the most frequent first.
+
+        Errors that differ in their numbers alone stand under the first of them.
+        """
+        alike: dict[str, list[int]] = {}
+        for place, told in self.failures.items():
+            alike.setdefault(_NUMBER.sub("", told), []).append(place)
+        ordered = sorted(alike.values(), key=len, reverse=True)
+        return {self.failures[places[0]]: tuple(places) for places in ordered}
+
     def arrays(self) -> dict[str, AnyArray]:
         """Return the values of the axes, as ``axis_NAME``, and the outputs."""
         axes = {f"axis_{name}": values for name, values in self.axes.items()}
@@ -109,6 +139,15 @@ class Sweep(Result):
             name: (*names, *(f"{name}_{i}" for i in range(array.ndim - len(names))))
             for name, array in self.outputs.items()
         }
+
+    def _tables(self) -> dict[str, str]:
+        """Return the table of all points, with a column of errors where points have failed."""
+        if not self.failures:
+            return super()._tables()
+        shape = tuple(map(len, self.axes.values()))
+        told = np.array([self.failures.get(place, "") for place in range(prod(shape))])
+        outputs = {"failure": told.reshape(shape), **self.outputs}
+        return replace(self, outputs=outputs, failures={})._tables()
 
     def _own_units(self) -> dict[str, str]:
         return {"axis_speed": "rad/s"}
@@ -152,6 +191,8 @@ class Sweep(Result):
             ax.plot(values[0], shown.reshape(len(shown), -1), linewidth=0.9)
             ax.set_ylabel(name)
             return ax
+        if shown.shape[2:] == (1,):
+            shown = shown[..., 0]
         if shown.ndim != 2:
             fix = "draw a part of it by yourself"
             raise bad("Sweep.plot", f"output {name!r} of several numbers", "one at each point", fix)
@@ -201,14 +242,16 @@ def sweep(
     values : mapping
         Values along each axis [SI] by name, the last running fastest: ``"speed"`` and parameters
         or geometry of the system; of other functions their arguments, and numbers of the subject
-        that it can be made anew for.
+        that it can be made anew for.  Of a scene such are its numbers by their dotted keys
+        (``"links.coupler"``), for all but charts.
     options : mapping, optional
         Further arguments.
     outputs : tuple of str, optional
         Which arrays are kept; by default all, of ``"stability_chart"`` all but ``invariants``.
     executor : concurrent.futures.Executor, optional
-        Threads, processes (:func:`process_pool`) or Dask's ``client.get_executor()``; what is
-        swept must bear pickling for all but threads.
+        Threads, processes (:func:`process_pool`, loky's) or Dask's ``client.get_executor()``; what
+        is swept must bear pickling for all but threads, functions of a script or a notebook by
+        cloudpickle, of the extra ``cluster``.
     chunk : int, optional
         About how many points a piece has, which bounds the memory of each worker.  A chart's
         piece has at least two whole rows.
@@ -216,6 +259,8 @@ def sweep(
         Where finished pieces are kept: a folder, at the end with one ``.npy`` file per array, or
         a path ending in ``.npz``.  The same sweep goes on from there after it was killed, or
         gives what is complete there; what was damaged since is told as ``damaged`` and done anew.
+        A function of one's own is known by its content and by the functions and constants of its
+        file that it uses.  One process at a time works on a store.
     progress : bool
         Whether to show a progress bar with the time left.
 
@@ -225,14 +270,16 @@ def sweep(
         ``outputs`` by name, shape ``(*grid, ...)``; of a folder they are maps of its files.  Its
         error is the largest of the pieces, its checks are the worst of each.  A point that cannot
         be worked out (of a chart: that makes no system) is NaN (or an empty text), its error among
-        the ``failures``; whole numbers and truths become floats then.
+        the ``failures``; whole numbers and truths become floats then.  :meth:`Sweep.point` gives
+        the values there, :meth:`Sweep.reasons` the failures by error.
 
     Warns
     -----
     ElastolinkWarning
         If points have failed: how many.
     LinearRangeWarning
-        If a deflection of ``"steady_state"`` passes 5 % of the reference length.
+        If a deflection passes 5 % of the reference length at any point: once, in place of the
+        warnings of all points.
 
     Raises
     ------
@@ -247,13 +294,13 @@ def sweep(
         found = _in_memory(plan, executor, progress)
     else:
         found = _stored(plan, executor, _place(store), progress)
-    if plan.task.name == "steady_state" and "linear range" in found.checks:
+    if "linear range" in found.checks:
         warn_of_large_deflection(found.checks["linear range"].value)
     return found
 
 
 def _stored(plan: Plan, executor: Executor | None, place: Path, progress: bool) -> Sweep:
-    request = request_of(plan.task.name, plan.subject, plan.grid, plan.options, plan.outputs)
+    request = request_of(plan.task, plan.subject, plan.grid, plan.options, plan.outputs)
     kept = Store(place, request, plan.grid)
     done = kept.finished()
     if done is not None:
@@ -288,12 +335,18 @@ def planned(
     """Return the plan of a sweep."""
     task = task_of(what)
     grid = grid_of(values, task.chunk if chunk is None else chunk, rows=task.rows)
-    if isinstance(subject, Scene) and task.of_systems:
-        subject = subject.linear_system() if task.name in NAMED else subject.system()
     require_mapping("options", {} if options is None else options, "say options={'speed': 50.0}")
     told = dict(options or {})
+    if isinstance(subject, Scene) and task.of_systems:
+        made: object = subject.linear_system() if task.name in NAMED else subject.system()
+        # A scene whose numbers are axes becomes a system at each point.
+        numbers = set() if task.rows else scene_numbers(subject) & {*grid.names}
+    else:
+        made, numbers = subject, set()
     if task.name in NAMED:
-        _check_axes(task, subject, grid, told)
+        _check_axes(task, made, grid, told, numbers)
+    if not numbers:
+        subject = made
     both = sorted(set(told) & set(grid.names))
     if both:
         raise bad("options", both, "arguments that are no axis", "leave them out there")
@@ -304,13 +357,15 @@ def planned(
     return Plan(task, subject, grid, told, kept)
 
 
-def _check_axes(task: Task, subject: object, grid: Grid, told: Mapping[str, object]) -> None:
+def _check_axes(
+    task: Task, subject: object, grid: Grid, told: Mapping[str, object], numbers: set[str]
+) -> None:
     """Refuse a subject or axes that a solver of linear periodic systems cannot take."""
     if not isinstance(subject, LinearPeriodic):
         fix = "give scene.system() or a scene"
         raise bad(task.name, type(subject).__name__, "a linear periodic system", fix)
     known = ["speed", *sorted({*subject.parameters, *subject.geometry})]
-    unknown = sorted(set(grid.names) - set(known))
+    unknown = sorted({*grid.names} - {*known} - numbers)
     if unknown:
         raise bad("values", f"axes {unknown}", f"some of {known}", "correct the names")
     if task.rows:
@@ -496,28 +551,31 @@ def estimate_sweep(
 ) -> SweepEstimate:
     """Return what :func:`sweep` of the same arguments would cost, from doing its middle piece.
 
-    The piece is done twice: once for the memory, and again for the time.  Where some points are
-    far dearer than others, low speeds for one, the time is no better than to a small factor.
+    Where all points of that fail, the next one that has an answer is taken.  The piece is done
+    twice: once for the memory, and again for the time.  Where some points are far dearer than
+    others, low speeds for one, the time is no better than to a small factor.
     """
     check_workers(workers)
     plan = planned(what, subject, values, options, outputs, chunk)
-    middle = plan.grid.pieces // 2
     already = tracemalloc.is_tracing()
     if not already:
         tracemalloc.start()
     try:
-        before = tracemalloc.get_traced_memory()[0]
-        tracemalloc.reset_peak()
-        piece = plan.piece(middle)
-        peak = tracemalloc.get_traced_memory()[1] - before
+        for number in _from_the_middle(plan.grid.pieces):
+            before = tracemalloc.get_traced_memory()[0]
+            tracemalloc.reset_peak()
+            piece = plan.piece(number)
+            peak = tracemalloc.get_traced_memory()[1] - before
+            if piece.arrays:
+                break
     finally:
         if not already:
             tracemalloc.stop()
-    run = plan.grid.run(middle)
     if not piece.arrays:
-        raise _no_answer(piece.failures, run.stop - run.start)
+        raise _no_answer(piece.failures, plan.grid.points)
+    run = plan.grid.run(number)
     begin = time.perf_counter()
-    plan.piece(middle)
+    plan.piece(number)
     seconds = time.perf_counter() - begin
     share = plan.grid.points / (run.stop - run.start)
     held = sum(int(np.asarray(array).nbytes) for array in piece.arrays.values())
@@ -531,3 +589,13 @@ def estimate_sweep(
         piece_bytes=int(peak),
         workers=workers,
     )
+
+
+def _from_the_middle(count: int) -> Iterator[int]:
+    """Yield the numbers of pieces, the middle one first, then those beside it."""
+    middle = count // 2
+    yield middle
+    for step in range(1, middle + 1):
+        yield middle - step
+        if middle + step < count:
+            yield middle + step

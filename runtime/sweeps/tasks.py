@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import warnings
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import partial
@@ -15,9 +14,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import ElastolinkError, LinearRangeWarning, bad
+from ..core.errors import LINEAR_RANGE, ElastolinkError, bad, deflections_beyond
 from ..core.families import Array, LinearPeriodic
 from ..core.results import Check, Result
+from ..scenes import Scene, with_numbers
+from ..scenes.tolerances import flat
 
 if TYPE_CHECKING:
     from ..periodic import FloquetMultipliers, SteadyState
@@ -90,6 +91,7 @@ class Task:
     of_systems: bool = True  # whether a scene is turned into its system
     rows: bool = False  # whether a piece wants its last axis whole
     outputs: Outputs = None  # arrays that are kept unless told otherwise; None for all
+    function: Callable[..., Any] | None = None  # of the user's, which a store knows by its content
 
 
 def _worst(checks: Iterable[Mapping[str, Check]]) -> dict[str, Check]:
@@ -220,16 +222,20 @@ def _blocks(built: NDArray[np.bool_]) -> list[tuple[slice, slice]]:
 def _by_geometry(
     solver: str,
     arrays_of: Callable[[Any], dict[str, AnyArray]],
-    system: LinearPeriodic,
+    subject: LinearPeriodic | Scene,
     axes: Mapping[str, Array],
     options: Mapping[str, Any],
     outputs: Outputs,
 ) -> Piece:
-    """Call a solver of :mod:`..periodic` with all points of a piece, or once for each geometry."""
+    """Call a solver of :mod:`..periodic` with all points of a piece, or once for each geometry.
+
+    Of a scene its numbers are the geometry.
+    """
     from .. import periodic
 
     values = _points(axes)
-    shapes = [name for name in values if name in system.geometry]
+    made_for = scene_numbers(subject) if isinstance(subject, Scene) else subject.geometry
+    shapes = [name for name in values if name in made_for]
     count = prod(len(axis) for axis in axes.values())
     table = np.stack([values[name] for name in shapes], axis=-1) if shapes else np.zeros((count, 0))
     failures: dict[int, str] = {}
@@ -242,9 +248,10 @@ def _by_geometry(
         # Answers have an axis of points also where nothing but the geometry varies.
         told = dict(options) if rest else {**options, "speed": np.full(len(own), options["speed"])}
         try:
-            made = system.with_geometry(**geometry) if shapes else system
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", LinearRangeWarning)
+            made = _moved(subject, geometry)
+            made = made.linear_system() if isinstance(made, Scene) else made
+            # Its check tells.
+            with deflections_beyond():
                 result = getattr(periodic, solver)(made, **rest, **told)
         except _FAILURES as error:
             if len(own) == 1:
@@ -294,17 +301,23 @@ def _each(
     axes: Mapping[str, Array],
     options: Mapping[str, Any],
     outputs: Outputs,
+    made_of: Callable[[Scene], object] | None = None,
 ) -> Piece:
     own = _own_values(function, subject, tuple(axes))
     arrays: list[dict[str, AnyArray]] = []
     results: list[Result] = []
     failures: dict[int, str] = {}
+    beyond: list[float] = []
     rows = zip(*(values.tolist() for values in _points(axes).values()), strict=True)
     for place, row in enumerate(rows):
         point = dict(zip(axes, row, strict=True))
         try:
             made = _moved(subject, {name: point.pop(name) for name in own})
-            answer = function(made, **point, **options)
+            if made_of is not None and isinstance(made, Scene):
+                made = made_of(made)
+            with deflections_beyond() as large:
+                answer = function(made, **point, **options)
+            beyond += large
         except _FAILURES as error:
             failures[place] = _told(error)
             continue
@@ -318,10 +331,12 @@ def _each(
         kind = holding(values.dtype, failures)
         joined[name] = blank((len(good) + len(failures), *values.shape[1:]), kind)
         joined[name][good] = values
+    checks = {"linear range": Check(max(beyond), LINEAR_RANGE)} if beyond else {}
     if results or not arrays:
-        return replace(_of_result(joined, *results), failures=failures)
+        found = _of_result(joined, *results)
+        return replace(found, checks=_worst([found.checks, checks]), failures=failures)
     name = getattr(function, "__name__", "function")
-    return Piece(joined, name, float("nan"), "none: the function gives none", {}, failures)
+    return Piece(joined, name, float("nan"), "none: the function gives none", checks, failures)
 
 
 def _own_values(
@@ -337,6 +352,8 @@ def _own_values(
     known: set[str] = set()
     if isinstance(subject, LinearPeriodic):
         known = {*subject.parameters, *subject.geometry}
+    elif isinstance(subject, Scene):
+        known = scene_numbers(subject)
     elif is_dataclass(subject) and not isinstance(subject, type):
         known = {item.name for item in fields(subject) if item.init}
     own = tuple(name for name in names if name not in taken and name in known)
@@ -347,9 +364,16 @@ def _own_values(
     return own
 
 
+def scene_numbers(scene: Scene) -> set[str]:
+    """Return the dotted keys of the numbers that a scene gives."""
+    return {key for key, value in flat(scene.given) if isinstance(value, float)}
+
+
 def _moved(subject: Any, values: dict[str, float]) -> Any:
     if not values:
         return subject
+    if isinstance(subject, Scene):
+        return with_numbers(subject, values)
     if not isinstance(subject, LinearPeriodic):
         return replace(subject, **values)
     shapes = {name: value for name, value in values.items() if name in subject.geometry}
@@ -414,9 +438,9 @@ def task_of(what: str | Callable[..., Any]) -> Task:
             fix = nearest(what, known, "name one of these")
             expected = "the name of a public function, or a function"
             raise bad("sweep", repr(what), expected, fix)
-        return Task(what, partial(_each, function), 16)
+        return Task(what, partial(_each, function, made_of=Scene.system), 16)
     if not callable(what):
         fix = "give 'stability_chart', or a function of your own"
         raise bad("sweep", repr(what)[:60], "a name or a function", fix)
     name = f"{getattr(what, '__module__', '')}.{getattr(what, '__qualname__', repr(what))}"
-    return Task(name, partial(_each, what), 16, of_systems=False)
+    return Task(name, partial(_each, what), 16, of_systems=False, function=what)

@@ -1,15 +1,24 @@
-"""Executors of the solvers themselves, Dask, the command line, a chart of 1e7 points."""
+"""Executors of solvers, on clusters, a study that is killed, the command line, 1e7 points."""
 
+import importlib.util
 import json
+import subprocess
 import sys
+import tempfile
+import time
+import warnings
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from types import ModuleType
 
 import elastolink as el
 import numpy as np
 import pytest
 from elastolink.runtime.cli import main
-from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.core.workers import in_order
+from elastolink.runtime.core.errors import BadInput, ElastolinkWarning
+from elastolink.runtime.core.workers import WorkersLost, at_once, in_order
 from fresh_process import python
 
 FIELDS = ("invariants", "stable", "largest", "slack", "undecided", "kind")
@@ -108,22 +117,149 @@ def test_the_command_line_keeps_and_finds_a_chart(tmp_path, capsys):
     assert "Traceback" not in capsys.readouterr().err
 
 
-@pytest.mark.slow
-def test_an_executor_of_dask_gives_the_same_bytes(rod):
+# The study of docs/clusters.md; a file of a user, no module that a worker could import.
+EXAMPLE = Path(__file__).parents[3] / "docs" / "examples" / "coupler_study.py"
+BENT = "ignore::elastolink.runtime.core.errors.LinearRangeWarning"
+FAILED = "ignore:.*points failed:elastolink.runtime.core.errors.ElastolinkWarning"
+
+
+def example() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("coupler_study", EXAMPLE)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@contextmanager
+def dask(**told):
     distributed = pytest.importorskip("distributed", reason="extra cluster is not installed")
-    values = {"speed": np.linspace(2000.0, 4000.0, 12)}
-    alone = el.sweep("floquet_multipliers", rod, values, chunk=4)
-    with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None
-        ) as cluster,
-        distributed.Client(cluster) as client,
-    ):
-        found = el.sweep(
-            "floquet_multipliers", rod, values, chunk=4, executor=client.get_executor()
-        )
+    given = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None} | told
+    with distributed.LocalCluster(**given) as cluster, distributed.Client(cluster) as client:
+        yield client.get_executor()
+
+
+@contextmanager
+def loky():
+    reason = "extra cluster is not installed"
+    externals = pytest.importorskip("joblib.externals.loky", reason=reason)
+    with externals.get_reusable_executor(max_workers=2) as found:
+        yield found
+
+
+class Jobs(ThreadPoolExecutor):
+    """A job of a cluster for each piece, as in docs/clusters.md."""
+
+    def __init__(self, jobs, at_once):
+        super().__init__(at_once)
+        self.jobs = jobs
+
+    def submit(self, function, *arguments):
+        return super().submit(lambda: self.jobs.submit(function, *arguments).result())
+
+
+@contextmanager
+def submitit():
+    jobs = pytest.importorskip("submitit", reason="extra cluster is not installed")
+    with tempfile.TemporaryDirectory() as folder, Jobs(jobs.LocalExecutor(folder), 2) as found:
+        found.jobs.update_parameters(timeout_min=5)
+        yield found
+
+
+@pytest.fixture(scope="module")
+def alone():
+    """The study of 225 designs, one after another."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ElastolinkWarning)
+        return example().study(15, chunk=50)
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings(FAILED, BENT)
+@pytest.mark.parametrize(
+    "executor",
+    [
+        partial(el.process_pool, 2),
+        dask,
+        partial(dask, processes=False),
+        loky,
+        submitit,
+    ],
+)
+def test_a_study_does_not_depend_on_its_executor(tmp_path, alone, executor):
+    """Bytes, failures and the files of the store."""
+    study = partial(example().study, 15, chunk=50)
+    with executor() as found:
+        other = study(executor=found, store=tmp_path / "other")
+    study(store=tmp_path / "alone")
+    assert len(alone.failures) > 20
+    assert other.failures == alone.failures
     for name in alone.outputs:
-        assert found[name].tobytes() == alone[name].tobytes()
+        assert other[name].tobytes() == alone[name].tobytes()
+    for path in (tmp_path / "alone").iterdir():
+        assert (tmp_path / "other" / path.name).read_bytes() == path.read_bytes()
+
+
+@pytest.mark.slow
+def test_dask_tells_how_many_workers_it_has_and_that_they_ended():
+    names = {"__name__": "typed"}
+    exec("import os\ndef ends(subject, a):\n    os._exit(3)", names)
+    with dask(n_workers=1, threads_per_worker=7, processes=False) as seven:
+        assert at_once(seven) == 7
+    config = pytest.importorskip("dask").config
+    with (
+        config.set({"distributed.scheduler.allowed-failures": 0}),
+        dask(n_workers=1) as one,
+        pytest.raises(WorkersLost, match="the same store"),
+    ):
+        el.sweep(names["ends"], None, {"a": [1.0]}, executor=one)
+
+
+SLOWLY = """
+import runpy, sys, time
+from elastolink.runtime.sweeps import sweeping
+quick = sweeping.Store.write
+def write(self, number, piece):
+    quick(self, number, piece)
+    time.sleep(0.1)
+if __name__ == "__main__":
+    sweeping.Store.write = write
+    runpy.run_path(sys.argv[1], run_name="__main__")
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such signal")
+def test_a_killed_study_goes_on_and_names_the_designs_that_failed(tmp_path):
+    """The page's script, killed in the middle, and begun again with the same words."""
+    killed, whole, table = (tmp_path / name for name in ("killed", "whole", "table.csv"))
+    words = ["--count", "15", "--chunk", "15", "--workers", "2"]
+    slowly = [sys.executable, "-c", SLOWLY.replace("sys.argv[1]", repr(str(EXAMPLE)))]
+    pieces = killed / "pieces"
+    running = subprocess.Popen([*slowly, str(killed), *words], stderr=subprocess.PIPE)
+    try:
+        until = time.monotonic() + 60.0
+        while time.monotonic() < until and len(list(pieces.glob("0*.npz"))) < 4:
+            time.sleep(0.01)
+    finally:
+        running.kill()
+    # It ends when its workers have ended, too.
+    running.communicate(timeout=60)
+    assert 4 <= len(list(pieces.glob("0*.npz"))) < 15
+
+    def run(store):
+        command = [sys.executable, str(EXAMPLE), str(store), *words, "--csv", str(table)]
+        return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+    told, other = run(killed), run(whole)
+    assert "15 pieces, 0 of them from the store" in other
+    assert told.splitlines()[1:] == other.splitlines()[1:]
+    assert told.splitlines()[0] != other.splitlines()[0]
+    assert sorted(p.name for p in killed.iterdir()) == sorted(p.name for p in whole.iterdir())
+    for path in whole.iterdir():
+        assert (killed / path.name).read_bytes() == path.read_bytes()
+    failed = [line for line in table.read_text().splitlines() if '"' in line]
+    counts = [int(line.split()[0]) for line in other.splitlines() if " failed: " in line]
+    assert len(failed) == sum(counts) > 20
+    assert all("cannot close" in line or "cannot turn fully" in line for line in failed)
 
 
 TEN_MILLION = """

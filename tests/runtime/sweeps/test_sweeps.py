@@ -7,15 +7,18 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.core.errors import BadInput, ElastolinkWarning
+from elastolink.runtime.core.errors import BadInput, ElastolinkWarning, LinearRangeWarning
+from elastolink.runtime.scenes import with_numbers
 from elastolink.runtime.sweeps import Sweep, WorkersLost, estimate_sweep, sweeping
 from elastolink.runtime.sweeps.pieces import grid_of
 from elastolink.runtime.sweeps.requests import digest
@@ -45,6 +48,12 @@ def now_and_then(subject, a, b):
     if b == 2.0:
         return {"n": 1 // int(b - 2.0)}
     return {"n": int(a), "right": a > b, "pair": [a + 1j * b, b], "text": f"{a:g}"}
+
+
+def only_at(subject, a):
+    if a != subject:
+        raise BadInput("nothing here")
+    return a
 
 
 def ends_the_process(subject, a):
@@ -490,6 +499,87 @@ def test_multipliers_and_steady_states_over_parameters():
         assert motion["peak"][i] == pytest.approx(peak, rel=1e-8)
 
 
+LENGTHS = {"links.coupler": [0.36, 0.45, 0.7], "links.follower": [0.16, 0.2]}
+
+
+def peak_of(scene, speed):
+    return el.steady_state(scene.system(), speed).peak(0.5)
+
+
+@pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.LinearRangeWarning")
+def test_numbers_of_a_scene_are_axes(tmp_path):
+    """Of solvers of many points, public functions and one's own; failed designs are named."""
+    scene = el.load_scene("smith_1972_5152_sixteenth_inch", {"coupler.mass_per_length": 0.0853})
+    told = {"options": {"speed": 35.0}}
+    warned = pytest.warns(ElastolinkWarning, match="2 of 6 points failed.*cannot close")
+    with warned:
+        motion = el.sweep("steady_state", scene, LENGTHS, chunk=4, **told)
+    with warned:
+        multipliers = el.sweep("floquet_multipliers", scene, LENGTHS, store=tmp_path / "a", **told)
+    with warned:
+        own = el.sweep(peak_of, scene, LENGTHS, chunk=1, **told)
+    with warned:
+        public = el.sweep("natural_frequencies", scene, LENGTHS, outputs=("mean",))
+    assert sorted(own.failures) == [4, 5]
+    for found in (motion, multipliers, public):
+        assert sorted(found.failures) == [4, 5]
+    for place in range(4):
+        numbers = own.point(place)
+        assert numbers == {
+            "links.coupler": LENGTHS["links.coupler"][place // 2],
+            "links.follower": LENGTHS["links.follower"][place % 2],
+        }
+        system = with_numbers(scene, numbers).system()
+        steady = el.steady_state(system, 35.0)
+        assert own["value"].flat[place] == steady.peak(0.5)
+        assert motion["peak"].reshape(6)[place] == pytest.approx(np.abs(steady.q).max(), rel=1e-9)
+        alone = el.floquet_multipliers(system, 35.0)
+        gap = multipliers["multipliers"].reshape(6, -1)[place] - alone.multipliers
+        assert np.all(np.abs(gap) <= 2 * alone.error + 1e-14)
+        mean = el.natural_frequencies(system).mean
+        assert np.array_equal(public["mean"].reshape(6, -1)[place], mean)
+    with pytest.raises(BadInput, match=r"axes .*cuopler"):
+        el.sweep("steady_state", scene, {"links.cuopler": [0.3]}, **told)
+    with pytest.raises(BadInput, match="place"):
+        own.point(6)
+
+
+@pytest.mark.parametrize("name", ["folder", None])
+def test_large_deflections_of_a_function_are_told_once_by_threads_too(tmp_path, name):
+    """The largest of all points, a check that fails, also from a store; nothing point by point."""
+    scene = el.load_scene("smith_1972_5152_sixteenth_inch", {"coupler.damping_ratio": 0.01})
+    speeds = {"speed": np.linspace(70.0, 90.0, 12)}
+    told = {"chunk": 2} | ({} if name is None else {"store": tmp_path / name})
+    for _ in range(2):
+        with pytest.warns(LinearRangeWarning) as warned, ThreadPoolExecutor(3) as threads:
+            found = el.sweep(peak_of, scene, speeds, executor=threads, **told)
+        assert len(warned) == 1
+        check = found.checks["linear range"]
+        assert not found.passed and f"reaches {check.value:.3g} of" in str(warned[0].message)
+        assert check.value == pytest.approx(
+            found["value"].max() / scene["links"]["coupler"], rel=0.1
+        )
+
+
+def test_failures_by_reason_and_in_a_table(tmp_path):
+    values = {"a": [0.0, 1.0, 2.0, 3.0], "b": [1.0, 2.0, 4.0]}
+    with pytest.warns(ElastolinkWarning):
+        found = el.sweep(now_and_then, None, values, outputs=("n",))
+    assert found.reasons() == {found.failures[3]: (3, 4, 5), found.failures[1]: (1, 7, 10)}
+    told = {"links: 0.25 m, not 1e-3": (0, 2), "links: short": (1,)}
+    some = {0: "links: 0.25 m, not 1e-3", 1: "links: short", 2: "links: -3 m, not 7.5"}
+    assert replace(found, failures=some).reasons() == told
+    text = found.save(tmp_path / "found.csv").read_text().splitlines()
+    assert text[0] == "axis_a,axis_b,failure,n"
+    assert text[1:5] == [
+        "0.0,1.0,,0.0",
+        "0.0,2.0,ZeroDivisionError: integer division or modulo by zero,nan",
+        "0.0,4.0,,0.0",
+        "1.0,1.0,a is one,nan",
+    ]
+    assert len(text) == 13
+
+
 def test_geometry_is_made_anew_within_a_piece():
     rod = el.load_scene("beale_1992_flexible_rod", {"model.modes": 1}).system()
     values = {"speed": [900.0, 1100.0], "crank_ratio": [0.05, 0.1]}
@@ -562,7 +652,93 @@ def test_workers_that_end_and_pools_that_are_shut_are_told():
 
 def test_what_cannot_be_sent_is_told(pool):
     with pytest.raises(BadInput, match="ThreadPoolExecutor"):
-        el.sweep(lambda subject, a: a, 1.0, {"a": [1.0]}, executor=pool)
+        el.sweep(lambda subject, a: a, threading.Lock(), {"a": [1.0]}, executor=pool)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(sys.modules, "cloudpickle", None)
+        with pytest.raises(BadInput, match="install cloudpickle"):
+            el.sweep(lambda subject, a: a, 1.0, {"a": [1.0]}, executor=pool)
+
+
+NOTEBOOK = """
+import elastolink as el
+FACTOR = 3.0
+def triple(subject, a):
+    return FACTOR * a
+if __name__ == "__main__":
+    with el.process_pool(2) as pool:
+        print(el.sweep(triple, None, {"a": [1.0, 2.0]}, chunk=1, executor=pool)["value"])
+"""
+
+
+def test_a_function_of_a_notebook_is_sent_to_processes():
+    """Typed in, not in a file that another process could import."""
+    pytest.importorskip("cloudpickle", reason="extra cluster is not installed")
+    assert python(NOTEBOOK) == "[3. 6.]\n"
+
+
+WAITING = """
+import time, elastolink as el
+if __name__ == "__main__":
+    with el.process_pool(2) as pool:
+        list(pool.map(abs, range(8)))
+        print("ready", flush=True)
+        time.sleep(600)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such signal")
+def test_workers_end_when_the_process_that_began_them_is_killed():
+    running = subprocess.Popen([sys.executable, "-c", WAITING], stdout=subprocess.PIPE)
+    try:
+        assert running.stdout.readline() == b"ready\n"
+    finally:
+        running.kill()
+    # It ends when the last process that writes there has ended.
+    assert running.communicate(timeout=60) == (b"", None)
+
+
+STUDY = '''
+import numpy as np
+import elastolink as el
+LIMIT = 2.5
+TABLE = {"machine": el.FourBar(5.0, 1.0, 5.0, 2.0), "factors": [1.0, 1.0]}
+def helper(a):
+    return a + 1.0
+def design(subject, a):
+    """One design."""
+    factor = TABLE["factors"][0] * TABLE["machine"].crank
+    return factor * np.min([helper(a), LIMIT, *map(lambda x: x * 3.0, [a])])
+'''
+
+
+def typed(text: str):
+    names = {"__name__": "study"}
+    exec(text, names)
+    return names["design"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        *(
+            ("np.min", "np.max"),
+            ("a + 1.0", "a + 2.0"),
+            ("= 2.5", "= 2.75"),
+            ("x * 3.0", "x * 4.0"),
+        ),
+        *(("[1.0, 1.0]", "[1.0, 1.5]"), ("(5.0, 1.0", "(5.0, 1.25")),
+    ],
+)
+def test_a_store_knows_the_function_that_it_was_begun_with(tmp_path, old, new):
+    """Its attributes, helpers, constants and inner functions; not its docstring or its lines."""
+    values, store = {"a": [0.5, 1.0, 2.0]}, tmp_path / "store"
+    first = el.sweep(typed(STUDY), None, values, store=store)
+    assert np.array_equal(first["value"], [1.5, 2.0, 2.5])
+    with pytest.raises(BadInput, match="a sweep that differs in function"):
+        el.sweep(typed(STUDY.replace(old, new)), None, values, store=store)
+    moved = "\n\n" + STUDY.replace("One design", "One design of many")
+    again = el.sweep(typed(moved), None, values, store=store)
+    assert again.resumed == again.pieces and same_bytes(again, first)
 
 
 def test_an_estimate_counts_what_the_sweep_holds(mathieu, chart):
@@ -572,6 +748,14 @@ def test_an_estimate_counts_what_the_sweep_holds(mathieu, chart):
     assert found.piece_bytes > 0
     assert found.seconds > 0
     assert str(found.points) in str(found)
+
+
+@pytest.mark.parametrize("good", [0.0, 4.0, 9.0])
+def test_an_estimate_passes_over_pieces_that_fail(good):
+    found = estimate_sweep(only_at, good, {"a": np.arange(10.0)}, chunk=1)
+    assert (found.points, found.pieces, found.bytes) == (10, 10, 80)
+    with pytest.raises(BadInput, match=r"all of 10 points.*nothing here"):
+        estimate_sweep(only_at, -1.0, {"a": np.arange(10.0)}, chunk=1)
 
 
 def test_the_result_is_drawn_and_exported(tmp_path, mathieu, chart):

@@ -185,7 +185,7 @@ def test_the_wheel_holds_the_packages_and_their_data_and_nothing_else(wheel):
     data = [path for path in TRACKED if path.parts[0] == "runtime" and path.parts[2:3] == ("data",)]
     expected |= {"/".join(["elastolink", *path.parts]) for path in data}
     assert names == expected
-    for name in ("py.typed", "generated/manifest.json", "templates/module.py.j2"):
+    for name in ("py.typed", "__init__.pyi", "generated/manifest.json", "templates/module.py.j2"):
         assert f"elastolink/{name}" in names
     assert {"METADATA", "WHEEL", "RECORD", "entry_points.txt", "licenses/LICENSE"} <= meta
     assert "elastolink = elastolink.runtime.cli:main" in commands

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from .structure import Node as Node
     from .structure import Structure as Structure
 
-__all__, __getattr__, __dir__ = on_first_use(
+__all__ = on_first_use(
     globals(),
     {
         "elements": ("KINDS", "element_arrays", "section_rotation", "shape_functions"),

@@ -65,15 +65,12 @@ def frame(
 
     Examples
     --------
-    >>> bar = Section.rectangle(0.02, 0.01, modulus=210e9, density=7850.0)
-    >>> portal = frame(
-    ...     {"A": (0, 0), "B": (0, 1), "C": (1, 1), "D": (1, 0)},
-    ...     {"left": ("A", "B"), "beam": ("B", "C"), "right": ("D", "C")},
-    ...     bar,
-    ...     supports={"A": ("x", "y", "rotation"), "D": ("x", "y", "rotation")},
-    ... )
-    >>> portal.size
-    24
+    >>> import elastolink as el
+    >>> bar = el.Section.rectangle(0.02, 0.01, modulus=210e9, density=7850.0)
+    >>> clamped = {"A": ("x", "y", "rotation")}
+    >>> mast = el.frame({"A": (0, 0), "B": (0, 1)}, {"mast": ("A", "B")}, bar, supports=clamped)
+    >>> print(el.wittrick_williams(el.dynamic_stiffness(mast), count=1).hertz.round(3))
+    [8.355]
     """
     for where, given in (("places", places), ("members", members), ("supports", supports)):
         require_mapping(where, given, "see the example of frame")
@@ -163,10 +160,32 @@ def _check(
 def without_stretching(system: LinearPeriodic) -> LinearPeriodic:
     """Return the vibration of a frame whose members keep their lengths.
 
-    The displacements that follow from the others are eliminated; what is left keeps its labels, and
-    the system keeps no ``structure``, whose coordinates are others.  Refused is a system, of
-    :func:`linear_system`, that is not of a frame that stands still, or of which nothing is left
-    that moves.
+    The displacements that follow from the others are eliminated; what is left keeps its labels.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of :func:`elastolink.runtime.beams.linear_system`, of a frame that stands still.
+
+    Returns
+    -------
+    LinearPeriodic
+        Without a ``structure``, whose coordinates are others.
+
+    Raises
+    ------
+    BadInput
+        If the system is of another kind, or nothing is left that moves.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> bar = el.Section.rectangle(0.02, 0.01, modulus=210e9, density=7850.0)
+    >>> clamped = {"A": ("x", "y", "rotation")}
+    >>> mast = el.frame({"A": (0, 0), "B": (0, 1)}, {"mast": ("A", "B")}, bar, supports=clamped)
+    >>> system = el.beams.linear_system(mast)
+    >>> print(system.size, el.beams.without_stretching(system).size)
+    9 6
     """
     structure = system.structure if isinstance(system, LinearPeriodic) else None
     if structure is None or structure.moving:

@@ -25,7 +25,20 @@ _LARGEST = 1e18
 
 @dataclass(frozen=True)
 class ElasticLayer:
-    """Outer layer of a sandwich; every number is positive."""
+    """Outer layer of a sandwich; every number is positive.
+
+    Attributes
+    ----------
+    thickness, modulus, density : float
+        [m], [Pa], [kg/m^3].
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> steel = el.beams.ElasticLayer(thickness=0.001, modulus=210e9, density=7850.0)
+    >>> print(round(steel.thickness * steel.density, 3))
+    7.85
+    """
 
     thickness: float  # extent in the plane of bending [m]
     modulus: float  # Young's modulus [Pa]
@@ -39,7 +52,17 @@ class ElasticLayer:
 class ViscoelasticLayer:
     """Core of a sandwich, of complex shear modulus ``shear_modulus (1 + i loss_factor)``.
 
-    Every number is positive, but the loss factor may be 0.
+    Attributes
+    ----------
+    thickness, shear_modulus, loss_factor, density : float
+        [m], [Pa], none, [kg/m^3]; positive, but the loss factor may be 0.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> core = el.beams.ViscoelasticLayer(2e-4, shear_modulus=1e6, loss_factor=0.8, density=1e3)
+    >>> print(core.shear_modulus * complex(1.0, core.loss_factor))
+    (1000000+800000j)
     """
 
     thickness: float  # extent in the plane of bending [m]
@@ -102,11 +125,36 @@ def sandwich_section(
 ) -> SandwichSection:
     """Return the equivalent section of a three-layer beam (Aannaque 9.2).
 
-    From the layers in order and the width across the plane of bending [m], for a wave number of the
-    deflection [rad/m], ``n pi / L`` for mode n of a pinned beam, and a frequency [rad/s]; where one
-    of the two is left out it is that of free bending waves.  The outer layers do not shear and the
-    core is not stretched: the model holds for a core that is soft beside the outer layers, and wave
-    lengths long beside the thickness.  Refused are numbers that are not positive.
+    The outer layers do not shear and the core is not stretched: the model holds for a core that is
+    soft beside the outer layers, and wave lengths long beside the thickness.
+
+    Parameters
+    ----------
+    base, core, cover : ElasticLayer, ViscoelasticLayer, ElasticLayer
+        The layers in order.
+    width : float
+        Across the plane of bending [m].
+    wave_number, frequency : float, optional
+        Of the deflection [rad/m], ``n pi / L`` for mode n of a pinned beam, and [rad/s]; where one
+        of the two is left out it is that of free bending waves.
+
+    Returns
+    -------
+    SandwichSection
+
+    Raises
+    ------
+    BadInput
+        If a number is not positive.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> steel = el.beams.ElasticLayer(0.001, modulus=210e9, density=7850.0)
+    >>> core = el.beams.ViscoelasticLayer(0.0002, 1e6, loss_factor=0.8, density=1000.0)
+    >>> section = el.beams.sandwich_section(steel, core, steel, width=0.02, wave_number=10.0)
+    >>> print(round(section.bending_stiffness, 3), round(section.loss_factor, 3))
+    1.803 0.275
     """
     for where, layer in (("base", base), ("cover", cover)):
         require_kind(where, layer, ElasticLayer, "make one with ElasticLayer")

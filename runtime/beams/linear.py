@@ -312,6 +312,16 @@ def linear_system(
     ------
     BadInput
         If an argument is unusable, or a motion of the structure meets no stiffness.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> bar = el.Section.rectangle(0.025, 0.006, modulus=71e9, density=2710.0)
+    >>> linkage = el.FourBar(frame=0.25, crank=0.11, coupler=0.28, follower=0.27)
+    >>> structure = el.beams.beam_linkage(linkage, dict.fromkeys(linkage.links, bar))
+    >>> system = el.beams.linear_system(structure, rayleigh=(0.0, 1e-5))
+    >>> print(system.size, system.parameters["rayleigh_stiffness"])
+    27 1e-05
     """
     _check(structure, form, rayleigh, gravity)
     arrays = AngleArrays(structure)

@@ -48,10 +48,33 @@ def beam_linkage(
     nodes: Mapping[str, Mapping[str, Any]] | None = None,
     provenance: Mapping[str, str] | None = None,
 ) -> Structure:
-    """Return a linkage all of whose links are beams, from what :func:`linkage_system` takes.
+    """Return a linkage all of whose links are beams.
 
     The crank is clamped to a shaft that turns as prescribed; the other joints are pins.  The block
     of a quick-return is one that slides along the rod without friction, a point of mass.
+
+    Parameters
+    ----------
+    linkage, sections, elements, kind, joint_masses, nodes, provenance
+        As :func:`linkage_system`.
+
+    Returns
+    -------
+    Structure
+
+    Raises
+    ------
+    BadInput
+        As :func:`linkage_system`.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> bar = el.Section.rectangle(0.025, 0.006, modulus=71e9, density=2710.0)
+    >>> linkage = el.FourBar(frame=0.25, crank=0.11, coupler=0.28, follower=0.27)
+    >>> structure = el.beams.beam_linkage(linkage, dict.fromkeys(linkage.links, bar), elements=1)
+    >>> print(structure.size, structure.labels[:4])
+    9 ('B.x', 'B.y', 'B.crank', 'B.coupler')
     """
     bars = BARS.get(type(linkage))
     if bars is None:
@@ -116,6 +139,15 @@ def linkage_system(
     BadInput
         If the linkage is of another kind or its crank cannot turn fully, a link has no section, a
         name or value is unusable, or a motion of the structure meets no stiffness.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> bar = el.Section.rectangle(0.025, 0.006, modulus=71e9, density=2710.0)
+    >>> linkage = el.FourBar(frame=0.25, crank=0.11, coupler=0.28, follower=0.27)
+    >>> system = el.linkage_system(linkage, dict.fromkeys(linkage.links, bar), elements=1)
+    >>> print(system.size, el.natural_frequencies(system, 0.0, count=2).frequency.round(1))
+    9 [[ 448.5 1264.2]]
     """
     options = {
         "form": form,

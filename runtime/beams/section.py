@@ -35,6 +35,13 @@ class Section:
     BadInput
         If a number is not finite, or not positive (retardation: not negative); every problem is
         listed.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> bar = el.Section.rectangle(width=0.02, thickness=0.01, modulus=210e9, density=7850.0)
+    >>> print(round(bar.bending_stiffness, 6), round(bar.mass_per_length, 6))
+    350.0 1.57
     """
 
     area: float

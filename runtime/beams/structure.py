@@ -194,6 +194,13 @@ class Beam:
     ------
     BadInput
         If a value is unusable; every problem is listed.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> bar = el.Section.rectangle(0.02, 0.01, modulus=210e9, density=7850.0)
+    >>> print(el.Beam(name="coupler", start="B", end="C", section=bar, length=0.4).kind)
+    cubic
     """
 
     name: str
@@ -267,6 +274,13 @@ class Node:
     ------
     BadInput
         If a value is unusable; every problem is listed.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> pin = el.Node(name="B", mass=0.05, joined=("crank", "coupler"))
+    >>> print(pin.mass, pin.joined)
+    0.05 ('crank', 'coupler')
     """
 
     name: str
@@ -332,6 +346,13 @@ class Structure:
     ------
     BadInput
         If names are unknown or occur twice, a node has no beam, or ends that should meet do not.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> structure = el.load_scene("aannaque_1996_table_4_1").system().structure
+    >>> print([beam.name for beam in structure.beams], structure.size, structure.labels[:3])
+    ['crank', 'coupler', 'follower'] 27 ('B.x', 'B.y', 'B.crank')
     """
 
     beams: tuple[Beam, ...]

@@ -358,7 +358,7 @@ def at_speed(options: argparse.Namespace, scene: Scene) -> FreeFreeRod:
         fix = "give one, or use formulation 'free_free_linear'"
         raise bad("--speed", repr(options.speed), expected, fix)
     moved = opt.load(options, **{"operation.speed": speed_of(options, scene)})
-    system: FreeFreeRod = moved.system()  # type: ignore[assignment]
+    system: FreeFreeRod = moved.system()
     return system
 
 

@@ -9,8 +9,21 @@ All take a :class:`~elastolink.runtime.core.families.Constrained`, such as ``fre
 
 from __future__ import annotations
 
-from .motion import consistent_state, constrained_motion
-from .multipliers import orbit_multipliers
-from .orbits import periodic_orbit
+from typing import TYPE_CHECKING
 
-__all__ = ["consistent_state", "constrained_motion", "orbit_multipliers", "periodic_orbit"]
+from ..core.lazy import on_first_use
+
+if TYPE_CHECKING:
+    from .motion import consistent_state as consistent_state
+    from .motion import constrained_motion as constrained_motion
+    from .multipliers import orbit_multipliers as orbit_multipliers
+    from .orbits import periodic_orbit as periodic_orbit
+
+__all__ = on_first_use(
+    globals(),
+    {
+        "motion": ("consistent_state", "constrained_motion"),
+        "multipliers": ("orbit_multipliers",),
+        "orbits": ("periodic_orbit",),
+    },
+)

@@ -119,6 +119,16 @@ def consistent_state(
         constraints.
     RedundantConstraints
         If the constraints repeat or contradict each other there.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> changes = {"model.formulation": "free_free", "model.modes": 2}
+    >>> rod = el.load_scene("beale_1992_flexible_rod", changes).system()
+    >>> q, qd = rod.reference(0.0)
+    >>> state = el.consistent_state(rod, q + 1e-3, qd)
+    >>> print(state.position_norm < 1e-12, abs(state.moved).max() < 3e-3)
+    True True
     """
     require_kind("system", system, Constrained, "take the .system() of a scene with constraints")
     q0, qd0, time = _given(system, q, qd, t)
@@ -364,6 +374,15 @@ def constrained_motion(
         more than 100 000 windows.
     RedundantConstraints
         If the constraints depend on each other at the start.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> changes = {"model.formulation": "free_free", "model.modes": 2}
+    >>> rod = el.load_scene("beale_1992_flexible_rod", changes).system()
+    >>> motion = el.constrained_motion(rod, span=0.1 * rod.period, samples=9)
+    >>> print(motion.q.shape, motion.success, motion.position_norm.max() < 1e-9)
+    (10, 5) True True
     """
     require_kind("system", system, Constrained, "take the .system() of a scene with constraints")
     first, last = _span(system.period if span is None else span)

@@ -139,6 +139,15 @@ def orbit_multipliers(orbit: PeriodicOrbit) -> ConstrainedMultipliers:
     ------
     BadInput
         If the orbit did not converge.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> changes = {"model.formulation": "free_free", "model.modes": 2}
+    >>> rod = el.load_scene("beale_1992_flexible_rod", changes).system()
+    >>> found = el.orbit_multipliers(el.periodic_orbit(rod))
+    >>> print(abs(found.physical).round(4), found.stable)
+    [1. 1. 1. 1.] True
     """
     require_kind("orbit", orbit, PeriodicOrbit, "make one with periodic_orbit")
     if orbit.message:

@@ -458,6 +458,15 @@ def periodic_orbit(
     BadInput
         If a number is unusable, shapes do not fit, the system has no variations, or it does not
         repeat after the period.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> changes = {"model.formulation": "free_free", "model.modes": 2}
+    >>> rod = el.load_scene("beale_1992_flexible_rod", changes).system()
+    >>> orbit = el.periodic_orbit(rod)
+    >>> print(orbit.converged, round(orbit.period, 5))
+    True 0.06283
     """
     require_kind("system", system, Constrained, "take the .system() of a scene with constraints")
     if not (isinstance(rtol, Real) and 0 < rtol < 1):

@@ -40,7 +40,14 @@ def shown(value: object, longest: int = 60) -> str:
 
 
 class ElastolinkError(Exception):
-    """Base of every error that elastolink raises on purpose."""
+    """Base of every error that elastolink raises on purpose.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> print(issubclass(el.BadInput, el.ElastolinkError))
+    True
+    """
 
 
 @dataclass(frozen=True)
@@ -66,6 +73,15 @@ class BadInput(ElastolinkError, ValueError):  # noqa: N818 - reads as what it is
     ----------
     *problems : Problem
         At least one problem.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> try:
+    ...     el.FourBar(frame=1.0, crank=1.0, coupler=-5.0, follower=1.0)
+    ... except el.BadInput as error:
+    ...     print(error)
+    FourBar.coupler: found -5.0; expected a positive finite length; correct it
     """
 
     def __init__(self, *problems: Problem) -> None:
@@ -92,7 +108,19 @@ class ElastolinkWarning(UserWarning):
 
 
 class LinearRangeWarning(ElastolinkWarning):
-    """A deflection left the range in which the linear equations hold."""
+    """A deflection left the range in which the linear equations hold.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> import warnings
+    >>> scene = el.load_scene("smith_1972_5152_sixteenth_inch", {"coupler.damping_ratio": 0.01})
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("ignore", el.LinearRangeWarning)
+    ...     steady = el.steady_state(scene.system(), speed=70.0)
+    >>> print((steady.peak(0.5) / scene.get("links.coupler")).round(2))
+    0.08
+    """
 
 
 def bad(where: str, found: object, expected: str, fix: str) -> BadInput:

@@ -2,30 +2,52 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Iterable, Mapping
 from importlib import import_module
+from importlib.util import find_spec
 from typing import Any
 
 
-def on_first_use(
-    namespace: dict[str, Any], public: Mapping[str, tuple[str, ...]]
-) -> tuple[list[str], Callable[[str], Any], Callable[[], list[str]]]:
-    """Return ``__all__``, ``__getattr__`` and ``__dir__`` of a package whose names load when used.
+def unknown_name(package: str, name: str, names: Iterable[str]) -> AttributeError:
+    """Return the error of a name that a package lacks, with the nearest of those that it has.
 
-    ``namespace`` is ``globals()`` of the package, where a name that was loaded is kept; ``public``
-    takes each module, as it is imported from the package, to its public names.
+    Case and underscores count little; of a dotted name the last part is compared.  The error does
+    not hold the package: where it does, Python's tracebacks add a suggestion of their own.
+    """
+    message = f"module {package!r} has no attribute {name!r}"
+    # Python asks for a module of the package here, too, before it imports it.
+    if name.isidentifier() and name[0] != "_" and not find_spec(f"{package}.{name}"):
+        from difflib import SequenceMatcher
+
+        def likeness(other: str) -> tuple[float, float]:
+            last = other.rpartition(".")[2]
+            plain, other = (text.replace("_", "").lower() for text in (name, last))
+            alike, exactly = SequenceMatcher(None, plain, other), SequenceMatcher(None, name, last)
+            return alike.ratio(), exactly.ratio()
+
+        nearest = max(names, key=likeness)
+        if likeness(nearest)[0] >= 0.75:
+            message += f"; did you mean {nearest!r}?"
+    return AttributeError(message, name=name)
+
+
+def on_first_use(namespace: dict[str, Any], public: Mapping[str, tuple[str, ...]]) -> list[str]:
+    """Return ``__all__`` of a package whose names load when they are used.
+
+    ``namespace`` is ``globals()`` of the package: it is given ``__getattr__``, which keeps there
+    what it loads, and ``__dir__``, the public names.  Type checkers see neither, and refuse a
+    misspelt name.  ``public`` takes each module, as it is imported from the package, to its names.
     """
     package = namespace["__name__"]
     modules = {name: module for module, names in public.items() for name in names}
 
     def load(name: str) -> Any:
         if name not in modules:
-            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+            raise unknown_name(package, name, modules)
         value = getattr(import_module(f".{modules[name]}", package), name)
         namespace[name] = value
         return value
 
-    def names() -> list[str]:
-        return sorted({*namespace, *modules})
-
-    return sorted(modules), load, names
+    namespace["__getattr__"] = load
+    namespace["__dir__"] = lambda: sorted(modules)
+    return sorted(modules)

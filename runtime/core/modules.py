@@ -66,8 +66,31 @@ def find_module(spec: ModelSpec, folders: Sequence[str | Path] = ()) -> EmittedM
     modules, one that today's sources would emit differently counts as missing, so that a cache that
     an older version filled is never used by mistake.
 
-    Refused where no manifest lists it, with the command that makes it; where its model cannot make
-    it; and where the file is not as it was emitted.
+    Parameters
+    ----------
+    spec : ModelSpec
+        Of the wanted model.
+    folders : sequence of path
+        Folders of emitted modules.
+
+    Returns
+    -------
+    EmittedModule
+        With the ``module`` and its ``provenance``.
+
+    Raises
+    ------
+    BadInput
+        If no manifest lists it (the message has the command that makes it), its model cannot make
+        it, or the file is not as it was emitted.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> from elastolink.derive.spec import ModelSpec
+    >>> found = el.systems.find_module(ModelSpec("four_bar", "complete", flexible=("coupler",)))
+    >>> print(found.entry.module, found.module.FAMILY)
+    four_bar_coupler_complete linear_periodic
     """
     candidates = (spec, spec.with_(modes=None)) if spec.modes is not None else (spec,)
     outdated = ""

@@ -56,6 +56,12 @@ class PeriodicFunction:
     Notes
     -----
     Smith (7.20).  Two functions compare equal only where they are the same object.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> print(el.PeriodicFunction(a=[0.0, 1.0, 0.2], b=[0.0, 0.1])([0.0, 1.0]).round(4))
+    [1.2    0.5412]
     """
 
     a: Array

@@ -501,11 +501,28 @@ def load(path: str | os.PathLike[str]) -> Result:
     and their like refuse to be used.  Nothing in the file is run: arrays are read without pickle,
     and classes are elastolink's own, or results that are defined already.
 
+    Parameters
+    ----------
+    path : path
+        The file, its ending that of its kind.
+
+    Returns
+    -------
+    Result
+        Of the class of the saved one.
+
     Raises
     ------
     BadInput
         If there is no such file, it is damaged or no file of a result, another version of
         elastolink wrote it with other fields, or it is a CSV file, which holds numbers alone.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> found = el.discriminant(el.PeriodicFunction(a=[0.0, 1.0]), lam2=[0.25, 1.0], mu=0.1)
+    >>> print((el.load(found.save("half_trace.json")).value == found.value).all())
+    True
     """
     if not isinstance(path, (str, os.PathLike)):
         raise bad("path", type(path).__name__, "a path", "name a file that save() wrote")

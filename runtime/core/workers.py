@@ -107,6 +107,10 @@ def process_pool(workers: int) -> Iterator[Executor]:
     workers : int
         How many, 1 to 1024.
 
+    Yields
+    ------
+    concurrent.futures.Executor
+
     Raises
     ------
     BadInput
@@ -116,6 +120,13 @@ def process_pool(workers: int) -> Iterator[Executor]:
     -----
     The processes are started afresh, not copied: a script that opens a pool keeps its own work
     under ``if __name__ == "__main__":``, as with any such pool.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> with el.process_pool(2) as pool:
+    ...     print(list(pool.map(abs, [-1, 2])))
+    [1, 2]
     """
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor

@@ -1,4 +1,4 @@
-"""Choosing a running speed, quiet speeds, run-ups, fatigue; measured points; tolerances."""
+"""Diagnosis, margins, changes that help, running speeds, run-ups, fatigue, tolerances, fits."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from .transient import run_through as run_through
     from .within_tolerances import tolerance_bands as tolerance_bands
 
-__all__, __getattr__, __dir__ = on_first_use(
+__all__ = on_first_use(
     globals(),
     {
         "diagnosis": ("diagnose",),

@@ -136,6 +136,14 @@ def certify(
     -----
     The work rises with the number of oscillations per revolution.  Multipliers within 1e-8 or so
     of the unit circle, as of hardly any damping, are left open.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> scene = el.load_scene("smith_1972_5152_sixteenth_inch", {"coupler.damping": 0.3})
+    >>> proof = el.design.certify(scene.system(), (40.0, 40.2))
+    >>> print(proof.stable, proof.bound.max() < 1.0)
+    True True
     """
     low, high = _checked(system, speeds)
     least = 1e-4 * (high - low) if resolution is None else resolution

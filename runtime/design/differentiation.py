@@ -145,6 +145,16 @@ def sensitivities(
     BadInput
         If an argument is unusable, a name is no number of the machine, the answer is of another
         kind or of a system of another size, or coefficients are not smooth.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("smith_1972_5152_sixteenth_inch").system()
+    >>> edges = el.stability_edges(system, (75.0, 85.0))
+    >>> slopes = el.design.sensitivities(system, edges, ["bending_stiffness"])
+    >>> print(slopes.answer, slopes.relative.round(3))
+    ends of unstable regions [rad/s] [[[0.5]
+      [0.5]]]
     """
     require_between("rtol", rtol, 1e-12, 1e-3, "try 1e-9")
     if not isinstance(answer, tuple(_KINDS)):

@@ -81,9 +81,33 @@ def damping_effect(
 ) -> StressEffect:
     """Return the largest stresses for several ratios of modal damping (Aannaque 7.4.2).
 
-    The system is a linkage of beams with modal damping, the speeds are those of the crank [rad/s],
-    the ratios positive, and ``rtol`` is the wanted relative error of the stresses.  A system
-    without modal damping is refused.
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a linkage of beams with modal damping.
+    speeds : array_like, shape (ns,)
+        Crank speeds [rad/s].
+    ratios : sequence of float
+        Damping ratios, positive.
+    rtol : float
+        Wanted relative error of the stresses.
+
+    Returns
+    -------
+    StressEffect
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, or the system has no modal damping.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).system()
+    >>> found = el.design.damping_effect(system, [30.7], ratios=[0.06])
+    >>> print(found.links, (found.maximum[0, 0] / 1e6).round())
+    ('crank', 'coupler', 'follower') [158.  28. 160.]
     """
     required_structure(system)
     if "damping_ratio" not in system.parameters:
@@ -100,10 +124,35 @@ def length_effect(
     *,
     rtol: float = 1e-3,
 ) -> StressEffect:
-    """Return the largest stresses for several values [m] of a length (Aannaque 7.3, 7.5, 8.5).
+    """Return the largest stresses for several values of a length (Aannaque 7.3, 7.5, 8.5).
 
-    The length is one of the system's geometry: ``frame`` is the distance of the ground pivots, L4.
-    A length that the system has not, and a value with which the crank cannot turn, are refused.
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a linkage of beams.
+    name : str
+        A length of its geometry: ``frame`` is the distance of the ground pivots, L4.
+    values : sequence of float
+        [m].
+    speeds, rtol
+        As :func:`damping_effect`.
+
+    Returns
+    -------
+    StressEffect
+
+    Raises
+    ------
+    BadInput
+        If the system has no such length, or with a value the crank cannot turn.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).system()
+    >>> found = el.design.length_effect(system, "coupler", [0.35], speeds=[20.0])
+    >>> print(found.links, (found.maximum[0, 0] / 1e6).round())
+    ('crank', 'coupler', 'follower') [52. 12. 38.]
     """
     required_structure(system)
     return effect_of(system, name, positive_row("values", values), speeds, rtol)
@@ -217,13 +266,39 @@ class Screening(Result):
 
 
 def screen(system: LinearPeriodic, speeds: ArrayLike, *, damping: float) -> Screening:
-    """Return estimated largest stresses over crank speeds [rad/s], without solving equations.
+    """Return estimated largest stresses over crank speeds, without solving equations.
 
     The quasi-static stress is a function of the crank angle times the squared speed, found once,
     and another of the constant loads.  Its n-th harmonic is taken to be carried by the lowest mode
     alone, as a single mass of the mean natural frequency W: it grows by ``1 / (1 - (n w/W)^2 + 2 i
     z n w/W)``, z the damping ratio.  Resonances at W/n are in it, infinite without damping;
     parametric terms and the other modes are not.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a linkage of beams.
+    speeds : array_like, shape (ns,)
+        Crank speeds [rad/s].
+    damping : float
+        z.
+
+    Returns
+    -------
+    Screening
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).system()
+    >>> found = el.design.screen(system, [10.0, 20.0], damping=0.02)
+    >>> print((found.maximum / 1e6).round().tolist())
+    [[12.0, 2.0, 7.0], [60.0, 8.0, 28.0]]
     """
     given = positive_row("speeds", speeds, "crank speeds")
     if not (is_finite(damping) and damping >= 0):

@@ -35,6 +35,13 @@ class Material:
     ------
     BadInput
         If a value is not a positive number, or the limit is above the strength.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> steel = el.Material(tensile_strength=600e6, endurance_limit=200e6, exponent=9.0)
+    >>> print(steel.endurance_limit / steel.tensile_strength)
+    0.3333333333333333
     """
 
     tensile_strength: float
@@ -133,6 +140,15 @@ def fatigue(stress: StressResult, material: Material) -> Fatigue:
         If the motion is not periodic, or its stresses are not finite.
     ElastolinkError
         If the counting library is not installed.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).system()
+    >>> steel = el.Material(tensile_strength=600e6, endurance_limit=200e6)
+    >>> found = el.fatigue(el.stress(system, 20.0), steel)
+    >>> print(found.worst, found.safety.min().round(2))
+    ('crank', 0.0, 'negative') 4.62
     """
     require_kind("fatigue stress", stress, StressResult, "make one with stress")
     require_kind("fatigue material", material, Material, "make one")

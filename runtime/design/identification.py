@@ -146,6 +146,15 @@ def identify(
     -----
     LinearRangeWarning
         If a deflection passes 5 % of the length with the values.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> scene = el.load_scene("smith_1972_5152_sixteenth_inch", {"coupler.damping_ratio": 0.02})
+    >>> points = [el.design.Point("deflection", 30.0, deflection=0.0026)]
+    >>> found = el.design.identify(scene.system(), points, ["bending_stiffness"])
+    >>> print(found.value.round(4), found.start.round(4))
+    [0.504] [0.4922]
     """
     fix = "take the .system() of a scene of one flexible link or of beams"
     require_kind("system", system, (LinearPeriodic, Nonlinear), fix)

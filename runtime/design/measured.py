@@ -65,6 +65,13 @@ class Point:
     BadInput
         If the kind is unknown, a number is not positive or finite, or a deflection lacks or is too
         many.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> begins = el.design.Point("unstable from", speed=78.04, deviation=0.16)
+    >>> print(begins.kind, begins.speed)
+    unstable from 78.04
     """
 
     kind: str
@@ -99,18 +106,37 @@ class Point:
 
 
 def read_points(path: str | os.PathLike[str]) -> tuple[Point, ...]:
-    """Return the measured points of a CSV file.
+    r"""Return the measured points of a CSV file.
 
     Its first line names the columns with their units: ``kind`` and ``speed [rpm]``, and as far as
     they are known ``deflection [mm]``, ``speed deviation [rpm]``, ``deflection deviation [mm]``;
     others are parameters that the machine was run with, ``follower_inertia [kg m^2]``, in SI units
     where no unit is named.  Empty fields are none; lines that begin with # are left out.
 
+    Parameters
+    ----------
+    path : path
+        The file.
+
+    Returns
+    -------
+    tuple of Point
+        By rows.
+
     Raises
     ------
     BadInput
         If the file cannot be read, a column is unknown or lacks its unit, or a row is unusable:
         the message names the line.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> from pathlib import Path
+    >>> path = Path("points.csv")
+    >>> _ = path.write_text("kind, speed [rpm]\nunstable from, 745.2\n")
+    >>> print(el.design.read_points(path)[0].kind)
+    unstable from
     """
     try:
         text = Path(path).read_text(encoding="utf-8-sig")

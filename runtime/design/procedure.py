@@ -120,6 +120,14 @@ def running_speed(
     BadInput
         If an argument is unusable, the system has no such length, or no speed of the range is
         within the limits and stable.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).system()
+    >>> found = el.running_speed(system, (30.0, 34.0), 200e6, values=[0.547], rtol=1e-2)
+    >>> print(round(found.speed, 1), found.passed)
+    32.3 True
     """
     required_structure(system)
     tried = _tried(system, length, values)

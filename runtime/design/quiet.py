@@ -145,6 +145,15 @@ def quiet_speeds(
     ------
     BadInput
         If an argument is unusable.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> import numpy as np
+    >>> system = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).system()
+    >>> found = el.quiet_speeds(system, np.linspace(28.0, 36.0, 12), limits=200e6, rtol=1e-2)
+    >>> print([(round(band.low, 1), round(band.high, 1)) for band in found.quiet])
+    [(31.2, 33.5)]
     """
     links = [beam.name for beam in required_structure(system).beams]
     named = _limits(limits, links)

@@ -37,6 +37,13 @@ class SpeedProfile:
     BadInput
         If the times do not increase, a value is not finite, a speed is negative, or the numbers
         of values differ; every problem is listed.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> ramp = el.SpeedProfile.ramp(20.0, 30.0, duration=0.5)
+    >>> print(ramp.times, ramp.speeds)
+    (0.0, 0.5) (20.0, 30.0)
     """
 
     times: tuple[float, ...]

@@ -414,6 +414,14 @@ def stabilise(
     BadInput
         If an argument is unusable, a key is no number or without effect, or the scene has no linear
         equations that regions can be found of.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> scene = el.load_scene("smith_1972_5152_sixteenth_inch")
+    >>> change, *_ = el.design.stabilise(scene, (77.5, 81.7), ["coupler.damping"]).changes
+    >>> print(list(change.settings), round(change.size, 4))
+    ['coupler.damping'] 0.0119
     """
     inputs.require_kind("scene", scene, Scene, "take load_scene(...)")
     low, high = inputs.speed_span(speed_range)

@@ -315,6 +315,15 @@ def run_through(
     BadInput
         If an argument is unusable, a length that changes is asked for with ``modes``, or the run
         would take too many steps.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).system()
+    >>> profile = el.SpeedProfile.ramp(20.0, 22.0, duration=0.05)
+    >>> found = el.run_through(system, profile, modes=2, stations=3)
+    >>> print({link: round(value / 1e6) for link, value in found.largest.items()})
+    {'crank': 55, 'coupler': 9, 'follower': 35}
     """
     _check(system, profile, modes, rtol, start)
     require_whole("stations", stations, 2, 1000, "choose 9")

@@ -160,6 +160,15 @@ def tolerance_bands(
     ------
     BadInput
         If an argument is unusable, no number has a tolerance, or a machine within them cannot be.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> scene = el.load_scene("smith_1972_12_6_12_12", {"links.coupler": "12 in +- 0.1 mm"})
+    >>> band = el.design.tolerance_bands(scene, "forces", at=[0.0, 1.0], samples=1000)
+    >>> torque = band.rows.index("torque")
+    >>> print(band.lower[torque].round(3), band.value[torque].round(3), band.upper[torque].round(3))
+    [-2.192  0.712] [-2.188  0.713] [-2.184  0.713]
     """
     require_kind("scene", scene, Scene, "use load_scene")
     require_whole("trials", trials, 1, 10_000_000)

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from .resonance_curves import ResonanceCurve as ResonanceCurve
     from .resonance_curves import resonance_curve as resonance_curve
 
-__all__, __getattr__, __dir__ = on_first_use(
+__all__ = on_first_use(
     globals(),
     {
         "campbell_diagram": ("campbell",),

@@ -214,6 +214,14 @@ def campbell(
     ------
     BadInput
         If the speeds or the number of modes are unusable.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).system()
+    >>> found = el.campbell(system, [29.5, 30.5, 31.5, 32.5], modes=1)
+    >>> print(found.crossing_order, found.crossing_speed.round(1))
+    [6] [30.7]
     """
     require_system(system)
     speeds = numbers("speed", speed)

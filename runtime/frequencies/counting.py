@@ -510,6 +510,15 @@ def wittrick_williams(
     ------
     BadInput
         If not exactly one of ``upto`` and ``count`` is given, or one is not usable.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> bar = el.Section.rectangle(0.02, 0.01, modulus=210e9, density=7850.0)
+    >>> pinned = {"A": ("x", "y"), "B": ("x", "y")}
+    >>> beam = el.frame({"A": (0, 0), "B": (1, 0)}, {"beam": ("A", "B")}, bar, supports=pinned)
+    >>> print(el.wittrick_williams(el.dynamic_stiffness(beam), count=3).frequencies.round(2))
+    [ 147.36  589.45 1326.25]
     """
     _check(upto, count)
     require_kind("problem", problem, Transcendental, "make one with dynamic_stiffness")

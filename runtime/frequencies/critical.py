@@ -371,6 +371,14 @@ def critical_speeds(
         If the range, the method or a number is unusable, or nothing of the system depends on the
         crank angle, as of a frame; of ``response``, if the system has no damping or its
         deflections are not known.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).system()
+    >>> found = el.critical_speeds(system, (40.0, 70.0), modes=1)
+    >>> print(found.order, found.speed.round(2))
+    [4 3] [46.02 61.36]
     """
     require_system(system)
     require_flag("progress", progress)

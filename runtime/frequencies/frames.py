@@ -268,6 +268,15 @@ def dynamic_stiffness(
     References
     ----------
     Aannaque (5.12)-(5.20).
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> bar = el.Section.rectangle(0.02, 0.01, modulus=210e9, density=7850.0)
+    >>> pinned = {"A": ("x", "y"), "B": ("x", "y")}
+    >>> beam = el.frame({"A": (0, 0), "B": (1, 0)}, {"beam": ("A", "B")}, bar, supports=pinned)
+    >>> print(el.dynamic_stiffness(beam).count(200.0))
+    1
     """
     rigid = rigid_beams("dynamic_stiffness", structure, theta, inextensible)
     if pieces is not None:

@@ -236,6 +236,32 @@ def buckling_speed(system: LinearPeriodic, **parameters: float) -> Buckling:
     analyses end there.  The moving mechanism need not be unstable, as it passes that part quickly.
     The geometric stiffness is to grow with the square of the speed, constant loads aside.  The
     speed is exact to round-off at its angle, which is the worst one to 1e-6 of the period.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Whose geometric stiffness grows with the square of the speed, constant loads aside.
+    **parameters : float
+        Parameters to change.
+
+    Returns
+    -------
+    Buckling
+        The speed [rad/s], inf where none buckles it, and the crank angle [rad].
+
+    Raises
+    ------
+    BadInput
+        If the system is of another kind, a parameter is unknown or unusable, or the stiffness at
+        rest is not positive definite at some angle.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).system()
+    >>> found = el.frequencies.buckling_speed(system)
+    >>> print(round(float(found.speed), 1), round(found.angle, 2))
+    88.3 0.66
     """
     require_system(system)
     if not system.has("Kg"):
@@ -256,8 +282,11 @@ def buckling_speed(system: LinearPeriodic, **parameters: float) -> Buckling:
 
 def _softening(system: LinearPeriodic, theta: Array, parameters: dict[str, float]) -> Array:
     """Return, at each angle, the largest eigenvalue of -(what a unit speed adds) over K."""
-    _, resting = held_arrays(system, theta, parameters, 0.0)
+    mass, resting = held_arrays(system, theta, parameters, 0.0)
     added = held_arrays(system, theta, parameters, 1.0)[1] - resting
-    half = np.linalg.inv(np.linalg.cholesky(resting))
+    try:
+        half = np.linalg.inv(np.linalg.cholesky(resting))
+    except np.linalg.LinAlgError:
+        raise _indefinite(mass, resting, theta) from None
     reduced = -half @ added @ np.swapaxes(half, -1, -2)
     return np.asarray(np.linalg.eigvalsh(0.5 * (reduced + np.swapaxes(reduced, -1, -2)))[:, -1])

@@ -116,11 +116,37 @@ def link_frequencies(
 ) -> LinkFrequencies:
     """Return the mean natural frequencies against the length or section of a link of a linkage.
 
-    The quantity is ``length`` [m], also of the ``frame``; or ``thickness`` or ``width``, over the
-    link's own, of a flat bar: the area goes with both, the second moment with the cube of the
-    thickness.  All else stays: parameters, lumped masses, and weight and constant loads with the
-    stiffening by their axial forces.  Refused are values ``(nv,)`` that are not positive, or with
-    which the crank cannot turn fully.
+    All else stays: parameters, lumped masses, and weight and constant loads with the stiffening by
+    their axial forces.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a linkage of beams.
+    link, quantity : str
+        ``length`` [m] of a link or the ``frame``; ``thickness`` or ``width`` of a flat bar over the
+        link's own: the area goes with both, the second moment with the cube of the thickness.
+    value : array_like, shape (nv,)
+        Its values.
+    count : int
+        How many frequencies.
+
+    Returns
+    -------
+    LinkFrequencies
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, or with a value the crank cannot turn fully.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).system()
+    >>> found = el.frequencies.link_frequencies(system, "coupler", "length", [0.4, 0.5])
+    >>> print(found.mean.round(1).ravel())
+    [183.9 183.2]
     """
     names = tuple(beam.name for beam in required_structure(system).beams)
     if not isinstance(quantity, str) or quantity not in QUANTITIES:

@@ -194,6 +194,15 @@ def natural_frequencies(
     BadInput
         If an angle, the count or the speed is unusable, a parameter is unknown, or mass or
         stiffness is not positive definite at some angle.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).system()
+    >>> found = el.natural_frequencies(system, theta=[0.0, 1.0], count=2)
+    >>> print(found.frequency.round())
+    [[176. 279.]
+     [187. 421.]]
     """
     require_system(system)
     angles = crank_angles(system, theta)
@@ -345,7 +354,33 @@ def draw_mode(
 def draw_modes(
     system: LinearPeriodic, theta: Sequence[float] | Array | None = None, modes: int = 3
 ) -> Figure:
-    """Return a figure of modes, a row to a crank angle [rad], every 36 degrees by default."""
+    """Return a figure of modes, a row to a crank angle.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a structure of beams.
+    theta : sequence of float, optional
+        Crank angles [rad], by default every 36 degrees.
+    modes : int
+        How many, from the lowest.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).system()
+    >>> print(len(el.frequencies.draw_modes(system, theta=[0.0, 1.0], modes=2).axes))
+    4
+    """
     required_structure(system)
     if theta is None:
         angles = np.linspace(0.0, system.period, 10, endpoint=False)

@@ -142,6 +142,15 @@ def resonance_curve(
     ------
     BadInput
         As :func:`~..periodic.steady_state`; and if the speeds do not rise.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> import numpy as np
+    >>> scene = el.load_scene("smith_1972_5152_sixteenth_inch", {"coupler.damping_ratio": 0.02})
+    >>> curve = el.resonance_curve(scene.system(), np.linspace(30.0, 40.0, 21), x=0.5)
+    >>> print(curve.maxima.round(2), (1000.0 * curve.maxima_peak).round(2), curve.order)
+    [32.9] [3.47] [5]
     """
     require_system(system)
     speeds = numbers("speed", speed)

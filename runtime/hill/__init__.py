@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from .solutions import boundary_solution as boundary_solution
     from .thresholds import critical_damping as critical_damping
 
-__all__, __getattr__, __dir__ = on_first_use(
+__all__ = on_first_use(
     globals(),
     {
         "boundaries": ("Boundaries", "hill_boundaries"),

@@ -182,6 +182,14 @@ def hill_boundaries(
     their number.  Near the tip of a damped region the two ends depend on the data through a square
     root, and the error grows accordingly.  The eigenvalues lose digits as K grows; beyond K = 0.5
     the ends are roots of the half trace, a hundred times slower for a single slice.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> cosine = el.PeriodicFunction(a=[0.0, 1.0])
+    >>> found = el.hill_boundaries(cosine, mu=0.1, regions=(1, 2))
+    >>> print(found.lower.round(6), found.upper.round(6))
+    [0.198781 0.999167] [0.298719 1.004145]
     """
     require_flag("certified", certified)
     if certified or not isinstance(f, Meissner):

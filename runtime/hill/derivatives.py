@@ -117,6 +117,14 @@ def boundary_derivatives(
     itself without damping), ``d lam2 / d eps = -<z, g y> / <z, y>`` and
     ``d lam2 / d K = -2 <z, y'> / <z, y>``.  Where two ends coincide, the derivatives are the
     eigenvalues of the 2 x 2 matrix ``-<y_i, g y_j>`` of two orthonormal solutions.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> cosine = el.PeriodicFunction(a=[0.0, 1.0])
+    >>> found = el.boundary_derivatives(cosine, mu=0.0, regions=(1,))
+    >>> print(found.lower.round(6), found.upper.round(6))
+    [[-0.5]] [[0.5]]
     """
     check_function(f)
     numbers = check_regions(regions)

@@ -128,6 +128,14 @@ def characteristic_exponents(
     in the harmonics of the periodic function is Hermitian, ``(m + nu)^2`` on its diagonal and
     ``-mu c_j`` beside it; K^2 only shifts lam2.  What its truncation leaves out is bounded as that
     of the boundaries, its rows counted by the whole part of ``|m + nu|``.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> cosine = el.PeriodicFunction(a=[0.0, 1.0])
+    >>> found = el.characteristic_exponents(cosine, lam2=[0.25, 0.6], mu=0.1)
+    >>> print(found.growth.round(4), found.stable)
+    [0.0498 0.    ] [False  True]
     """
     if (lam2 is None) == (nu is None):
         given = "neither" if nu is None else "both"

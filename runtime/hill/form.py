@@ -67,10 +67,26 @@ def is_hill(system: LinearPeriodic) -> bool:
 def hill_form(system: LinearPeriodic) -> HillForm:
     """Return the Hill form of a system with one mode (Smith 7.11, 7.38).
 
+    Parameters
+    ----------
+    system : LinearPeriodic
+        With one coordinate.
+
+    Returns
+    -------
+    HillForm
+
     Raises
     ------
     BadInput
         If the system has several modes, or a mass or damping that changes over the cycle.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> form = el.hill_form(el.load_scene("smith_1972_5152_sixteenth_inch").system())
+    >>> print(round(form.stiffness() ** 0.5, 2), form.damping())
+    163.36 0.0
     """
     require_system(system)
     if not is_hill(system):

@@ -134,6 +134,14 @@ def discriminant(
     Smith (7.9), (7.38)-(7.40).  The error estimate holds round-off (amplified by the norm of the
     monodromy matrices round the circle), the truncation of the transfer polynomials, the tail of
     the Chebyshev series and the error of ``f``.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> cosine = el.PeriodicFunction(a=[0.0, 1.0])
+    >>> trace = el.discriminant(cosine, lam2=[0.25, 0.6], mu=0.1)
+    >>> print(trace.value.round(4), trace.stable)
+    [-1.0493  0.1397] [False  True]
     """
     method = "exact matrices of intervals"
     if not isinstance(f, Meissner):

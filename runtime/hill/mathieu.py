@@ -33,6 +33,15 @@ class Mathieu:
     ----------
     a, q : float or ndarray
         The parameters, which broadcast.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> case = el.Mathieu(a=1.0, q=0.2)
+    >>> print(el.discriminant(case.function(), case.lam2, case.mu).stable)
+    False
+    >>> print(el.Mathieu.characteristic(1, q=0.2, kind="a").value.round(6))
+    1.194874
     """
 
     a: ArrayLike

@@ -46,6 +46,12 @@ class Meissner:
         Value of f on each interval; the first begins at theta = 0.
     lengths : tuple of float
         Their lengths [rad], together 2 pi.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> print(el.discriminant(el.Meissner(levels=(1.0, -1.0)), lam2=[0.25, 0.6], mu=0.1).stable)
+    [False  True]
     """
 
     levels: tuple[float, ...] = (1.0, -1.0)

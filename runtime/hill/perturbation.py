@@ -121,6 +121,14 @@ def perturbation_boundaries(
     and of the error of f, all carried through the square root.  An entry is flagged where that
     ratio, with a margin of a quarter, reaches 0.9, or the error half the distance to the
     neighbouring level of the same period.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> cosine = el.PeriodicFunction(a=[0.0, 1.0])
+    >>> found = el.perturbation_boundaries(cosine, mu=0.1, regions=(1, 2), order=4)
+    >>> print(found.lower.round(6), found.upper.round(6))
+    [0.198781 0.999167] [0.298718 1.004145]
     """
     functions, flat, shape = parameters_of(f, mu, damping)
     numbers = check_regions(regions)

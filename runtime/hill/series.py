@@ -162,6 +162,13 @@ def boundary_series(
     Notes
     -----
     Smith (7.12), (7.23), (7.35), (7.46), to any order by Bloch's recursion.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> series = el.boundary_series(el.PeriodicFunction(a=[0.0, 1.0]), region=1, order=3)
+    >>> print(series.lower.round(6), series.upper.round(6))
+    [-0.5     -0.125    0.03125] [ 0.5     -0.125   -0.03125]
     """
     check_function(f)
     (n,) = check_regions((region,))

@@ -148,6 +148,13 @@ def boundary_solution(
     -----
     Smith (7.13)-(7.36), (7.41)-(7.47): the columns of Bloch's wave operator and the eigenvector
     of the effective operator.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> solution = el.boundary_solution(el.PeriodicFunction(a=[0.0, 1.0]), mu=0.1, n=1)
+    >>> print(round(solution.lam2, 6), round(solution.period, 4))
+    0.198781 12.5664
     """
     functions, (*amps, k), shape = parameters_of(f, mu, damping)
     (number,) = check_regions((n,))

@@ -131,6 +131,13 @@ def critical_damping(
     Notes
     -----
     Smith (7.50) and (7.51), ``mu = 2 K n / sqrt(an^2 + bn^2)``, are the first order in mu and K.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> found = el.critical_damping(el.PeriodicFunction(a=[0.0, 1.0]), mu=0.1, regions=(1,))
+    >>> print(found.damping.round(4))
+    [0.0499]
     """
     check_function(f)
     numbers = check_regions(regions, least=1)

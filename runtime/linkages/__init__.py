@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from .slider_crank import SliderCrank as SliderCrank
     from .transmission import transmission_angle as transmission_angle
 
-__all__, __getattr__, __dir__ = on_first_use(
+__all__ = on_first_use(
     globals(),
     {
         "classification": ("classify",),

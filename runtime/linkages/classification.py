@@ -316,6 +316,13 @@ def classify(
     BadInput
         If a length is not a positive number, the links cannot close or cannot move, or the
         tolerance or the input has no meaning.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> found = el.classify(el.FourBar(frame=12.0, crank=6.0, coupler=12.0, follower=12.0))
+    >>> print(found.name, found.symbol)
+    Grashof crank-rocker-rocker GCRR
     """
     if isinstance(linkage, np.ndarray) and linkage.ndim > 1:
         if input != "crank" or tolerance != 0.0:

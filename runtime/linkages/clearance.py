@@ -553,10 +553,10 @@ def clearance_range(
 
     Examples
     --------
-    >>> from elastolink import FourBar
-    >>> play = clearance_range(FourBar(10, 8, 10, 10), 0.1, 0.0)
-    >>> round(float(play.width), 4), round(float(play.small), 4)
-    (0.0503, 0.0503)
+    >>> import elastolink as el
+    >>> play = el.clearance_range(el.FourBar(10, 8, 10, 10), 0.1, 0.0)
+    >>> print(play.width.round(4), play.small.round(4))
+    0.0503 0.0503
     """
     require_linkage(linkage)
     outputs = next(of for kind, of in OUTPUTS.items() if isinstance(linkage, kind))

@@ -212,6 +212,14 @@ def coupler_curve(
     -----
     Aannaque 3.6.  A path run out and back (a point of the slider, or of a link that swings about a
     pivot) has its ends among the cusps, and no double points are listed: it consists of them.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> linkage = el.FourBar(frame=12.0, crank=6.0, coupler=12.0, follower=12.0)
+    >>> curve = el.coupler_curve(linkage, along=6.0, across=4.0)
+    >>> print(curve.position.shape, round(float(curve.length), 2))
+    (720, 2) 35.58
     """
     require_linkage(linkage)
     motion = Circuit(linkage, circuit)

@@ -64,11 +64,23 @@ def mobility(
     frame : str, optional
         The fixed link; by default the first that is named.
 
+    Returns
+    -------
+    Mobility
+        By Kutzbach and by Gruebler, and that of the velocities where there are coordinates.
+
     Raises
     ------
     BadInput
         If a pin joins fewer than two links or one twice, the frame is no link, or the coordinates
         are not finite pairs, one for each pin.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> pins = [("bed", "crank"), ("crank", "coupler"), ("coupler", "rocker"), ("rocker", "bed")]
+    >>> print(el.mobility(pins).kutzbach)
+    1
     """
     try:
         joined = [tuple(pin) for pin in pins]

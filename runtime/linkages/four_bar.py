@@ -119,6 +119,13 @@ class FourBar(Linkage):
     ------
     BadInput
         If a length is not a positive number or the four cannot close.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> linkage = el.FourBar(frame=12.0, crank=6.0, coupler=12.0, follower=12.0)
+    >>> print(linkage.motion(theta=[0.0, 1.0]).transmission_angle.round(4))
+    [0.5054 0.8696]
     """
 
     frame: float

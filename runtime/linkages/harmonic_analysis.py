@@ -143,6 +143,13 @@ def harmonics(source: Source, *, order: int = 8, accuracy: float = 1e-12) -> Har
     accuracy.  Each set starts at another, irrational part of its spacing: a harmonic of thousands,
     which regular sets of 64, 128, 256 angles all take for a mean, then shows at once.  Before it
     ends, the whole series is compared with the function at irregular angles.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> import numpy as np
+    >>> print(el.harmonics(lambda theta: np.cos(theta) ** 3, order=3).amplitude.round(6))
+    [0.   0.75 0.   0.25]
     """
     name, f, known = _function(source)
     require_whole("order", order, 1, 4096)

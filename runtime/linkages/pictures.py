@@ -90,6 +90,13 @@ def animate(
     BadInput
         If this is no linkage, or the ending, the folder, a number, a curve or the circuit is
         impossible.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> linkage = el.FourBar(frame=12.0, crank=6.0, coupler=12.0, follower=12.0)
+    >>> print(el.animate(linkage, "motion.gif", frames=4))
+    motion.gif
     """
     target = check_animation_path(path)
     require_linkage(linkage)

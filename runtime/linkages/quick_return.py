@@ -90,6 +90,13 @@ class QuickReturn(Linkage):
     ------
     BadInput
         If a length is not a positive number or the rod does not reach the block at all.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> shaper = el.QuickReturn(frame=0.3, crank=0.1, rod=0.6)
+    >>> print(round(el.transmission_angle(shaper).time_ratio, 3))
+    1.552
     """
 
     frame: float

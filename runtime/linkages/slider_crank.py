@@ -97,6 +97,13 @@ class SliderCrank(Linkage):
     ------
     BadInput
         If a length is not a positive number, or crank and coupler cannot reach the guide.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> motion = el.SliderCrank(crank=0.1, coupler=0.3).motion(theta=[0.0, 1.0], speed=20.0)
+    >>> print(motion.position.round(3), motion.slider_acceleration.round(2))
+    [0.4   0.342] [-53.33 -16.18]
     """
 
     crank: float

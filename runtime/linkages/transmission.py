@@ -219,10 +219,22 @@ def transmission_angle(
     band : tuple of 2 floats
         Recommended least and greatest angle [rad]; 40 and 140 degrees by default (Aannaque 3.3).
 
+    Returns
+    -------
+    TransmissionAngle
+        Angles [rad], lengths in the unit of the linkage.
+
     Raises
     ------
     BadInput
         If the band is not two rising angles between 0 and pi, or this is no linkage.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> found = el.transmission_angle(el.FourBar(12.0, 6.0, 12.0, 12.0))
+    >>> print(round(found.least, 4), round(found.greatest, 4), found.within_band)
+    0.5054 1.6961 False
     """
     if not (are_finite(band, 2) and 0.0 <= band[0] < band[1] <= pi):
         raise bad("band", shown(band), "two angles, 0 <= low < high <= pi", "give radians, rising")

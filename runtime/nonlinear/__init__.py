@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from .swept import basins as basins
     from .swept import sweep_response as sweep_response
 
-__all__, __getattr__, __dir__ = on_first_use(
+__all__ = on_first_use(
     globals(),
     {
         "amplitude": ("AmplitudeLaw", "amplitude_law"),

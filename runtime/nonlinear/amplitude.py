@@ -84,10 +84,23 @@ def amplitude_law(
     modes : int, optional
         How many modes the coupler has; by default as many as the scene says, and the one wanted.
 
+    Returns
+    -------
+    AmplitudeLaw
+
     Raises
     ------
     BadInput
         If an argument is unusable, or the linkage cannot reach an angle or folds there.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> changes = {"model.formulation": "inextensible"}
+    >>> scene = el.load_scene("smith_1972_5152_sixteenth_inch", changes)
+    >>> law = el.nonlinear.amplitude_law(scene, theta=[0.0, 1.0])
+    >>> print(law.frequency.round(2), law.coefficient.round(2))
+    163.36 [-21.22 -14.93]
     """
     require_kind("scene", scene, Scene, "take what load_scene returns")
     if scene.model["formulation"] not in INEXTENSIBLE:

@@ -105,6 +105,16 @@ def special_curve(
     ------
     BadInput
         If an argument is unusable.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> changes = {"model.formulation": "inextensible", "coupler.damping_ratio": 0.03}
+    >>> rig = el.load_scene("smith_1972_101104_thirtysecond_inch", changes).system()
+    >>> curve = el.response_curve(rig, "speed", (32.0, 40.0))
+    >>> fold = el.nonlinear.special_curve(curve, 0, "damping", (0.2, 0.3))
+    >>> print(fold.kind, fold.parameters, fold.second.max().round(3))
+    fold ('speed', 'damping') 0.264
     """
     require_kind("curve", curve, ResponseCurve, "take what response_curve returns")
     known = len(curve.special)

@@ -269,6 +269,15 @@ def response_curve(
     ------
     BadInput
         If an argument is unusable, or no periodic motion is found at either end of the range.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> changes = {"model.formulation": "inextensible", "coupler.damping_ratio": 0.03}
+    >>> rig = el.load_scene("smith_1972_101104_thirtysecond_inch", changes).system()
+    >>> curve = el.response_curve(rig, "speed", (32.0, 40.0))
+    >>> print(curve.special, curve.special_value.round(1))
+    ('fold', 'fold') [37.3 36.8]
     """
     problem, low, high = checked_problem(system, parameter, bounds, speed)
     require_whole("turns", turns, 1, 64)

@@ -122,6 +122,15 @@ def coexisting_motions(
     ------
     BadInput
         If an argument is unusable.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> changes = {"model.formulation": "inextensible", "coupler.damping_ratio": 0.03}
+    >>> rig = el.load_scene("smith_1972_101104_thirtysecond_inch", changes).system()
+    >>> found = el.nonlinear.coexisting_motions(rig, "speed", 37.0)
+    >>> print(found.stable, (1000.0 * (found.highest - found.lowest)).round(1))
+    [ True False  True] [30.8 54.9 61.7]
     """
     if not is_finite(value):
         raise bad("value", repr(value), "a finite number", "correct it")

@@ -30,6 +30,7 @@ _JUMP, _SUDDEN, _PAUSE = 0.15, 6.0, 6
 # Basins: revolutions at the most, how near to a motion a state has come to it, in its sizes; places
 # of the grid each way, and steps of a revolution at the most.
 _REVOLUTIONS, _REACHED, _GRID, _COARSE = 400, 0.02, 41, 64
+_FEW = 16  # initial states that are marched, or of a larger number those that check the map
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,6 +151,15 @@ def sweep_response(
     ------
     BadInput
         If an argument is unusable, or no motion can be begun with.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> changes = {"model.formulation": "inextensible", "coupler.damping_ratio": 0.03}
+    >>> rig = el.load_scene("smith_1972_101104_thirtysecond_inch", changes).system()
+    >>> found = el.sweep_response(rig, (36.0, 38.0), rate=0.1, direction="down")
+    >>> print(found.jump_speed.round(1), found.jump_rising)
+    [36.5] [False]
     """
     problem, low, high = checked_problem(system, "speed", bounds, None)
     if not (is_finite(rate) and rate > 0):
@@ -358,8 +368,8 @@ def basins(
 ) -> Basins:
     """Return which of several periodic motions is reached from initial states at one speed.
 
-    Of a system of one coordinate the map of a revolution is computed on a grid of 41 by 41 states,
-    and iterated by its splines.  Of several, each state is marched.
+    Each state is marched.  Of a system of one coordinate and more than 16 states the map of a
+    revolution is computed on a grid of 41 by 41 states around them, and iterated by its splines.
 
     Parameters
     ----------
@@ -376,12 +386,23 @@ def basins(
     Returns
     -------
     Basins
-        Its ``error`` is the share of 16 states, marched, that come to another motion.
+        Its ``error``, of a map, is the share of 16 states, marched, that come to another motion: a
+        way there may lead beyond the grid.
 
     Raises
     ------
     BadInput
         If an argument is unusable.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> changes = {"model.formulation": "inextensible", "coupler.damping_ratio": 0.03}
+    >>> rig = el.load_scene("smith_1972_101104_thirtysecond_inch", changes).system()
+    >>> small, _, large = el.nonlinear.coexisting_motions(rig, "speed", 37.0).motions
+    >>> found = el.nonlinear.basins(rig, 37.0, (small, large), q=[0.0], rate=[0.0])
+    >>> print(found.motion, (1000.0 * found.peak_to_peak).round(1))
+    [[0]] [30.8 61.7]
     """
     problem, _, _ = checked_problem(system, "speed", (0.5 * speed, speed), None)
     columns, rows = numbers_in_a_row("q", q), numbers_in_a_row("rate", rate)
@@ -392,11 +413,11 @@ def basins(
     ends = [motion.states[:: len(motion.x) // motion.turns] for motion in motions]
     sizes = np.max([np.max(np.abs(part), axis=0) for part in ends], axis=0) + system.small
     attractors = _Attractors(ends, sizes)
-    wrong = 0.0
-    if n == 1:
+    wrong, mapped = 0.0, n == 1 and len(states) > _FEW
+    if mapped:
         step = _mapped(marcher, speed, columns, rows, progress)
         found = attractors.reached(step, states)
-        some = np.random.default_rng(0).choice(len(states), min(16, len(states)), replace=False)
+        some = np.random.default_rng(0).choice(len(states), _FEW, replace=False)
         march = attractors.reached(partial(_marched, marcher, speed), states[some])
         wrong = float(np.mean(march != found[some]))
     else:
@@ -408,7 +429,7 @@ def basins(
                 ]
                 tick(i + 1)
     return Basins(
-        method="map of a revolution on a grid" if n == 1 else "marching by revolutions",
+        method="map of a revolution on a grid" if mapped else "marching by revolutions",
         error=wrong,
         error_norm="share of states that come to another motion",
         provenance=provenance(system.provenance),

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from .prepared import prepare as prepare
     from .reduced import reduced_system as reduced_system
 
-__all__, __getattr__, __dir__ = on_first_use(
+__all__ = on_first_use(
     globals(),
     {
         "motion": ("Trajectory", "simulate"),

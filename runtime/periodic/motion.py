@@ -191,6 +191,14 @@ def simulate(
     -----
     With theta as variable, ``q' = M^-1 (p - A q)`` and
     ``p' = A^T q' + B q - (K + Kg) q/w^2 - C q'/w - D q/w + f + h/w + p_ext/w^2``.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("smith_1972_5152_sixteenth_inch").system()
+    >>> motion = el.simulate(system, speed=35.0, revolutions=2)
+    >>> print(motion.q.shape, round(float(motion.time[-1]), 4), motion.passed)
+    (721, 1) 0.359 True
     """
     _check_arguments(method, revolutions, rtol, samples, bound, start)
     require_flag("forcing", forcing)

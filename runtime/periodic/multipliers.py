@@ -123,6 +123,13 @@ def monodromy(
     BadInput
         If speeds or parameters are unusable (see :func:`~.equation.equation_of`), or more than a
         million segments would be needed.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("smith_1972_5152_sixteenth_inch").system()
+    >>> print(el.monodromy(system, speed=80.0).matrix.trace().round(4))
+    2.0202
     """
     equation = equation_of(system, speed, _checked(rtol, parameters))
     way, m = choose(equation, rtol), 2 * equation.size
@@ -249,6 +256,14 @@ def floquet_multipliers(
     ------
     BadInput
         As :func:`monodromy`.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("smith_1972_5152_sixteenth_inch").system()
+    >>> found = el.floquet_multipliers(system, speed=[75.0, 80.0])
+    >>> print(found.stable, abs(found.multipliers).max(axis=-1).round(4))
+    [ True False] [1.     1.1526]
     """
     equation = equation_of(system, speed, _checked(rtol, parameters))
     way, m = choose(equation, rtol), 2 * equation.size
@@ -630,13 +645,36 @@ def _reciprocal(logarithm: Array, angle: Array, error: Array) -> Check:
 def cycles_to_settle(
     multiplier: ArrayLike, tolerance: float, *, norm: str = "change"
 ) -> NDArray[np.int64]:
-    """Return how many periods a march from rest takes, with the last; -1 where it never settles.
+    """Return how many periods a march from rest takes, with the last.
 
     After k periods the motion from rest is ``y_s - rho^k y_s``, where y_s lies along the mode of
     rho, the multiplier nearest to the unit circle; what else the start holds has died away before.
-    The tolerance, between 0 and 1, is over the size of the motion: by ``norm="change"`` of the last
-    period from the one before, ``abs(1 - rho) abs(rho)^(k - 2)``; by ``"remaining"`` of the rest of
-    the start in the last period, ``abs(rho)^(k - 1)``.
+
+    Parameters
+    ----------
+    multiplier : array_like
+        rho, real or complex.
+    tolerance : float
+        Between 0 and 1, over the size of the motion.
+    norm : {"change", "remaining"}
+        Of the last period from the one before, ``abs(1 - rho) abs(rho)^(k - 2)``; or of the rest of
+        the start in the last period, ``abs(rho)^(k - 1)``.
+
+    Returns
+    -------
+    ndarray of int
+        k, of the shape of the multiplier; -1 where it never settles.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> print(el.periodic.cycles_to_settle([0.5, 0.9, 1.1], 0.01))
+    [ 8 24 -1]
     """
     if not 0.0 < tolerance < 1.0:
         raise bad("tolerance", tolerance, "a number between 0 and 1", "choose 1e-4")

@@ -311,6 +311,14 @@ def steady_state(
     Where a multiplier is 1 the answer is NaN even if the forcing lacks the harmonic in question,
     as for q'' + 4 q = cos t: a periodic motion exists then, but it is not the only one, and any
     disturbance of the forcing leads far away.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> scene = el.load_scene("smith_1972_5152_sixteenth_inch", {"coupler.damping_ratio": 0.02})
+    >>> steady = el.steady_state(scene.system(), speed=30.0)
+    >>> print(steady.stable, (1000.0 * steady.peak(0.5)).round(2))
+    True 2.67
     """
     _check_arguments(method, rtol, samples)
     if not numbers("speed", speed).size:

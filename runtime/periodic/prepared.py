@@ -68,6 +68,14 @@ class Prepared:
         Where the equations came from.
     compiled : tuple of CompiledTable
         The tables for numba, where it was asked for.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("smith_1972_5152_sixteenth_inch").system()
+    >>> ready = el.prepare(system, (70.0, 90.0))
+    >>> print(ready.span, ready.monodromy(80.0).matrix.shape)
+    (70.0, 90.0) (2, 2)
     """
 
     system: LinearPeriodic
@@ -398,8 +406,10 @@ def prepare(
 
     Examples
     --------
-    >>> ready = prepare(system, (40.0, 150.0))      # doctest: +SKIP
-    >>> ready.monodromy(80.0).matrix                # doctest: +SKIP
+    >>> import elastolink as el
+    >>> system = el.load_scene("smith_1972_5152_sixteenth_inch").system()
+    >>> print(el.prepare(system, (70.0, 90.0)).monodromy(80.0).matrix.trace().round(4))
+    2.0202
     """
     low, high = _ends(speeds)
     if compiled:

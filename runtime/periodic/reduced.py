@@ -104,6 +104,14 @@ def reduced_system(
     ------
     BadInput
         If ``modes`` is no number from 1 to n, or the modes span no smooth periodic subspace.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).system()
+    >>> reduced = el.periodic.reduced_system(system, modes=3)
+    >>> print(system.size, reduced.size, reduced.error < 1e-9)
+    9 3 True
     """
     phi = moving_basis(system, modes) if basis is None else basis
     if phi.fixed:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from .stresses import stress as stress
     from .stresses import stress_operator as stress_operator
 
-__all__, __getattr__, __dir__ = on_first_use(
+__all__ = on_first_use(
     globals(),
     {
         "beam_forces": ("recover",),

@@ -301,6 +301,13 @@ def recover(
     ------
     BadInput
         If an argument is unusable.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).system()
+    >>> print(abs(el.recover(system, 20.0, stations=5).of("coupler", "moment")).max().round(2))
+    0.47
     """
     require_method(method)
     chosen = stations_of(required_structure(system), stations)

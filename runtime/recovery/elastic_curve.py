@@ -79,10 +79,32 @@ def elastic_coupler_curve(
 ) -> ElasticCurve:
     """Return the curve of a point of an elastic link, beside that of the rigid linkage.
 
-    The motion is a computed one, or a crank speed [rad/s], for the steady state there.  The point
-    lies ``along`` and ``across`` the link's own axes [m], by default in the middle of the axis; off
-    the axis it is carried by the section at its foot, beyond the ends by the end section.  A
-    structure that stands still is refused.
+    Parameters
+    ----------
+    system, motion
+        As :func:`elastolink.recover`.
+    along, across : float, optional
+        Place in the link's own axes [m], by default the middle of the axis; off the axis it is
+        carried by the section at its foot, beyond the ends by the end section.
+    link : str
+        The link.
+
+    Returns
+    -------
+    ElasticCurve
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, or the structure stands still.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).system()
+    >>> curve = el.recovery.elastic_coupler_curve(system, 20.0)
+    >>> print(curve.elastic.shape, round(1000.0 * float(curve.largest), 2))
+    (256, 2) 0.75
     """
     structure = required_structure(system)
     beam = structure.beam(link)

@@ -141,6 +141,14 @@ def pin_reactions(system: LinearPeriodic, motion: Motion | float | None = None) 
     ------
     BadInput
         If an argument is unusable.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).system()
+    >>> found = el.pin_reactions(system, 20.0)
+    >>> print(found.force("B", "coupler").shape, abs(found.torque()).max().round(1))
+    (256, 2) 8.5
     """
     moving = beam_motion(system, motion)
     on_beams, of_ground, joined = _forces(system, moving)

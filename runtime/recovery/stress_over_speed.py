@@ -206,6 +206,14 @@ def stress_curve(
     BadInput
         If an argument is unusable, the system is not one of beams, nothing acts on it, or no
         subspace of modes is smooth.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).system()
+    >>> curve = el.stress_curve(system, [20.0, 25.0], whole=False)
+    >>> print(curve.links, (curve.maximum / 1e6).round().tolist())
+    ('crank', 'coupler', 'follower') [[52.0, 10.0, 39.0], [91.0, 16.0, 77.0]]
     """
     given = _checked(system, speeds, rtol)
     require_method(method)

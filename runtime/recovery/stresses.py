@@ -421,6 +421,14 @@ def stress(
     Without a finer mesh its relative error is taken for the square of the energy norm of the
     difference of the two recoveries over that of the forces: for a natural mode this is the
     relative error of the squared frequency.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).system()
+    >>> largest = el.stress(system, 20.0).maximum
+    >>> print(largest.link, round(largest.value / 1e6))
+    crank 52
     """
     require_method(method)
     structure = required_structure(system)

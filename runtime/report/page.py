@@ -111,6 +111,13 @@ def make_report(scene: Scene) -> Report:
     ------
     BadInput
         If this is no scene, or its equations are not there.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> report = el.report.make_report(el.load_scene("mathieu"))
+    >>> print([section.heading for section in report.sections])
+    ['The machine', 'Its numbers', 'Stability']
     """
     require_kind("scene", scene, (Scene,), "use load_scene")
     return Report(scene.name, scene.title, tuple(sections(subject_of(scene))))

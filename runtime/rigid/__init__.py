@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from .peaks import ForcePeak as ForcePeak
     from .peaks import force_peaks as force_peaks
 
-__all__, __getattr__, __dir__ = on_first_use(
+__all__ = on_first_use(
     globals(),
     {
         "balancing": ("Balancing", "balance", "trade_off"),

@@ -162,6 +162,14 @@ def balance(
         If a name is unknown, a weight or bound impossible, a weighted force zero without
         counterweights, limits cannot be met, or the crank cannot turn and no angles are given; if
         there is no such case for the linkage, or a choice of the optimum stands beside a case.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> machine = el.load_scene("smith_1972_12_6_12_12").machine()
+    >>> best = el.balance(machine, speed=10.0, weights={"torque": 1.0, "shaking_force": 1.0})
+    >>> print({name: round(best.relative[name], 3) for name in ("torque", "shaking_force")})
+    {'torque': 1.232, 'shaking_force': 0.234}
     """
     if case is None:
         search = _searched(
@@ -546,6 +554,14 @@ def trade_off(
     ------
     BadInput
         As :func:`balance`, and for equal or unknown forces, or another number of points.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> machine = el.load_scene("smith_1972_12_6_12_12").machine()
+    >>> curve = el.trade_off(machine, speed=10.0, points=3)
+    >>> print(curve.first_values.round(2), curve.second_values.round(2))
+    [0.   0.35 0.7 ] [1.52 1.13 1.  ]
     """
     for name, term in (("first", first), ("second", second)):
         if not is_one_of(term, TERMS):

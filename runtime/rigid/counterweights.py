@@ -101,6 +101,15 @@ class Bounds:
     ------
     BadInput
         If a number is impossible.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> machine = el.load_scene("smith_1972_12_6_12_12").machine()
+    >>> bounds, weights = el.Bounds(mass=0.2, offset=0.1), {"f12": 1.0}
+    >>> best = el.balance(machine, 10.0, weights=weights, links=["crank"], bounds=bounds)
+    >>> print(round(best.counterweights["crank"].mass, 3), round(best.relative["f12"], 3))
+    0.2 0.947
     """
 
     mass: float | None = None

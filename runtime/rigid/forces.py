@@ -197,11 +197,11 @@ def rigid_forces(
 
     Examples
     --------
-    >>> from elastolink import FourBar, MassDistribution
-    >>> bar = MassDistribution.uniform_bar(mass=0.45, length=0.3)
-    >>> machine = Machine(FourBar(0.3, 0.15, 0.3, 0.3), {"coupler": bar, "follower": bar})
-    >>> rigid_forces(machine, theta=[0.0, 1.0], speed=10.0).f34.shape
-    (2, 2)
+    >>> import elastolink as el
+    >>> machine = el.load_scene("smith_1972_12_6_12_12").machine()
+    >>> forces = el.rigid_forces(machine, theta=[0.0, 1.0], speed=10.0)
+    >>> print(forces.f34.shape, forces.torque.round(3))
+    (2, 2) [-2.188  0.713]
     """
     given = names_in_a_row("outputs", outputs)
     unknown = [item for item in given if item not in OUTPUTS]
@@ -230,28 +230,120 @@ def rigid_forces(
 def pin_forces(
     machine: Machine, theta: ArrayLike, speed: ArrayLike, acceleration: ArrayLike = 0.0
 ) -> RigidForces:
-    """Return the pin forces alone (Smith 4.7-4.10); see :func:`rigid_forces`."""
+    """Return the pin forces alone (Smith 4.7-4.10); see :func:`rigid_forces`.
+
+    Parameters
+    ----------
+    machine, theta, speed, acceleration
+        As :func:`rigid_forces`.
+
+    Returns
+    -------
+    RigidForces
+        Its ``f12``, ``f23``, ``f34``, ``f41`` ``(..., 2)`` [N], of the first link on the second.
+
+    Raises
+    ------
+    BadInput
+        As :func:`rigid_forces`.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> machine = el.load_scene("smith_1972_12_6_12_12").machine()
+    >>> print(el.pin_forces(machine, theta=1.0, speed=10.0).f23.round(2))
+    [-10.1   -7.07]
+    """
     return rigid_forces(machine, theta, speed, acceleration, ("pins",))
 
 
 def driving_torque(
     machine: Machine, theta: ArrayLike, speed: ArrayLike, acceleration: ArrayLike = 0.0
 ) -> RigidForces:
-    """Return the driving torque alone (Smith 4.11); see :func:`rigid_forces`."""
+    """Return the driving torque alone (Smith 4.11); see :func:`rigid_forces`.
+
+    Parameters
+    ----------
+    machine, theta, speed, acceleration
+        As :func:`rigid_forces`.
+
+    Returns
+    -------
+    RigidForces
+        Its ``torque`` [N m] on the crank, of the shape of the broadcast arguments.
+
+    Raises
+    ------
+    BadInput
+        As :func:`rigid_forces`.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> machine = el.load_scene("smith_1972_12_6_12_12").machine()
+    >>> print(el.driving_torque(machine, theta=[0.0, 1.0], speed=10.0).torque.round(3))
+    [-2.188  0.713]
+    """
     return rigid_forces(machine, theta, speed, acceleration, ("torque",))
 
 
 def shaking_force(
     machine: Machine, theta: ArrayLike, speed: ArrayLike, acceleration: ArrayLike = 0.0
 ) -> RigidForces:
-    """Return the force on the frame alone (Smith 4.12); see :func:`rigid_forces`."""
+    """Return the force on the frame alone (Smith 4.12); see :func:`rigid_forces`.
+
+    Parameters
+    ----------
+    machine, theta, speed, acceleration
+        As :func:`rigid_forces`.
+
+    Returns
+    -------
+    RigidForces
+        Its ``shaking_force`` ``(..., 2)`` [N].
+
+    Raises
+    ------
+    BadInput
+        As :func:`rigid_forces`.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> machine = el.load_scene("smith_1972_12_6_12_12").machine()
+    >>> print(el.shaking_force(machine, theta=1.0, speed=10.0).shaking_force.round(2))
+    [12.24  4.4 ]
+    """
     return rigid_forces(machine, theta, speed, acceleration, ("shaking_force",))
 
 
 def shaking_moment(
     machine: Machine, theta: ArrayLike, speed: ArrayLike, acceleration: ArrayLike = 0.0
 ) -> RigidForces:
-    """Return the moment on the frame alone (Smith 4.13, completed); see :func:`rigid_forces`."""
+    """Return the moment on the frame alone (Smith 4.13, completed); see :func:`rigid_forces`.
+
+    Parameters
+    ----------
+    machine, theta, speed, acceleration
+        As :func:`rigid_forces`.
+
+    Returns
+    -------
+    RigidForces
+        Its ``shaking_moment`` ``(...)`` [N m] about A, the reaction of the drive in it.
+
+    Raises
+    ------
+    BadInput
+        As :func:`rigid_forces`.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> machine = el.load_scene("smith_1972_12_6_12_12").machine()
+    >>> print(el.shaking_moment(machine, theta=1.0, speed=10.0).shaking_moment.round(3))
+    -1.971
+    """
     return rigid_forces(machine, theta, speed, acceleration, ("shaking_moment",))
 
 

@@ -77,9 +77,13 @@ class Load:
 
     Examples
     --------
-    A press whose resistance acts on the slider while it moves to the right:
-
-    >>> press = Load("slider", lambda at: (-500.0 * (at.velocity[..., 0] > 0), 0.0), given="motion")
+    >>> import elastolink as el
+    >>> def resistance(at):
+    ...     return -500.0 * (at.velocity[..., 0] > 0.0), 0.0
+    >>> press = el.Load("slider", resistance, given="motion")
+    >>> machine = el.Machine(el.SliderCrank(crank=0.1, coupler=0.3), loads=(press,))
+    >>> print(el.driving_torque(machine, theta=[-1.0, 1.0], speed=10.0).torque.round(2))
+    [49.97  0.  ]
     """
 
     link: str
@@ -162,6 +166,14 @@ class Spring:
     BadInput
         If a number is not finite or, the preload apart, negative, an end is no point, or both ends
         are on one link.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> spring = el.Spring(("frame", 0.0, 0.3), ("crank", 0.1, 0.0), stiffness=2000.0)
+    >>> machine = el.Machine(el.SliderCrank(crank=0.1, coupler=0.3), springs=(spring,))
+    >>> print(el.driving_torque(machine, theta=0.0, speed=0.0).torque.round(6))
+    -60.0
     """
 
     first: End
@@ -255,6 +267,14 @@ class TorsionSpring:
     ------
     BadInput
         If a number is not finite, stiffness or damping is negative, or both links are the same.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> spring = el.TorsionSpring("frame", "crank", stiffness=5.0)
+    >>> machine = el.Machine(el.SliderCrank(crank=0.1, coupler=0.3), springs=(spring,))
+    >>> print(el.driving_torque(machine, theta=0.2, speed=0.0).torque.round(6))
+    1.0
     """
 
     first: str

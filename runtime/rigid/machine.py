@@ -49,10 +49,10 @@ class Machine:
 
     Examples
     --------
-    >>> from elastolink import FourBar
-    >>> flywheel = MassDistribution(inertia=0.01)
-    >>> machine = Machine(FourBar(0.3, 0.15, 0.3, 0.3), {"crank": flywheel})
-    >>> float(machine.kinetic_energy(theta=0.0, speed=10.0))
+    >>> import elastolink as el
+    >>> flywheel = el.MassDistribution(inertia=0.01)
+    >>> machine = el.Machine(el.FourBar(0.3, 0.15, 0.3, 0.3), {"crank": flywheel})
+    >>> print(round(machine.kinetic_energy(theta=0.0, speed=10.0).item(), 9))
     0.5
     """
 

@@ -36,10 +36,11 @@ class MassDistribution:
 
     Examples
     --------
-    >>> bar = MassDistribution.uniform_bar(mass=3.0, length=0.5)
-    >>> bar.centre, bar.inertia
-    ((0.25, 0.0), 0.25)
-    >>> (bar + MassDistribution.point(1.0, along=-0.75)).along
+    >>> import elastolink as el
+    >>> bar = el.MassDistribution.uniform_bar(mass=3.0, length=0.5)
+    >>> print(bar.centre, bar.inertia)
+    (0.25, 0.0) 0.25
+    >>> print((bar + el.MassDistribution.point(1.0, along=-0.75)).along)
     0.0
     """
 

@@ -437,13 +437,11 @@ def run_up(
 
     Examples
     --------
-    >>> from elastolink import FourBar, MassDistribution
-    >>> bar = MassDistribution.uniform_bar(mass=0.45, length=0.3)
-    >>> linkage = FourBar(0.3, 0.15, 0.3, 0.3)
-    >>> machine = Machine(linkage, dict.fromkeys(linkage.links, bar))
-    >>> run = run_up(machine, TorqueLine(stall=0.5, no_load_speed=40.0), revolutions=2)
-    >>> run.status, round(run.revolutions, 9)
-    ('finished', 2.0)
+    >>> import elastolink as el
+    >>> machine = el.load_scene("smith_1972_12_6_12_12").machine()
+    >>> run = el.run_up(machine, el.TorqueLine(stall=20.0, no_load_speed=30.0), revolutions=2)
+    >>> print(run.status, round(run.revolutions, 6))
+    finished 2.0
     """
     ends = {"revolutions": revolutions, "duration": duration}
     numbers = {"speed0": speed0, "theta0": theta0, "tolerance": tolerance}
@@ -556,7 +554,8 @@ class TorqueLine:
 
     Examples
     --------
-    >>> TorqueLine(stall=4.0, no_load_speed=50.0)(25.0)
+    >>> import elastolink as el
+    >>> print(el.TorqueLine(stall=4.0, no_load_speed=50.0)(25.0))
     2.0
     """
 

@@ -2,15 +2,29 @@
 
 from __future__ import annotations
 
-from .loader import list_scenes, load_scene, scene_from_document, scene_titles, with_numbers
-from .scene import ReadOnlyTable, Scene
+from typing import TYPE_CHECKING
 
-__all__ = [
-    "ReadOnlyTable",
-    "Scene",
-    "list_scenes",
-    "load_scene",
-    "scene_from_document",
-    "scene_titles",
-    "with_numbers",
-]
+from ..core.lazy import on_first_use
+
+if TYPE_CHECKING:
+    from .loader import list_scenes as list_scenes
+    from .loader import load_scene as load_scene
+    from .loader import scene_from_document as scene_from_document
+    from .loader import scene_titles as scene_titles
+    from .loader import with_numbers as with_numbers
+    from .scene import ReadOnlyTable as ReadOnlyTable
+    from .scene import Scene as Scene
+
+__all__ = on_first_use(
+    globals(),
+    {
+        "loader": (
+            "list_scenes",
+            "load_scene",
+            "scene_from_document",
+            "scene_titles",
+            "with_numbers",
+        ),
+        "scene": ("ReadOnlyTable", "Scene"),
+    },
+)

@@ -24,7 +24,18 @@ from .validation import find_layout, nearest, show, validate
 
 
 def list_scenes() -> tuple[str, ...]:
-    """Return the names of the built-in scenes, sorted."""
+    """Return the names of the built-in scenes, sorted.
+
+    Returns
+    -------
+    tuple of str
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> print("smith_1972_5152_sixteenth_inch" in el.list_scenes())
+    True
+    """
     folder = resources.files(__package__) / "data"
     return tuple(sorted(p.name[:-5] for p in folder.iterdir() if p.name.endswith(".toml")))
 
@@ -65,9 +76,10 @@ def load_scene(
 
     Examples
     --------
-    >>> scene = load_scene("smith_1972_5152_sixteenth_inch", {"links.crank": 0.08})
-    >>> scene.get("links.crank"), round(scene.get("links.coupler"), 4)
-    (0.08, 0.381)
+    >>> import elastolink as el
+    >>> scene = el.load_scene("smith_1972_5152_sixteenth_inch", {"links.crank": "80 mm"})
+    >>> print(scene.get("links.crank"), round(scene.get("links.coupler"), 4))
+    0.08 0.381
     """
     given = {} if overrides is None else overrides
     if not isinstance(given, Mapping):

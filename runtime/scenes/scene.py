@@ -18,7 +18,7 @@ from .validation import nearest
 from .writing import toml_text
 
 if TYPE_CHECKING:
-    from ..core.families import Constrained, LinearPeriodic, Nonlinear
+    from ..core.families import LinearPeriodic
     from ..linkages import Linkage
     from ..rigid import Machine
 
@@ -223,8 +223,13 @@ class Scene:
         spec = ModelSpec.from_mapping(table).derived()
         return spec.with_(modes=None) if self.layout.closed_in_modes else spec
 
-    def system(self) -> LinearPeriodic | Constrained | Nonlinear:
+    def system(self) -> Any:
         """Return the family object that the solvers accept.
+
+        Returns
+        -------
+        LinearPeriodic, Constrained or Nonlinear
+            Which of them, the scene tells when the program runs, and no type checker can know.
 
         Raises
         ------
@@ -242,8 +247,7 @@ class Scene:
         if self.layout.formulations == INEXTENSIBLE:
             module, function = _BENT_BUILDER
         builder = getattr(importlib.import_module(module, __package__), function)
-        built: LinearPeriodic | Constrained | Nonlinear = builder(self)
-        return built
+        return builder(self)
 
     def linear_system(self) -> LinearPeriodic:
         """Return the system of the scene for solvers that take the linear-periodic family alone.

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from .meetings import resonances as resonances
     from .tongues import tongue as tongue
 
-__all__, __getattr__, __dir__ = on_first_use(
+__all__ = on_first_use(
     globals(),
     {
         "boundary_speeds": ("speed_boundaries",),

@@ -261,6 +261,14 @@ def speed_boundaries(
     ------
     BadInput
         If an argument is unusable, or the lowest speed needs a larger matrix than 4000 rows.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("smith_1972_5152_sixteenth_inch").system()
+    >>> found = el.speed_boundaries(system, speed_range=(75.0, 85.0))
+    >>> print(found.speed.round(2), found.multiplier)
+    [78.84 80.54] [1 1]
     """
     signs = numbers_in_a_row("multiplier", multiplier)
     if not np.all(np.isin(signs, (1, -1))):

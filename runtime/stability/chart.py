@@ -252,6 +252,15 @@ def stability_chart(
         If an axis or option is unusable, or values along the axes make no system: a chart is one
         series over both (``sweep("stability_chart", ...)`` leaves such points out); if a crank
         speed is wanted and missing; if modes and axes would take an hour or so.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("smith_1972_5152_sixteenth_inch").system()
+    >>> axes = {"x": ("speed", [78.0, 80.0, 82.0]), "y": ("damping", [0.0, 0.5])}
+    >>> print(el.stability_chart(system, **axes).stable)
+    [[ True False  True]
+     [ True  True  True]]
     """
     require_system(system)
     names, axes = _axes(system, x, y)

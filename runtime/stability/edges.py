@@ -224,6 +224,14 @@ def stability_edges(
     BadInput
         If an argument is unusable, the system has circulatory forces or damping that feeds energy,
         the modes left out change exponents by more than 1e-3, or the range needs too many samples.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("smith_1972_5152_sixteenth_inch").system()
+    >>> edges = el.stability_edges(system, (75.0, 85.0))
+    >>> print(edges.labels, edges.lower.round(2), edges.upper.round(2))
+    ('region 4 of mode 1',) [78.84] [80.54]
     """
     low, high = speed_span(speed_range)
     require_between("rtol", rtol, 1e-13, 1e-6, "choose 1e-11")

@@ -146,6 +146,14 @@ def tongue_curves(
     Notes
     -----
     Beale & Scott 1992, section 3.1: feet at ``2 w1/n``, ``(w1 + w2)/n``, ``2 w2/n``.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> rod = el.load_scene("beale_1992_flexible_rod", {"model.modes": 2}).system()
+    >>> found = el.stability.tongue_curves(rod, "crank_ratio", [0.02], (1700.0, 1900.0), highest=1)
+    >>> print(found.labels, found.foot.round(0), found.width.round(1))
+    ('2 w1 = w',) [1716.] [[42.7]]
     """
     at = _checked_values(system, name, values)
     sharp = system.without(*DAMPING)

@@ -196,6 +196,14 @@ def resonances(
     Notes
     -----
     Smith, chapter 9, suggestion 1.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("smith_1972_5152_sixteenth_inch").system()
+    >>> for resonance in el.stability.resonances(system, (75.0, 85.0)):
+    ...     print(resonance.label, round(resonance.speed, 2))
+    2 w1 = 4 w 83.05
     """
     span = speed_span(speed_range)
     if not is_whole(highest, 1):

@@ -435,6 +435,18 @@ def tongue(
     Notes
     -----
     Smith, chapter 9, suggestion 1; Smith (7.12)-(7.18) for one mode.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> import numpy as np
+    >>> mass, spring = el.Term("M", None, np.eye(1)), el.Term("K", None, np.array([[4.0]]))
+    >>> pulsating = el.Term("K", None, lambda theta: 0.5 * np.cos(theta)[:, None, None])
+    >>> system = el.LinearPeriodic(size=1, terms=(mass, spring, pulsating))
+    >>> resonance, *_ = el.stability.resonances(system, (3.5, 4.5))
+    >>> region = el.stability.tongue(system, resonance, order=4)
+    >>> print(region.label, region.lower.round(3), region.upper.round(3))
+    2 w1 = w 3.874 4.124
     """
     order = require_whole("order", order, 1, HIGHEST, "choose 2")
     if not isinstance(resonance, Resonance):

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from .sweeping import estimate_sweep as estimate_sweep
     from .sweeping import sweep as sweep
 
-__all__, __getattr__, __dir__ = on_first_use(
+__all__ = on_first_use(
     globals(),
     {
         ".core.workers": ("WorkersLost", "process_pool"),

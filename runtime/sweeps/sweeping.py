@@ -287,6 +287,15 @@ def sweep(
         If an argument is unusable, the store holds another request, or no point can be worked out.
     WorkersLost
         If the executor's workers end; with a store the finished pieces are kept.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("smith_1972_5152_sixteenth_inch").system()
+    >>> values = {"damping": [0.0, 0.5], "speed": [75.0, 80.0, 85.0]}
+    >>> print(el.sweep("floquet_multipliers", system, values).outputs["stable"])
+    [[ True False  True]
+     [ True  True  True]]
     """
     plan = planned(what, subject, values, options, outputs, chunk)
     check_executor(executor)
@@ -554,6 +563,32 @@ def estimate_sweep(
     Where all points of that fail, the next one that has an answer is taken.  The piece is done
     twice: once for the memory, and again for the time.  Where some points are far dearer than
     others, low speeds for one, the time is no better than to a small factor.
+
+    Parameters
+    ----------
+    what, subject, values, options, outputs, chunk
+        As :func:`sweep`.
+    workers : int
+        How many work at once.
+
+    Returns
+    -------
+    SweepEstimate
+        Its ``seconds`` and ``bytes`` are those of the whole sweep.
+
+    Raises
+    ------
+    BadInput
+        As :func:`sweep`.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("smith_1972_5152_sixteenth_inch").system()
+    >>> values = {"damping": [0.0, 0.5], "speed": [75.0, 80.0, 85.0]}
+    >>> cost = el.sweeps.estimate_sweep("floquet_multipliers", system, values, workers=2)
+    >>> print(cost.points, cost.pieces)
+    6 1
     """
     check_workers(workers)
     plan = planned(what, subject, values, options, outputs, chunk)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .rod.floating import free_free_rod as free_free_rod
     from .rod.linear import rod_system as rod_system
 
-__all__, __getattr__, __dir__ = on_first_use(
+__all__ = on_first_use(
     globals(),
     {
         ".core.families.modal_damping": ("with_modal_damping",),

@@ -67,11 +67,26 @@ def assemble(
     **attributes
         Further attributes of :class:`~elastolink.runtime.core.families.LinearPeriodic`.
 
+    Returns
+    -------
+    LinearPeriodic
+        Of the given parameters and attributes.
+
     Raises
     ------
     BadInput
         If the module is of another family, if a parameter, argument, function or basis is missing,
         or if the module cannot leave out a term.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> import numpy as np
+    >>> from elastolink.generated import hill_plain
+    >>> numbers = {"lam2": 0.25, "mu": 0.1, "damping": 0.0}
+    >>> system = el.assemble(hill_plain, geometry={}, parameters=numbers, external={"f": np.cos})
+    >>> print(system.size, el.floquet_multipliers(system, speed=1.0).stable)
+    1 False
     """
     require_kind("module", module, ModuleType, "import one of elastolink.generated")
     check_module(module, "linear_periodic", parameters)

@@ -63,6 +63,14 @@ class Constrained:
         ``(q, t)`` to the largest deflection over the length of the link, shape batch.
     guards : tuple of Guard
         Conditions beyond which the equations mean nothing.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> changes = {"model.formulation": "free_free", "model.modes": 2}
+    >>> rod = el.load_scene("beale_1992_flexible_rod", changes).system()
+    >>> print(rod.labels, rod.constraints)
+    ('R1', 'R2', 'gamma', 'f1', 'f2') 3
     """
 
     size: int

@@ -49,6 +49,16 @@ class Term:
     function : callable or ndarray
         Array of shape ``(n, n)`` (or ``(n,)``) where the term is constant, else a function of the
         crank angle: theta ``(nt,)`` [rad] to ``(nt, n, n)`` (or ``(nt, n)``).
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> import numpy as np
+    >>> mass, spring = el.Term("M", None, np.eye(1)), el.Term("K", None, np.array([[4.0]]))
+    >>> pulsating = el.Term("K", None, lambda theta: 0.5 * np.cos(theta)[:, None, None])
+    >>> system = el.LinearPeriodic(size=1, terms=(mass, spring, pulsating))
+    >>> print(system.array("K", [0.0, np.pi]).ravel())
+    [4.5 3.5]
     """
 
     array: str
@@ -131,6 +141,16 @@ class LinearPeriodic:
         Beams and nodes that the system was made from.
     remesh : callable or None
         From a change of the structure to its system, further terms made anew, parameters aside.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> import numpy as np
+    >>> mass, spring = el.Term("M", None, np.eye(1)), el.Term("K", None, np.array([[4.0]]))
+    >>> pulsating = el.Term("K", None, lambda theta: 0.5 * np.cos(theta)[:, None, None])
+    >>> system = el.LinearPeriodic(size=1, terms=(mass, spring, pulsating))
+    >>> print(el.floquet_multipliers(system, speed=[3.0, 4.0]).stable)
+    [ True False]
     """
 
     size: int

@@ -50,6 +50,13 @@ def with_modal_damping(system: LinearPeriodic, ratio: float) -> LinearPeriodic:
     ------
     BadInput
         If the ratio is no number, negative or not finite, or the system has that parameter already.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> system = el.load_scene("smith_1972_5152_sixteenth_inch").system()
+    >>> print(el.floquet_multipliers(el.with_modal_damping(system, ratio=0.02), 80.0).stable)
+    True
     """
     require_system(system)
     if not (is_finite(ratio) and ratio >= 0.0):

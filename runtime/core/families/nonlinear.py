@@ -86,6 +86,19 @@ class Nonlinear:
         Parameters that have to be ``positive`` or ``non-negative``.
     provenance : mapping
         Scene and module that the system was made from.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> import numpy as np
+    >>> from elastolink.runtime.core.families import Varied
+    >>> def duffing(q, qd, qdd, drive, parameters, derivatives=True):
+    ...     rest = qdd + 0.05 * qd + q + 0.05 * q**3 - 0.3 * np.cos(drive.angle)[..., None]
+    ...     one = np.ones((*rest.shape, 1))
+    ...     return Varied(rest, one, 0.05 * one, 1.0 + 0.15 * q[..., None] ** 2)
+    >>> curve = el.response_curve(el.Nonlinear(1, duffing), "speed", (0.8, 1.6))
+    >>> print(curve.special, curve.special_value.round(2))
+    ('fold', 'fold') [1.33 1.13]
     """
 
     size: int

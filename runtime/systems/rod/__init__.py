@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from .polynomials import PolynomialBasis as PolynomialBasis
     from .polynomials import TwoSegmentBasis as TwoSegmentBasis
 
-__all__, __getattr__, __dir__ = on_first_use(
+__all__ = on_first_use(
     globals(),
     {
         "basis": ("MovingBasis",),

@@ -212,6 +212,15 @@ def free_free_rod(
     -----
     Linearised about the undeformed rod this is :func:`rod_system` on :class:`FreeFreeBasis` with
     the same ``drop``.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> numbers = {"crank_ratio": 0.1, "frame": 0.6, "length": 1.0}
+    >>> numbers |= {"bending_stiffness": 36456.0, "mass_per_length": 7.15}
+    >>> rod = el.systems.free_free_rod(2, speed=100.0, **numbers)
+    >>> print(rod.size, rod.constraints, round(rod.period, 5))
+    5 3 0.06283
     """
     numbers = {
         "frame": frame,

@@ -82,6 +82,15 @@ def rod_system(
     BadInput
         If a number is not usable, a basis or a term to drop is unknown, or the crank cannot turn
         fully with the block on the rod.
+
+    Examples
+    --------
+    >>> import elastolink as el
+    >>> numbers = {"crank_ratio": 0.1, "frame": 0.6, "length": 1.0}
+    >>> numbers |= {"bending_stiffness": 36456.0, "mass_per_length": 7.15}
+    >>> rod = el.systems.rod_system("overhang", 2, **numbers)
+    >>> print(el.natural_frequencies(rod, 0.0).frequency.round(1))
+    [[1004.7 2416.5]]
     """
     geometry = {"crank_ratio": crank_ratio, "frame": frame, "length": length}
     parameters = {

@@ -100,6 +100,9 @@ def test_buckling_at_the_worse_of_summits_that_samples_take_for_the_lower():
     found = buckling_speed(still.with_terms(el.Term("Kg", None, softening, power=2)))
     assert found.speed == pytest.approx(np.sqrt(600.0 / 1.50002), rel=1e-12)
     assert found.angle == pytest.approx(place, abs=6e-6)
+    buckled = system_of(M=np.eye(1), K=-np.eye(1))
+    with pytest.raises(el.BadInput, match="buckled"):
+        buckling_speed(buckled.with_terms(el.Term("Kg", None, softening, power=2)))
 
 
 def test_the_first_mean_follows_the_softer_of_two_links():

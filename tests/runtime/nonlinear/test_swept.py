@@ -99,6 +99,11 @@ def test_basins_are_those_of_marched_states():
         state = motion.states[0]
         one = basins(system, 1.2, stable, [state[0], 5.0], [state[1], 5.0])
         assert one.motion[0, 0] == number
+    # A few states alone come to what they come to among others.
+    for q in (places[4], places[6]):
+        alone = basins(system, 1.2, stable, [q], [0.0])
+        assert alone.error == 0.0
+        assert alone.motion[0, 0] == found.motion[4, list(places).index(q)]
 
 
 @pytest.mark.parametrize(

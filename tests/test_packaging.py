@@ -18,7 +18,8 @@ ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 SETUPTOOLS = PROJECT["tool"]["setuptools"]
 FOLDERS = {"derive", "docs", "generated", "runtime", "templates", "tests"}
-FILES = {"CHANGELOG.md", "CITATION.cff", "LICENSE", "MANIFEST.in", "README.md", "pyproject.toml"}
+PAGES = {"CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md", "LICENSE", "README.md"}
+FILES = {*PAGES, "MANIFEST.in", "pyproject.toml"}
 LEFT_BY_TOOLS = {"build", "dist", "gallery", "__pycache__"}
 
 

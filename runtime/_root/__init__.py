@@ -75,7 +75,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any, cast
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _PUBLIC = {
     "BadInput": "core.errors",

@@ -37,7 +37,7 @@ nonlinear
     nonlinear.coexisting_motions, nonlinear.special_curve
 periodic
     Linear periodic systems: the transition matrices of a revolution, and what follows from them.
-    Prepared, floquet_multipliers, monodromy, prepare, simulate, steady_state,
+    floquet_multipliers, monodromy, prepare, simulate, steady_state, periodic.Prepared,
     periodic.cycles_to_settle, periodic.reduced_system
 recovery
     What beams have to bear: forces, stresses, pin reactions and energies from a computed motion.
@@ -95,7 +95,6 @@ _PUBLIC = {
     "Node": "beams",
     "Nonlinear": "core.families",
     "PeriodicFunction": "core.periodic_function",
-    "Prepared": "periodic",
     "QuickReturn": "linkages",
     "Section": "beams",
     "SliderCrank": "linkages",

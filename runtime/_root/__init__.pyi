@@ -71,7 +71,6 @@ from .runtime.linkages import tolerances as tolerances
 from .runtime.linkages import transmission_angle as transmission_angle
 from .runtime.nonlinear import response_curve as response_curve
 from .runtime.nonlinear import sweep_response as sweep_response
-from .runtime.periodic import Prepared as Prepared
 from .runtime.periodic import floquet_multipliers as floquet_multipliers
 from .runtime.periodic import monodromy as monodromy
 from .runtime.periodic import prepare as prepare

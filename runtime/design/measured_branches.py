@@ -18,16 +18,15 @@ from ..nonlinear.orbit import FAILURES, Lost, Orbit, Solver, changed
 from .measured import Computed, Point, nearest
 
 # What a kind of point is called along a branch; by how much a motion beside a special point is
-# aside along it; the change of a logarithm within which a special point is followed at once, and
-# into how many parts it is cut at most.
+# aside along it; the change of a logarithm within which a special point is followed at once, into
+# how many parts it is cut at most; and the largest error of a speed, relative.
 _SPECIAL = {
     "jump rising": "fold",
     "jump falling": "fold",
     "unstable from": "doubling",
     "unstable to": "doubling",
 }
-_ASIDE, _AT_ONCE, _MOST_PARTS = 1e-3, 0.02, 512
-_LIMIT = 1e-6  # of the error of a speed, relative
+_ASIDE, _AT_ONCE, _MOST_PARTS, _LIMIT = 1e-3, 0.02, 512, 1e-6
 
 
 @dataclass

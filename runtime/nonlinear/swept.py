@@ -28,9 +28,9 @@ _MOST_TURNS = 200_000
 # many times what it does in the middle; revolutions between two parts of one jump.
 _JUMP, _SUDDEN, _PAUSE = 0.15, 6.0, 6
 # Basins: revolutions at the most, how near to a motion a state has come to it, in its sizes; places
-# of the grid each way, and steps of a revolution at the most.
-_REVOLUTIONS, _REACHED, _GRID, _COARSE = 400, 0.02, 41, 64
-_FEW = 16  # initial states that are marched, or of a larger number those that check the map
+# of the grid each way, and steps of a revolution at the most; and how many initial states are
+# marched, or of a larger number check the map.
+_REVOLUTIONS, _REACHED, _GRID, _COARSE, _FEW = 400, 0.02, 41, 64, 16
 
 
 @dataclass(frozen=True, kw_only=True)

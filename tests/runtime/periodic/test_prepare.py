@@ -31,7 +31,7 @@ def pair(request):
     return system, el.prepare(system, span, samples=16)
 
 
-def _speeds(ready: el.Prepared, count: int) -> np.ndarray:
+def _speeds(ready: el.periodic.Prepared, count: int) -> np.ndarray:
     # By the golden section: neither nodes nor ends of tables.
     low, high = ready.span
     return low + (high - low) * (np.arange(1, count + 1) * 0.6180339887 % 1.0)

@@ -45,13 +45,13 @@ class ConsistentState(Result):
 
     Attributes
     ----------
-    q, qd, qdd : ndarray, shape (*batch, n)
+    q, qd, qdd : ndarray, shape ``(*batch, n)``
         Coordinates, velocities and accelerations.
-    multipliers : ndarray, shape (*batch, k)
+    multipliers : ndarray, shape ``(*batch, k)``
         Multipliers.
     t : ndarray, shape batch
         Time [s].
-    moved : ndarray, shape (*batch, n)
+    moved : ndarray, shape ``(*batch, n)``
         How far the positions were moved.
     position_norm, velocity_norm, acceleration_norm : ndarray, shape batch
         Scaled defects of the constraints (see :func:`.equations.constraint_norms`).
@@ -99,7 +99,7 @@ def consistent_state(
     ----------
     system : Constrained
         The system.
-    q, qd : array_like, shape (*batch, n)
+    q, qd : array_like, shape ``(*batch, n)``
         Coordinates and velocities near which to look; they broadcast.
     t : array_like, shape batch
         Time [s].

@@ -82,10 +82,10 @@ class Boundaries(Result):
 
     Attributes
     ----------
-    lower, upper : ndarray, shape (len(regions), *mu.shape)
+    lower, upper : ndarray, shape ``(len(regions), *mu.shape)``
         Ends in lam2 of each unstable region; NaN where damping has closed it, or where that cannot
         be decided (a check fails).
-    error : ndarray, shape (len(regions), *mu.shape)
+    error : ndarray, shape ``(len(regions), *mu.shape)``
         Estimate of the absolute error, valid for both ends; NaN where they are.
     regions : tuple of int
         Numbers n; the region starts at lam2 = n^2/4 at mu = 0.

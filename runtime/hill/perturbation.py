@@ -43,13 +43,13 @@ class PerturbationBoundaries(Boundaries):
     ----------
     order : int
         Highest total degree kept; K counts as a parameter of the first order.
-    parameters : ndarray, shape (p, *mu.shape)
+    parameters : ndarray, shape ``(p, *mu.shape)``
         Values of the parameters; ``mu`` is the first of them.
-    outside : ndarray of bool, shape (len(regions), *mu.shape)
+    outside : ndarray of bool, shape ``(len(regions), *mu.shape)``
         True where the entry is flagged: the orders do not visibly converge there.
-    closed : ndarray of bool, shape (len(regions), *mu.shape)
+    closed : ndarray of bool, shape ``(len(regions), *mu.shape)``
         True where the ends are NaN because damping closes the region.
-    undecided : ndarray of bool, shape (len(regions), *mu.shape)
+    undecided : ndarray of bool, shape ``(len(regions), *mu.shape)``
         True where open and closed are both within the error.
     """
 

@@ -166,16 +166,16 @@ class Constrained:
 
         Parameters
         ----------
-        q, qd : ndarray, shape (*batch, n)
+        q, qd : ndarray, shape ``(*batch, n)``
             Coordinates and velocities.
         t : array_like, shape batch
             Time [s].
 
         Returns
         -------
-        qdd : ndarray, shape (*batch, n)
+        qdd : ndarray, shape ``(*batch, n)``
             Accelerations.
-        multipliers : ndarray, shape (*batch, k)
+        multipliers : ndarray, shape ``(*batch, k)``
             Constraint forces ``lam``, with the sign of ``Phi_q^T lam`` on the right-hand side.
 
         Raises

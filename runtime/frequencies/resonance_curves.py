@@ -108,7 +108,7 @@ def resonance_curve(
     system: LinearPeriodic,
     speed: ArrayLike,
     *,
-    x: float = 1.0,
+    x: float | None = None,
     rtol: float = 1e-6,
     **parameters: float,
 ) -> ResonanceCurve:
@@ -126,8 +126,8 @@ def resonance_curve(
     speed : array_like
         Crank speeds [rad/s], rising, shape ``(ns,)``, at least 3.  A maximum between two of them
         that shows at neither is missed.
-    x : float
-        Place x/length of the deflection, the end by default.
+    x : float, optional
+        Place x/length of the deflection: by default the end, or the middle where the end is held.
     rtol : float
         Wanted error of the periodic motions.
     **parameters : float
@@ -154,7 +154,7 @@ def resonance_curve(
     """
     require_system(system)
     speeds = numbers("speed", speed)
-    if not (isinstance(x, Real) and 0 <= x <= 1):
+    if x is not None and not (isinstance(x, Real) and 0 <= x <= 1):
         raise bad("x", repr(x), "one place x/length from 0 to 1", "divide by the length")
     if speeds.ndim != 1 or len(speeds) < 3 or not np.all(np.diff(speeds) > 0):
         raise bad("speed", speed, "at least three rising speeds [rad/s]", "use numpy.linspace")
@@ -163,11 +163,12 @@ def resonance_curve(
         raise bad("resonance_curve", "a system without mode shapes", "one with them", fix)
     mean, _ = mean_frequencies(system, min(6, system.size), 1e-12, parameters=parameters)
     state = quiet_state(system, speeds, rtol, parameters)
-    peak = state.peak(x)
+    place = state.place if x is None else float(x)
+    peak = state.peak(place)
     tops = local_maxima(peak)
 
     def peaks(at: Array) -> Array:
-        return quiet_state(system, at, rtol, parameters).peak(x)
+        return quiet_state(system, at, rtol, parameters).peak(place)
 
     low, high = narrowed(peaks, speeds[tops - 1], speeds[tops + 1], 4)
     maxima = 0.5 * (low + high)
@@ -176,7 +177,7 @@ def resonance_curve(
     mode, order = label_speeds(mean[:3], maxima)
     return ResonanceCurve(
         method=state.method,
-        error=state.peak_error(x),
+        error=state.peak_error(place),
         error_norm="of the largest deflection, over itself",
         checks={name: state.checks[name] for name in sorted(state.checks)},
         provenance=provenance(system.changed_provenance(**parameters)),
@@ -190,5 +191,5 @@ def resonance_curve(
         mode=mode,
         ratio=mean[mode - 1] / (order * maxima),
         mean_frequency=mean,
-        x=float(x),
+        x=place,
     )

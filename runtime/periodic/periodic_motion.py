@@ -149,17 +149,26 @@ class SteadyState(Result):
         values: ComplexArray = np.fft.rfft(self.q, axis=-2) / len(self.theta)
         return values
 
-    def deflection(self, x: ArrayLike = 1.0) -> Array:
+    @property
+    def place(self) -> float:
+        """Place x/length of deflections by default: the end of the link, or its middle.
+
+        The middle is taken where the end is held, as that of a coupler between two pins.
+        """
+        end, middle = np.max(np.abs(self._shapes_at(np.array([1.0, 0.5]))), axis=(0, 2))
+        return 1.0 if end > 1e-9 * middle else 0.5
+
+    def deflection(self, x: ArrayLike | None = None) -> Array:
         """Return the deflection [m] at places x/length ``(nx,)``, shape ``(*batch, nt, nx)``.
 
-        The axis of places is left out where ``x`` is one number, at the end by default.
+        The axis of places is left out where ``x`` is one number, :attr:`place` by default.
 
         Raises
         ------
         BadInput
             If the system has no mode shapes, or a place is not a number from 0 to 1.
         """
-        places = numbers("x", x)
+        places = numbers("x", self.place if x is None else x)
         shapes = self._shapes_at(np.atleast_1d(places))
         value: Array = self.reference_length * np.einsum("txn,...tn->...tx", shapes, self.q)
         return value[..., 0] if places.ndim == 0 else value
@@ -177,11 +186,11 @@ class SteadyState(Result):
             )
         return values
 
-    def peak(self, x: ArrayLike = 1.0) -> Array:
+    def peak(self, x: ArrayLike | None = None) -> Array:
         """Return the largest size of the deflection [m] over the period, at places x/length.
 
-        Shape ``(*batch, nx)``, or ``batch`` where ``x`` is one number.  It may lie between the
-        given angles; :meth:`peak_error` tells how well it is known.
+        Shape ``(*batch, nx)``, or ``batch`` where ``x`` is one number, :attr:`place` by default.
+        It may lie between the given angles; :meth:`peak_error` tells how well it is known.
 
         Raises
         ------
@@ -190,16 +199,16 @@ class SteadyState(Result):
         """
         return self.reference_length * self._peaks(x)[0]
 
-    def peak_error(self, x: ArrayLike = 1.0) -> Array:
+    def peak_error(self, x: ArrayLike | None = None) -> Array:
         """Return the error of :meth:`peak` over itself: of the motion, and between the angles.
 
         Of its shape; infinite where nothing moves or there is no single motion.
         """
         return self._peaks(x)[1]
 
-    def _peaks(self, x: ArrayLike) -> tuple[Array, Array]:
+    def _peaks(self, x: ArrayLike | None) -> tuple[Array, Array]:
         """Return the largest sizes of the shapes' sums, and their errors over themselves."""
-        places = numbers("x", x)
+        places = numbers("x", self.place if x is None else x)
         shapes = self._shapes_at(np.atleast_1d(places))
         moved = np.max(np.abs(self.q), axis=-2) * self.error @ np.max(np.abs(shapes), axis=0).T
         # One motion at a time: all of them at all places would fill the memory.

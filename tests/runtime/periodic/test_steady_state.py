@@ -198,3 +198,12 @@ def test_a_ring_of_any_length_is_solved():
         ahead = np.roll(nodes, -1, axis=1)
         rest = ahead - np.einsum("bkij,bkj->bki", maps, nodes) - loads
         assert np.max(np.abs(rest)) <= 1e-11 * np.max(np.abs(nodes))
+
+
+def test_deflections_are_those_of_the_middle_where_the_end_is_held():
+    pinned = steady_state(load_scene("smith_1972_5152_sixteenth_inch").system(), 30.0)
+    assert pinned.place == 0.5
+    assert pinned.peak() == pinned.peak(0.5) > 1e-4
+    assert np.all(pinned.deflection() == pinned.deflection(0.5))
+    free = steady_state(forced_mathieu(), 1.3)
+    assert free.place == 1.0 and free.peak() == free.peak(1.0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, ClassVar, NamedTuple
@@ -515,21 +515,58 @@ _EDGES = {"principal": "#8c2d04", "sum": "#5b2d8c", "difference": "#1f6f6b"}
 
 
 def _shade(ax: Axes, chart: StabilityChart, x: Array, y: Array) -> None:
+    """Shade unstable points, but between exact boundaries what these enclose."""
     from matplotlib.colors import ListedColormap
 
-    codes = np.zeros(chart.kind.shape)
-    colours = ["#ffffff"]
-    for kind, (colour, _) in _SHADES.items():
-        here = chart.kind == kind
+    kinds = chart.kind.copy()
+    enclosed = set(_fill(ax, chart, x, y, kinds))
+    colours, codes = ["#ffffff"], np.zeros(kinds.shape)
+    for kind, (colour, words) in _SHADES.items():
+        here = kinds == kind
         if np.any(here):
             colours.append(colour)
             codes[here] = len(colours) - 1
-    shades, most = ListedColormap(colours), max(len(colours) - 1, 1)
-    style: dict[str, Any] = {"shading": "nearest", "rasterized": True}
-    ax.pcolormesh(x, y, codes, cmap=shades, vmin=0, vmax=most, **style)
-    for colour, words in _SHADES.values():
-        if colour in colours:
+        if np.any(here) or kind in enclosed:
             ax.fill([], [], color=colour, label=f"unstable: {words}")
+    if len(colours) > 1:
+        style: dict[str, Any] = {"shading": "nearest", "rasterized": True, "zorder": 0.5}
+        shades = ListedColormap(colours)
+        ax.pcolormesh(x, y, codes, cmap=shades, vmin=0, vmax=len(colours) - 1, **style)
+
+
+def _fill(
+    ax: Axes, chart: StabilityChart, x: Array, y: Array, kinds: NDArray[np.int8]
+) -> Iterator[int]:
+    """Fill the regions between exact boundaries, take them out of kinds, and yield theirs.
+
+    A region with one end alone reaches to the end of the axis.
+    """
+    curves = chart.exact
+    if curves is None:
+        return
+    horizontal = curves.along == chart.x_name
+    along, other, points = (x, y, kinds) if horizontal else (y, x, kinds.T)
+    at = _shown(chart.y_name if horizontal else chart.x_name, curves.at)
+    step = float(np.max(np.diff(along)))
+    # What is lower in lam2 is the higher speed.
+    both = (curves.lower, curves.upper)[:: -1 if curves.along == "speed" else 1]
+    for number, *ends in zip(curves.regions, *both, strict=True):
+        kind = 1 if number % 2 == 0 else -1
+        low, high = (_shown(curves.along, end) for end in ends)
+        alone = np.isnan(low) != np.isnan(high)
+        low = np.where(alone & np.isnan(low), along[0], low)
+        high = np.where(alone & np.isnan(high), along[-1], high)
+        begin, end = (np.interp(other, at, values)[:, None] for values in (low, high))
+        inside = (along > begin + step) & (along < end - step)
+        if np.any(points[inside] != kind):
+            continue
+        fill = ax.fill_betweenx if horizontal else ax.fill_between
+        fill(at, low, high, color=_SHADES[kind][0], lw=0, zorder=0.6)
+        # Points are shaded half a step to either side of them.
+        near = (along >= begin - step) & (along <= end + step)
+        points[near & (points == kind)] = 0
+        if np.any((low <= along[-1]) & (high >= along[0])):
+            yield kind
 
 
 def _draw_edges(ax: Axes, chart: StabilityChart, edges: EdgeCurves) -> None:

@@ -4,6 +4,7 @@ import elastolink as el
 import numpy as np
 import pytest
 from edge_truth import rig
+from matplotlib.collections import PolyCollection, QuadMesh
 
 SPEEDS = np.linspace(40.0, 99.0, 61)
 INERTIAS = np.linspace(6e-4, 2.2e-3, 31)
@@ -62,6 +63,30 @@ def test_picture_shows_what_it_promises(undamped, tmp_path):
     assert {"exact boundary (Hill matrix)", "first-order boundary"} <= labels
     assert any("error of the discriminant" in text.get_text() for text in axes.texts)
     assert "rpm" in axes.get_xlabel()
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.05])
+@pytest.mark.parametrize("turned", [False, True])
+def test_regions_are_filled_between_their_boundaries(damping, turned):
+    """What is shaded by points or filled is what is unstable; few are left to the points."""
+    speed, inertia = ("speed", SPEEDS), ("follower_inertia", INERTIAS)
+    across = (inertia, speed) if turned else (speed, inertia)
+    chart = el.stability_chart(rig().with_parameters(damping=damping), *across)
+    axes = chart.plot()
+    x, y = np.meshgrid(*((30.0 / np.pi if n == "speed" else 1.0) * v for n, v in across))
+    filled = np.zeros(chart.stable.shape, dtype=bool)
+    for regions in (c for c in axes.collections if isinstance(c, PolyCollection)):
+        for path in regions.get_paths():
+            inside = path.contains_points(np.column_stack([x.ravel(), y.ravel()]))
+            filled |= inside.reshape(filled.shape)
+    shaded = np.zeros(filled.shape, dtype=bool)
+    for mesh in (c for c in axes.collections if isinstance(c, QuadMesh)):
+        shaded |= np.asarray(mesh.get_array()).reshape(filled.shape) > 0
+    assert not np.any(shaded & filled)
+    # Points on the rim lie on that of the polygons.
+    within = np.s_[1:-1, 1:-1]
+    assert np.array_equal((shaded | filled)[within], ~chart.stable[within])
+    assert np.count_nonzero(shaded) <= (0.0 if damping == 0.0 else 0.02) * np.count_nonzero(filled)
 
 
 def test_picture_names_the_frequency_and_the_error_of_several_modes():

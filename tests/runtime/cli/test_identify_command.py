@@ -57,7 +57,10 @@ def test_what_a_file_does_not_decide_is_said(capsys, measured):
         (("--unknown", "mass"), "'mass'"),
         (("--unknown", "damping"), "above 0 to start from"),
         (("--unknown", "bending_stiffness", "--window", "15 mm"), "--window"),
-        (("--unknown", "bending_stiffness", "--set", "model.formulation=inextensible"), "system"),
+        (
+            ("--unknown", "bending_stiffness", "--set", "model.formulation=inextensible"),
+            "expected a computed one within 15 % of the speed",
+        ),
     ],
 )
 def test_an_unusable_option_is_one_line(capsys, measured, more, words):

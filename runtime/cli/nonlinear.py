@@ -30,7 +30,7 @@ def add(commands: Any) -> None:
     rate = "march up and down at this acceleration of the crank instead, e.g. '2 rpm/s'"
     opt.add(parser, {"--sweep RATE": rate})
     points_option(parser)
-    kicks = "disturbance of each revolution of a sweep; default 1e-6"
+    kicks = "disturbance of the coordinates in each revolution of a sweep; default 1e-3"
     opt.add(parser, {"--kicks SIZE": kicks}, type=float)
     search = "search for branches that do not hang together with the first, at three values"
     opt.switches(parser, {"--search": search})
@@ -173,7 +173,7 @@ def _sweep(options: argparse.Namespace, scene: Scene, system: Nonlinear, told: l
     opt.refuse_unused(options, ("in", "search"), "a response curve, without --sweep")
     rate = opt.positive(options, "sweep", "angular_acceleration") or 0.0
     bounds = speed_range(options.speed, scene, "--speed")
-    kicks = 1e-6 if options.kicks is None else options.kicks
+    kicks = 1e-3 if options.kicks is None else options.kicks
     points = measured_points(options, "speed")
     found = nonlinear.sweep_response(
         system, bounds, rate, kicks=kicks, progress=opt.progress(options)

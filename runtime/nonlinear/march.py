@@ -91,7 +91,7 @@ class Marcher:
             motion = motion.moved(part * change, part * a)
             left = remaining(large, before, _LEFT * self.rtol)
             if np.isfinite(left):
-                return replace(motion, left=left)
+                return replace(motion, left=left, map=whole[-1])
             before = large
         return None
 

@@ -58,6 +58,8 @@ class Motion:
     begin: float = 0.0  # angle of the drive at the beginning [rad]
     runs: int = 1
     left: float = 0.0  # what its iteration may have left, relative
+    # Of marched motions: derivatives of the ends by the beginnings, (runs, 2n, 2n).
+    map: Array | None = None
 
     @property
     def span(self) -> float:

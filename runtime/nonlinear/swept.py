@@ -24,9 +24,11 @@ from .response import SAMPLES, checked_problem, first_motion, tops
 from .segments import Motion, NotFinite, Problem, Ramp
 
 _MOST_TURNS = 200_000
-# A jump: the peak-to-peak value changes by this factor, in logarithms, and in a revolution by so
-# many times what it does in the middle; revolutions between two parts of one jump.
-_JUMP, _SUDDEN, _PAUSE = 0.15, 6.0, 6
+# A jump: the peak-to-peak value changes by this factor, in logarithms; revolutions between two
+# parts of one jump; and for how many times the longest decay the motion settles.
+_JUMP, _PAUSE, _SETTLED = 0.15, 6, 3.0
+# Revolutions over which most stable motions repeat.
+_WINDOWS = (1, 2)
 # Basins: revolutions at the most, how near to a motion a state has come to it, in its sizes; places
 # of the grid each way, and steps of a revolution at the most; and how many initial states are
 # marched, or of a larger number check the map.
@@ -46,10 +48,13 @@ class SweepResponse(Result):
     lowest, highest : ndarray, shape (k,)
         Extremes of the deflection in the revolution.
     jump_speed : ndarray, shape (j,)
-        Speeds [rad/s] at which the deflection jumps.
+        Speeds [rad/s] at which the deflection jumps: where the multipliers of the revolutions say
+        that the motion is repelled from where it was, and it comes to another size, half of the
+        way there.  A passage so quick that it never is repelled is no jump.
     jump_rising : ndarray of bool, shape (j,)
+        Whether the speed rises.
     jump_ratio : ndarray, shape (j,)
-        Peak-to-peak deflection after the jump over that before.
+        Largest or least peak-to-peak deflection after the jump over that before.
     rate : float
         Acceleration of the drive [rad/s^2].
     kicks : float
@@ -175,6 +180,7 @@ def sweep_response(
         raise bad("rate", f"{turns:.3g} revolutions", f"1 to {_MOST_TURNS // len(ways)}", fix)
     marcher = Marcher(problem, rtol)
     rows: list[tuple[float, bool, float, float, float]] = []
+    maps: list[Array] = []
     stopped = ""
     random = np.random.default_rng(seed)
     with bar(progress, int(turns * len(ways)) + 1, unit="turn") as tick:
@@ -182,9 +188,11 @@ def sweep_response(
         for way in ways:
             try:
                 steps = _swept(marcher, (low, high), way * rate, state, kicks, random)
-                for speed, extremes, unsure, reached in steps:
+                for speed, extremes, unsure, motion in steps:
                     rows.append((speed, way > 0, *extremes, unsure))
-                    state = reached
+                    assert motion.map is not None
+                    maps.append(motion.map[0])
+                    state = end(motion)
                     tick(len(rows))
             except (Lost, NotFinite) as failure:
                 stopped = f"at {rows[-1][0] if rows else low:.6g} rad/s: {failure}"
@@ -192,10 +200,11 @@ def sweep_response(
     speeds, rising, lowest_, highest_, error = (
         np.array(column) for column in zip(*rows, strict=True)
     )
+    size, every = highest_ - lowest_, np.array(maps)
     jumps = [
         (speed, bool(way), ratio)
         for way in (True, False)
-        for speed, ratio in _jumps(speeds[rising == way], (highest_ - lowest_)[rising == way])
+        for speed, ratio in _jumps(*(part[rising == way] for part in (speeds, size, every)))
     ]
     return SweepResponse(
         method=f"marching by revolutions, Gauss collocation, seed {seed}",
@@ -240,8 +249,8 @@ def _swept(
     state: Array,
     kicks: float,
     random: np.random.Generator,
-) -> Iterator[tuple[float, tuple[float, float], float, Array]]:
-    """Yield speed, extremes, error and the state at the end of each revolution."""
+) -> Iterator[tuple[float, tuple[float, float], float, Motion]]:
+    """Yield speed, extremes, error and the motion of each revolution."""
     low, high = bounds
     speed = low if rise > 0 else high
     system, before = marcher.problem.system, None
@@ -254,7 +263,7 @@ def _swept(
         before = marcher.revolution(speed, state, before, Ramp(rise))
         # Rates by the angle stay what they are when the speed changes.
         error = unresolved(before) + between_ends(before) + 256 * EPS
-        yield speed + np.pi * rise / speed, _extremes(system, before, angles), error, end(before)
+        yield speed + np.pi * rise / speed, _extremes(system, before, angles), error, before
         state, speed = end(before), float(np.sqrt(after))
 
 
@@ -269,23 +278,49 @@ def _extremes(system: Nonlinear, motion: Motion, angles: Array) -> tuple[float, 
     return low, high
 
 
-def _jumps(speed: Array, size: Array) -> list[tuple[float, float]]:
-    """Return speed and ratio of each jump of a deflection, revolution by revolution."""
-    if len(size) < 8:
+def _jumps(speed: Array, size: Array, maps: Array) -> list[tuple[float, float]]:
+    """Return speed and ratio of each jump of a deflection, revolution by revolution.
+
+    A motion that jumps is repelled from where it was: some of its multipliers over the revolutions
+    behind it are beyond the unit circle, however few it takes.  From there it comes to rest on
+    another motion, of another size.
+    """
+    count = len(size)
+    largest = float(np.max(size, initial=0.0))
+    if count < 8 or not largest:
         return []
-    change = np.diff(np.log(np.maximum(size, 1e-300)))
-    sudden = np.abs(change) > max(_SUDDEN * float(np.median(np.abs(change))), 1e-6)
+    # A motion of two revolutions has two sizes; what rests has none.
+    size = np.maximum(np.maximum(size, np.append(size[1:], size[-1])), 1e-9 * largest)
+    repelled = np.arange(count) >= max(_WINDOWS) - 1
+    for window in _WINDOWS:
+        growth = _growth(np.stack([maps[k : count - window + 1 + k] for k in range(window)]))
+        repelled[window - 1 :] &= growth > 1.0
+    decay = -float(np.median(np.log(growth))) / window
+    settled = int(np.ceil(_SETTLED / decay)) if decay > 0.0 else count
     found: list[tuple[float, float]] = []
-    for part in np.split(*_clusters(np.flatnonzero(sudden))):
-        if not part.size:
+    last = 0
+    for part in np.split(*_clusters(np.flatnonzero(repelled))):
+        # Others repeat after more revolutions: over all of them they are not repelled.
+        if not part.size or part[0] < last or _growth(maps[part[0] : part[-1] + 1]) <= 1.0:
             continue
-        steps = change[part[0] : part[-1] + 1]
-        total = float(np.sum(steps))
-        if abs(total) < _JUMP:
+        first = max(int(part[0]) - max(_WINDOWS), 0)
+        last = min(int(part[-1]) + settled, count - 1)
+        change = np.log(size[first : last + 1] / size[first])
+        most = first + int(np.argmax(np.abs(change)))
+        if abs(change[most - first]) < _JUMP:
             continue
-        half = int(np.searchsorted(np.cumsum(np.abs(steps)), 0.5 * np.sum(np.abs(steps))))
-        found.append((float(speed[part[0] + half]), float(np.exp(total))))
+        moved = np.abs(size[first : most + 1] - size[first])
+        half = int(np.argmax(moved >= 0.5 * moved[-1]))
+        found.append((float(speed[first + half]), float(size[most] / size[first])))
     return found
+
+
+def _growth(maps: Array) -> Array:
+    """Return the largest multipliers of revolutions ``(k, ..., 2n, 2n)``, one behind the other."""
+    behind = maps[0]
+    for one in maps[1:]:
+        behind = one @ behind
+    return np.asarray(np.max(np.abs(np.linalg.eigvals(behind)), axis=-1))
 
 
 def _clusters(places: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

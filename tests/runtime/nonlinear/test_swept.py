@@ -73,6 +73,39 @@ def test_the_delay_of_jumps_goes_with_two_thirds_of_the_rate(folds):
     assert np.all(np.abs(slopes[-1] - 2.0 / 3.0) < 0.1)
 
 
+@pytest.mark.parametrize(("rate", "damping", "kicks"), [(4e-4, 0.05, 1e-6), (3e-3, 0.05, 1e-3)])
+@pytest.mark.parametrize(("cubic", "force"), [(0.0, 0.12), (-0.05, 0.05)])
+def test_resonances_without_folds_have_no_jumps(rate, damping, kicks, cubic, force):
+    """However steep or disturbed they are."""
+    system = duffing(damping=damping, cubic=cubic, force=force)
+    assert el.response_curve(system, "speed", (0.7, 1.3)).special == ()
+    found = el.sweep_response(system, (0.7, 1.3), rate, kicks=kicks)
+    assert np.max(np.abs(np.diff(np.log(found.peak_to_peak)))) > 0.02
+    assert found.jump_speed.size == 0
+
+
+@pytest.mark.slow
+def test_a_rig_jumps_to_both_larger_motions_and_back():
+    """At its fold and at its doubling as the speed rises, at the folds of both as it falls."""
+    changes = {"model.formulation": "inextensible", "coupler.damping_ratio": 0.0318}
+    rig = el.load_scene("smith_1972_101104_thirtysecond_inch", changes).system()
+    bounds = (340.0 * np.pi / 30.0, 500.0 * np.pi / 30.0)
+    curve = el.response_curve(rig, "speed", bounds, turns=2)
+    folds, doublings = (
+        np.sort(curve.special_value[[kind == name for kind in curve.special]])
+        for name in ("fold", "doubling")
+    )
+    found = el.sweep_response(rig, bounds, np.pi / 30.0, kicks=1e-3)
+    up, down = found.jump_speed[found.jump_rising], found.jump_speed[~found.jump_rising]
+    late = up[:2] - [folds[1], doublings[0]]
+    assert np.all((late > 0.0) & (late < 0.02 * up[:2]))
+    assert np.all(found.jump_ratio[found.jump_rising][:2] > 1.3)
+    # Coming down the motion of two revolutions goes at its fold, that of one at the other fold.
+    late = folds[[2, 0]] - down[-2:]
+    assert np.all((late > 0.0) & (late < 0.02 * down[-2:]))
+    assert np.all(found.jump_ratio[~found.jump_rising][-2:] < 0.6)
+
+
 def test_only_a_disturbed_motion_leaves_rest():
     # Where the linear equation says unstable the motion at rest is one all the same.
     system = duffing(0.05, 0.2, 0.0, pumped=0.3)

@@ -67,7 +67,7 @@ def main():
     print(f"{found.pieces} pieces, {found.resumed} of them from the store")
     print(f"bends {found['relative'].flat[place]:.3g} of its length: {found.point(place)}")
     for reason, places in found.reasons().items():
-        print(f"{len(places)} failed: {reason}")
+        print(f"{len(places)} failed, the first: {reason}")
 
 
 if __name__ == "__main__":

@@ -40,7 +40,8 @@ def add(commands: Any) -> None:
             "--store PATH": "keep finished pieces in this folder or .npz file; the same command"
             " goes on from there after it was stopped",
             "--table FILE": "write all designs to this .csv file, failed ones with their errors",
-            "--output NAME": "what --plot draws: peak, rms, error; growth, stable",
+            "--output NAME": "what --plot draws: peak, rms, error; growth (logarithm of the largest"
+            " multiplier's modulus), stable",
         },
     )
     opt.switches(parser, {"--estimate": "tell time and memory, and work nothing out"})
@@ -48,12 +49,11 @@ def add(commands: Any) -> None:
 
 def _values(scene: Scene, texts: list[str]) -> dict[str, Array]:
     """Return the values along each axis by name."""
-    from ..sweeps.tasks import scene_numbers
+    from ..sweeps.tasks import axis_dimensions
 
     # Answers are given at the speed of an option or an axis, whatever the scene's own is.
-    keys = (key for key in scene_numbers(scene) if not key.startswith("operation."))
-    dimensions = {key: scene.dimension(key) for key in keys}
-    dimensions = {"speed": "frequency", **scene.layout.parameters, **dimensions}
+    known = axis_dimensions(scene).items()
+    dimensions = {key: kind for key, kind in known if not key.startswith("operation.")}
     found = {}
     for text in texts:
         key, values = opt.pair(text, "--over", "KEY=START:STOP:COUNT", "links.coupler=12in:18in:50")
@@ -64,7 +64,7 @@ def _values(scene: Scene, texts: list[str]) -> dict[str, Array]:
             raise bad("--over", repr(key), f"one of {sorted(dimensions)}", fix)
         if key in found:
             raise bad("--over", f"{key} twice", "each number once", "leave one of them out")
-        found[key] = opt.values(values, dimensions[key] or "dimensionless", "--over")
+        found[key] = opt.values(values, dimensions[key], "--over")
     if not found:
         fix = "give --over links.coupler=12in:18in:50"
         raise bad("--over", "nothing", "at least one number and its values", fix)
@@ -114,9 +114,15 @@ def _lines(found: Sweep, name: str) -> list[str]:
         lines.append(f"{int(np.sum(found['stable'] == 1))} stable")
     # Of several coordinates the one that is largest.
     ranked = np.asarray(found[name]).reshape(np.prod(shape), -1).max(axis=1)
+
+    def told(key: str, value: float) -> str:
+        return f"{value:.6g} {found.units.get(key, '')}".rstrip()
+
     for word, place in (("least", np.nanargmin(ranked)), ("greatest", np.nanargmax(ranked))):
         if not isnan(ranked[place]):
-            at = ", ".join(f"{key} {value:.6g}" for key, value in found.point(int(place)).items())
-            lines.append(f"{word} {name}: {ranked[place]:.6g} at {at}")
-    lines += [f"{len(places)} failed: {told}" for told, places in found.reasons().items()]
+            at = ", ".join(f"{key} {told(key, v)}" for key, v in found.point(int(place)).items())
+            lines.append(f"{word} {name}: {told(name, ranked[place])} at {at}")
+    for reason, places in found.reasons().items():
+        first = ", the first" if len(places) > 1 else ""
+        lines.append(f"{len(places)} failed{first}: {reason}")
     return lines

@@ -16,6 +16,7 @@ from ...generated import four_bar_kinematics
 from ..core.errors import Problem, bad, refuse
 from .linkage import (
     ROUND_OFFS,
+    ROUNDED,
     TINY,
     Array,
     Assembly,
@@ -186,13 +187,26 @@ class FourBar(Linkage):
         return Limits(*(one / frame * (other / crank) for one, other in factors))
 
     def require_full_turn(self) -> None:
-        """Raise BadInput where the crank cannot turn fully."""
-        if not self.crank_turns:
+        """Raise BadInput where the crank cannot turn fully, or does by rounding alone."""
+        sums = self.sums
+        sides = (
+            "frame + crank = coupler + follower",
+            "frame + coupler = crank + follower",
+            "frame + follower = crank + coupler",
+        )
+        equal = [
+            side
+            for side, gap in zip(sides, sums.pairs, strict=True)
+            if abs(gap) <= ROUNDED * sums.total
+        ]
+        if equal or not self.crank_turns:
             near, far = abs(self.frame - self.crank), self.frame + self.crank
             found = f"diagonals from {near:g} to {far:g}"
             shortest, longest = self.reach
             expected = f"diagonals strictly between {shortest:g} and {longest:g}"
-            raise bad("FourBar", found, expected, "the crank cannot turn fully; change a length")
+            where = f"at this change point, {equal[0]}, " if equal else ""
+            fix = f"{where}the crank cannot turn fully; change a length"
+            raise bad("FourBar", found, expected, fix)
 
     def motion(
         self, theta: ArrayLike, speed: ArrayLike = 1.0, acceleration: ArrayLike = 0.0

@@ -30,6 +30,8 @@ EPS = float(np.finfo(float).eps)
 TINY = float(np.finfo(float).tiny)
 # A round-off of each of the numbers that an expression comes from, three times.
 ROUND_OFFS = 1.5 * EPS
+# Sums of lengths that differ by no more than this part are equal but for the lengths' rounding.
+ROUNDED = 4.0 * EPS
 # A position that a round-off of the lengths moves so far [rad] is a change point.
 UNDECIDED = 0.5
 # What names of rates contain.
@@ -429,7 +431,7 @@ class Linkage(ABC):
 
     @abstractmethod
     def require_full_turn(self) -> None:
-        """Raise BadInput where the crank cannot turn fully."""
+        """Raise BadInput where the crank cannot turn fully, or does by rounding alone."""
 
     @abstractmethod
     def motion(

@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 from ...generated import quick_return_kinematics
 from ..core.errors import Problem, bad, refuse
 from .linkage import (
-    EPS,
     ROUND_OFFS,
+    ROUNDED,
     TINY,
     UNDECIDED,
     Array,
@@ -28,8 +28,6 @@ from .linkage import (
     turning,
     units_of,
 )
-
-_ROUND = 4.0 * EPS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -152,7 +150,7 @@ class QuickReturn(Linkage):
     def _long_enough(self) -> bool:
         frame, crank, _ = self.unit_lengths.values()
         # A rod given as the sum of the two, rounded, is long enough.
-        return self._ends[1] <= _ROUND * (frame + crank)
+        return self._ends[1] <= ROUNDED * (frame + crank)
 
     @property
     def _ends(self) -> tuple[float, float]:
@@ -165,8 +163,8 @@ class QuickReturn(Linkage):
         return math.fsum((rod, near, -far)), math.fsum((far, near, -rod))
 
     def require_full_turn(self) -> None:
-        """Raise BadInput where the crank cannot turn fully."""
-        if self.frame == self.crank:
+        """Raise BadInput where the crank cannot turn fully, or does by rounding alone."""
+        if abs(self.frame - self.crank) <= ROUNDED * self.frame:
             found = f"{self.crank:g}, as long as the frame (eps = 1)"
             fix = (
                 "the block passes the rod's pivot, where the rod's angle is not defined; change it"
@@ -185,7 +183,7 @@ class QuickReturn(Linkage):
 
     def _decided(self, m: Mapping[str, Array]) -> NDArray[np.bool_]:
         rod = self.unit_lengths["rod"]
-        return np.asarray((m["slide"] <= rod * (1.0 + _ROUND)) & (self._blur(m) < UNDECIDED))
+        return np.asarray((m["slide"] <= rod * (1.0 + ROUNDED)) & (self._blur(m) < UNDECIDED))
 
     def _blur(self, m: Mapping[str, Array]) -> Array:
         """Return what a unit round-off of each length does to theta4 [rad], three times."""

@@ -16,6 +16,7 @@ from ..core.errors import Problem, bad, refuse
 from ..core.inputs import is_finite
 from .linkage import (
     ROUND_OFFS,
+    ROUNDED,
     TINY,
     UNDECIDED,
     Array,
@@ -145,11 +146,15 @@ class SliderCrank(Linkage):
         return Limits(*(math.fsum(terms) / (2.0 * max(c, TINY)) for terms in factors))
 
     def require_full_turn(self) -> None:
-        """Raise BadInput where the crank cannot turn fully."""
-        if not self.crank_turns:
+        """Raise BadInput where the crank cannot turn fully, or does by rounding alone."""
+        crank, coupler, offset = self.unit_lengths.values()
+        gap = math.fsum((coupler, -crank, -abs(offset)))
+        equal = abs(gap) <= ROUNDED * coupler
+        if equal or not self.crank_turns:
             found = f"coupler {self.coupler:g} for crank {self.crank:g} and offset {self.offset:g}"
             expected = f"a coupler above {self.crank + abs(self.offset):g}"
-            fix = "the crank cannot turn fully; change a length"
+            where = "at this change point, coupler = crank + offset, " if equal else ""
+            fix = f"{where}the crank cannot turn fully; change a length"
             raise bad("SliderCrank", found, expected, fix)
 
     def motion(

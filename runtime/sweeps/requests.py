@@ -19,7 +19,7 @@ from ..core.trigonometric import GOLDEN
 from .pieces import Grid
 from .tasks import Task
 
-FORMAT = 3
+FORMAT = 4
 
 # What a function may take from its file and is known by its content, beside records.
 _CONSTANTS = (bool, int, float, complex, str, tuple, list, dict, set, np.generic, np.ndarray)

@@ -29,13 +29,28 @@ from ..scenes import Scene
 from .pieces import Grid, grid_of
 from .requests import request_of
 from .store import Store
-from .tasks import NAMED, AnyArray, Outputs, Piece, Task, blank, holding, scene_numbers, task_of
+from .tasks import (
+    NAMED,
+    AnyArray,
+    Outputs,
+    Piece,
+    Task,
+    axis_units,
+    blank,
+    holding,
+    output_units,
+    scene_numbers,
+    task_of,
+)
 
 if TYPE_CHECKING:
     import xarray
 
 
 _NUMBER = re.compile(r"-?\d+\.?\d*(?:e[-+]?\d+)?")
+# The axis of the multipliers of a point, and which outputs are true or false.
+_MULTIPLIERS = ("multipliers", "multiplier_error")
+_TRUTHS = ("stable", "undecided")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,6 +76,8 @@ class Sweep(Result):
         What of the store was not as it had been written, and was done anew.
     failures : mapping of int to str
         Errors of the points that could not be worked out, by their place in the flattened grid.
+    units : mapping of str to str
+        Units of axes and outputs by name, as far as they are known.
     error : float
         Largest error estimate of the pieces, in the norm of what was worked out; NaN where that has
         none.
@@ -74,6 +91,7 @@ class Sweep(Result):
     store: Path | None = None
     damaged: tuple[str, ...] = ()
     failures: Mapping[int, str] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> AnyArray:
         """Return one array by name.
@@ -135,33 +153,58 @@ class Sweep(Result):
 
     def _dimensions(self) -> dict[str, tuple[str, ...]]:
         names = tuple(self.axes)
-        return {f"axis_{name}": (name,) for name in names} | {
+        found = {f"axis_{name}": (name,) for name in names} | {
             name: (*names, *(f"{name}_{i}" for i in range(array.ndim - len(names))))
             for name, array in self.outputs.items()
         }
+        if self.what == "floquet_multipliers":
+            found |= {name: (*names, "multiplier") for name in _MULTIPLIERS if name in found}
+        return found
 
     def _tables(self) -> dict[str, str]:
-        """Return the table of all points, with a column of errors where points have failed."""
-        if not self.failures:
-            return super()._tables()
+        """Return the table of all points, one row each, and those of outputs of several numbers.
+
+        Where points have failed it has a column of errors.
+        """
         shape = tuple(map(len, self.axes.values()))
-        told = np.array([self.failures.get(place, "") for place in range(prod(shape))])
-        outputs = {"failure": told.reshape(shape), **self.outputs}
-        return replace(self, outputs=outputs, failures={})._tables()
+        outputs = {name: np.asarray(array) for name, array in self.outputs.items()}
+        if self.failures:
+            told = np.array([self.failures.get(place, "") for place in range(prod(shape))])
+            outputs = {"failure": told.reshape(shape), **outputs}
+            for name in _TRUTHS if self.what in NAMED else ():
+                if name in outputs:
+                    truths = np.where(outputs[name] == 1, "True", "False")
+                    outputs[name] = np.where(np.isnan(outputs[name]), "", truths)
+        labels = self._dimensions()
+        groups: dict[str, dict[str, AnyArray]] = {}
+        for name, array in outputs.items():
+            single = array.size == prod(shape)
+            ending = "" if single else "_".join(labels[name])
+            groups.setdefault(ending, {})[name] = array
+        if "" not in groups:
+            return super()._tables()
+        return {
+            ending: Result._tables(replace(self, outputs=some, failures={}))[""]
+            for ending, some in groups.items()
+        }
 
     def _own_units(self) -> dict[str, str]:
-        return {"axis_speed": "rad/s"}
+        named = {f"axis_{name}" if name in self.axes else name: u for name, u in self.units.items()}
+        return {"axis_speed": "rad/s", **named}
 
     def to_xarray(self) -> xarray.Dataset:
         """Return the outputs over their axes as an :class:`xarray.Dataset` (extra ``data``)."""
         plain = super().to_xarray()
         labels = self._dimensions()
-        data = {name: (labels[name], array) for name, array in self.outputs.items()}
-        coordinates = {name: (name, values) for name, values in self.axes.items()}
+        about = {name: {"units": unit} for name, unit in self.units.items()}
+        data = {name: (labels[name], a, about.get(name)) for name, a in self.outputs.items()}
+        coordinates = {name: (name, v, about.get(name)) for name, v in self.axes.items()}
         return type(plain)(data, coords=coordinates, attrs=plain.attrs)
 
     def plot(self, ax: Axes | None = None, *, output: str | None = None) -> Axes:
         """Draw an output over one axis, or as a map over two, and return the axes.
+
+        A line marks where ``growth`` is 0: it parts stable from unstable points.
 
         Parameters
         ----------
@@ -185,11 +228,14 @@ class Sweep(Result):
         thin = [slice(None, None, -(-len(v) // 1200)) for v in self.axes.values()]
         values = [axis[part] for axis, part in zip(self.axes.values(), thin, strict=True)]
         shown = np.asarray(self[name][tuple(thin)])
-        labels = [with_unit(name, "rad/s" if name == "speed" else "") for name in self.axes]
+        units = {"speed": "rad/s", **self.units}
+        *labels, told = (with_unit(key, units.get(key, "")) for key in (*self.axes, name))
         ax.set_xlabel(labels[-1])
         if len(labels) == 1:
             ax.plot(values[0], shown.reshape(len(shown), -1), linewidth=0.9)
-            ax.set_ylabel(name)
+            if name == "growth":
+                ax.axhline(0.0, color="k", linewidth=0.8)
+            ax.set_ylabel(told)
             return ax
         if shown.shape[2:] == (1,):
             shown = shown[..., 0]
@@ -204,7 +250,15 @@ class Sweep(Result):
             ax.set_title(f"white: {name}")
             return ax
         mesh = ax.pcolormesh(values[1], values[0], shown.astype(float), shading="nearest")
-        ax.figure.colorbar(mesh, ax=ax, label=name)
+        ax.figure.colorbar(mesh, ax=ax, label=told)
+        if name == "growth" and np.nanmin(shown) <= 0.0 < np.nanmax(shown):
+            level = shown
+            if "stable" in self.outputs:
+                # Of stable motions without damping the growth is 0 but for its error.
+                level = np.where(self["stable"][tuple(thin)] == 1, np.minimum(shown, 0.0), shown)
+            if min(level.shape) > 1 and np.nanmax(level) > 0.0:
+                ax.contour(values[1], values[0], level, [0.0], colors="k", linewidths=0.9)
+                ax.set_title("black line: growth 0")
         return ax
 
 
@@ -233,10 +287,12 @@ def sweep(
     ----------
     what : str or callable
         ``"stability_chart"`` (two axes: the first along y, the second along x),
-        ``"floquet_multipliers"``, ``"steady_state"`` (peak and rms of each coordinate), which
-        take all points of a piece at once; the name of any other public function; or a function
-        of your own, called at one point after another as ``what(subject, **values, **options)``,
-        which returns a number, an array, a mapping of such or a result.
+        ``"floquet_multipliers"`` (with ``growth``, the logarithm of the largest modulus: of the
+        growth in a period), ``"steady_state"`` (peak and rms [m] of the deflection at
+        ``SteadyState.place``; of each coordinate where there are no mode shapes), which take all
+        points of a piece at once; the name of any other public function; or a function of your
+        own, called at one point after another as ``what(subject, **values, **options)``, which
+        returns a number, an array, a mapping of such or a result.
     subject : object
         A system or scene for those of the first kind, else the first argument of the function.
     values : mapping
@@ -327,6 +383,7 @@ class Plan:
     grid: Grid
     options: Mapping[str, object]
     outputs: Outputs
+    units: Mapping[str, str]  # of axes and outputs, as far as they are known
 
     def piece(self, number: int) -> Piece:
         """Work out one piece."""
@@ -346,6 +403,7 @@ def planned(
     grid = grid_of(values, task.chunk if chunk is None else chunk, rows=task.rows)
     require_mapping("options", {} if options is None else options, "say options={'speed': 50.0}")
     told = dict(options or {})
+    known = axis_units(subject)
     if isinstance(subject, Scene) and task.of_systems:
         made: object = subject.linear_system() if task.name in NAMED else subject.system()
         # A scene whose numbers are axes becomes a system at each point.
@@ -354,6 +412,8 @@ def planned(
         made, numbers = subject, set()
     if task.name in NAMED:
         _check_axes(task, made, grid, told, numbers)
+    units = {name: known[name] for name in grid.names if known.get(name)}
+    units |= output_units(task, made)
     if not numbers:
         subject = made
     both = sorted(set(told) & set(grid.names))
@@ -363,7 +423,7 @@ def planned(
         fix = 'give a tuple, as ("stable",)'
         raise bad("outputs", repr(outputs), "names of arrays", fix)
     kept = task.outputs if outputs is None else tuple(outputs)
-    return Plan(task, subject, grid, told, kept)
+    return Plan(task, subject, grid, told, kept, units)
 
 
 def _check_axes(
@@ -524,6 +584,7 @@ def _assembled(plan: Plan, whole: Piece, place: Path | None, resumed: int) -> Sw
         resumed=resumed,
         store=place,
         failures=dict(whole.failures),
+        units={k: u for k, u in plan.units.items() if k in (*plan.grid.names, *whole.arrays)},
     )
 
 

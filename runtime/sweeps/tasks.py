@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from ..core.errors import LINEAR_RANGE, ElastolinkError, bad, deflections_beyond
 from ..core.families import Array, LinearPeriodic
 from ..core.results import Check, Result
+from ..core.units import DIMENSIONS
 from ..scenes import Scene, with_numbers
 from ..scenes.tolerances import flat
 
@@ -281,18 +282,40 @@ def _points(axes: Mapping[str, Array]) -> dict[str, Array]:
 def _of_multipliers(found: FloquetMultipliers) -> dict[str, AnyArray]:
     return {
         "multipliers": found.multipliers,
-        "error": np.asarray(found.error),
+        "multiplier_error": np.asarray(found.error),
+        "error": np.max(found.error, axis=-1),
         "stable": np.asarray(found.stable),
-        "growth": found.growth,
+        "growth": np.max(found.exponents.real, axis=-1),
     }
 
 
 def _of_motion(found: SteadyState) -> dict[str, AnyArray]:
+    if not deflects(found):
+        return {
+            "peak": np.max(np.abs(found.q), axis=-2),
+            "rms": np.sqrt(np.mean(found.q**2, axis=-2)),
+            "error": np.asarray(found.error),
+        }
     return {
-        "peak": np.max(np.abs(found.q), axis=-2),
-        "rms": np.sqrt(np.mean(found.q**2, axis=-2)),
-        "error": np.asarray(found.error),
+        "peak": found.peak(),
+        "rms": np.sqrt(np.mean(found.deflection() ** 2, axis=-1)),
+        "error": np.max(found.error, axis=-1),
     }
+
+
+def deflects(moving: LinearPeriodic | SteadyState) -> bool:
+    """Return whether coordinates stand for deflections: whether there are mode shapes."""
+    shapes = moving.shapes
+    return shapes is not None and shapes(np.ones(1), np.zeros(1)) is not None
+
+
+def output_units(task: Task, system: object) -> dict[str, str]:
+    """Return the units of what a solver of many points gives of a system, by name."""
+    if task.name == "steady_state" and isinstance(system, LinearPeriodic) and deflects(system):
+        return {"peak": "m", "rms": "m"}
+    if task.name == "floquet_multipliers" and isinstance(system, LinearPeriodic):
+        return {"growth": "per turn" if np.isclose(system.period, 2.0 * np.pi) else "per period"}
+    return {}
 
 
 def _each(
@@ -367,6 +390,19 @@ def _own_values(
 def scene_numbers(scene: Scene) -> set[str]:
     """Return the dotted keys of the numbers that a scene gives."""
     return {key for key, value in flat(scene.given) if isinstance(value, float)}
+
+
+def axis_dimensions(scene: Scene) -> dict[str, str]:
+    """Return by name the dimensions of what may be swept of a scene and of its system."""
+    own = {key: scene.dimension(key) or "dimensionless" for key in scene_numbers(scene)}
+    return {"speed": "frequency", **scene.layout.parameters, **own}
+
+
+def axis_units(subject: object) -> dict[str, str]:
+    """Return by name the SI units of what may be swept, as far as they are known."""
+    known = axis_dimensions(subject) if isinstance(subject, Scene) else {"speed": "frequency"}
+    units = {name: DIMENSIONS[dimension].si for name, dimension in known.items()}
+    return {name: unit.replace("**", "^").replace("*", " ") for name, unit in units.items()}
 
 
 def _moved(subject: Any, values: dict[str, float]) -> Any:

@@ -2,6 +2,7 @@
 
 import csv
 import json
+from itertools import product
 
 import elastolink as el
 import numpy as np
@@ -26,18 +27,19 @@ def test_designs_in_a_table_the_failed_ones_with_their_errors(tmp_path, capsys):
     assert len(rows) == 8 and picture.stat().st_size > 0
     scene, peaks = el.load_scene(SCENE, CHANGES), {}
     for row in rows:
-        numbers = {key: float(row[f"axis_{key}"]) for key in ("links.coupler", "links.follower")}
+        keys = ("links.coupler", "links.follower")
+        numbers = {key: float(row[f"axis_{key} [m]"]) for key in keys}
         if row["failure"]:
-            assert numbers["links.follower"] < 0.13 and row["peak"] == "nan"
+            assert numbers["links.follower"] < 0.13 and row["peak [m]"] == "nan"
             assert "the crank cannot turn fully" in row["failure"]
             continue
-        peak = np.abs(el.steady_state(with_numbers(scene, numbers).system(), 25.0).q).max()
-        assert float(row["peak"]) == pytest.approx(peak, rel=1e-9)
-        peaks[peak] = ", ".join(f"{key} {value:.6g}" for key, value in numbers.items())
+        peak = float(el.steady_state(with_numbers(scene, numbers).system(), 25.0).peak())
+        assert float(row["peak [m]"]) == pytest.approx(peak, rel=1e-9)
+        peaks[peak] = ", ".join(f"{key} {value:.6g} m" for key, value in numbers.items())
     assert len(peaks) == 5
-    assert f" failed: {rows[0]['failure']}" in told.out
-    assert f"least peak: {min(peaks):.6g} at {peaks[min(peaks)]}" in told.out
-    assert f"greatest peak: {max(peaks):.6g} at {peaks[max(peaks)]}" in told.out
+    assert f"3 failed, the first: {rows[0]['failure']}" in told.out
+    assert f"least peak: {min(peaks):.6g} m at {peaks[min(peaks)]}" in told.out
+    assert f"greatest peak: {max(peaks):.6g} m at {peaks[max(peaks)]}" in told.out
 
 
 def test_stability_over_speeds_and_lengths_from_a_store(tmp_path, capsys):
@@ -47,7 +49,14 @@ def test_stability_over_speeds_and_lengths_from_a_store(tmp_path, capsys):
     assert "6 points in 1 pieces" in capsys.readouterr().out
     assert not (tmp_path / "kept").exists()
     assert main(words) == 0
-    assert "6 stable" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "6 stable" in said
+    scene = el.load_scene(SCENE, CHANGES)
+    most = max(
+        el.design.diagnose(with_numbers(scene, {"links.crank": crank}), speed * np.pi / 30.0).growth
+        for speed, crank in product((300.0, 320.0, 340.0), (0.06, 0.076))
+    )
+    assert f"greatest growth: {most:.6g} per turn at speed " in said
     assert main([*words, "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told["resumed"] == told["pieces"] == 1

@@ -186,6 +186,21 @@ def test_a_crank_that_does_not_turn_is_named(linkage, word):
         linkage.require_full_turn()
 
 
+@pytest.mark.parametrize(
+    ("linkage", "word"),
+    [
+        # 0.3 + 0.06 and 0.28 + 0.08 are equal but for the rounding of the four.
+        (FourBar(0.3, 0.06, 0.28, 0.08), r"frame \+ crank = coupler \+ follower"),
+        (FourBar(0.1, 0.3, 0.4, 0.2), r"frame \+ coupler = crank \+ follower"),
+        (SliderCrank(0.1, 0.1 + 0.2, -0.2), r"coupler = crank \+ offset"),
+        (QuickReturn(0.3, 0.1 + 0.2, 0.7), "eps = 1"),
+    ],
+)
+def test_a_crank_that_turns_by_rounding_alone_is_refused(linkage, word):
+    with pytest.raises(BadInput, match=word):
+        linkage.require_full_turn()
+
+
 def test_round_off_of_sums_decides_nothing():
     """As :func:`classify` has it, the lengths are what their doubles are."""
     # 0.3... + 0.1 + 0.3... exceeds 0.7... by less than the sum of the three is rounded.

@@ -495,8 +495,9 @@ def test_multipliers_and_steady_states_over_parameters():
         assert np.all(np.abs(found["multipliers"][i] - direct.multipliers) <= 2 * direct.error)
         assert np.array_equal(found["stable"][i], direct.stable)
         steady = el.steady_state(scene.system(), values["speed"], follower_inertia=inertia)
-        peak = np.max(np.abs(steady.q), axis=1)
-        assert motion["peak"][i] == pytest.approx(peak, rel=1e-8)
+        assert motion["peak"][i] == pytest.approx(steady.peak(), rel=1e-8)
+        growth = np.log(np.abs(direct.multipliers).max(axis=-1))
+        assert np.all(np.abs(found["growth"][i] - growth) <= 2 * direct.error.max(axis=-1))
 
 
 LENGTHS = {"links.coupler": [0.36, 0.45, 0.7], "links.follower": [0.16, 0.2]}
@@ -532,12 +533,23 @@ def test_numbers_of_a_scene_are_axes(tmp_path):
         system = with_numbers(scene, numbers).system()
         steady = el.steady_state(system, 35.0)
         assert own["value"].flat[place] == steady.peak(0.5)
-        assert motion["peak"].reshape(6)[place] == pytest.approx(np.abs(steady.q).max(), rel=1e-9)
+        assert motion["peak"].flat[place] == pytest.approx(steady.peak(), rel=1e-9)
+        rms = np.sqrt(np.mean(steady.deflection() ** 2))
+        assert motion["rms"].flat[place] == pytest.approx(rms, rel=1e-9)
         alone = el.floquet_multipliers(system, 35.0)
         gap = multipliers["multipliers"].reshape(6, -1)[place] - alone.multipliers
         assert np.all(np.abs(gap) <= 2 * alone.error + 1e-14)
+        growth = np.log(np.abs(alone.multipliers).max())
+        assert multipliers["growth"].flat[place] == pytest.approx(growth, abs=1e-10)
+        assert (
+            multipliers["error"].flat[place]
+            == multipliers["multiplier_error"][np.unravel_index(place, (3, 2))].max()
+        )
         mean = el.natural_frequencies(system).mean
         assert np.array_equal(public["mean"].reshape(6, -1)[place], mean)
+    metres = dict.fromkeys(LENGTHS, "m")
+    assert motion.units == {**metres, "peak": "m", "rms": "m"}
+    assert multipliers.units == {**metres, "growth": "per turn"}
     with pytest.raises(BadInput, match=r"axes .*cuopler"):
         el.sweep("steady_state", scene, {"links.cuopler": [0.3]}, **told)
     with pytest.raises(BadInput, match="place"):
@@ -578,6 +590,70 @@ def test_failures_by_reason_and_in_a_table(tmp_path):
         "1.0,1.0,a is one,nan",
     ]
     assert len(text) == 13
+
+
+@pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.ElastolinkWarning")
+def test_a_table_has_one_row_for_each_design_and_units_in_its_header(tmp_path):
+    """The multipliers stand in a file beside it; truths stay truths where some points failed."""
+    scene = el.load_scene("smith_1972_5152_sixteenth_inch", {"coupler.mass_per_length": 0.0853})
+    found = el.sweep("floquet_multipliers", scene, LENGTHS, options={"speed": 35.0})
+    text = found.save(tmp_path / "designs.csv").read_text().splitlines()
+    lengths = "axis_links.coupler [m],axis_links.follower [m]"
+    assert text[0] == f"{lengths},failure,growth [per turn],stable,error"
+    assert len(text) == 7
+    rows = [row.rsplit(",", 2)[1] for row in text[1:]]
+    assert rows == [*(str(bool(one)) for one in found["stable"].flat[:4]), "", ""]
+    beside = tmp_path / "designs.links.coupler_links.follower_multiplier.csv"
+    rows = beside.read_text().splitlines()
+    assert len(rows) == 1 + found["multipliers"].size
+    assert {"multiplier_error", "multipliers_real", "multipliers_imag"} < {*rows[0].split(",")}
+    scene = el.load_scene("smith_1972_5152_sixteenth_inch", {"model.modes": 2})
+    motion = el.sweep("steady_state", scene, {"speed": [30.0, 35.0]})
+    text = motion.save(tmp_path / "motion.csv").read_text().splitlines()
+    assert text[0] == "axis_speed [rad/s],peak [m],rms [m],error" and len(text) == 3
+    assert motion.to_xarray()["peak"].attrs == {"units": "m"}
+    assert motion.to_xarray()["speed"].attrs == {"units": "rad/s"}
+
+
+def test_a_linkage_at_a_change_point_but_for_rounding_is_refused_by_its_name():
+    scene = el.load_scene("smith_1972_5152_sixteenth_inch")
+    lengths = {"links.frame": 0.3, "links.crank": 0.06, "links.coupler": 0.28}
+    values = {"links.follower": [0.04, 0.08, 0.16, 0.52]}
+    scene = with_numbers(scene, lengths)
+    with pytest.warns(ElastolinkWarning, match="3 of 4 points failed"):
+        found = el.sweep("floquet_multipliers", scene, values, options={"speed": 62.8})
+    # By the doubles alone the crank of the second turns; the others are at the limit itself.
+    assert with_numbers(scene, {"links.follower": 0.08}).mechanism().crank_turns
+    side = "frame + crank = coupler + follower"
+    assert f"at this change point, {side}, the crank cannot" in found.failures[1]
+    assert all("the crank cannot turn fully" in found.failures[place] for place in (0, 1, 3))
+    assert np.isfinite(found["growth"][2])
+
+
+def test_the_picture_of_growth_parts_stable_from_unstable():
+    """Its line runs where the multipliers leave the unit circle; axes have units."""
+    scene = el.load_scene("smith_1972_5152_sixteenth_inch")
+    values = {"damping": np.linspace(0.0, 0.4, 9), "speed": np.linspace(70.0, 90.0, 41)}
+    found = el.sweep("floquet_multipliers", scene, values)
+    assert 0 < np.sum(found["stable"]) < found["stable"].size
+    axes = found.plot(output="growth")
+    assert axes.get_xlabel() == "speed [rad/s]"
+    assert axes.get_ylabel().startswith("damping [N s/m")
+    assert "black line: growth 0" in axes.get_title()
+    (line,) = (one for one in axes.collections if hasattr(one, "levels"))
+    assert list(line.levels) == [0.0]
+    points = np.concatenate([path.vertices for path in line.get_paths()])
+    # No lines in the noise of the undamped row: each point has both kinds beside it.
+    steps = np.array([np.ptp(values["speed"]) / 40, np.ptp(values["damping"]) / 8])
+    for speed, damping in points:
+        gaps = np.abs(
+            np.array(np.meshgrid(values["speed"], values["damping"])).T - (speed, damping)
+        )
+        near = np.all(gaps <= 1.001 * steps, axis=-1).T
+        assert len({*found["stable"][near].tolist()}) == 2
+    single = el.sweep("floquet_multipliers", scene, {"speed": values["speed"]})
+    lines = single.plot(output="growth").lines
+    assert [list(one.get_ydata()) for one in lines[1:]] == [[0.0, 0.0]]
 
 
 def test_geometry_is_made_anew_within_a_piece():

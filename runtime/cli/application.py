@@ -11,11 +11,11 @@ import argparse
 import os
 import sys
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from importlib import import_module
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from ... import __version__
 from ..core.errors import BadInput, ElastolinkError, ElastolinkWarning, bad, one_line
@@ -40,16 +40,40 @@ class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Write the complaint and leave with status 2."""
         told = one_line(message, _LONGEST)
-        self.exit(_BAD_INPUT, f"{self.prog}: {told}; `{self.prog} --help` explains\n")
+        told += "" if told.endswith("?") else ";"
+        self.exit(_BAD_INPUT, f"{self.prog}: {told} `{self.prog} --help` explains\n")
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Name the nearest of the choices in place of all, where one is near."""
+        known = list(action.choices or ())
+        if known and value not in known and (hint := _nearest(str(value), known)):
+            raise argparse.ArgumentError(action, f"invalid choice: {value!r}; {hint}")
+        super()._check_value(action, value)
 
     def parse_known_args(  # type: ignore[no-untyped-def]
         self, args=None, namespace=None
     ):
-        """Refuse ``--option=--``, of which argparse makes an empty list instead of a text."""
+        """Refuse ``--option=--``, of which argparse makes an empty list, and unknown arguments.
+
+        A subcommand's are refused here, not by the whole command: it knows the nearest option.
+        """
         for text in sys.argv[1:] if args is None else args:
             if text.startswith("--") and text.endswith("=--"):
                 self.error(f"argument {text[:-3]}: expected one argument")
-        return super().parse_known_args(args, namespace)
+        found, unknown = super().parse_known_args(args, namespace)
+        if unknown:
+            options = [text.partition("=")[0] for text in unknown if text.startswith("--")]
+            hints = (_nearest(one, self._option_string_actions, most=1) for one in options)
+            told = f"unrecognized arguments: {' '.join(unknown)}"
+            self.error("; ".join([told, *filter(None, hints)]))
+        return found, unknown
+
+
+def _nearest(word: str, known: Iterable[str], most: int = 3) -> str:
+    """Return ``did you mean ...?``, empty where nothing is near."""
+    from ..scenes.validation import nearest
+
+    return nearest(word, known, "", most)
 
 
 def build_parser() -> argparse.ArgumentParser:

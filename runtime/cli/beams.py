@@ -55,7 +55,7 @@ def _of_beams(options: argparse.Namespace, *, moving: bool = False) -> tuple[Sce
     where = f"scene {scene.name}"
     if scene.model["formulation"] not in BEAM_FORMULATIONS:
         expected = "links that are beams, such as formulation 'cubic_beams'"
-        fix = "choose aannaque_1996_table_4_1, for example"
+        fix = "begin with `elastolink new beams`, or choose aannaque_1996_table_4_1"
         raise bad(where, f"formulation '{scene.model['formulation']}'", expected, fix)
     if scene.model["mechanism"] == "frame":
         found, fix = "members that do not stretch", "say --set frame.axial=elastic"

@@ -28,23 +28,24 @@ _SPAN = re.compile(r"(\d{1,4}):(\d{1,4})")
 
 def add(commands: Any) -> None:
     """Add the two subcommands."""
-    regions = {"--regions N,...": f"numbers of the regions, 1,3,5 or 1:6; default {_REGIONS}"}
+    name, numbers = "--regions N,...", f"numbers of the regions, 1,3,5 or 1:6; default {_REGIONS}"
+    one = "of one undamped mode, without --speed"
     edges = opt.command(commands, "boundaries", _boundaries)
     opt.add(
         edges,
         {
-            **regions,
+            name: f"{one}: {numbers}",
             "--mu VALUES": "of a Hill equation: a number or START:STOP:COUNT (--mu=-1:1:5 where it"
             " begins with a minus); default parameters.mu",
             "--speed LOW:HIGH": "crank speeds of a linkage whose modes are several or damped, such"
             " as 300rpm:900rpm; default operation.speed_range, or chosen by the scene",
         },
     )
-    beside = f"beside the exact ones those by perturbation, order 1 to {_HIGHEST}"
+    beside = f"{one}: beside the exact ones those by perturbation, order 1 to {_HIGHEST}"
     opt.add(edges, {"--order N": beside}, type=_order)
-    opt.switches(edges, {"--certified": "proved enclosures by exact arithmetic"})
+    opt.switches(edges, {"--certified": f"{one}: proved enclosures by exact arithmetic"})
     series = opt.command(commands, "perturb", _perturb)
-    opt.add(series, regions)
+    opt.add(series, {name: numbers})
     opt.add(series, {"--order N": f"1 to {_HIGHEST}; default %(default)s"}, type=_order, default=2)
     formulas = (
         "print the formulas instead, as sums, to order 6 at most: for any n, or for the --regions "
@@ -170,11 +171,14 @@ def _of_modes(options: argparse.Namespace, scene: Scene, system: LinearPeriodic)
         if not last - first <= 2.0 * error
     ]
     closed = len(edges.labels) - len(rows)
-    lines = [*said, *opt.table(("region", "from", "to", "width"), rows)]
+    low, high, least = (_rpm(end, 6) for end in (*span, float(f"{edges.least_width:.1g}")))
+    none = f"none between {low} and {high}; regions narrower than {least} are left out"
+    lines = [*said, *(opt.table(("region", "from", "to", "width"), rows) if rows else [none])]
     if any(row[0].endswith("?") for row in rows):
         lines.append("?: so far from the resonances of the mean motion that the name is a guess")
     if closed:
-        lines.append(f"and {closed} regions that are closed, or narrower than their error")
+        those = "1 region that is" if closed == 1 else f"{closed} regions that are"
+        lines.append(f"and {those} closed, or narrower than the error")
     return opt.finish(options, edges, lines)
 
 

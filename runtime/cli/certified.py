@@ -18,7 +18,7 @@ def add(commands: Any) -> None:
 
 
 def _certify(options: argparse.Namespace) -> int:
-    """Prove a damped system of one to three modes stable at every speed of a range.
+    """Prove a damped system of 1 to 3 modes stable over a range of speeds; needs the extra fast.
 
     elastolink certify smith_1972_5152_sixteenth_inch --speed 300:400rpm --set coupler.damping=0.1
     """

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import re
+import shlex
+from dataclasses import replace
 from typing import Any
 
 from .. import design
@@ -26,4 +29,11 @@ def _diagnose(options: argparse.Namespace) -> int:
     scene = moving_scene(options)
     window = opt.quantity(options.window, "dimensionless", "--window")
     found = design.diagnose(scene, speed_of(options, scene), window=window)
+    # What it advises is to work as it is printed: for this file, with these overrides.
+    typed = shlex.join([options.scene, *(f"--set={pair}" for pair in options.set)])
+    if options.modules is not None:
+        typed += f" --modules {shlex.quote(options.modules)}"
+    advice = re.compile(rf"(?<=elastolink )(\w+) {re.escape(scene.name)} ")
+    lines = [advice.sub(lambda found: f"{found[1]} {typed} ", line) for line in found.lines]
+    found = replace(found, lines=tuple(lines))
     return opt.finish(options, found, found.lines)

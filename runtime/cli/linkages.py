@@ -119,11 +119,10 @@ def _linkage(options: argparse.Namespace) -> Any:
 
 
 def _class_lines(found: Any) -> list[str]:
-    symbol = found.symbol if hasattr(found, "symbol") else found.mechanism
     turning = ", ".join(link for link, full in found.turns.items() if full) or "no link"
-    lines = [f"{symbol}: {found.name} ({found.category})"]
-    if hasattr(found, "also"):
-        lines.append(f"also called: {found.also}; {found.characteristic}")
+    lines = [found.described]
+    if hasattr(found, "inversions"):
+        lines.append(f"marked by: {found.characteristic}")
         kinds = ", ".join(f"{link} {kind}" for link, kind in found.inversions.items())
         lines.append(f"inversions, by fixed link: {kinds}")
     lines.append(f"turning fully against the frame: {turning}")

@@ -332,9 +332,11 @@ def _verdict(result: Result, checks: Mapping[str, Check]) -> list[str]:
     error = np.asarray(result.error, dtype=float)
     finite = error[np.isfinite(error)]
     worst = f"{finite.max():.2g}" if finite.size else "not known"
+    # Where nothing was found, nothing has an error.
+    error_line = f"error:  {worst} ({result.error_kind}; {result.error_norm})"
     return [
         f"method: {result.method}",
-        f"error:  {worst} ({result.error_kind}; {result.error_norm})",
+        *([error_line] if error.size else []),
         *(
             f"check:  {name}: {check.value:.2g} (limit {check.limit:.2g})"
             for name, check in sorted(checks.items())

@@ -62,7 +62,10 @@ def numbers(name: str, value: object) -> NDArray[np.float64]:
         found = f"what NumPy cannot read ({unreadable})"
         raise bad(name, found, "numbers", "convert it to NumPy") from unreadable
     if given.size and given.dtype.kind not in "iuf":
-        raise bad(name, repr(value), "real numbers", "give numbers")
+        fix = "give numbers"
+        if given.dtype.kind == "U" and name.startswith("speed"):
+            fix += " in rad/s: 400 rpm is 400 * math.pi / 30"
+        raise bad(name, repr(value), "real numbers", fix)
     return given.astype(np.float64)
 
 

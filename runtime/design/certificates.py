@@ -191,8 +191,8 @@ def _require_flint() -> None:
     try:
         import flint  # noqa: F401 - looked for
     except ImportError as missing:
-        fix = "install the extra: pip install 'elastolink[fast]'"
-        raise bad("certify", "python-flint is not installed", "the extra fast", fix) from missing
+        fix = "python -m pip install python-flint, or elastolink with its extra fast"
+        raise bad("certify", "no python-flint", "it installed", fix) from missing
 
 
 def _pieces(

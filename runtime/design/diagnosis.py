@@ -24,6 +24,8 @@ _NOT_MADE = ("model", "operation", "measured", "chart", "loads", "motor")
 # How far from the running speed, over it, a region is wished to be; the largest change that is
 # spoken of; and up to which growth per turn a motion neither grows nor dies out.
 _AWAY, _LARGEST, _STILL = 0.1, 0.2, 1e-9
+# How far about a speed branches of motions are followed: from where these are small, mostly.
+_AROUND = 0.3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -126,8 +128,8 @@ def diagnose(scene: Scene, speed: float, *, window: float = 0.3) -> Diagnosis:
         checks |= more
     lines = [
         _verdict(scene, speed, growth, stable),
-        *_nearby(near, system, speed, stable),
-        *_motion(scene, system, deflection, largest, stable),
+        *_nearby(scene, near, system, speed, stable),
+        *_motion(scene, system, speed, deflection, largest, stable),
         *_remedies(scene, near),
     ]
     return Diagnosis(
@@ -187,7 +189,7 @@ def _verdict(scene: Scene, speed: float, growth: float, stable: bool) -> str:
 
 
 def _nearby(
-    near: Margins | None, system: LinearPeriodic, speed: float, stable: bool
+    scene: Scene, near: Margins | None, system: LinearPeriodic, speed: float, stable: bool
 ) -> Iterator[str]:
     if near is None:
         turns = fastest_mode(system, speed)
@@ -198,7 +200,12 @@ def _nearby(
         yield f"{told} per revolution; {rest}"
         return
     low, high = (end * RPM for end in near.window)
-    if not near.region:
+    wide = not stable and not np.any(near.distance < 0.0)
+    if wide:
+        ends = f"elastolink boundaries {scene.name} --speed {low:.5g}:{high:.5g}rpm"
+        far = f"reaches far beyond {low:.4g} to {high:.4g} rpm"
+        yield f"the region that contains this speed {far}: {ends}"
+    elif not near.region:
         yield f"no unstable region wide enough to matter between {low:.4g} and {high:.4g} rpm"
     for i, name in enumerate(near.region):
         end, width = near.end[i] * RPM, near.width[i] * RPM
@@ -208,14 +215,23 @@ def _nearby(
         far = f"at {end:.5g} rpm, {100.0 * abs(near.distance[i]):.2g} % {side}"
         fed = f"; what feeds it: {near.feeding[i]}" if near.feeding[i] else ""
         yield f"{name} {place} {far}; it is {width:.3g} rpm wide{fed}"
-    if near.narrow:
+    if near.narrow == 1 and not wide:
+        yield "1 more region there is so narrow that any damping closes it"
+    if near.narrow > 1:
         yield f"{near.narrow} more regions there are so narrow that any damping closes them"
 
 
 def _motion(
-    scene: Scene, system: LinearPeriodic, deflection: float, largest: float, stable: bool
+    scene: Scene,
+    system: LinearPeriodic,
+    speed: float,
+    deflection: float,
+    largest: float,
+    stable: bool,
 ) -> Iterator[str]:
-    beyond = f": elastolink response {scene.name}" if "nonlinear" in system.provenance else ""
+    beyond = ""
+    if "nonlinear" in system.provenance:
+        beyond = f": elastolink response {scene.name} --speed {_about(speed, _AROUND)}"
     if not stable:
         yield f"how large the motion becomes a linear equation does not tell{beyond}"
     if math.isfinite(deflection):
@@ -225,6 +241,12 @@ def _motion(
         yield f"steady motion: the link bends by {100.0 * deflection:.2g} % of its length; {word}"
     if math.isfinite(largest):
         yield f"largest steady stress: {largest / 1e6:.3g} MPa"
+
+
+def _about(speed: float, part: float) -> str:
+    """Return the range of speeds about one, as commands take it."""
+    low, high = ((1.0 + sign * part) * speed * RPM for sign in (-1.0, 1.0))
+    return f"{low:.5g}:{high:.5g}rpm"
 
 
 def _remedies(scene: Scene, near: Margins | None) -> Iterator[str]:
@@ -247,7 +269,9 @@ def _remedies(scene: Scene, near: Margins | None) -> Iterator[str]:
             told.append(f"{near.by[m]} {100.0 * change[m]:+.2g} %")
     goal = "out of it" if held else f"some {100.0 * _AWAY:.0f} % away from it"
     if told:
-        yield f"{goal} with one of (elastolink stabilise finds the least): {', '.join(told)}"
+        span = _about(near.speed, 0.01 if held else _AWAY)
+        least = f"elastolink stabilise {scene.name} --speed {span}"
+        yield f"{goal} with one of ({least} finds the least): {', '.join(told)}"
     else:
         yield f"no single number brings the machine {goal} by {100.0 * _LARGEST:.0f} % or less"
 

@@ -18,6 +18,7 @@ from ..core.results import Check, Result, provenance
 from ..frequencies import critical_speeds
 from ..frequencies.response_maxima import response_maxima
 from ..periodic import steady_state
+from ..scenes.validation import nearest as nearest_name
 from ..stability import stability_edges
 from .measured import Computed, Point, checked_points, nearest
 
@@ -308,13 +309,21 @@ class _Fit:
 def _checked_names(system: Machine, unknown: Sequence[str]) -> tuple[str, ...]:
     names = names_in_a_row("unknown", unknown)
     problems = []
-    if not names or len(set(names)) < len(names):
-        problems.append(Problem("unknown", repr(names), "different names, at least one", "mend it"))
+    if not names:
+        problems.append(
+            Problem("unknown", "nothing", "at least one parameter", "give --unknown NAME")
+        )
+    if len(set(names)) < len(names):
+        problems.append(Problem("unknown", repr(names), "different names", "name each once"))
     for name in names:
         value = system.parameters.get(name)
         if value is None:
             known = f"one of {sorted(system.parameters)}"
-            problems.append(Problem("unknown", repr(name), known, "correct the name"))
+            # A key of the scene, coupler.bending_stiffness, is meant by its last part.
+            last = name.rpartition(".")[2]
+            word = last if last in system.parameters else name.replace(".", "_")
+            fix = nearest_name(word, sorted(system.parameters), "correct the name")
+            problems.append(Problem("unknown", repr(name), known, fix))
         elif not (np.ndim(value) == 0 and value > 0.0):
             fix = "set a value to start from"
             problems.append(Problem(name, f"{value!r}", "a number above 0 to start from", fix))

@@ -141,8 +141,9 @@ def read_points(path: str | os.PathLike[str]) -> tuple[Point, ...]:
     try:
         text = Path(path).read_text(encoding="utf-8-sig")
     except (OSError, TypeError, ValueError) as problem:  # ValueError: no text, no path
+        reason = getattr(problem, "strerror", None) or problem
         fix = "give the path of a CSV file"
-        raise bad("points", f"{path!r}: {problem}", "a text file", fix) from problem
+        raise bad("points", f"{path!r}: {reason}", "a text file", fix) from problem
     name = os.fspath(path)
     lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if _holds(line)]
     if len(lines) < 2:

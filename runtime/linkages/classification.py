@@ -201,6 +201,11 @@ class Classification(Result):
     tolerance: float
 
     @property
+    def described(self) -> str:
+        """The class in one line: what it is called, then Barker's name and symbol."""
+        return f"{self.also}, in Barker's table {self.name} ({self.symbol})"
+
+    @property
     def lengths(self) -> dict[str, float]:
         """Lengths by name."""
         return {name: getattr(self, name) for name in LINKS}
@@ -258,6 +263,11 @@ class SlidingClassification(Result):
     nearest_change: str
     closing_distance: float | None
     tolerance: float
+
+    @property
+    def described(self) -> str:
+        """The class in one line: what it is called, and its category by Grashof's theorem."""
+        return f"{self.name} ({self.category})"
 
 
 @overload

@@ -130,8 +130,7 @@ def _picture(of: Subject) -> Iterator[Part]:
             yield figure(caption, f"{caption} Scene {scene.name}", partial(draw_scene, scene))
         return
     found: Any = classify(linkage)
-    also = f", {found.also}" if hasattr(found, "also") else ""
-    yield f"Class: {found.name} ({found.category}){also}."
+    yield f"Class: {found.described}."
     yield Checked("class", found)
     told, bent = f"The linkage moving once around in {SECONDS:g} s", _bent(of)
     if of.speed:

@@ -124,6 +124,9 @@ COUPLER = Table(
     required=True,
     exactly_one=(("mass_per_length", "natural_frequency"),),
     at_most_one=(("damping", "damping_ratio"),),
+    elsewhere=("width", "thickness", "modulus", "density", "material", "area", "second_moment"),
+    instead="give bending_stiffness, E w t^3 / 12 of a rectangle of width w and thickness t, and"
+    " mass_per_length, rho w t, or natural_frequency",
 )
 
 

@@ -190,8 +190,11 @@ def _find(name_or_path: str | os.PathLike[str]) -> tuple[str, bytes]:
         if path.suffix == ".toml" or path.exists():
             return path.stem, path.read_bytes()
     except OSError as refusal:
-        reason = refusal.strerror or "an error"
-        raise bad(f"scene {given}", reason, "a readable file", "check the path") from refusal
+        reason, fix = refusal.strerror or "an error", "give another path"
+        if isinstance(refusal, FileNotFoundError):
+            reason = f"no file {given}"
+            fix = "correct the path, or write one: elastolink new coupler > mine.toml"
+        raise bad("scene", reason, "a readable file", fix) from refusal
     except ValueError as refusal:
         raise bad("scene", show(given), "the path of a file", "check it") from refusal
     fix = nearest(given, list_scenes(), "`elastolink scenes` lists them")

@@ -12,7 +12,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ...derive.spec import BEAM_FORMULATIONS, INEXTENSIBLE, ModelSpec
-from ..core.errors import bad
+from ..core.errors import bad, one_line
+from ..core.units import describe
 from .schema import Layout, Table
 from .validation import nearest
 from .writing import toml_text
@@ -138,6 +139,26 @@ class Scene:
 
     def __hash__(self) -> int:
         return hash(self.digest())
+
+    def __repr__(self) -> str:
+        """Return name, title, formulation and the first numbers, on ten lines at the most."""
+        model = self.model
+        bends = f", bending: {', '.join(model['flexible'])}" if model.get("flexible") else ""
+        lines = [
+            f"Scene {self.name!r}: {one_line(self.title, 80)}",
+            f"  {model['mechanism']}, formulation {model['formulation']!r}{bends}",
+        ]
+        for name, _, table in self.described():
+            numbers = [
+                f"{key} {describe(value, self.dimension(f'{name}.{key}') or 'dimensionless')}"
+                for key, value in table.items()
+                if isinstance(value, float)
+            ]
+            if numbers:
+                more = ", ..." if len(numbers) > 4 else ""
+                lines.append(f"  {name}: {', '.join(numbers[:4])}{more}")
+        rest = ["  ..."] if len(lines) > 9 else []
+        return "\n".join([*lines[:9], *rest])
 
     @property
     def model(self) -> ReadOnlyTable:

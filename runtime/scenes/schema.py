@@ -62,6 +62,9 @@ class Table:
     at_most_one: tuple[tuple[str, ...], ...] = ()
     # Whether it holds any number of such tables, each under a name of its own: [springs.NAME].
     named: bool = False
+    # Keys that tables of this name take elsewhere, and what takes their place here.
+    elsewhere: tuple[str, ...] = ()
+    instead: str = ""
 
     @property
     def heading(self) -> str:

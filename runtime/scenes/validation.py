@@ -55,11 +55,11 @@ def find_layout(document: Mapping[str, Any]) -> Layout | None:
     return _choose(document, declared_layout(document, ignored) or LAYOUTS, ignored)
 
 
-def nearest(word: str, known: Iterable[str], otherwise: str) -> str:
+def nearest(word: str, known: Iterable[str], otherwise: str, most: int = 3) -> str:
     """Return ``did you mean ...?`` with the nearest known words, or another remedy."""
     words = list(known)
-    close = [one for one in words if word and one.startswith(word)][:3]
-    close = close or difflib.get_close_matches(word, words, n=3, cutoff=0.6)
+    close = [one for one in words if word and one.startswith(word)][:most]
+    close = close or difflib.get_close_matches(word, words, n=most, cutoff=0.6)
     return f"did you mean {' or '.join(close)}?" if close else otherwise
 
 
@@ -167,8 +167,12 @@ def _unknown_keys(
     given: Mapping[str, Any], table: Table, layout: Layout, problems: list[Problem]
 ) -> None:
     known = [key.name for key in table.keys]
+    if others := [name for name in given if name in table.elsewhere and name not in known]:
+        where = ", ".join(f"{table.name}.{name}" for name in others)
+        found = "unknown keys" if len(others) > 1 else "an unknown key"
+        problems.append(Problem(where, found, f"some of {known}", table.instead))
     for name in given:
-        if name in known:
+        if name in known or name in others:
             continue
         homes = [other.name for other in layout.all_tables() if other.key(name)]
         fix = nearest(name, known, "remove it")

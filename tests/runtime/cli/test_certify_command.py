@@ -1,6 +1,7 @@
 """``elastolink certify``: what is proved in words and numbers, a picture, refusals, the page."""
 
 import re
+import sys
 from pathlib import Path
 
 import pytest
@@ -18,6 +19,12 @@ def test_a_range_is_proved_and_said_so(capsys, tmp_path):
     assert "not proved" not in printed and (tmp_path / "proof.png").stat().st_size > 5000
     result = told(capsys, *command)
     assert result["open"] == result["unstable"] == [] and 0.9 < result["bound"][0] < 1.0
+
+
+def test_without_python_flint_it_says_what_to_install(capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "flint", None)
+    complaint = refused(capsys, "certify", SCENE, "--speed", "300:320rpm", *DAMPED)
+    assert "python -m pip install python-flint" in complaint and "extra fast" in complaint
 
 
 @pytest.mark.slow

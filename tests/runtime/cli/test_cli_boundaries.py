@@ -29,6 +29,14 @@ def test_a_flag_instead_of_a_number(capsys) -> None:
     assert "outside the range in which its orders converge" in printed
 
 
+def test_a_range_without_regions_is_told_in_words(capsys) -> None:
+    command = ("boundaries", RIG, "--set", "model.modes=2", "--speed", "900:905rpm")
+    lines = shown(capsys, *command).splitlines()
+    assert lines[0].startswith("none between 900 rpm and 905 rpm; regions narrower than ")
+    assert lines[1].startswith("method:") and not any(line.startswith("error") for line in lines)
+    assert told(capsys, *command)["lower"] == []
+
+
 def test_certified(capsys) -> None:
     answer = told(capsys, "boundaries", "mathieu", "--certified", "--regions", "1,2")
     assert answer["error_kind"] == "bound" and max(max(row) for row in answer["error"]) < 1e-14

@@ -1,5 +1,7 @@
 """``elastolink diagnose``: words for people, numbers for programs, a picture, refusals."""
 
+import re
+import shlex
 from pathlib import Path
 
 import elastolink as el
@@ -32,6 +34,28 @@ def test_the_page_of_diagnoses_tells_what_the_command_does(capsys):
         printed = shown(capsys, *words)
         for wanted in block.split("```")[0].strip().splitlines():
             assert wanted in printed
+
+
+def test_what_is_advised_works_when_it_is_pasted(capsys, tmp_path):
+    path = tmp_path / "my own.toml"
+    path.write_text(shown(capsys, "new", "coupler"))
+    command = ("diagnose", path, "--speed", "766 rpm", "--set", "coupler.damping_ratio=0.001")
+    printed = shown(capsys, *command)
+    advised = re.findall(r"elastolink (response .*|stabilise .*rpm)", printed)
+    assert [words.split()[0] for words in advised] == ["response", "stabilise"]
+    assert all("--set=coupler.damping_ratio=0.001" in words for words in advised)
+    assert "points on" in shown(capsys, *shlex.split(advised[0]))
+    assert printed.startswith("\n".join(told(capsys, *command)["lines"]))
+
+
+def test_a_region_wider_than_the_window_is_told(capsys, tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(shown(capsys, "new", "coupler"))
+    printed = shown(capsys, "diagnose", path, "--speed", "1200 rpm")
+    assert "unstable: disturbances grow" in printed and "no unstable region" not in printed
+    assert "so narrow" not in printed
+    advised = re.search(r"reaches far beyond 840 to 1560 rpm: elastolink (.*)", printed).group(1)
+    assert "region 1 of mode 1" in shown(capsys, *shlex.split(advised))
 
 
 @pytest.mark.parametrize(

@@ -1,11 +1,12 @@
 """Every command of docs/commands.md among files of others, which must stay as they are."""
 
+import argparse
 import re
 import shlex
 from pathlib import Path
 
 import pytest
-from elastolink.runtime.cli import main
+from elastolink.runtime.cli.application import build_parser, main
 
 PAGE = Path(__file__).parents[3] / "docs" / "commands.md"
 # Names that commands, stores and galleries have a use for themselves.
@@ -25,6 +26,12 @@ def commands() -> list[list[str]]:
     kept = [words for words in found if words[0] not in slow and "--store" not in words]
     figure = ["reproduce", "smith", "--figure", "13", "--out", "gallery"]
     return [*kept, ["chart", "mathieu", "--store", "sweep"], figure]
+
+
+def test_every_command_is_on_the_page():
+    options = build_parser()._actions
+    names = next(one.choices for one in options if isinstance(one, argparse._SubParsersAction))
+    assert set(names) == set(re.findall(r"elastolink ([a-z-]+)", PAGE.read_text()))
 
 
 def contents(folder: Path) -> dict[str, bytes]:

@@ -91,6 +91,19 @@ CHART = ("chart", SCENE, "--x", "speed=700:800:9rpm", "--y", "follower_inertia=0
 RESPONSE = ("response", "smith_1972_101104_thirtysecond_inch")
 
 
+@pytest.mark.parametrize(
+    ("unknown", "words"),
+    [
+        ([], "unknown: found nothing; expected at least one parameter; give --unknown NAME"),
+        (["--unknown", "coupler.bending_stiffness"], "; did you mean bending_stiffness?"),
+        (["--unknown", "follower.inertia"], "; did you mean follower_inertia?"),
+        (["--unknown", "mass_per_length"] * 2, "different names; name each once"),
+    ],
+)
+def test_unknowns_that_are_refused(capsys, measured, unknown, words):
+    assert words in refused(capsys, "identify", SCENE, measured, *unknown)
+
+
 @pytest.mark.parametrize("command", [CHART, (*RESPONSE, "--speed", "300:310rpm")])
 def test_measured_points_stand_in_pictures_over_the_speed(capsys, measured, tmp_path, command):
     """At their speeds in rpm, each with its kind; the file was written with rad/s."""

@@ -83,7 +83,7 @@ def test_a_search_says_what_it_tried_and_finds_the_motion_across_the_fold(capsys
 
 @pytest.mark.slow
 def test_a_sweep_jumps_up_after_the_fold_and_down_before_it(capsys):
-    arguments = ("response", RIG, "--speed", "300:400rpm", "--sweep", "4 rpm/s")
+    arguments = ("response", RIG, "--speed", "300:400rpm", "--sweep", "2 rpm/s")
     found = told(capsys, *arguments)
     up, down = (speed / RPM for speed in found["jump_speed"])
     assert found["jump_rising"] == [True, False]

@@ -90,6 +90,15 @@ WORDS = {
     ("tolerances", SCENE, "--tolerance", "crank=0.1"): "a number with its unit",
     ("stability", SCENE, "--speed", "1:1e9:1000000000"): "a count from 2 to 100000",
     ("chart", SCENE, "--speed", "1:2:3"): "give one value, no range",
+    (
+        "show",
+        "nowhere.toml",
+    ): "no file nowhere.toml; expected a readable file; correct",
+    ("stress", SCENE): "begin with `elastolink new beams`",
+    ("show", SCENE, "--set", "coupler.width=1", "--set", "coupler.modulus=2"): (
+        "coupler.width, coupler.modulus: found unknown keys; expected some of"
+    ),
+    ("show", SCENE, "--set", "coupler.thickness=1"): "give bending_stiffness, E w t^3 / 12",
 }
 
 
@@ -97,6 +106,26 @@ WORDS = {
 def test_the_complaint_names_what_is_wrong(line, capsys):
     assert main(line) == 2
     assert WORDS[line] in capsys.readouterr().err
+
+
+# Misspelt command line | the beginning of the complaint | its end.
+MISSPELT = """
+diagnose x --sped 3 | elastolink diagnose: unrecognized | did you mean --speed? `elastolink diagnose --help` explains
+boundaries x --plott y --nonsense | elastolink boundaries: unrec | did you mean --plot? `elastolink boundaries --help` explains
+show x --nonsense | elastolink show: unrecognized | arguments: --nonsense; `elastolink show --help` explains
+diagnos x | elastolink: argument COMMAND | 'diagnos'; did you mean diagnose? `elastolink --help` explains
+stab x | elastolink: argument COMMAND | did you mean stability or stabilise? `elastolink --help` explains
+zzz x | elastolink: argument COMMAND | `elastolink --help` explains
+"""  # noqa: E501
+
+
+@pytest.mark.parametrize("line", MISSPELT.strip("\n").splitlines())
+def test_a_misspelt_word_is_answered_with_the_nearest(line, capsys):
+    command, begins, ends = (part.strip() for part in line.split("|"))
+    with pytest.raises(SystemExit):
+        main(command.split())
+    told = capsys.readouterr().err.rstrip("\n")
+    assert told.startswith(begins) and told.endswith(ends)
 
 
 def test_what_a_scene_holds_does_not_steer_the_terminal(capsys, tmp_path):

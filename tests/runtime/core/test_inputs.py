@@ -43,3 +43,8 @@ def test_what_is_made_of_no_real_numbers_is_refused(value):
 
 def test_an_array_that_masks_nothing_is_taken():
     assert numbers("theta", np.ma.array([1.0, 2.0])).tolist() == [1.0, 2.0]
+
+
+def test_a_speed_as_text_is_told_its_unit():
+    with pytest.raises(BadInput, match=r"give numbers in rad/s: 400 rpm is 400 \* math.pi / 30"):
+        numbers("speed", "400 rpm")

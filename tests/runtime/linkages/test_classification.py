@@ -46,6 +46,14 @@ def test_names_follow_the_symbols():
     assert [row.number for row in CLASSES] == list(range(1, 15))
 
 
+def test_a_class_is_described_once():
+    assert classify((5.0, 1.0, 5.0, 2.0)).described == (
+        "crank rocker, in Barker's table Grashof crank-rocker-rocker (GCRR)"
+    )
+    slider = classify(SliderCrank(crank=1.0, coupler=3.0))
+    assert slider.described == "in-line slider-crank, crank turning (Grashof)"
+
+
 def test_distance_is_the_tolerance_that_just_reaches_the_change_point():
     lengths = (5.0, 1.0, 5.0, 2.0)
     found = classify(lengths)

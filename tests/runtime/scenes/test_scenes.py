@@ -258,3 +258,12 @@ def test_an_own_scene_with_an_own_module_gives_the_same_system(own_module, monke
     monkeypatch.delenv("ELASTOLINK_GENERATED")
     with pytest.raises(el.BadInput, match="regenerate-equations"):
         scene_from_document("own", own_rig(), {"model.modes": 1}).system()
+
+
+def test_a_scene_shows_itself_on_ten_lines_at_most():
+    for name in el.list_scenes():
+        lines = repr(el.load_scene(name)).splitlines()
+        assert len(lines) <= 10 and max(map(len, lines)) < 200 and name in lines[0]
+    told = repr(el.load_scene("smith_1972_5152_sixteenth_inch", {"links.crank": 0.08}))
+    assert "four_bar, formulation 'complete', bending: coupler" in told
+    assert "links: frame 0.381 m, crank 0.08 m" in told and "(332 rpm)" in told

@@ -124,10 +124,10 @@ def _stress(options: argparse.Namespace) -> int:
     if scene.model["mechanism"] == "frame":
         opt.refuse_unused(options, ("speed",), "a linkage; a frame has no crank")
         standing = recovery.stress(system)
-        return opt.finish(options, standing, _peaks(standing, limit))
+        return opt.finish(options, standing, _peaks(standing, scene, limit))
     if options.speed is None or ":" not in options.speed:
         result = recovery.stress(system, speed_of(options, scene))
-        return opt.finish(options, result, _peaks(result, limit))
+        return opt.finish(options, result, _peaks(result, scene, limit))
     speeds = opt.values(options.speed, "frequency", "--speed")
     if limit is None:
         curve = recovery.stress_curve(system, speeds)
@@ -153,10 +153,16 @@ def _unstable_lines(ranges: Sequence[tuple[float, float]]) -> list[str]:
     return [f"unstable from {low:.5g} to {high:.5g} rad/s" for low, high in ranges]
 
 
-def _peaks(found: StressResult, limit: float | None) -> list[str]:
-    """Return a row per link: its largest stress, where and when."""
-    peaks = found.maxima.values()
-    safety = [limit / abs(one.value) if limit and one.value else None for one in peaks]
+def _peaks(found: StressResult, scene: Scene, limit: float | None) -> list[str]:
+    """Return a row per link: its largest stress, where and when.
+
+    What it may bear is ``limit``, else what the scene says of the link.
+    """
+    peaks, safety = found.maxima.values(), []
+    for name, one in found.maxima.items():
+        own = (scene.get(f"{table}.limit_stress", None) for table in (name, f"members.{name}"))
+        allowed = limit or next((value for value in own if value), None)
+        safety.append(allowed / abs(one.value) if allowed and one.value else None)
     return opt.columns(
         ("link", "", found.maxima),
         ("stress [MPa]", ".6g", [one.value / 1e6 for one in peaks]),

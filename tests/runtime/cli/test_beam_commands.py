@@ -57,3 +57,17 @@ def test_no_running_speed_is_named_below_all_limiting_critical_speeds(capsys, sc
 def test_a_range_without_maxima_of_the_response_says_so(capsys, scene):
     out = shown(capsys, "critical-speeds", scene, "--range", "20:22", "--method", "response")
     assert "none of this kind" in out and "elastolink stress" in out
+
+
+def test_what_a_link_may_bear_is_the_options_or_the_scenes(capsys, scene):
+    def factors(*more):
+        rows = shown(capsys, "stress", scene, "--speed", "30 rad/s", *more).splitlines()[1:4]
+        return {row.split()[0]: row.split()[-1] for row in rows}
+
+    assert set(factors().values()) == {"-"}
+    option = factors("--limit", "250 MPa")
+    given = factors("--set", "material.limit_stress=250 MPa")
+    assert option == given
+    own = factors("--set", "material.limit_stress=250 MPa", "--set", "crank.limit_stress=500 MPa")
+    assert float(own["crank"]) == pytest.approx(2.0 * float(given["crank"]), rel=1e-3)
+    assert own["coupler"] == given["coupler"]

@@ -59,7 +59,10 @@ def _stabilise(options: argparse.Namespace) -> int:
         limit=opt.positive(options, "stress", "stress"),
         keep=("shaking_force",) if options.keep_shaking_force else (),
     )
-    lines = list(found.present) or ["the range is stable with its margin as it is"]
+    lines = list(found.present)
+    if not lines:
+        least = "regions narrower than 0.01 % of their speed are left out"
+        lines = [f"the range is stable with its margin as it is; {least}"]
     for number, change in enumerate(found.changes, 1):
         lines += _lines(number, change)
     for change in found.unverified:
@@ -76,6 +79,6 @@ def _lines(number: int, change: Change) -> Iterator[str]:
     yield from (f"   {word}" for word in others)
     stress = "" if change.stress is None else f"; stress up to {change.stress / 1e6:.4g} MPa"
     away = f", {100.0 * change.distance:.3g} % away" if change.distance < 1.0 else ""
-    yield f"   size {100.0 * change.size:.3g} %; {change.nearest}{away}{stress}"
-    yield f"   marched motions: {100.0 * change.growth:+.2g} % per turn"
+    yield f"   size of the change {100.0 * change.size:.3g} %; {change.nearest}{away}{stress}"
+    yield f"   marched, a disturbance grows by {100.0 * change.growth:+.2g} % per turn"
     yield from (f"   too narrow to count: {name}" for name in change.narrow)

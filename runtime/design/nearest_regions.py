@@ -216,7 +216,7 @@ def margins(
         shift=slopes.relative[region, side],
         change=change,
         change_error=error,
-        narrow=int(np.count_nonzero(~(edges.width > _WIDE * speed))),
+        narrow=int(np.count_nonzero(edges.width <= _WIDE * speed)),
         window=around,
     )
 

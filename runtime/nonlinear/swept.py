@@ -25,10 +25,9 @@ from .segments import Motion, NotFinite, Problem, Ramp
 
 _MOST_TURNS = 200_000
 # A jump: the peak-to-peak value changes by this factor, in logarithms; revolutions between two
-# parts of one jump; and for how many times the longest decay the motion settles.
-_JUMP, _PAUSE, _SETTLED = 0.15, 6, 3.0
-# Revolutions over which most stable motions repeat.
-_WINDOWS = (1, 2)
+# parts of one jump; for how many times the longest decay the motion settles; and revolutions over
+# which most stable motions repeat.
+_JUMP, _PAUSE, _SETTLED, _WINDOWS = 0.15, 6, 3.0, (1, 2)
 # Basins: revolutions at the most, how near to a motion a state has come to it, in its sizes; places
 # of the grid each way, and steps of a revolution at the most; and how many initial states are
 # marched, or of a larger number check the map.

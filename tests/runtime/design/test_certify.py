@@ -174,7 +174,7 @@ def test_a_function_that_is_another_on_balls_is_refused(function):
 
 def test_without_flint_one_error(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "flint", None)
-    with pytest.raises(el.BadInput, match="python-flint is not installed"):
+    with pytest.raises(el.BadInput, match="found no python-flint; expected it installed"):
         certify(coupler(), (30.0, 40.0))
 
 

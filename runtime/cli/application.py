@@ -21,7 +21,7 @@ from ... import __version__
 from ..core.errors import BadInput, ElastolinkError, ElastolinkWarning, bad, one_line
 from ..core.progress import time_taken
 from ..core.threads import environment, use_one_thread
-from .options import HelpFormatter, add, picture
+from .options import HelpFormatter, add, kept_file, picture
 
 # Files of subcommands, in the order of the help.
 _GROUPS = (
@@ -105,7 +105,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     folder = getattr(options, "modules", None)
     try:
         with _module_folder(folder), _short_warnings(prefix), time_taken():
-            picture(options)  # refused before the work starts
+            for refused in (picture, kept_file):  # before the work starts
+                refused(options)
             status: int = options.run(options)
             sys.stdout.flush()
             return status

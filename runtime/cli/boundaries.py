@@ -298,7 +298,7 @@ def _series_rows(one: hill.BoundarySeries) -> list[tuple[str, ...]]:
 
 def _formulas(options: argparse.Namespace) -> int:
     """Print the formulas of the boundaries, of any region or of those that are given."""
-    opt.refuse_unused(options, ("plot",), "without --latex")
+    opt.refuse_unused(options, ("plot", "save"), "without --latex")
     from ..hill.series import boundary_latex
 
     damped = hill.hill_form(opt.load(options).linear_system()).damping() > 0.0

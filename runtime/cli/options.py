@@ -43,8 +43,9 @@ def command(
     *,
     scene: bool = True,
     draws: bool = True,
+    saves: bool = True,
 ) -> argparse.ArgumentParser:
-    """Add a subcommand that ``run`` does, on a scene, and with a picture.
+    """Add a subcommand that ``run`` does, on a scene, with a picture and a result to keep.
 
     The docstring of ``run`` is its help: a line, and below it worked examples.
     """
@@ -56,10 +57,13 @@ def command(
         epilog="example:\n  " + examples.replace("\n", "\n  "),
         formatter_class=HelpFormatter,
     )
-    parser.set_defaults(run=run, command=name, plot=None)
+    parser.set_defaults(run=run, command=name, plot=None, save=None)
     switches(parser, {"--json": "print JSON instead of text"})
     if draws:
         add(parser, {"--plot FILE": "draw it: a .png, .svg or .pdf file"})
+    if saves:
+        kept = "keep all numbers: a .csv table, or .npz, .json, .nc, which el.load gives back"
+        add(parser, {"--save FILE": kept})
     if scene:
         scene_options(parser)
     return parser
@@ -196,6 +200,21 @@ def picture(options: argparse.Namespace) -> Path | None:
     return check_picture_path(options.plot)
 
 
+def kept_file(options: argparse.Namespace) -> Path | None:
+    """Return the path of the file for the result, refused here if it cannot be written."""
+    if options.save is None:
+        return None
+    from pathlib import Path
+
+    from ..core.plotting import require_writable
+
+    target, endings = Path(options.save), (".csv", ".json", ".nc", ".npz")
+    if target.suffix not in endings:
+        expected = f"an ending of {list(endings)}"
+        raise bad("--save", repr(target.suffix), expected, "rename the file")
+    return require_writable(target)
+
+
 def refuse_unused(options: argparse.Namespace, names: Sequence[str], without: str) -> None:
     """Refuse an option that was given and does nothing but with what ``without`` names."""
     for name in names:
@@ -214,13 +233,15 @@ def finish(
     more: Mapping[str, Any] | None = None,
     beside: Sequence[Result] = (),
 ) -> int:
-    """Write a result as requested and return the exit status: 1 where a self-check failed.
+    """Write and keep a result as wanted and return the exit status: 1 where a self-check failed.
 
     The ``lines`` say the same for people, to which the error and the checks are added; the picture
     is ``result.plot`` where nothing else draws; the JSON holds ``more`` beside the result; and the
     self-checks of the results ``beside`` count too.
     """
     draw_into(options, draw or result.plot)
+    if (path := kept_file(options)) is not None:
+        result.save(path)
     checks = dict(result.checks)
     for other in beside:
         for name, check in other.checks.items():

@@ -12,7 +12,7 @@ from . import options as opt
 
 def add(commands: Any) -> None:
     """Add the subcommand."""
-    parser = opt.command(commands, "report", _report)
+    parser = opt.command(commands, "report", _report, saves=False)
     opt.add(parser, {"--out FILE": "the page, a .html file; default the scene's name with .html"})
 
 

@@ -14,15 +14,15 @@ if TYPE_CHECKING:
 
 def add(commands: Any) -> None:
     """Add the five subcommands."""
-    listing = opt.command(commands, "scenes", _scenes, scene=False)
+    listing = opt.command(commands, "scenes", _scenes, scene=False, saves=False)
     opt.switches(listing, {"--long": "with the source of each"})
-    show = opt.command(commands, "show", _show)
+    show = opt.command(commands, "show", _show, saves=False)
     opt.switches(show, {"--toml": "as a scene file, numbers in the units that they were given in"})
     opt.command(commands, "explain", _explain)
-    new = opt.command(commands, "new", _new, scene=False)
+    new = opt.command(commands, "new", _new, scene=False, saves=False)
     opt.add(new, {"kind KIND": "what it is of; without it the kinds are listed"}, nargs="?")
     opt.switches(new, {"--model": "of own_model the file of energies that the scene needs"})
-    schema = opt.command(commands, "schema", _schema, scene=False, draws=False)
+    schema = opt.command(commands, "schema", _schema, scene=False, draws=False, saves=False)
     opt.switches(schema, {"--page": "the keys as a page in Markdown instead"})
 
 

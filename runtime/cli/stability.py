@@ -341,6 +341,7 @@ def _stored(
     what = "stability_chart", system, dict(reversed(axes))
     fixed = {} if speed is None else {"speed": speed}
     if options.estimate:
+        opt.refuse_unused(options, ("save",), "without --estimate")
         found = sweeps.estimate_sweep(*what, options=fixed, workers=count)
         return opt.say(options, vars(found), str(found))
     shown = opt.progress(options)

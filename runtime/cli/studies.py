@@ -39,7 +39,6 @@ def add(commands: Any) -> None:
             "--workers N": "work in N processes; the answer does not depend on it",
             "--store PATH": "keep finished pieces in this folder or .npz file; the same command"
             " goes on from there after it was stopped",
-            "--table FILE": "write all designs to this .csv file, failed ones with their errors",
             "--output NAME": "what --plot draws: peak, rms, error; growth (logarithm of the largest"
             " multiplier's modulus), stable",
         },
@@ -75,7 +74,7 @@ def _sweep(options: argparse.Namespace) -> int:
     r"""Deflection or stability of all designs over some numbers of a scene.
 
     elastolink sweep smith_1972_5152_sixteenth_inch --over links.crank=2:3.2:20in \
-        --over links.follower=5:9:20in --table designs.csv
+        --over links.follower=5:9:20in --save designs.csv
     elastolink sweep SCENE --of floquet_multipliers --over speed=300:900:61rpm \
         --over links.crank=2:3:50in --store study
     """
@@ -87,15 +86,12 @@ def _sweep(options: argparse.Namespace) -> int:
         opt.refuse_unused(options, ("speed",), "a speed that is not swept")
     what = options.of, scene, values
     if options.estimate:
+        opt.refuse_unused(options, ("save",), "without --estimate")
         told = sweeps.estimate_sweep(*what, options=fixed, workers=count)
         return opt.say(options, vars(told), str(told))
-    if options.table is not None and not options.table.endswith(".csv"):
-        raise bad("--table", repr(options.table), "a .csv file", "rename it")
     with pool_of(count) as pool:
         given = {"executor": pool, "store": options.store, "progress": opt.progress(options)}
         found = sweeps.sweep(*what, options=fixed, **given)
-    if options.table is not None:
-        found.save(options.table)
     name = options.output or _ANSWERS[options.of]
     draw = partial(found.plot, output=name)
     return opt.finish(options, found, _lines(found, _ANSWERS[options.of]), draw)

@@ -63,6 +63,8 @@ def _clearance(options: argparse.Namespace) -> int:
     elastolink clearance smith_1972_2122 --at 23='0.1 mm' --at 34='0.05 mm'
     """
     cases = _cases(options)
+    if len(cases) > 1:
+        opt.refuse_unused(options, ("save",), "one clearance")
     given = options.angles
     theta = None if given is None else opt.values(given, "angle", "--angles")
     linkage: Any = opt.load(options).mechanism()

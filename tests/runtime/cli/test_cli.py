@@ -9,7 +9,9 @@ import warnings
 from pathlib import Path
 from types import SimpleNamespace
 
+import elastolink as el
 import numpy as np
+import pandas
 import pytest
 from command_runs import refused, run, shown, told
 from elastolink.runtime.cli import application, main, options
@@ -144,7 +146,7 @@ def _result(value):
 
 @pytest.mark.parametrize(("value", "status"), [(0.5, 0), (2.0, 1), (float("nan"), 1)])
 def test_a_failed_self_check_gives_status_1(capsys, value, status):
-    given = SimpleNamespace(command="chart", plot=None, json=False)
+    given = SimpleNamespace(command="chart", plot=None, save=None, json=False)
     assert options.finish(given, _result(value), ["found"]) == status
     out, err = capsys.readouterr()
     assert "error:  1e-12 (estimate; absolute)" in out and out.startswith("found\n")
@@ -265,3 +267,32 @@ def test_one_thread_unless_the_user_says_otherwise_and_the_time_taken(tmp_path):
         )
         assert done.stdout.splitlines()[-1] == expected
         assert "0 s" in done.stderr
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("forces", "slider_crank_example", "--speed", "1000 rpm"),
+        ("stability", "smith_1972_5152_sixteenth_inch", "--speed", "300:320:3rpm"),
+        ("clearance", "smith_1972_10_8_10_10", "--clearance", "0.1 mm"),
+    ],
+)
+def test_what_is_saved_comes_back(words, capsys, tmp_path):
+    table, kept = tmp_path / "kept.csv", tmp_path / "kept.npz"
+    shown(capsys, *words, "--save", table)
+    said = told(capsys, *words, "--save", kept)
+    loaded = el.load(kept)
+    assert {**loaded.to_dict(), "passed": loaded.passed}.items() <= said.items()
+    rows = pandas.read_csv(table)
+    assert 1 < len(rows) <= max(np.size(array) for array in loaded.arrays().values())
+
+
+def test_what_cannot_be_saved_is_refused_first(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for words, why in (
+        (("forces", "nowhere", "--save", "a.txt"), "an ending of"),
+        (("forces", "nowhere", "--save", "nowhere/a.csv"), "a writable folder"),
+        (("show", "mathieu", "--save", "a.csv"), "unrecognized arguments"),
+    ):
+        assert why in refused(capsys, *words)
+    assert list(tmp_path.iterdir()) == []

@@ -18,7 +18,7 @@ OVER = ["--over", "links.coupler=0.36:0.45:2 m", "--over", "links.follower=80:20
 
 def test_designs_in_a_table_the_failed_ones_with_their_errors(tmp_path, capsys):
     table, picture = tmp_path / "designs.csv", tmp_path / "designs.png"
-    words = [*WORDS, *OVER, "--speed", "25", "--table", str(table), "--plot", str(picture)]
+    words = [*WORDS, *OVER, "--speed", "25", "--save", str(table), "--plot", str(picture)]
     assert main(words) == 0
     told = capsys.readouterr()
     assert "8 designs, 3 of them failed" in told.out
@@ -72,7 +72,7 @@ def test_stability_over_speeds_and_lengths_from_a_store(tmp_path, capsys):
         (["--over", "operation.speed=1:2:3"], "operation.speed"),
         ([*OVER, *OVER], "links.coupler twice"),
         (["--over", "speed=30:40:3", "--speed", "35"], "a speed that is not swept"),
-        ([*OVER, "--table", "designs.txt"], "a .csv file"),
+        ([*OVER, "--save", "designs.txt"], "an ending of"),
         ([*OVER, "--workers", "0"], "--workers"),
         ([*OVER, "--speed", "25", "--plot", "a.png", "--output", "growth"], "growth"),
     ],

@@ -199,12 +199,13 @@ def sweep_response(
     speeds, rising, lowest_, highest_, error = (
         np.array(column) for column in zip(*rows, strict=True)
     )
-    size, every = highest_ - lowest_, np.array(maps)
-    jumps = [
-        (speed, bool(way), ratio)
-        for way in (True, False)
-        for speed, ratio in _jumps(*(part[rising == way] for part in (speeds, size, every)))
-    ]
+    size, every, jumps = highest_ - lowest_, np.array(maps), []
+    # What the speed changes in a revolution, over itself, and the error of the maps.
+    least = 2.0 * np.pi * rate / low**2 + 100.0 * rtol
+    for way in (True, False):
+        at = rising == way
+        found = _jumps(speeds[at], size[at], every[at], least)
+        jumps += [(place, way, ratio) for place, ratio in found]
     return SweepResponse(
         method=f"marching by revolutions, Gauss collocation, seed {seed}",
         error=error,
@@ -277,12 +278,12 @@ def _extremes(system: Nonlinear, motion: Motion, angles: Array) -> tuple[float, 
     return low, high
 
 
-def _jumps(speed: Array, size: Array, maps: Array) -> list[tuple[float, float]]:
+def _jumps(speed: Array, size: Array, maps: Array, least: float) -> list[tuple[float, float]]:
     """Return speed and ratio of each jump of a deflection, revolution by revolution.
 
     A motion that jumps is repelled from where it was: some of its multipliers over the revolutions
-    behind it are beyond the unit circle, however few it takes.  From there it comes to rest on
-    another motion, of another size.
+    behind it are beyond the unit circle, however few it takes, by more than ``least`` for each, of
+    logarithms.  From there it comes to rest on another motion, of another size.
     """
     count = len(size)
     largest = float(np.max(size, initial=0.0))
@@ -292,15 +293,18 @@ def _jumps(speed: Array, size: Array, maps: Array) -> list[tuple[float, float]]:
     size = np.maximum(np.maximum(size, np.append(size[1:], size[-1])), 1e-9 * largest)
     repelled = np.arange(count) >= max(_WINDOWS) - 1
     for window in _WINDOWS:
-        growth = _growth(np.stack([maps[k : count - window + 1 + k] for k in range(window)]))
-        repelled[window - 1 :] &= growth > 1.0
-    decay = -float(np.median(np.log(growth))) / window
+        growth = _growth([maps[k : count - window + 1 + k] for k in range(window)])
+        repelled[window - 1 :] &= growth > least * window
+    decay = -float(np.median(growth)) / window
     settled = int(np.ceil(_SETTLED / decay)) if decay > 0.0 else count
     found: list[tuple[float, float]] = []
     last = 0
     for part in np.split(*_clusters(np.flatnonzero(repelled))):
-        # Others repeat after more revolutions: over all of them they are not repelled.
-        if not part.size or part[0] < last or _growth(maps[part[0] : part[-1] + 1]) <= 1.0:
+        if not part.size or part[0] < last:
+            continue
+        # Motions that repeat after more revolutions are not repelled over all of them.
+        every = maps[part[0] : part[-1] + 1]
+        if _growth(every) <= least * len(every):
             continue
         first = max(int(part[0]) - max(_WINDOWS), 0)
         last = min(int(part[-1]) + settled, count - 1)
@@ -314,12 +318,17 @@ def _jumps(speed: Array, size: Array, maps: Array) -> list[tuple[float, float]]:
     return found
 
 
-def _growth(maps: Array) -> Array:
-    """Return the largest multipliers of revolutions ``(k, ..., 2n, 2n)``, one behind the other."""
-    behind = maps[0]
+def _growth(maps: Sequence[Array] | Array) -> Array:
+    """Return the logarithm of the largest multiplier of revolutions ``(k, ..., 2n, 2n)``.
+
+    One comes behind the other; what is multiplied is scaled, so that no number of them is too many.
+    """
+    behind, scale = maps[0], np.zeros(maps[0].shape[:-2])
     for one in maps[1:]:
         behind = one @ behind
-    return np.asarray(np.max(np.abs(np.linalg.eigvals(behind)), axis=-1))
+        size = np.max(np.abs(behind), axis=(-2, -1))
+        behind, scale = behind / size[..., None, None], scale + np.log(size)
+    return np.asarray(np.log(np.max(np.abs(np.linalg.eigvals(behind)), axis=-1)) + scale)
 
 
 def _clusters(places: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -10,6 +10,7 @@ from elastolink.runtime.core.families import Drive
 from elastolink.runtime.nonlinear import basins, coexisting_motions
 from elastolink.runtime.nonlinear.march import Marcher, end
 from elastolink.runtime.nonlinear.segments import Problem, Ramp
+from elastolink.runtime.nonlinear.swept import _growth
 from planted import duffing
 from scipy.integrate import solve_ivp
 
@@ -82,6 +83,22 @@ def test_resonances_without_folds_have_no_jumps(rate, damping, kicks, cubic, for
     found = el.sweep_response(system, (0.7, 1.3), rate, kicks=kicks)
     assert np.max(np.abs(np.diff(np.log(found.peak_to_peak)))) > 0.02
     assert found.jump_speed.size == 0
+
+
+def test_a_resonance_that_nothing_damps_has_no_jumps():
+    """All its multipliers stay on the unit circle, but for rounding."""
+    system = duffing(damping=0.0, cubic=0.0, force=0.12)
+    found = el.sweep_response(system, (0.7, 1.3), 4e-4, kicks=0.0)
+    assert found.peak_to_peak.max() > 5.0 * found.peak_to_peak[0]
+    assert found.jump_speed.size == 0
+
+
+def test_growth_over_any_number_of_revolutions():
+    """A turn by an angle and a growth by ten, a thousand times: the logarithm is a sum."""
+    turn = 10.0 * np.array([[0.6, -0.8], [0.8, 0.6]])
+    assert _growth(np.array([turn] * 1000)) == pytest.approx(1000.0 * np.log(10.0), rel=1e-13)
+    both = _growth([np.stack([turn, np.eye(2)])] * 500)
+    assert both == pytest.approx([500.0 * np.log(10.0), 0.0], rel=1e-13)
 
 
 @pytest.mark.slow

@@ -11,6 +11,7 @@ import elastolink.runtime as package
 import numpy as np
 from elastolink.runtime import design, frequencies, nonlinear, recovery, rigid, stability
 from elastolink.runtime.core.results import Result
+from elastolink.runtime.design import procedure
 from elastolink.runtime.gallery import reproduce
 from elastolink.runtime.hill import Mathieu
 from elastolink.runtime.linkages.base_planes import base_plane
@@ -153,7 +154,6 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "Boundaries": lambda: el.hill_boundaries(COSINE, [0.1, 0.2, 0.3]),
     "PerturbationBoundaries": lambda: el.perturbation_boundaries(COSINE, [0.1, 0.2], order=2),
     "CertifiedBoundaries": lambda: el.hill_boundaries(COSINE, [0.1, 0.2], certified=True),
-    "BoundaryDerivatives": lambda: el.boundary_derivatives(COSINE, [0.1, 0.2]),
     "BoundarySeries": lambda: el.boundary_series(COSINE, 1, order=3),
     "BoundarySolution": lambda: el.boundary_solution(COSINE, 0.3, 1),
     "CharacteristicExponents": lambda: el.characteristic_exponents(
@@ -226,8 +226,9 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "Stabilisation": lambda: design.stabilise(
         el.load_scene(SMITH), (740.0 * RPM, 780.0 * RPM), ["coupler.damping"]
     ),
-    "StressEffect": lambda: design.damping_effect(beams(), [20.0, 25.0], [0.02, 0.06]),
-    "Screening": lambda: design.screen(beams(), np.array([5.0, 10.0, 20.0]), damping=0.02),
+    "StressEffect": lambda: procedure.effect_of(
+        beams(), "damping_ratio", np.array([0.02, 0.06]), [20.0, 25.0], 1e-3
+    ),
     "Fatigue": _fatigue,
     "Identification": _identified,
     "QuietSpeeds": lambda: el.quiet_speeds(beams(), [28.0, 29.0, 30.0], 200e6),

@@ -14,9 +14,8 @@ constrained
 design
     Diagnosis, margins, changes that help, running speeds, run-ups, fatigue, tolerances, fits.
     Material, SpeedProfile, fatigue, quiet_speeds, run_through, running_speed, design.Point,
-    design.certify, design.damping_effect, design.diagnose, design.identify, design.length_effect,
-    design.margins, design.read_points, design.screen, design.sensitivities, design.stabilise,
-    design.tolerance_bands
+    design.certify, design.diagnose, design.identify, design.margins, design.read_points,
+    design.sensitivities, design.stabilise, design.tolerance_bands
 frequencies
     Natural frequencies, critical speeds and resonance curves, of finite elements and exact members.
     campbell, critical_speeds, dynamic_stiffness, natural_frequencies, resonance_curve,
@@ -24,9 +23,8 @@ frequencies
     frequencies.link_frequencies
 hill
     Hill's equation ``y'' + 2 K y' + (lam2 + mu f(theta)) y = 0``, f of period 2 pi.
-    Mathieu, Meissner, boundary_derivatives, boundary_series, boundary_solution,
-    characteristic_exponents, critical_damping, discriminant, hill_boundaries, hill_form,
-    perturbation_boundaries
+    Mathieu, Meissner, boundary_series, boundary_solution, characteristic_exponents,
+    critical_damping, discriminant, hill_boundaries, hill_form, perturbation_boundaries
 linkages
     Rigid linkages: mechanisms and their motion, classes, curves, clearance, tolerances.
     FourBar, QuickReturn, SliderCrank, animate, classify, clearance_range, coupler_curve, harmonics,
@@ -107,7 +105,6 @@ _PUBLIC = {
     "animate": "linkages",
     "assemble": "systems",
     "balance": "rigid",
-    "boundary_derivatives": "hill",
     "boundary_series": "hill",
     "boundary_solution": "hill",
     "campbell": "frequencies",

@@ -49,7 +49,6 @@ from .runtime.frequencies import resonance_curve as resonance_curve
 from .runtime.frequencies import wittrick_williams as wittrick_williams
 from .runtime.hill import Mathieu as Mathieu
 from .runtime.hill import Meissner as Meissner
-from .runtime.hill import boundary_derivatives as boundary_derivatives
 from .runtime.hill import boundary_series as boundary_series
 from .runtime.hill import boundary_solution as boundary_solution
 from .runtime.hill import characteristic_exponents as characteristic_exponents

@@ -10,9 +10,6 @@ if TYPE_CHECKING:
     from .certificates import certify as certify
     from .diagnosis import diagnose as diagnose
     from .differentiation import sensitivities as sensitivities
-    from .effects import damping_effect as damping_effect
-    from .effects import length_effect as length_effect
-    from .effects import screen as screen
     from .fatigue_life import Material as Material
     from .fatigue_life import fatigue as fatigue
     from .identification import identify as identify
@@ -33,7 +30,6 @@ __all__ = on_first_use(
         "diagnosis": ("diagnose",),
         "differentiation": ("sensitivities",),
         "certificates": ("certify",),
-        "effects": ("damping_effect", "length_effect", "screen"),
         "fatigue_life": ("Material", "fatigue"),
         "identification": ("identify",),
         "nearest_regions": ("margins",),

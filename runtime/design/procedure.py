@@ -7,22 +7,69 @@ from dataclasses import dataclass, field
 from typing import ClassVar, cast
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..beams.element_forms import required_structure
 from ..core.errors import LINEAR_RANGE, BadInput, bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
-from ..core.plotting import Axes
+from ..core.plotting import Axes, axes_or_new
 from ..core.progress import bar
 from ..core.results import Check, Result
-from ..recovery.stress_over_speed import StressCurve
-from .effects import StressEffect, effect_of
+from ..recovery.stress_over_speed import ELSEWHERE, StressCurve, stress_curve
 from .quiet import Band, QuietSpeeds, quiet_speeds
 from .speed_profile import Array
 
 # Damping ratios that are tried, over the system's own, and lengths over the design's.
 _DAMPING = (1.0, 1.25, 1.5, 2.0, 3.0)
 _LENGTHS = tuple(1.0 + 0.02 * k for k in range(12))
+
+
+@dataclass(frozen=True, kw_only=True)
+class StressEffect(Result):
+    """Largest stresses over the speed for several values of one quantity.
+
+    Attributes
+    ----------
+    name : str
+        The quantity: ``damping_ratio``, or a length such as ``frame``.
+    values : ndarray, shape (nv,)
+        Its values.
+    speed : ndarray, shape (ns,)
+        Crank speeds [rad/s].
+    links : tuple of str
+        Links.
+    maximum, error : ndarray, shape (nv, ns, links)
+        Largest stress [Pa], and the error of each, relative.
+    """
+
+    name: str
+    values: Array
+    speed: Array
+    links: tuple[str, ...]
+    maximum: Array
+
+    dimensions: ClassVar[dict[str, tuple[str, ...]]] = {
+        "values": ("value",),
+        "speed": ("speed",),
+        **dict.fromkeys(("maximum", "error", "change"), ("value", "speed", "link")),
+    }
+    exported: ClassVar[tuple[str, ...]] = ("change",)
+    column_units: ClassVar = {"Pa": "maximum"}
+
+    @property
+    def change(self) -> Array:
+        """Largest stress over that of the first value, ``(nv, ns, links)``: below 1 it helps."""
+        return np.asarray(self.maximum / self.maximum[:1])
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the largest stress of all links over the speed, a line for each value."""
+        ax = axes_or_new(ax)
+        for value, rows in zip(self.values, self.maximum, strict=True):
+            ax.semilogy(self.speed, np.max(rows, axis=1) / 1e6, label=f"{value:g}", linewidth=0.9)
+        ax.set(xlabel="crank speed [rad/s]", ylabel="largest stress [MPa]")
+        ax.legend(title=self.name.replace("_", " "))
+        return ax
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -179,6 +226,55 @@ def running_speed(
         length=way,
         run_up_length=chosen,
         links=quiet.links,
+    )
+
+
+def effect_of(
+    system: LinearPeriodic,
+    name: str,
+    values: Array,
+    speeds: ArrayLike | StressCurve,
+    rtol: float,
+    *,
+    enough: Callable[[StressCurve], bool] = lambda curve: False,
+    tick: Callable[[int], None] | None = None,
+) -> StressEffect:
+    """Return the curves for values of a damping ratio or length, up to the first that is enough.
+
+    The curve of the first value may be known: it then stands for the speeds.  The whole equation is
+    solved for that value alone: ``ELSEWHERE`` times what it changed there is part of the
+    errors of the others.
+    """
+    change = system.with_parameters if name == "damping_ratio" else system.with_geometry
+    systems = [change(**{name: float(value)}) for value in values]
+    if isinstance(speeds, StressCurve):
+        first = speeds
+    else:
+        first = stress_curve(systems[0], speeds, rtol=rtol, stability=False)
+    curves: list[StressCurve] = []
+    for made in systems:
+        curve = first
+        if curves:
+            curve = stress_curve(made, first.speed, rtol=rtol, stability=False, whole=False)
+        curves.append(curve)
+        if tick is not None:
+            tick(len(curves))
+        if enough(curve):
+            break
+    equation = first.checks["equation"]
+    errors = np.array([curve.error for curve in curves])
+    errors[1:] += ELSEWHERE * equation.value
+    return StressEffect(
+        method=first.method,
+        error=errors,
+        error_norm="each largest stress, relative",
+        checks={"converged": Check(float(np.max(errors)) / rtol, 1.0), "equation": equation},
+        provenance=dict(first.provenance),
+        name=name,
+        values=values[: len(curves)],
+        speed=first.speed,
+        links=first.links,
+        maximum=np.array([curve.maximum for curve in curves]),
     )
 
 

@@ -5,8 +5,7 @@ It is unstable in regions that start at ``lam2 = n^2/4``.  ``docs/hill.md`` says
 - :func:`discriminant`: the half trace, at a point or a million of them;
 - :func:`characteristic_exponents`: exponents at given lam2, or the lam2 of a given exponent;
 - :func:`hill_boundaries`: exact boundaries of the regions, proved ones with ``certified=True``;
-- :func:`boundary_derivatives`, :func:`boundary_solution`: how they move with a parameter, and the
-  periodic solutions on them, exactly or to an order;
+- :func:`boundary_solution`: the periodic solutions on them, exactly or to an order;
 - :func:`perturbation_boundaries`, :func:`boundary_series`: boundaries to any order in one or more
   parameters and K; their coefficients and formulas;
 - :func:`critical_damping`: the damping that closes a region, the parameter that opens it;
@@ -25,7 +24,6 @@ from ..core.lazy import on_first_use
 if TYPE_CHECKING:
     from .boundaries import Boundaries as Boundaries
     from .boundaries import hill_boundaries as hill_boundaries
-    from .derivatives import boundary_derivatives as boundary_derivatives
     from .exponents import characteristic_exponents as characteristic_exponents
     from .form import HillForm as HillForm
     from .form import hill_form as hill_form
@@ -43,7 +41,6 @@ __all__ = on_first_use(
     globals(),
     {
         "boundaries": ("Boundaries", "hill_boundaries"),
-        "derivatives": ("boundary_derivatives",),
         "exponents": ("characteristic_exponents",),
         "form": ("HillForm", "hill_form"),
         "half_trace": ("discriminant",),

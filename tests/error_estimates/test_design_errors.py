@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from beam_motions import FIRST, of_history, peaks, periodic_motion, rocking_bar, turning_bar
 from elastolink.runtime.core.trigonometric import resampled
-from elastolink.runtime.design import damping_effect, length_effect
+from elastolink.runtime.design.procedure import effect_of
 from elastolink.runtime.periodic.periodic_motion import quiet_state
 from honesty import over_scenes
 
@@ -95,7 +95,8 @@ def test_damping_effects(rng):
     bare, first = rocking_bar(rng, drag=False)
     system = el.with_modal_damping(bare, 0.02)
     speeds, values = random_speeds(rng, first, 5), np.sort(10.0 ** rng.uniform(-3, -0.7, 2))
-    found = damping_effect(system, speeds, values, rtol=10.0 ** rng.uniform(-5, -2.5))
+    rtol = 10.0 ** rng.uniform(-5, -2.5)
+    found = effect_of(system, "damping_ratio", values, speeds, rtol)
     exact = [
         [exact_maximum(system.with_parameters(damping_ratio=value), w) for w in speeds]
         for value in values
@@ -106,8 +107,9 @@ def test_damping_effects(rng):
 @over_scenes(7200, few=1, many=12, floor=FLOOR)
 def test_length_effects(rng):
     system, frame, first = rocker(rng)
-    speeds, values = random_speeds(rng, first, 5), [frame, frame * rng.uniform(0.7, 1.5)]
-    found = length_effect(system, "frame", values, speeds, rtol=10.0 ** rng.uniform(-5, -2.5))
+    speeds = random_speeds(rng, first, 5)
+    values = np.array([frame, frame * rng.uniform(0.7, 1.5)])
+    found = effect_of(system, "frame", values, speeds, 10.0 ** rng.uniform(-5, -2.5))
     exact = [
         [exact_maximum(system.with_geometry(frame=value), w) for w in speeds] for value in values
     ]

@@ -24,7 +24,6 @@ WITHOUT = {
     "classify": "exact arithmetic decides the class",
     "explain": "counts of terms, operations and bytes",
     "mobility": "a whole number",
-    "screen": "says itself that it has none",
 }
 ROOMS = ("linkages", "rigid", "beams", "hill", "periodic", "recovery", "constrained")
 ROOMS += ("frequencies", "stability", "design", "sweeps")

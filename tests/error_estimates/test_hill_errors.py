@@ -1,7 +1,5 @@
 """Errors of half traces, exponents, boundaries and thresholds: references of more digits."""
 
-from fractions import Fraction
-
 import elastolink as el
 import numpy as np
 import pytest
@@ -12,13 +10,11 @@ from honesty import extended, over_scenes
 PI = 4 * np.arctan(np.longdouble(1))
 # Errors below the references' own are not told apart from zero.
 LEAST = 1e-17
-STEP = 2.0**-17
 BOTH = (False, True)
-G = el.PeriodicFunction([0.25, 0.5, -0.375], [0.0, 0.125, 0.75])
 
 
 def scene(rng, counts=(1, 2, 4, 8)):
-    """A random function whose coefficients, like mu, bear a change by STEP without rounding."""
+    """A random function and mu, of 20 binary places."""
     count = int(rng.choice(counts))
     size = rng.uniform(0.3, 0.9) ** np.arange(count + 1)
     a, b = np.rint(rng.normal(size=(2, count + 1)) * size * 2.0**20) * 2.0**-20
@@ -95,48 +91,6 @@ def test_bands_against_enclosures(rng):
     proved = el.hill_boundaries(el.PeriodicFunction(a, b), 4 * mu, (1, 3, 5, 7), certified=True)
     assert proved.pair.all()
     return ours.error, ours.lam2 - 0.25 * proved.lower - 0.25 * proved.lower_rest
-
-
-def exact_ends(n, f, mu, k):
-    found = el.hill_boundaries(f, mu, (n,), k, certified=True)
-    return [sum(found.enclosure(end, 0)) / 2 for end in ("lower", "upper")]
-
-
-def moved(f, mu, k, name, step):
-    """Return the problem after a change of one parameter."""
-    if name in ("a1", "b1"):
-        a, b = f.a.copy(), f.b.copy()
-        {"a1": a, "b1": b}[name][1] += step
-        return el.PeriodicFunction(a, b), mu, k
-    if name == "g":
-        return f * mu + G * step, 1.0, k
-    return f, mu + step * (name == "mu"), k + step * (name == "K")
-
-
-@over_scenes(23, few=10, many=100, floor=LEAST)
-@pytest.mark.parametrize(
-    ("name", "k"),
-    [("mu", 0.0), ("mu", 2.0**-6), ("a1", 0.0), ("b1", 2.0**-6), ("g", 0.0), ("K", 2.0**-6)],
-)
-def test_derivatives_against_differences_of_enclosures(rng, name, k):
-    """Central differences of sixth order, between ends known to 1e-20 or better."""
-    weights = {1: Fraction(3, 4), 2: Fraction(-3, 20), 3: Fraction(1, 60)}
-    f, mu = scene(rng)
-    n = int(rng.integers(1, 4))
-    found = el.boundary_derivatives(f, mu, (n,), (G if name == "g" else name,), k)
-    if not el.hill_boundaries(f, mu, (n,), k).width[0] > 0.02:
-        # Closed, or so narrow that the ends turn about each other within the steps.
-        return None
-    slopes = [Fraction(0), Fraction(0)]
-    for j, weight in weights.items():
-        up, down = (exact_ends(n, *moved(f, mu, k, name, side * j * STEP)) for side in (1, -1))
-        for end in (0, 1):
-            slopes[end] += weight * (up[end] - down[end]) / Fraction(STEP)
-    ours = (found.lower[0, 0], found.upper[0, 0])
-    # The difference itself: the seventh derivative over 140, at most about 1 / width^6 there,
-    # times STEP^6 = 2e-31.
-    gaps = [float(Fraction(float(x)) - y) for x, y in zip(ours, slopes, strict=True)]
-    return found.error[0, 0], gaps
 
 
 def waves(rng, count):

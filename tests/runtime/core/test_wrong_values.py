@@ -31,7 +31,6 @@ RIGHT = {
     "PeriodicFunction": {"a": [0.0, 1.0], "b": [0.0, 0.5]},
     "balance": {"machine": MACHINE, "speed": 10.0, "weights": {"torque": 1.0}}
     | {"links": ("follower",), "limits": {"f23": 3.0}, "angles": [0.0, 2.0, 4.0]},
-    "boundary_derivatives": {"f": F, "mu": 0.3, "regions": (1,), "directions": ("mu",)},
     "boundary_solution": {"f": F, "mu": 0.3, "n": 1, "end": "lower"},
     "clearance_range": {"linkage": FOUR_BAR, "clearances": 1e-4, "theta": [0.1], "joint": "23"},
     "coupler_curve": {"linkage": FOUR_BAR, "along": 0.1, "across": 0.1, "link": "coupler"},

@@ -38,7 +38,6 @@ GIVEN = {
     el.perturbation_boundaries: {"f": COSINE, "mu": 0.1},
     el.discriminant: {"f": COSINE, "lam2": 1.0, "mu": 0.1},
     bands: {"f": COSINE, "mu": 1.0, "nu": 0.1},
-    el.boundary_derivatives: {"f": COSINE, "mu": 1.0, "regions": (1,)},
     el.boundary_solution: {"f": COSINE, "mu": 0.1, "n": 1},
     el.boundary_series: {"f": COSINE, "region": 1},
     el.critical_damping: {"f": COSINE},
@@ -102,10 +101,6 @@ CASES = {
         ({"bands": 3}, "bands"),
         ({"bands": (9999,)}, "bands"),
         ({"damping": -1.0}, "damping"),
-    ],
-    el.boundary_derivatives: [
-        ({"directions": (name,)}, r"directions\[0\]")
-        for name in ("c2", "b0", "a", "a-1", 3, "lam2", "b5000", "a" + "9" * 5000, "a\u0663")
     ],
     el.boundary_solution: [
         ({"n": 0, "end": "lower"}, "end"),

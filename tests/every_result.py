@@ -138,8 +138,6 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "ClearanceRange": lambda: el.clearance_range(four_bar(), 0.01, ANGLES),
     "Mobility": lambda: el.mobility([("a", "b"), ("b", "c"), ("c", "d"), ("d", "a")]),
     "Harmonics": lambda: el.harmonics(lambda theta: np.cos(theta) ** 3),
-    "Tolerances": lambda: el.tolerances(four_bar(), {"crank": 0.01, "frame": 0.02}, ANGLES),
-    "ToleranceTrial": lambda: made("Tolerances").monte_carlo(20),
     # Rigid machines.
     "RigidForces": lambda: el.rigid_forces(machine(), ANGLES, 10.0),
     "Balancing": lambda: el.balance(

@@ -26,9 +26,9 @@ hill
     Mathieu, Meissner, boundary_series, boundary_solution, characteristic_exponents,
     critical_damping, discriminant, hill_boundaries, hill_form, perturbation_boundaries
 linkages
-    Rigid linkages: mechanisms and their motion, classes, curves, clearance, tolerances.
+    Rigid linkages: mechanisms and their motion, classes, curves, clearance.
     FourBar, QuickReturn, SliderCrank, animate, classify, clearance_range, coupler_curve, harmonics,
-    mobility, tolerances, transmission_angle
+    mobility, transmission_angle
 nonlinear
     Nonlinear systems under a periodic drive: periodic motions over a parameter, sweeps, jumps.
     response_curve, sweep_response, nonlinear.amplitude_law, nonlinear.basins,
@@ -160,7 +160,6 @@ _PUBLIC = {
     "stress_curve": "recovery",
     "sweep": "sweeps",
     "sweep_response": "nonlinear",
-    "tolerances": "linkages",
     "trade_off": "rigid",
     "transmission_angle": "linkages",
     "with_modal_damping": "systems",

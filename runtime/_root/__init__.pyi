@@ -66,7 +66,6 @@ from .runtime.linkages import clearance_range as clearance_range
 from .runtime.linkages import coupler_curve as coupler_curve
 from .runtime.linkages import harmonics as harmonics
 from .runtime.linkages import mobility as mobility
-from .runtime.linkages import tolerances as tolerances
 from .runtime.linkages import transmission_angle as transmission_angle
 from .runtime.nonlinear import response_curve as response_curve
 from .runtime.nonlinear import sweep_response as sweep_response

@@ -25,7 +25,7 @@ from .options import HelpFormatter, add, kept_file, picture
 
 # Files of subcommands, in the order of the help.
 _GROUPS = (
-    *("scenes", "linkages", "tolerances", "forces", "response", "nonlinear"),
+    *("scenes", "linkages", "clearance", "forces", "response", "nonlinear"),
     *("beams", "stability", "boundaries", "studies", "diagnosis", "stabilising"),
     *("measured", "bands", "certified", "proofs", "report"),
 )

@@ -8,14 +8,14 @@ from typing import Any
 from .. import design
 from . import options as opt
 
-_KINDS = ("frequencies", "edges", "boundaries", "stress", "forces")
+_KINDS = ("frequencies", "edges", "boundaries", "stress", "motion", "forces")
 
 
 def add(commands: Any) -> None:
     """Add the subcommand."""
     parser = opt.command(commands, "tolerance-bands", _bands)
     opt.add(parser, {"--of": "which answer"}, choices=_KINDS, required=True)
-    at = "crank angles of frequencies and forces; speeds of the rest, of edges their ends alone"
+    at = "crank angles; of edges, boundaries and stress speeds, of edges their ends alone"
     opt.add(parser, {"--at START:STOP:COUNT[UNIT]": at})
     over = "of boundaries: the second parameter and its values; default five of the chart's y"
     opt.add(parser, {"--over NAME=START:STOP:COUNT[UNIT]": over})
@@ -27,13 +27,13 @@ def add(commands: Any) -> None:
 def _bands(options: argparse.Namespace) -> int:
     r"""Worst case and spread of an answer within tolerances of any of a scene's numbers.
 
-    elastolink tolerance-bands smith_1972_12_6_12_12 --of forces \
-        --set 'links.coupler=304.8 mm +- 0.1 mm' --plot bands.png
+    elastolink tolerance-bands smith_1972_10_8_10_10 --of motion \
+        --set 'links.crank=8 in +- 0.05 mm' --plot bands.png
     elastolink tolerance-bands smith_1972_5152_sixteenth_inch --of edges --at 600:900:2rpm \
         --set 'follower.inertia=655e-6 kg*m**2 +- 2 %'
     """
     scene = opt.load(options)
-    angles = options.of in ("frequencies", "forces")
+    angles = options.of in ("frequencies", "motion", "forces")
     at = options.at and opt.values(options.at, "angle" if angles else "frequency", "--at")
     if at is not None and options.of in ("edges", "boundaries"):
         at = at[[0, -1]]

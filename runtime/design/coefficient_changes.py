@@ -143,9 +143,8 @@ def coefficient_changes(
             continue
         inner = name in system.parameters
         number[i] = value = number_of(machine, system, name)
-        places = PLACES if value or inner else PLACES - PLACES[0]
-        steps[i] = step = (STEP if inner else SMALL_STEP) * (abs(value) or 1.0)
-        values = value + step * places
+        places, steps[i], both = differences(value, STEP if inner else SMALL_STEP, below=inner)
+        values = value + steps[i] * places
         if inner:
             # Not within its limits: a damping that is 0 goes below.
             moved = _parts(terms, system.scales({**system.parameters, name: values}))
@@ -153,8 +152,7 @@ def coefficient_changes(
             made = [with_number(machine, system, name, float(one)) for one in values]
             each = [_parts(_terms(one, theta), one.scales(one.parameters)) for one in made]
             moved = {part: np.stack([other[part] for other in each]) for part in parts}
-        for unused, target in ((0, slopes), (1, rough)):
-            weights = difference_weights(places, unused) / step
+        for weights, target in zip(both, (slopes, rough), strict=True):
             for part, series in parts.items():
                 if moved[part].ndim > series.ndim:
                     target[part][i] = np.tensordot(weights, moved[part] - series, axes=1)
@@ -182,6 +180,20 @@ def _even_angles(system: LinearPeriodic) -> Array:
         raise bad("sensitivities", found, expected, "round off their corners")
     count = max(64, 4 * (harmonics // 2 + 1))
     return np.asarray(system.period * np.arange(float(count)) / count)
+
+
+def differences(
+    value: float, part: float = SMALL_STEP, *, size: float = 1.0, below: bool = False
+) -> tuple[Array, float, tuple[Array, Array]]:
+    """Return places about a number, their step, and weights of the orders eight and six there.
+
+    The step is a part of the number.  One that is 0 counts as of a size, and has places above it
+    alone, unless ``below``.
+    """
+    places = PLACES if value or below else PLACES - PLACES[0]
+    step = part * (abs(value) or size)
+    fine, coarse = (difference_weights(places, unused) / step for unused in (0, 1))
+    return places, step, (fine, coarse)
 
 
 def difference_weights(places: Array, unused: int) -> Array:

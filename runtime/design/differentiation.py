@@ -16,6 +16,7 @@ from ..core.inputs import require_between
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import BROADCAST, Check, Result, provenance
 from ..frequencies.natural import NaturalFrequencies
+from ..linkages.linkage import Motion
 from ..periodic.adjoint import field_weights
 from ..periodic.equation import Equation, equation_of
 from ..periodic.multipliers import FloquetMultipliers, multiplier_order, rounding_error
@@ -27,6 +28,7 @@ from ..periodic.transition import (
     refined,
     segments_from,
 )
+from ..rigid.forces import RigidForces
 from ..scenes import Scene
 from ..stability import StabilityEdges
 from .coefficient_changes import (
@@ -37,6 +39,7 @@ from .coefficient_changes import (
     series_at,
     varying_parts,
 )
+from .rigid_answers import RigidAnswer, rigid_slopes
 
 if TYPE_CHECKING:
     from ..core.families import Nonlinear
@@ -46,6 +49,7 @@ ComplexArray = NDArray[np.complex128]
 Machine: TypeAlias = "LinearPeriodic | Nonlinear | Scene"
 Answer: TypeAlias = (
     "FloquetMultipliers | StabilityEdges | NaturalFrequencies | SteadyState | ResponseCurve"
+    " | RigidAnswer"
 )
 
 # Round-off of a derivative, over itself, from which multipliers or frequencies count as one; the
@@ -70,7 +74,7 @@ class Sensitivities(Result):
     value : ndarray, shape S
         The answer: multipliers ``(*batch, 2n)``; ends of regions ``(regions, 2)`` [rad/s]; natural
         frequencies along their curves ``(nt, count)`` [rad/s]; peaks of coordinates, with their
-        sign, ``(*batch, n)``.
+        sign, ``(*batch, n)``; of a rigid machine each row that ``answer`` names, at the angles.
     derivative, error : ndarray, shape (*S, k)
         Derivatives, per SI unit of each number, and their errors.  NaN where there is none: of
         ends that are missing, of closed regions, of points where branches cross.
@@ -124,16 +128,18 @@ def sensitivities(
     ----------
     machine : LinearPeriodic or Scene
         What the answer is of.
-    answer : FloquetMultipliers, StabilityEdges, NaturalFrequencies, SteadyState or ResponseCurve
+    answer : FloquetMultipliers, StabilityEdges, NaturalFrequencies, SteadyState, ResponseCurve,\
+            Motion or RigidForces
         What :func:`floquet_multipliers`, :func:`stability_edges`, :func:`natural_frequencies`,
-        :func:`steady_state` or :func:`response_curve` returned for it, without changed parameters.
+        :func:`steady_state`, :func:`response_curve`, the mechanism's ``motion`` or
+        :func:`rigid_forces` returned for it, without changed parameters.
     by : sequence of str
         Numbers: ``speed`` (not of ends), parameters and geometry of the system, and, where the
         machine is a scene, its dotted keys, such as ``links.coupler``: what the scene gives stays
         as given, what follows from it follows.
     rtol : float
         Wanted error of the derivatives by each number over the largest of them, 1e-12 to 1e-3; of
-        a response curve they are as good as its motions.
+        a response curve they are as good as its motions, of a rigid machine as doubles allow.
 
     Returns
     -------
@@ -157,6 +163,8 @@ def sensitivities(
       [0.5]]]
     """
     require_between("rtol", rtol, 1e-12, 1e-3, "try 1e-9")
+    if isinstance(answer, Motion | RigidForces):
+        return _of_a_rigid_machine(machine, answer, by)
     if not isinstance(answer, tuple(_KINDS)):
         return _of_a_curve(machine, answer, by)
     system = machine.linear_system() if isinstance(machine, Scene) else machine
@@ -189,6 +197,24 @@ def sensitivities(
     )
 
 
+def _of_a_rigid_machine(machine: Machine, answer: RigidAnswer, by: Sequence[str]) -> Sensitivities:
+    rows, value, derivative, error = rigid_slopes(machine, answer, by)
+    assert isinstance(machine, Scene)
+    return Sensitivities(
+        method="differences of eighth order of the closed form",
+        error=error,
+        error_norm="absolute, of each derivative",
+        checks={"converged": Check(_worst(derivative, error), 1e-6)},
+        provenance=provenance(answer.provenance),
+        by=tuple(by),
+        number=np.array([machine.get(name) for name in by]),
+        answer=", ".join(rows),
+        value=value,
+        derivative=derivative,
+        collided=np.zeros(value.shape, dtype=bool),
+    )
+
+
 def _of_a_curve(machine: Machine, answer: Any, by: Sequence[str]) -> Sensitivities:
     """Return the derivatives of the special points of a response curve."""
     # What stays in the linear range imports nothing of this.
@@ -196,8 +222,9 @@ def _of_a_curve(machine: Machine, answer: Any, by: Sequence[str]) -> Sensitiviti
     from .special_points import special_numbers, special_slopes
 
     if not isinstance(answer, ResponseCurve):
-        known = "multipliers, ends of regions, natural frequencies, a steady state or a response"
-        raise bad("answer", type(answer).__name__, f"{known} curve", "differentiate one of these")
+        known = "multipliers, ends of regions, natural frequencies, a steady state, a response"
+        known = f"{known} curve, a rigid motion or its forces"
+        raise bad("answer", type(answer).__name__, known, "differentiate one of these")
     numbers = special_numbers(machine, answer, by)
     derivative, error = special_slopes(answer, numbers)
     unit = "rad/s" if answer.parameter == "speed" else "SI"

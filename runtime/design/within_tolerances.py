@@ -19,6 +19,7 @@ from ..core.results import Check, Result, provenance
 from ..frequencies.held import held_frequencies
 from ..recovery.stress_over_speed import stress_curve
 from ..rigid import rigid_forces
+from ..rigid.evaluation import COUPLES
 from ..scenes import Scene, with_numbers
 from ..stability import stability_edges
 
@@ -134,11 +135,11 @@ def tolerance_bands(
     answer : str or callable
         ``"frequencies"`` with the crank held; ``"edges"`` of unstable regions; ``"boundaries"``
         of a chart, which are edges over a second parameter; ``"stress"``, the largest of each beam
-        over the speed; ``"forces"`` of a rigid machine; or a function that makes numbers
-        ``(places,)`` or ``(rows, places)`` of a scene.
+        over the speed; ``"motion"`` and ``"forces"`` of a rigid machine; or a function that
+        makes numbers ``(places,)`` or ``(rows, places)`` of a scene.
     at : array_like, optional
         Crank angles [rad] or speeds [rad/s], of edges and boundaries the lowest and the highest; by
-        default 73 over a turn, or 21 over ``operation.speed_range``.
+        default 73 over a turn or what the crank reaches, or 21 over ``operation.speed_range``.
     over : tuple of str and array_like, optional
         The second parameter and its values [SI]; by default five of the chart's y.
     trials : int
@@ -318,10 +319,11 @@ def _spread(points: Array, model: Array) -> list[Array]:
     return list(np.concatenate(parts, axis=1))
 
 
-KINDS = ("frequencies", "edges", "boundaries", "stress", "forces")
+KINDS = ("frequencies", "edges", "boundaries", "stress", "motion", "forces")
 Over = tuple[str, ArrayLike]
 _ANGLE = "crank angle [rad]"
 _MODES, _ANGLES, _SPEEDS, _VALUES = 6, 73, 21, 5  # by default
+_INSET = 0.05  # of a range, at either end, where the linkage folds
 
 
 @dataclass(frozen=True)
@@ -346,9 +348,9 @@ def answer_of(
         return _ends(scene, at, over, with_second=kind == "boundaries")
     if kind == "stress":
         return _stress(scene, _range(scene) if at is None else at, at is None)
-    if kind in ("frequencies", "forces"):
-        theta = numbers_in_a_row("at", np.linspace(0, 2 * np.pi, _ANGLES) if at is None else at)
-        return (_frequencies if kind == "frequencies" else _forces)(scene, theta)
+    if isinstance(kind, str) and kind in _OVER_ANGLES:
+        theta = numbers_in_a_row("at", _angles(scene, kind) if at is None else at)
+        return _OVER_ANGLES[kind](scene, theta)
     if not callable(kind) or at is not None:
         expected = f"one of {', '.join(KINDS)}, or a function of a scene without 'at'"
         raise bad("answer", shown(kind), expected, "choose one")
@@ -369,19 +371,49 @@ def _frequencies(scene: Scene, theta: Array) -> Answer:
     return Answer(compute, rows, ("rad/s",) * count, theta, _ANGLE, "natural frequency")
 
 
+def _angles(scene: Scene, kind: str) -> Array:
+    """Return angles over a turn, or over what a crank that rocks reaches but for its ends."""
+    low, high = 0.0, 2.0 * np.pi
+    if kind != "frequencies" and not (linkage := scene.mechanism()).crank_turns:
+        ends = linkage.crank_ranges()[0]
+        low, high = ends[0] + _INSET * np.ptp(ends), ends[1] - _INSET * np.ptp(ends)
+    return np.linspace(low, high, _ANGLES)
+
+
+def _motion(scene: Scene, theta: Array) -> Answer:
+    driven = "operation" in scene and scene.get("operation.speed", None) is not None
+    moves = scene.mechanism().moves
+    rows = (*moves.places, *moves.rates)
+
+    def compute(one: Scene) -> Array:
+        found = one.mechanism().motion(theta, *(_drive(one) if driven else ()))
+        return np.array([np.broadcast_to(getattr(found, name), theta.shape) for name in rows])
+
+    units = tuple(moves.unit_of(name, relative=not driven) for name in rows)
+    return Answer(compute, rows, units, theta, _ANGLE, "motion")
+
+
+def _drive(scene: Scene) -> tuple[float, float]:
+    return scene.get("operation.speed"), scene.get("operation.acceleration", 0.0)
+
+
 def _forces(scene: Scene, theta: Array) -> Answer:
-    def compute(one: Scene) -> dict[str, Array]:
-        speed, faster = one.get("operation.speed"), one.get("operation.acceleration", 0.0)
-        return dict(rigid_forces(one.machine(), theta, speed, faster).values)
+    first = rigid_forces(scene.machine(), theta, *_drive(scene))
+    rows = tuple(sorted(first.values))
 
-    rows = tuple(sorted(compute(scene)))
-    units = tuple("N" if name[0] in "xy" or name[-1] in "xy" else "N m" for name in rows)
-
-    def stacked(one: Scene) -> Array:
-        found = compute(one)
+    def compute(one: Scene) -> Array:
+        found = rigid_forces(one.machine(), theta, *_drive(one)).values
         return np.array([np.broadcast_to(found[name], theta.shape) for name in rows])
 
-    return Answer(stacked, rows, units, theta, _ANGLE, "force or moment")
+    units = tuple("N m" if name.startswith(COUPLES) else "N" for name in rows)
+    return Answer(compute, rows, units, theta, _ANGLE, "force or moment")
+
+
+_OVER_ANGLES: Mapping[str, Callable[[Scene, Array], Answer]] = {
+    "frequencies": _frequencies,
+    "motion": _motion,
+    "forces": _forces,
+}
 
 
 def _stress(scene: Scene, at: ArrayLike, spaced: bool) -> Answer:

@@ -1,4 +1,4 @@
-"""Rigid linkages: mechanisms and their motion, classes, curves, clearance, tolerances.
+"""Rigid linkages: mechanisms and their motion, classes, curves, clearance.
 
 The names load on first use: one needs little of what the others need.
 """
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from .four_bar import FourBar as FourBar
     from .four_bar import FourBarMotion as FourBarMotion
     from .harmonic_analysis import harmonics as harmonics
-    from .length_tolerances import tolerances as tolerances
     from .linkage import Linkage as Linkage
     from .linkage import Motion as Motion
     from .pictures import animate as animate
@@ -34,7 +33,6 @@ __all__ = on_first_use(
         "degrees_of_freedom": ("mobility",),
         "four_bar": ("FourBar", "FourBarMotion"),
         "harmonic_analysis": ("harmonics",),
-        "length_tolerances": ("tolerances",),
         "linkage": ("Linkage", "Motion"),
         "pictures": ("animate",),
         "quick_return": ("QuickReturn",),

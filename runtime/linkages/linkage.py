@@ -497,14 +497,6 @@ class Linkage(ABC):
             provenance=provenance(self.provenance),
         )
 
-    def parametric(
-        self, theta: Array, speed: Array, acceleration: Array, masses: str = "fixed"
-    ) -> Any:
-        """Return the motion as a function of the lengths, for tolerances; there are no masses."""
-        from .parametric import Parametric
-
-        return Parametric(self, theta, speed, acceleration)
-
     def course(self, name: str) -> Callable[[Array], Array]:
         """Return a place or rate of the motion as a function of the crank angle.
 

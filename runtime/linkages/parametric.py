@@ -39,16 +39,6 @@ class Parametric:
         lengths = {name: float(size) for name, size in self.linkage.lengths.items()}
         return {**lengths, ANGLE: 0.0}
 
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        """Names of the outputs."""
-        return tuple(self.linkage.kinematics.RETURNS["motion"])
-
-    def unit(self, name: str) -> str:
-        """Return the unit of an output."""
-        relative = np.all(self.speed == 1.0) and np.all(self.acceleration == 0.0)
-        return self.linkage.moves.unit_of(name, bool(relative))
-
     def evaluate(self, numbers: Mapping[str, Any]) -> dict[str, Any]:
         """Return every output of the numbers; what cannot close is not finite."""
         with np.errstate(all="ignore"):

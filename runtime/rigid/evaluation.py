@@ -21,6 +21,8 @@ from .machine import Machine, Part, wrenches
 Output: TypeAlias = Literal["pins", "torque", "shaking_force", "shaking_moment"]
 
 FRAME_FORCE = ("shaking_x", "shaking_y")
+# How the names of what is in N m begin.
+COUPLES = ("torque", "shaking_moment", "couple")
 # Measured with a dozen outputs: 8192 to 24576 entries take the same time within a few percent.
 BLOCK = 8192
 # Emitted functions whose names are others than those of their outputs.
@@ -165,8 +167,7 @@ def _part(item: Any, part: slice, axis: int) -> Any:
     return item[(..., part) + (slice(None),) * (-axis - 1)]
 
 
-# How mass, first moments and inertia of a bar grow with its length.
-_GROWTH = {"mass": 1, "along": 2, "across": 1, "inertia": 3}
+_OF_A_MASS = ("mass", "along", "across", "inertia")
 
 
 @dataclass(frozen=True)
@@ -174,7 +175,6 @@ class ParametricMachine(Parametric):
     """Motion and forces of a machine at given crank angles as functions of its numbers."""
 
     machine: Machine
-    bars: bool = False  # whether the masses grow with the links' lengths as those of bars
     loads: tuple[Any, ...] = ()  # constant ones, in place of the machine's
 
     @property
@@ -183,25 +183,13 @@ class ParametricMachine(Parametric):
         values = super().values
         for link in self.linkage.links:
             mass = self.machine.mass(link)
-            values |= {f"{link}.{name}": float(getattr(mass, name)) for name in _GROWTH}
+            values |= {f"{link}.{name}": float(getattr(mass, name)) for name in _OF_A_MASS}
         return values
-
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        """Names of the outputs."""
-        return (*super().outputs, *self.forces)
 
     @property
     def forces(self) -> tuple[str, ...]:
         """Names of the forces."""
         return tuple(force_kernels(self.linkage.mechanism).RETURNS["forces"])
-
-    def unit(self, name: str) -> str:
-        """Return the unit of an output; rates are in time, whatever the speed."""
-        if name in self.forces:
-            couple = name in ("torque", "shaking_moment") or name.startswith("couple")
-            return "N m" if couple else "N"
-        return self.linkage.moves.unit_of(name)
 
     def evaluate(self, numbers: Mapping[str, Any]) -> dict[str, Any]:
         """Return every output of the numbers; what cannot close is not finite."""
@@ -227,7 +215,7 @@ class ParametricMachine(Parametric):
         given = {"speed": self.speed, "acceleration": self.acceleration, **lengths}
         masses = {}
         for place, link in enumerate(links, start=2):
-            mass = self._mass(link, numbers)
+            mass = {name: numbers[f"{link}.{name}"] for name in _OF_A_MASS}
             masses[link] = SimpleNamespace(**mass)
             given |= {f"{k}{place}": value * units.get(k, 1.0) for k, value in mass.items()}
         forces = emitted(self.linkage, kernels, "forces", theta, given)
@@ -243,12 +231,4 @@ class ParametricMachine(Parametric):
             for names, pushed in pushes(acting, motion, self.speed, [*forces], size):
                 more = emitted(self.linkage, kernels, "load_forces", theta, {**lengths, **pushed})
                 forces |= {name: forces[name] + more[name] for name in names}
-        return {k: value / size if self.unit(k) == "N m" else value for k, value in forces.items()}
-
-    def _mass(self, link: str, numbers: Mapping[str, Any]) -> dict[str, Any]:
-        mass = {name: numbers[f"{link}.{name}"] for name in _GROWTH}
-        # The block and the slider are no bars.
-        if not self.bars or link not in self.linkage.names:
-            return mass
-        grown = numbers[link] / self.linkage.lengths[link]
-        return {name: value * grown ** _GROWTH[name] for name, value in mass.items()}
+        return {k: value / size if k.startswith(COUPLES) else value for k, value in forces.items()}

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..core.results import Check
 from ..linkages.linkage import EPS, Array, Linkage, Motion
 from ..linkages.parametric import ANGLE
-from .evaluation import BLOCK, ParametricMachine
+from .evaluation import BLOCK, COUPLES, ParametricMachine
 from .loads import Load, Spring, Wrench, at_first_joint, frozen
 from .machine import Machine, power_of, wrenches
 
@@ -108,7 +108,7 @@ def _of_block(
         moved, size = np.zeros(theta.shape), np.zeros(theta.shape)
         split = 1 + len(fixed)
         for name in model.forces:
-            arm = longest if model.unit(name) == "N m" else 1.0
+            arm = longest if name.startswith(COUPLES) else 1.0
             terms = [step * np.abs(slope) for step, slope in zip(steps, slopes[name], strict=True)]
             parts = np.abs(values[name]) + sum(terms[split:])
             parts = parts + sum(np.abs(part[name]) for part in drives)

@@ -15,7 +15,7 @@ from ..core.inputs import names_in_a_row
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import BROADCAST, Deferred, DeferredChecks, DeferredField, Result, provenance
 from ..linkages.linkage import JOINTS, TURN, Array, checked_drive
-from .evaluation import FRAME_FORCE, Evaluation, Output
+from .evaluation import COUPLES, FRAME_FORCE, Evaluation, Output
 from .machine import Machine, require_machine
 
 _LATER = DeferredField()
@@ -115,8 +115,7 @@ class RigidForces(Result):
         return {**super().arrays(), **self.values}
 
     def _own_units(self) -> dict[str, str]:
-        turning = ("couple", "torque", "shaking_moment")
-        return {name: "N m" if name.startswith(turning) else "N" for name in self.values}
+        return {name: "N m" if name.startswith(COUPLES) else "N" for name in self.values}
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain lists, numbers and strings, ready for JSON."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import astuple, dataclass, field
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,9 +14,6 @@ from ..core.inputs import are_finite, is_one_of, numbers
 from ..linkages.linkage import Array, Linkage
 from .loads import FRAME, Load, Spring, TorsionSpring, Wrench
 from .masses import MassDistribution
-
-if TYPE_CHECKING:
-    from .evaluation import ParametricMachine
 
 AnySpring: TypeAlias = Spring | TorsionSpring
 Part: TypeAlias = Literal["all", "outside", "springs", "nonconservative"]
@@ -92,25 +89,6 @@ class Machine:
     @property
     def _heavy(self) -> bool:
         return self.gravity != _NONE and any(mass.mass > 0 for mass in self.masses.values())
-
-    def parametric(
-        self, theta: Array, speed: Array, acceleration: Array, masses: str = "fixed"
-    ) -> ParametricMachine:
-        """Return motion and forces as functions of lengths and masses, for tolerances.
-
-        Raises
-        ------
-        BadInput
-            If the machine has a load that is a function.
-        """
-        from .evaluation import ParametricMachine
-
-        if any(callable(item.force) or callable(item.couple) for item in self.loads):
-            expected = "masses, gravity, constant loads and springs"
-            fix = "leave it out, or ask for the linkage alone"
-            raise bad("tolerances", "a machine with a load that is a function", expected, fix)
-        drive = (theta, speed, acceleration)
-        return ParametricMachine(self.linkage, *drive, machine=self, bars=masses == "bars")
 
     def course(self, name: str, speed: float) -> Callable[[Array], Array]:
         """Return a force as a function of the crank angle at constant crank speed [rad/s].

@@ -6,7 +6,9 @@ The references are known to 40 digits: steps of 1e-24, symmetric.
 import elastolink as el
 import mpmath as mp
 import numpy as np
+import pytest
 from elastolink.runtime.design import sensitivities
+from elastolink.runtime.rigid.evaluation import ParametricMachine
 from honesty import over_scenes
 from variation_truth import random_truth, slope
 
@@ -140,3 +142,49 @@ def test_derivatives_of_natural_frequencies(rng):
         exact[i] = [float(x) for x in slope(frequencies, truth.values[name])]
     kept = ~found.collided
     return found.error[kept][..., 0], np.abs(found.derivative[..., 0] - exact)[kept]
+
+
+@over_scenes(443, few=6, many=100)
+@pytest.mark.parametrize("name", ["slider_crank_example", "aannaque_1996_table_3_2"])
+def test_derivatives_of_motion_and_forces(rng, name):
+    """By complex steps in the machine's own numbers, which were checked to sixty digits."""
+    links = {k: v for k, v in el.load_scene(name).given["links"].items() if isinstance(v, float)}
+    moved = {f"links.{k}": v * rng.uniform(0.9, 1.1) for k, v in links.items()}
+    moved["links.offset" if "offset" in links else "links.frame"] *= rng.uniform() < 0.7 or 1.0
+    scene = el.load_scene(name, moved)
+    machine, linkage = scene.machine(), scene.mechanism()
+    theta = rng.uniform(0.0, 2.0 * np.pi, 5)
+    drive = [np.full(5, rng.uniform(1.0, 200.0)), np.full(5, rng.uniform(-50.0, 50.0))]
+    model = ParametricMachine(linkage, theta, *drive, machine=machine)
+    _, slopes = model.derivatives(model.values, tuple(model.values))
+    place = {number: i for i, number in enumerate(model.values)}
+    given = name != "slider_crank_example"  # whether masses follow from lengths and density
+
+    def exact(row, key):
+        """Return the derivative by a key, through the numbers that follow from it."""
+        table, number = key.split(".")
+        link = number if table == "links" else table
+        powers = {"mass": 1, "along": 2, "inertia": 3} if table == "links" else {}
+        through = {number: 1.0} if table == "links" else {}
+        if number == "density":
+            powers = dict.fromkeys(("mass", "along", "inertia"), 1)
+        if (given or number == "density") and link in machine.masses:
+            mass = machine.mass(link)
+            value = scene.get(key)
+            through |= {f"{link}.{k}": p * getattr(mass, k) / value for k, p in powers.items()}
+        if number == "mass":
+            centre = scene.given[link].get("centre_along", 0.0)
+            through = {f"{link}.mass": 1.0, f"{link}.along": centre, f"{link}.inertia": centre**2}
+        return sum(slopes[row][place[k]] * factor for k, factor in through.items())
+
+    keys = [*moved, "coupler.density" if given else "coupler.mass"]
+    found = {}
+    for kind, answer in (
+        ("motion", linkage.motion(theta, *drive)),
+        ("forces", el.rigid_forces(machine, theta, *drive)),
+    ):
+        told = sensitivities(scene, answer, keys)
+        truth = np.array([[exact(row, key) for key in keys] for row in told.answer.split(", ")])
+        gap = np.abs(told.derivative - np.moveaxis(truth, 1, -1))
+        found[kind] = told.error[gap > 0.0], gap[gap > 0.0]
+    return found

@@ -7,7 +7,6 @@ from command_runs import refused
 
 FREE = "--set model.formulation=free_free --set model.modes=1"
 THIN = "smith_1972_101104_thirtysecond_inch"
-WIDTHS = "--tolerance 'crank=0.05 mm' --tolerance 'coupler=0.1 mm'"
 # Command line | words of the complaint.
 REFUSED = """
  | --help
@@ -87,13 +86,6 @@ run-up smith_1972_12_6_12_12 --stall-torque '5 N*m' | --no-load-speed
 run-up slider_crank_example --torque '5 N*m' --no-load-speed 90 | --torque
 run-up slider_crank_example --torque '5 kg' | --torque
 run-up slider_crank_example --duration 'nan s' | duration
-tolerances smith_1972_12_6_12_12 | NAME=WIDTH
-tolerances smith_1972_12_6_12_12 --tolerance crank | NAME=WIDTH
-tolerances smith_1972_12_6_12_12 --tolerance 'crank=3 s' | a length
-tolerances smith_1972_12_6_12_12 --tolerance 'coupler.inertia=3 mm' --forces --speed 3 | inertia
-tolerances smith_1972_12_6_12_12 {widths} --output x12 | forces need a machine
-tolerances smith_1972_12_6_12_12 {widths} --acceleration 3 | --speed
-tolerances smith_1972_12_6_12_12 {widths} --plot band.txt | txt
 balance smith_1972_12_6_12_12 --speed 10 --weights torque=x |
 balance smith_1972_12_6_12_12 --speed 10 --offset '-1 in' |
 balance smith_1972_12_6_12_12 --speed 10 --offset '3 kg' |
@@ -119,7 +111,7 @@ response {rig} --speed 350:360rpm --in bow=0:1 | give one value, no range
 
 @pytest.mark.parametrize("line", REFUSED.strip("\n").splitlines())
 def test_refusal_is_one_line(capsys, line):
-    for short, words in {"{free}": FREE, "{widths}": WIDTHS, "{rig}": THIN}.items():
+    for short, words in {"{free}": FREE, "{rig}": THIN}.items():
         line = line.replace(short, words)
     command, _, words = line.rpartition("|")
     assert words.strip() in refused(capsys, *shlex.split(command))

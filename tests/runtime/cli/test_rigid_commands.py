@@ -6,12 +6,10 @@ import elastolink as el
 import numpy as np
 import pytest
 from command_runs import run, shown, told
-from elastolink.runtime.linkages import tolerances as tolerances_of
 
 SMITH, ENGINE, SHAPER = "smith_1972_12_6_12_12", "slider_crank_example", "quick_return_example"
 LOOSE = "smith_1972_10_8_10_10"
 QUARTER, ANGLES = ("--angles", "0:90:4deg"), np.radians([0.0, 30.0, 60.0, 90.0])
-WIDTHS = ("--tolerance", "crank=0.05 mm", "--tolerance", "coupler=0.1 mm")
 TWO = ("--at", "23=0.05 mm", "--at", "41=0.1 mm")
 COLUMNS = {
     "smith_1972_2122": ("theta3 [deg]", "omega4", "transmission angle from"),
@@ -44,7 +42,6 @@ def line_of(text, start):
         (("harmonics", SMITH, "--of", "theta4"), []),
         (("harmonics", ENGINE, "--of", "torque"), []),
         (("balance", SMITH, "--case", "b", "--offset", "6 in"), []),
-        (("tolerances", SMITH, *WIDTHS, "--output", "omega4"), []),
         (("run-up", SMITH, "--torque", "5 N*m", "--revolutions", "0.5"), ["less than one made"]),
         (("forces", ENGINE, "--speed", "90", "--joint", "34"), ["couple of the slide"]),
         (("forces", ENGINE, "--speed", "90", "--joint", "frame"), []),
@@ -165,8 +162,6 @@ def test_a_rocking_crank_is_told_so(capsys):
     assert "does not turn fully" in shown(capsys, "forces", SMITH, *changed)
     status, _, err = run(capsys, "forces", SMITH, "--fluctuation", "0.02", *changed)
     assert status == 2 and "--fluctuation" in err
-    # Off its folds the sensitivities are finite.
-    assert "theta4" in shown(capsys, "tolerances", SMITH, *WIDTHS, "--set", "links.crank=14 in")
 
 
 def test_a_case_of_balancing_before_and_after(capsys):
@@ -236,33 +231,6 @@ def test_options_of_the_motor_go_before_the_scene(capsys):
     weak = ("--torque", "1e-3 N*m", "--set", "gravity.direction=-90 deg", "--start-angle", "20 deg")
     text = shown(capsys, "run-up", ENGINE, *weak)
     assert "status: stalled: the motor's 0.001 N m cannot start it" in text
-
-
-def test_the_table_of_tolerances_gives_the_worst_and_where(capsys):
-    printed = shown(capsys, "tolerances", SMITH, *WIDTHS, "--monte-carlo", "200")
-    theta = np.radians(np.linspace(0.0, 360.0, 721))
-    linkage = el.load_scene(SMITH).mechanism()
-    found = tolerances_of(linkage, {"crank": 5e-5, "coupler": 1e-4}, theta)
-    for name in ("theta4", "alpha3"):
-        row = found.place(name)
-        top = int(np.argmax(found.worst_case[row]))
-        line = line_of(printed, name)
-        assert f"{found.worst_case[row, top]:.5g}" in line
-        assert f"{np.degrees(theta[top]):.2f}" in line
-        assert f"{found.root_sum_square[row].max():.5g}" in line
-    assert "200 random linkages of 200" in printed
-    assert printed.count("agrees: ") == 2
-
-
-def test_tolerances_of_forces(capsys):
-    more = ("--forces", "--speed", "10", "--acceleration", "3", "--masses", "bars")
-    found = told(
-        capsys, "tolerances", SMITH, *WIDTHS, "--tolerance", "coupler.mass=1 g", *QUARTER, *more
-    )
-    widths = {"crank": 5e-5, "coupler": 1e-4, "coupler.mass": 1e-3}
-    expected = tolerances_of(machine(), widths, ANGLES, 10.0, 3.0, masses="bars")
-    assert found["outputs"][-1] == "shaking_moment"
-    np.testing.assert_allclose(found["sensitivity"], expected.sensitivity, rtol=1e-12, atol=1e-14)
 
 
 def test_clearance_as_text_and_json(capsys):

@@ -87,7 +87,6 @@ WORDS = {
     ("show", SCENE, "--set", "links.crank=0,12 m"): "write a point for the comma: '0.12 m'",
     ("clearance", SCENE, "--clearance", "0.1"): "a number with its unit",
     ("clearance", SCENE, "--at", "34=.1e0"): "a number with its unit",
-    ("tolerances", SCENE, "--tolerance", "crank=0.1"): "a number with its unit",
     ("stability", SCENE, "--speed", "1:1e9:1000000000"): "a count from 2 to 100000",
     ("chart", SCENE, "--speed", "1:2:3"): "give one value, no range",
     (

@@ -58,7 +58,6 @@ RIGHT = {
     "steady_state": {"system": SYSTEM, "speed": 50.0, "method": "auto", "samples": 32},
     "sweep": {"what": "floquet_multipliers", "subject": SYSTEM, "values": {"speed": [50.0]}}
     | {"options": {}},
-    "tolerances": {"linkage_or_machine": FOUR_BAR, "tolerance": {"crank": 1e-4}, "theta": [0.1]},
     "transmission_angle": {"linkage": FOUR_BAR, "band": (0.7, 2.4)},
     "with_modal_damping": {"system": RIG.system(), "ratio": 0.02},
 }

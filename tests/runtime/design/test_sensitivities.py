@@ -208,6 +208,19 @@ def test_lengths_of_a_rig_move_its_folds():
     np.testing.assert_allclose(found.derivative[:, 0], by_difference, rtol=1e-4)
 
 
+def test_forces_are_of_degree_two_in_the_speed_and_one_in_the_masses():
+    """Of a slider-crank in a horizontal plane: masses, inertias and lengths by their degrees."""
+    name = "slider_crank_example"
+    scene = el.load_scene(name)
+    forces = el.rigid_forces(scene.machine(), [0.4, 2.0, 5.0], 150.0)
+    keys = [f"{link}.{k}" for link in ("crank", "coupler", "slider") for k in scene.given[link]]
+    heavy = [k for k in keys if "mass" in k or "inertia" in k]
+    found = sensitivities(scene, forces, heavy)
+    total = np.sum(found.derivative * found.number, axis=-1)
+    assert np.allclose(total, found.value, rtol=0, atol=1e-10 * np.max(np.abs(found.value)))
+    assert found.passed and found.answer.split(", ") == list(forces.values)
+
+
 def test_it_draws(tmp_path):
     scene = coupler()
     answer = el.stability_edges(scene.system(), (77.5, 105.0))
@@ -220,6 +233,8 @@ ANSWER = el.floquet_multipliers(SYSTEM, 90.0)
 HELD = el.natural_frequencies(SYSTEM, 0.0)
 OSCILLATOR = _softening()
 CURVE = el.response_curve(OSCILLATOR, "speed", (0.6, 0.7))
+FOUR_BAR, ENGINE = (el.load_scene(n) for n in ("smith_1972_12_6_12_12", "slider_crank_example"))
+MOTION = FOUR_BAR.mechanism().motion([0.5, 1.0])
 test_refusals = refused(
     sensitivities,
     [
@@ -235,5 +250,9 @@ test_refusals = refused(
         (OSCILLATOR, CURVE, ["speed"], "by"),
         (_softening(force=0.02), CURVE, ["force"], "machine"),
         (SYSTEM, CURVE, ["force"], "machine"),
+        (SYSTEM, MOTION, ["links.crank"], "a Scene"),
+        (ENGINE, MOTION, ["links.crank"], "another machine"),
+        (coupler(), MOTION, ["links.crank"], "another machine"),
+        (FOUR_BAR, MOTION, ["links.crnk"], "by"),
     ],
 )

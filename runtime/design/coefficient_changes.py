@@ -182,6 +182,23 @@ def _even_angles(system: LinearPeriodic) -> Array:
     return np.asarray(system.period * np.arange(float(count)) / count)
 
 
+def moved_systems(
+    machine: LinearPeriodic | Scene, system: LinearPeriodic, name: str, speed: float
+) -> tuple[list[tuple[LinearPeriodic, float]], tuple[Array, Array]]:
+    """Return the system with other values of a number, each with its speed; weights of orders.
+
+    The sums of what these tell by the weights are derivatives by the number, see
+    :func:`differences`.
+    """
+    inner = name in (SPEED, *system.parameters)
+    value = speed if name == SPEED else number_of(machine, system, name)
+    places, step, weights = differences(value, STEP if inner else SMALL_STEP)
+    values = (value + step * places).tolist()
+    if name == SPEED:
+        return [(system, one) for one in values], weights
+    return [(with_number(machine, system, name, one), speed) for one in values], weights
+
+
 def differences(
     value: float, part: float = SMALL_STEP, *, size: float = 1.0, below: bool = False
 ) -> tuple[Array, float, tuple[Array, Array]]:

@@ -28,6 +28,7 @@ from ..periodic.transition import (
     refined,
     segments_from,
 )
+from ..recovery.stresses import StressResult
 from ..rigid.forces import RigidForces
 from ..scenes import Scene
 from ..stability import StabilityEdges
@@ -40,6 +41,7 @@ from .coefficient_changes import (
     varying_parts,
 )
 from .rigid_answers import RigidAnswer, rigid_slopes
+from .stress_rows import StressRow, slopes_in_one_state
 
 if TYPE_CHECKING:
     from ..core.families import Nonlinear
@@ -49,7 +51,7 @@ ComplexArray = NDArray[np.complex128]
 Machine: TypeAlias = "LinearPeriodic | Nonlinear | Scene"
 Answer: TypeAlias = (
     "FloquetMultipliers | StabilityEdges | NaturalFrequencies | SteadyState | ResponseCurve"
-    " | RigidAnswer"
+    " | StressResult | RigidAnswer"
 )
 
 # Round-off of a derivative, over itself, from which multipliers or frequencies count as one; the
@@ -57,6 +59,8 @@ Answer: TypeAlias = (
 # angle over that of the motion, over its peak; and what round-off of a sum's terms leaves, over all
 # of them without signs.
 _COLLIDED, _CANCELLED, _ANGLE, _SUMMED = 1e-6, 1e-6, 2.0, 4.0 * 2.0**-52
+# Angles of a period at which the motion is told whose stresses are differentiated.
+_SAMPLES = 512
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,7 +78,8 @@ class Sensitivities(Result):
     value : ndarray, shape S
         The answer: multipliers ``(*batch, 2n)``; ends of regions ``(regions, 2)`` [rad/s]; natural
         frequencies along their curves ``(nt, count)`` [rad/s]; peaks of coordinates, with their
-        sign, ``(*batch, n)``; of a rigid machine each row that ``answer`` names, at the angles.
+        sign, ``(*batch, n)``; largest stress of each beam, with its sign, ``(beams,)``; of a rigid
+        machine each row that ``answer`` names, at the angles.
     derivative, error : ndarray, shape (*S, k)
         Derivatives, per SI unit of each number, and their errors.  NaN where there is none: of
         ends that are missing, of closed regions, of points where branches cross.
@@ -128,10 +133,10 @@ def sensitivities(
     ----------
     machine : LinearPeriodic or Scene
         What the answer is of.
-    answer : FloquetMultipliers, StabilityEdges, NaturalFrequencies, SteadyState, ResponseCurve,\
-            Motion or RigidForces
+    answer : FloquetMultipliers, StabilityEdges, NaturalFrequencies, SteadyState, StressResult, \
+ResponseCurve, Motion or RigidForces
         What :func:`floquet_multipliers`, :func:`stability_edges`, :func:`natural_frequencies`,
-        :func:`steady_state`, :func:`response_curve`, the mechanism's ``motion`` or
+        :func:`steady_state`, :func:`stress`, :func:`response_curve`, the mechanism's ``motion`` or
         :func:`rigid_forces` returned for it, without changed parameters.
     by : sequence of str
         Numbers: ``speed`` (not of ends), parameters and geometry of the system, and, where the
@@ -177,9 +182,11 @@ def sensitivities(
     source = machine if isinstance(machine, Scene) else system
     changes = coefficient_changes(source, system, by)
     name, differentiate = _KINDS[type(answer)]
+    if isinstance(answer, StressResult):
+        differentiate = partial(differentiate, source)
     value, derivative, error, collided = differentiate(system, answer, changes, rtol)
     number = changes.number.copy()
-    if SPEED in by and isinstance(answer, FloquetMultipliers | SteadyState):
+    if SPEED in by and isinstance(answer, FloquetMultipliers | SteadyState | StressResult):
         speeds = np.unique(answer.speed)
         number[changes.by.index(SPEED)] = speeds[0] if len(speeds) == 1 else np.nan
     return Sensitivities(
@@ -222,8 +229,10 @@ def _of_a_curve(machine: Machine, answer: Any, by: Sequence[str]) -> Sensitiviti
     from .special_points import special_numbers, special_slopes
 
     if not isinstance(answer, ResponseCurve):
-        known = "multipliers, ends of regions, natural frequencies, a steady state, a response"
-        known = f"{known} curve, a rigid motion or its forces"
+        known = (
+            "multipliers, ends of regions, natural frequencies, a steady state, its stresses, a "
+        )
+        known += "response curve, a rigid motion or its forces"
         raise bad("answer", type(answer).__name__, known, "differentiate one of these")
     numbers = special_numbers(machine, answer, by)
     derivative, error = special_slopes(answer, numbers)
@@ -503,7 +512,7 @@ def _of_peaks(system: LinearPeriodic, answer: SteadyState, changes: Changes, rto
         for j in range(n):
             angle, value[i, j] = _peak(motions[i, :, j], answer.period)
             if np.isfinite(angle):
-                rows = partial(_at_angle, j, angle, _ANGLE * errors[i, j])
+                rows = partial(_at_angle, partial(_coordinate, j, angle), _ANGLE * errors[i, j])
                 slope, own, _ = _Adjoint(changes, rows, rtol, angle).solved(equation)
                 derivative[i, j], error[i, j] = slope[0, 0].real, own[0, 0]
     shape = answer.error.shape
@@ -530,10 +539,21 @@ def _peak(values: Array, period: float) -> tuple[float, float]:
     return angle % period, float(np.sum(series * np.exp(order * angle)).real)
 
 
+def _coordinate(index: int, angle: float, equation: Equation) -> Array:
+    """Return a coordinate and its rate as rows of the scaled state, ``(nb, 2, m)``."""
+    m, unit = 2 * equation.size, equation.scale[:, index, None]
+    rate = equation.generator(np.array([angle]))[:, 0, index, :m]
+    return np.stack([unit * np.eye(m)[index], unit * rate], axis=1)
+
+
 def _at_angle(
-    coordinate: int, angle: float, off: float, equation: Equation, matrix: ComplexArray, count: int
+    told: Callable[[Equation], Array],
+    off: float,
+    equation: Equation,
+    matrix: ComplexArray,
+    count: int,
 ) -> _Rows:
-    """Return what a coordinate is at the beginning of a period: of ``(1 - X)^-1 z``.
+    """Return what is told of the state at the beginning of a period: of ``(1 - X)^-1 z``.
 
     A peak's angle is known to ``off`` [rad]: what that does, the derivatives of the rate tell.
     """
@@ -541,11 +561,8 @@ def _at_angle(
     closing = np.eye(m) - matrix[:, :m, :m]
     state = np.ones((len(matrix), 1, m + 1), dtype=complex)
     state[:, 0, :m] = np.linalg.solve(closing, matrix[:, :m, m:])[..., 0]
-    unit = equation.scale[:, coordinate, None]
-    rate = equation.generator(np.array([angle]))[:, 0, coordinate, :m]
-    wanted = np.stack([unit * np.eye(m)[coordinate], unit * rate], axis=1)
     rows = np.zeros((len(matrix), 2, m + 1), dtype=complex)
-    rows[..., :m] = np.linalg.solve(closing.mT, wanted.mT).mT
+    rows[..., :m] = np.linalg.solve(closing.mT, told(equation).mT).mT
     shake = 2.0 * rounding_error(equation, count) * np.linalg.cond(closing)
 
     def finished(found: Effect) -> tuple[NDArray[Any], Array, Array, Array]:
@@ -553,6 +570,37 @@ def _at_angle(
         return found.slope[:, :1], error, found.bulk[:, :1], shake[:, None, None]
 
     return _Rows(rows, np.repeat(state, 2, axis=1), finished)
+
+
+def _of_stresses(
+    machine: LinearPeriodic | Scene,
+    system: LinearPeriodic,
+    answer: StressResult,
+    changes: Changes,
+    rtol: float,
+) -> _Found:
+    """Return the derivatives of the largest stress of each beam in a steady motion."""
+    if answer.period is None:
+        fix = "give stress a speed or a SteadyState"
+        raise bad("answer", "stresses of another motion", "those of a steady motion", fix)
+    # The angle of a peak is to be known as well as its derivatives.
+    fine = steady_state(system, answer.speed, rtol=1e-11, samples=_SAMPLES)
+    equation = equation_of(system, answer.speed, forcing=True)
+    peaks = answer.maxima
+    value, share, told = np.empty(len(peaks)), np.empty((len(peaks), 1)), []
+    slope, error = np.empty((2, len(peaks), len(changes.by)))
+    for i, (link, peak) in enumerate(peaks.items()):
+        row = StressRow(link, peak.place, peak.fibre, answer.method)
+        history, doubt = row.history(system, fine)
+        angle, value[i] = _peak(history, answer.period)
+        told.append((row, angle))
+        share[i] = doubt / abs(value[i])
+        rows = partial(_at_angle, partial(row.rows, system, angle), _ANGLE * share[i, 0])
+        found, own, _ = _Adjoint(changes, rows, rtol, angle).solved(equation)
+        slope[i], error[i] = found[0, 0].real, own[0, 0]
+    direct, rough = slopes_in_one_state(machine, system, fine, told, changes.by)
+    error += rough + share * np.abs(direct)
+    return value, slope + direct, error, np.zeros(value.shape, dtype=bool)
 
 
 def _of_frequencies(
@@ -597,4 +645,5 @@ _KINDS: Mapping[type, tuple[str, Callable[..., _Found]]] = {
     StabilityEdges: ("ends of unstable regions [rad/s]", _of_edges),
     NaturalFrequencies: ("natural frequencies [rad/s]", _of_frequencies),
     SteadyState: ("peaks of the coordinates", _of_peaks),
+    StressResult: ("largest stress of each beam [Pa]", _of_stresses),
 }

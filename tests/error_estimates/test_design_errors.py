@@ -12,7 +12,8 @@ import elastolink as el
 import numpy as np
 import pytest
 from beam_motions import FIRST, of_history, peaks, periodic_motion, rocking_bar, turning_bar
-from elastolink.runtime.core.trigonometric import resampled
+from elastolink.runtime.core.trigonometric import differentiated, interpolated, resampled
+from elastolink.runtime.design import sensitivities
 from elastolink.runtime.design.procedure import effect_of
 from elastolink.runtime.periodic.periodic_motion import quiet_state
 from honesty import over_scenes
@@ -114,6 +115,43 @@ def test_length_effects(rng):
         [exact_maximum(system.with_geometry(frame=value), w) for w in speeds] for value in values
     ]
     return found.error[..., 0], found.maximum[..., 0] / exact - 1.0
+
+
+@over_scenes(7290, few=2, many=40, median=1e3)
+def test_derivatives_of_largest_stresses(rng):
+    """By differences of the reference at the angle of the peak, of two counts and steps.
+
+    Four times their difference tells how well they are known: of sharp resonances to 1e-7, of
+    others to 1e-11.
+    """
+    system, frame, first = rocker(rng)
+    speed = float(random_speeds(rng, first, 1)[0])
+    answer = el.stress(system, speed, stations=STATIONS)
+    found = sensitivities(system, answer, ["speed", "frame"])
+    peak = answer.maximum
+    weights = {1: 5 / 6, 2: -5 / 21, 3: 5 / 84, 4: -5 / 504, 5: 1 / 1260}
+
+    def stress(angle, count, pace, length, order=0):
+        """Return it, or a derivative by the angle, at a speed and a length over the own ones."""
+        other = system.with_geometry(frame=length * frame)
+        motion = periodic_motion(other, pace * speed, count)
+        history = el.stress(other, motion, stations={"bar": [peak.place]}).fibre(peak.fibre)
+        for _ in range(order):
+            history = differentiated(history, other.period)
+        return interpolated(history, other.period)(angle)[:, 0]
+
+    angle = np.array([peak.theta])
+    for _ in range(3):
+        angle -= stress(angle, COUNT, 1.0, 1.0, 1) / stress(angle, COUNT, 1.0, 1.0, 2)
+    exact = np.zeros((2, 2))
+    for row, (count, step) in enumerate([(COUNT, 2e-4), (3 * COUNT // 2, 4e-4)]):
+        for j, weight in weights.items():
+            for side in (j * step, -j * step):
+                moved = [stress(angle, count, *one)[0] for one in ((1 + side, 1), (1, 1 + side))]
+                exact[row] += np.sign(side) * weight / step * np.array(moved)
+    size = np.max(np.abs(exact))
+    error = (found.error[0] * found.number + 4.0 * np.abs(exact[1] - exact[0])) / size
+    return error, (found.derivative[0] * found.number - exact[0]) / size
 
 
 def counted(history):

@@ -208,6 +208,37 @@ def test_lengths_of_a_rig_move_its_folds():
     np.testing.assert_allclose(found.derivative[:, 0], by_difference, rtol=1e-4)
 
 
+def test_stresses_of_beams_by_numbers_of_the_drawing_and_by_dimensions():
+    """A stiffer material at the root of that speed bears as much more; lengths by differences."""
+    scene = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1})
+    system, speed = scene.linear_system(), 23.0
+    answer = el.stress(system, speed)
+    by = ["speed", "material.modulus", "links.crank", "crank.thickness", "damping_ratio"]
+    found = sensitivities(scene, answer, by)
+    assert found.passed and found.value.shape == (3,)
+    assert np.allclose(found.value, [one.value for one in answer.maxima.values()], rtol=1e-7)
+    share = found.derivative * found.number / found.value[:, None]
+    assert np.allclose(0.5 * share[:, 0] + share[:, 1], 1.0, atol=1e-8)
+    # The scene gives areas and second moments: a crank's thickness is the lever of its fibre alone.
+    assert np.allclose(share[1:, 3], 0.0, atol=1e-8) and 0.5 < share[0, 3] <= 1.0
+
+    def longer(factor):
+        moved = {"links.crank": factor * scene.get("links.crank")}
+        return with_numbers(scene, moved).linear_system()
+
+    def damped(factor):
+        return system.with_parameters(damping_ratio=factor * system.parameters["damping_ratio"])
+
+    def largest(moved, peak):
+        motion = el.steady_state(moved, speed, rtol=1e-11, samples=512)
+        return el.stress(moved, motion, stations={peak.link: [peak.place]}).maximum.value
+
+    for row, peak in zip(share, answer.maxima.values(), strict=True):
+        for place, moved in ((2, longer), (4, damped)):
+            ends = [largest(moved(1.0 + step), peak) for step in (1e-5, -1e-5)]
+            assert row[place] == pytest.approx((ends[0] - ends[1]) / (2e-5 * peak.value), rel=1e-6)
+
+
 def test_forces_are_of_degree_two_in_the_speed_and_one_in_the_masses():
     """Of a slider-crank in a horizontal plane: masses, inertias and lengths by their degrees."""
     name = "slider_crank_example"
@@ -235,6 +266,8 @@ OSCILLATOR = _softening()
 CURVE = el.response_curve(OSCILLATOR, "speed", (0.6, 0.7))
 FOUR_BAR, ENGINE = (el.load_scene(n) for n in ("smith_1972_12_6_12_12", "slider_crank_example"))
 MOTION = FOUR_BAR.mechanism().motion([0.5, 1.0])
+BEAMS = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).linear_system()
+RUN_UP = el.stress(BEAMS, el.simulate(BEAMS, 20.0, revolutions=0.1))
 test_refusals = refused(
     sensitivities,
     [
@@ -254,5 +287,6 @@ test_refusals = refused(
         (ENGINE, MOTION, ["links.crank"], "another machine"),
         (coupler(), MOTION, ["links.crank"], "another machine"),
         (FOUR_BAR, MOTION, ["links.crnk"], "by"),
+        (BEAMS, RUN_UP, ["elasticity"], "steady motion"),
     ],
 )

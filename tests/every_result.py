@@ -220,6 +220,9 @@ MAKERS: dict[str, Callable[[], Result]] = {
     ),
     "Margins": lambda: design.margins(el.load_scene(SMITH), 765.0 * RPM, ["links.coupler"]),
     "Diagnosis": lambda: design.diagnose(el.load_scene(SMITH), 765.0 * RPM),
+    "ClosingDamping": lambda: design.closing_damping(
+        coupler(), el.stability_edges(coupler(), (75.0, 85.0))
+    ),
     "Certificate": lambda: design.certify(coupler(1, 0.3), (300.0 * RPM, 302.0 * RPM)),
     "Stabilisation": lambda: design.stabilise(
         el.load_scene(SMITH), (740.0 * RPM, 780.0 * RPM), ["coupler.damping"]

@@ -14,8 +14,8 @@ constrained
 design
     Diagnosis, margins, changes that help, running speeds, run-ups, fatigue, tolerances, fits.
     Material, SpeedProfile, fatigue, quiet_speeds, run_through, running_speed, design.Point,
-    design.certify, design.diagnose, design.identify, design.margins, design.read_points,
-    design.sensitivities, design.stabilise, design.tolerance_bands
+    design.certify, design.closing_damping, design.diagnose, design.identify, design.margins,
+    design.read_points, design.sensitivities, design.stabilise, design.tolerance_bands
 frequencies
     Natural frequencies, critical speeds and resonance curves, of finite elements and exact members.
     campbell, critical_speeds, dynamic_stiffness, natural_frequencies, resonance_curve,

@@ -8,6 +8,7 @@ from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
     from .certificates import certify as certify
+    from .closing import closing_damping as closing_damping
     from .diagnosis import diagnose as diagnose
     from .differentiation import sensitivities as sensitivities
     from .fatigue_life import Material as Material
@@ -30,6 +31,7 @@ __all__ = on_first_use(
         "diagnosis": ("diagnose",),
         "differentiation": ("sensitivities",),
         "certificates": ("certify",),
+        "closing": ("closing_damping",),
         "fatigue_life": ("Material", "fatigue"),
         "identification": ("identify",),
         "nearest_regions": ("margins",),

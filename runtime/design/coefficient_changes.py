@@ -123,13 +123,17 @@ def series_at(table: Array, series: Array) -> Array:
 
 
 def coefficient_changes(
-    machine: LinearPeriodic | Scene, system: LinearPeriodic, by: Sequence[str]
+    machine: LinearPeriodic | Scene,
+    system: LinearPeriodic,
+    by: Sequence[str],
+    held: Mapping[str, float] | None = None,
 ) -> Changes:
     """Return the derivatives of the coefficients of a system, by numbers of the machine.
 
-    These are ``speed``, names of parameters and of geometry of the system, and dotted keys where
-    the machine is a scene.  Coefficients are known in closed form: their derivatives are
-    differences of eighth order, good to some 1e-13.
+    The system may differ from the machine's in parameters that are ``held``.  The numbers are
+    ``speed``, names of parameters and of geometry of the system, and dotted keys where the machine
+    is a scene.  Coefficients are known in closed form: their derivatives are differences of eighth
+    order, good to some 1e-13.
     """
     names = checked_names(machine, [SPEED, *system.parameters, *system.geometry], by)
     theta = _even_angles(system)
@@ -150,6 +154,7 @@ def coefficient_changes(
             moved = _parts(terms, system.scales({**system.parameters, name: values}))
         else:
             made = [with_number(machine, system, name, float(one)) for one in values]
+            made = [one.with_parameters(**(held or {})) for one in made]
             each = [_parts(_terms(one, theta), one.scales(one.parameters)) for one in made]
             moved = {part: np.stack([other[part] for other in each]) for part in parts}
         for weights, target in zip(both, (slopes, rough), strict=True):

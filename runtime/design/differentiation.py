@@ -19,7 +19,12 @@ from ..frequencies.natural import NaturalFrequencies
 from ..linkages.linkage import Motion
 from ..periodic.adjoint import field_weights
 from ..periodic.equation import Equation, equation_of
-from ..periodic.multipliers import FloquetMultipliers, multiplier_order, rounding_error
+from ..periodic.multipliers import (
+    FloquetMultipliers,
+    floquet_multipliers,
+    multiplier_order,
+    rounding_error,
+)
 from ..periodic.periodic_motion import SteadyState, steady_state
 from ..periodic.transition import (
     Method,
@@ -32,6 +37,7 @@ from ..recovery.stresses import StressResult
 from ..rigid.forces import RigidForces
 from ..scenes import Scene
 from ..stability import StabilityEdges
+from .closing import ClosingDamping
 from .coefficient_changes import (
     SPEED,
     Changes,
@@ -51,7 +57,7 @@ ComplexArray = NDArray[np.complex128]
 Machine: TypeAlias = "LinearPeriodic | Nonlinear | Scene"
 Answer: TypeAlias = (
     "FloquetMultipliers | StabilityEdges | NaturalFrequencies | SteadyState | ResponseCurve"
-    " | StressResult | RigidAnswer"
+    " | StressResult | ClosingDamping | RigidAnswer"
 )
 
 # Round-off of a derivative, over itself, from which multipliers or frequencies count as one; the
@@ -78,8 +84,9 @@ class Sensitivities(Result):
     value : ndarray, shape S
         The answer: multipliers ``(*batch, 2n)``; ends of regions ``(regions, 2)`` [rad/s]; natural
         frequencies along their curves ``(nt, count)`` [rad/s]; peaks of coordinates, with their
-        sign, ``(*batch, n)``; largest stress of each beam, with its sign, ``(beams,)``; of a rigid
-        machine each row that ``answer`` names, at the angles.
+        sign, ``(*batch, n)``; largest stress of each beam, with its sign, ``(beams,)``; least
+        damping of each region, ``(regions,)``; of a rigid machine each row that ``answer`` names,
+        at the angles.
     derivative, error : ndarray, shape (*S, k)
         Derivatives, per SI unit of each number, and their errors.  NaN where there is none: of
         ends that are missing, of closed regions, of points where branches cross.
@@ -134,10 +141,10 @@ def sensitivities(
     machine : LinearPeriodic or Scene
         What the answer is of.
     answer : FloquetMultipliers, StabilityEdges, NaturalFrequencies, SteadyState, StressResult, \
-ResponseCurve, Motion or RigidForces
+ClosingDamping, ResponseCurve, Motion or RigidForces
         What :func:`floquet_multipliers`, :func:`stability_edges`, :func:`natural_frequencies`,
-        :func:`steady_state`, :func:`stress`, :func:`response_curve`, the mechanism's ``motion`` or
-        :func:`rigid_forces` returned for it, without changed parameters.
+        :func:`steady_state`, :func:`stress`, :func:`closing_damping`, :func:`response_curve`, the
+        mechanism's ``motion`` or :func:`rigid_forces` returned for it, without changed parameters.
     by : sequence of str
         Numbers: ``speed`` (not of ends), parameters and geometry of the system, and, where the
         machine is a scene, its dotted keys, such as ``links.coupler``: what the scene gives stays
@@ -176,13 +183,14 @@ ResponseCurve, Motion or RigidForces
     if not isinstance(system, LinearPeriodic):
         fix = "take the .system() of a linear scene"
         raise bad("machine", type(machine).__name__, "a Scene or a linear system", fix)
-    if isinstance(answer, StabilityEdges | NaturalFrequencies) and SPEED in by:
-        fix = "leave the speed out"
-        raise bad("by", "speed", "numbers that the answer depends on by itself", fix)
+    own = {SPEED, answer.name} if isinstance(answer, ClosingDamping) else {SPEED}
+    if not isinstance(answer, FloquetMultipliers | SteadyState | StressResult) and own & {*by}:
+        found = ", ".join(sorted(own & {*by}))
+        raise bad("by", found, "numbers that the answer depends on", f"leave the {found} out")
     source = machine if isinstance(machine, Scene) else system
     changes = coefficient_changes(source, system, by)
     name, differentiate = _KINDS[type(answer)]
-    if isinstance(answer, StressResult):
+    if isinstance(answer, StressResult | ClosingDamping):
         differentiate = partial(differentiate, source)
     value, derivative, error, collided = differentiate(system, answer, changes, rtol)
     number = changes.number.copy()
@@ -603,6 +611,36 @@ def _of_stresses(
     return value, slope + direct, error, np.zeros(value.shape, dtype=bool)
 
 
+def _of_closing(
+    machine: LinearPeriodic | Scene,
+    system: LinearPeriodic,
+    answer: ClosingDamping,
+    changes: Changes,
+    rtol: float,
+) -> _Found:
+    """Return the derivatives of the damping at which the highest growth over the speeds is nought.
+
+    The speed is that of the highest growth: the growth does not change with it.
+    """
+    slope = np.full((len(answer.damping), len(changes.by)), np.nan)
+    error = np.full(slope.shape, np.inf)
+    for i in np.flatnonzero(np.isfinite(answer.damping)).tolist():
+        held = {answer.name: float(answer.damping[i])}
+        moved, by = system.with_parameters(**held), [*changes.by, answer.name]
+        own = coefficient_changes(machine, moved, by, held)
+        # At the speed, and as far beside it as it may be off.
+        speeds = answer.speed[i] + np.array([0.0, answer.speed_error[i]])
+        found = floquet_multipliers(moved, speeds, rtol=1e-11)
+        value, by_number, doubt, _ = _of_multipliers(moved, found, own, rtol)
+        growth, doubt = np.real(by_number[:, 0] / value[:, :1]), doubt[0, 0] / np.abs(value[0, 0])
+        slopes = -growth[:, :-1] / growth[:, -1:]
+        slope[i], rate = slopes[0], abs(growth[0, -1])
+        error[i] = (doubt[:-1] + np.abs(slope[i]) * doubt[-1]) / rate
+        error[i] += np.abs(slopes[1] - slopes[0])
+        error[i] += answer.error[i] * np.abs(slope[i] / answer.damping[i])
+    return answer.damping, slope, error, np.isnan(answer.damping)
+
+
 def _of_frequencies(
     system: LinearPeriodic, answer: NaturalFrequencies, changes: Changes, rtol: float
 ) -> _Found:
@@ -646,4 +684,5 @@ _KINDS: Mapping[type, tuple[str, Callable[..., _Found]]] = {
     NaturalFrequencies: ("natural frequencies [rad/s]", _of_frequencies),
     SteadyState: ("peaks of the coordinates", _of_peaks),
     StressResult: ("largest stress of each beam [Pa]", _of_stresses),
+    ClosingDamping: ("least damping that closes a region", _of_closing),
 }

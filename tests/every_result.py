@@ -187,7 +187,6 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "LinkFrequencies": lambda: frequencies.link_frequencies(
         beams(), "coupler", "length", [0.4, 0.5]
     ),
-    "FrequencyExponents": lambda: frequencies.frequency_exponents(beams(), count=1),
     "CriticalSpeeds": lambda: el.critical_speeds(beams(), (30.0, 70.0)),
     "Campbell": lambda: el.campbell(beams(), np.linspace(30.0, 40.0, 4), modes=1),
     "BeamForces": lambda: el.recover(beams(), 20.0, stations=3),

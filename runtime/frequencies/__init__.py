@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from .frames import member_matrices as member_matrices
     from .held import buckling_speed as buckling_speed
     from .link_study import LinkFrequencies as LinkFrequencies
-    from .link_study import frequency_exponents as frequency_exponents
     from .link_study import link_frequencies as link_frequencies
     from .link_study import pinned_frequency as pinned_frequency
     from .natural import NaturalFrequencies as NaturalFrequencies
@@ -39,7 +38,6 @@ __all__ = on_first_use(
         "held": ("buckling_speed",),
         "link_study": (
             "LinkFrequencies",
-            "frequency_exponents",
             "link_frequencies",
             "pinned_frequency",
         ),

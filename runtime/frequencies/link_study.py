@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -24,8 +23,6 @@ from .held import held_frequencies, mean_frequencies
 # Powers of thickness and width in area and second moment of a flat bar.
 _POWERS: Mapping[str, tuple[int, int]] = {"thickness": (1, 3), "width": (1, 1)}
 QUANTITIES = ("length", *_POWERS)
-# Relative steps of the differences.
-_STEPS = (0.02, 0.01)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,34 +67,6 @@ class LinkFrequencies(Result):
         ax.set(ylabel="natural frequency [rad/s]", ylim=(0.0, top))
         ax.legend(fontsize=8)
         return ax
-
-
-@dataclass(frozen=True, kw_only=True)
-class FrequencyExponents(Result):
-    """How the mean natural frequencies depend on each number of each link.
-
-    The error is that of each exponent, ``(rows, count)``: of the differences, and of the means.
-    """
-
-    rows: tuple[str, ...]  # what varies: ``"coupler length"`` ..., lumped masses as ``"mass at B"``
-    # ``d ln(mean)/d ln(quantity)``, (rows, count): -2 where a frequency is all that of one pinned
-    # link and the quantity its length
-    exponent: Array
-    mean: Array  # the means [rad/s], (count,)
-
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("exponent", "error"), ("row", "mode")),
-        "mean": ("mode",),
-    }
-
-    def table(self) -> str:
-        """Return the exponents as a Markdown table."""
-        modes = range(1, self.exponent.shape[1] + 1)
-        lines = ["| | " + " | ".join(f"mode {k}" for k in modes) + " |"]
-        lines.append("|---" * (len(modes) + 1) + "|")
-        for row, values in zip(self.rows, self.exponent, strict=True):
-            lines.append(f"| {row} | " + " | ".join(f"{v:+.3f}" for v in values) + " |")
-        return "\n".join(lines)
 
 
 def pinned_frequency(section: Section, length: float) -> float:
@@ -185,51 +154,6 @@ def link_frequencies(
     )
 
 
-def frequency_exponents(system: LinearPeriodic, *, count: int = 4) -> FrequencyExponents:
-    """Return how a linkage's means depend on every length, section and lumped mass."""
-    structure = required_structure(system)
-    names = [beam.name for beam in structure.beams]
-    require_whole("count", count, 1, system.size)
-    mean, own_error, _, _ = _means(system, count)
-    rows, exponent, error = [], [], []
-    # What changes, how, and its own value.
-    changes: list[tuple[str, Callable[[float], LinearPeriodic], float]] = [
-        (f"{name} length", partial(_changed, system, name, "length"), system.geometry[name])
-        for name in (*names, "frame")
-        if name in system.geometry
-    ]
-    changes += [
-        (f"{name} {quantity}", partial(_changed, system, name, quantity), 1.0)
-        for name in names
-        for quantity in _POWERS
-    ]
-    changes += [
-        (f"mass at {node.name}", partial(_heavier, system, node.name), 1.0)
-        for node in structure.nodes
-        if node.mass and not {"x", "y"} <= set(node.held)
-    ]
-    for row, change, own in changes:
-        # Symmetric differences of the logarithms at two steps, extrapolated.
-        slopes = []
-        for step in _STEPS:
-            ends = [np.log(_means(change(own * np.exp(sign * step)), count)[0]) for sign in (1, -1)]
-            slopes.append((ends[0] - ends[1]) / (2.0 * step))
-        coarse, fine = slopes
-        best = fine + (fine - coarse) / 3.0
-        rows.append(row)
-        exponent.append(best)
-        error.append(np.abs(best - fine) + 2.0 * own_error / mean / _STEPS[1])
-    return FrequencyExponents(
-        method="symmetric differences of the means, extrapolated",
-        error=np.stack(error),
-        error_norm="absolute, of each exponent",
-        provenance=provenance(system.provenance),
-        rows=tuple(rows),
-        exponent=np.stack(exponent),
-        mean=mean,
-    )
-
-
 def _means(system: LinearPeriodic, count: int) -> tuple[Array, Array, Array, Array]:
     """Return means, their errors, and least and largest values over the period."""
     mean, error = mean_frequencies(system, count, 1e-8)
@@ -256,17 +180,5 @@ def _changed(system: LinearPeriodic, link: str, quantity: str, value: float) -> 
         changed = replace(beam, section=made)
         beams = tuple(changed if one is beam else one for one in structure.beams)
         return replace(structure, beams=beams)
-
-    return system.remeshed(change)
-
-
-def _heavier(system: LinearPeriodic, name: str, factor: float) -> LinearPeriodic:
-    """Return the system with the lumped mass of a node times a factor."""
-
-    def change(structure: Structure) -> Structure:
-        node = structure.node(name)
-        changed = replace(node, mass=node.mass * factor)
-        nodes = tuple(changed if one is node else one for one in structure.nodes)
-        return replace(structure, nodes=nodes)
 
     return system.remeshed(change)

@@ -10,7 +10,6 @@ from elastolink.runtime.core.results import Result
 # Whose error estimate is that of another solver, which is called: the second name.
 DELEGATED = {
     "driving_torque": "rigid_forces",
-    "frequency_exponents": "natural_frequencies",
     "link_frequencies": "natural_frequencies",
     "pin_forces": "rigid_forces",
     "shaking_force": "rigid_forces",

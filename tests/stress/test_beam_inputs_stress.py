@@ -65,7 +65,6 @@ CALLS = (
     ),
     (frequencies.draw_mode, {"system": system, "theta": 0.0, "mode": 1}),
     (frequencies.draw_modes, {"system": system, "theta?": [0.0], "modes": 1}),
-    (frequencies.frequency_exponents, {"system": system, "count": 1}),
     (
         frequencies.link_frequencies,
         {"system": system, "link": "coupler", "quantity": "length", "value": [0.33], "count": 1},
@@ -171,7 +170,7 @@ def test_pieces_and_beams_without_stretch_are_refused(bad):
 
 def test_what_is_refused_is_good_otherwise():
     """The values that each case starts from are fine: it is the one argument that is refused."""
-    slow = {"frequency_exponents", "campbell", "critical_speeds"}
+    slow = {"campbell", "critical_speeds"}
     for call, given in CALLS:
         if call.__name__ not in slow and "motion" not in given:
             call(**{key.rstrip("?"): made(value) for key, value in given.items()})

@@ -34,7 +34,6 @@ SLOW = {
         "Campbell",
         "Certificate",
         "CoexistingMotions",
-        "FrequencyExponents",
         "Identification",
         "QuietSpeeds",
         "RunningSpeed",

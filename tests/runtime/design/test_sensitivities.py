@@ -69,6 +69,16 @@ def test_a_stiffer_coupler_and_a_lighter_machine_are_one_and_the_same():
         assert np.allclose(sum(share[name] for name in masses), -0.5, atol=1e-9)
 
 
+def test_widths_and_lumped_masses_together_change_no_frequency_of_a_linkage():
+    """By dimensions: stiffnesses and masses grow alike (Aannaque 9.2)."""
+    scene = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1})
+    answer = el.natural_frequencies(scene.linear_system(), [0.4, 2.0], 3)
+    links = ("crank", "coupler", "follower")
+    wide = [f"{link}.{number}" for link in links for number in ("area", "second_moment")]
+    found = sensitivities(scene, answer, [*wide, "joints.B.mass", "joints.C.mass"])
+    assert np.allclose(np.sum(found.relative, axis=-1), 0.0, rtol=0, atol=1e-10)
+
+
 def test_geometry_of_a_system_that_has_some():
     system = el.load_scene("beale_1992_flexible_rod").system()
     answer = el.floquet_multipliers(system, 20.0, rtol=1e-12)

@@ -76,6 +76,13 @@ class Diagnosis(Result):
             width = max(near.width[i], 2e-3 * near.speed)
             ax.barh(name, width * RPM, left=left * RPM, height=0.5, color="#c05a1f")
         ax.use_sticky_edges = False
+        if near is None or not near.region:
+            told = "no unstable region in this range" if near else "regions were not looked for"
+            words: Any = {"ha": "center", "color": "0.4", "backgroundcolor": "white"}
+            ax.text(0.5, 0.5, told, transform=ax.transAxes, **words)
+            ax.set_yticks([])
+        if near is not None:
+            ax.set_xlim(near.window[0] * RPM, near.window[1] * RPM)
         ax.axvline(self.speed * RPM, color="0.2", linestyle="--", linewidth=0.9)
         ax.set(xlabel="crank speed [rpm]; dashed: running speed, bars: unstable regions")
         return ax

@@ -101,3 +101,13 @@ test_refusals = refused(
         (ROD, 100.0, ["rod.bending_stiffness"], "times per revolution"),
     ],
 )
+
+
+def test_a_picture_of_a_machine_without_regions_says_so():
+    near, none = (
+        diagnose(coupler(**{"coupler.damping": damping}), 700.0 * RPM) for damping in (0.0, 3.0)
+    )
+    assert none.stable and not none.nearest.region and not near.plot().texts
+    ax = none.plot()
+    assert [one.get_text() for one in ax.texts] == ["no unstable region in this range"]
+    assert ax.get_xlim() == pytest.approx((490.0, 910.0))

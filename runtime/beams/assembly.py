@@ -56,11 +56,14 @@ def rotation_slope(size: int) -> dict[str, Array]:
 
 
 def in_own_axes(values: Array, c: Array, s: Array) -> Array:
-    """Return coordinates of an element ``(nt, n)`` in its own axes, by cosine and sine."""
+    """Return coordinates of an element ``(..., n)`` in its own axes, by cosine and sine.
+
+    With the sine's other sign rows by its own axes become rows by the fixed ones.
+    """
     found = values.copy()
     for x, y in ((0, 1), (3, 4)):
-        found[:, x] = c * values[:, x] + s * values[:, y]
-        found[:, y] = c * values[:, y] - s * values[:, x]
+        found[..., x] = c * values[..., x] + s * values[..., y]
+        found[..., y] = c * values[..., y] - s * values[..., x]
     return found
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
-from types import MappingProxyType, ModuleType
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -28,14 +28,12 @@ Array: TypeAlias = NDArray[np.float64]
 KINDS = ("cubic", "internal_node", "curvature", "timoshenko")
 
 _END_VALUES = ("u1", "v1", "r1", "u2", "v2", "r2")
-NODAL_VALUES: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {
-        "cubic": _END_VALUES,
-        "internal_node": (*_END_VALUES, "v3", "r3"),
-        "curvature": (*_END_VALUES, "k1", "k2"),
-        "timoshenko": _END_VALUES,
-    }
-)
+NODAL_VALUES: Mapping[str, tuple[str, ...]] = {
+    "cubic": _END_VALUES,
+    "internal_node": (*_END_VALUES, "v3", "r3"),
+    "curvature": (*_END_VALUES, "k1", "k2"),
+    "timoshenko": _END_VALUES,
+}
 _ALONG = ("u", "strain")
 _ACROSS = ("v", "slope", "curvature", "third")
 _SECTION = ("rotation", "rotation_slope", "rotation_second")

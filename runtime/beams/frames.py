@@ -16,7 +16,7 @@ from ..core.inputs import are_finite, names_problems, require_mapping
 from ..linkages.linkage import LinkMotion
 from .assembly import Array
 from .section import Section
-from .structure import Node, Structure, beams_between, node_value_problems
+from .structure import Node, Structure, beams_between, missing_problems, node_value_problems
 
 
 def frame(
@@ -78,8 +78,6 @@ def frame(
     _check(places, members, sections, [*supports, *pins, *(nodes or {})])
     ends = {name: (complex(*places[a]), complex(*places[b])) for name, (a, b) in members.items()}
     lengths = {name: abs(end - start) for name, (start, end) in ends.items()}
-    if not isinstance(sections, Mapping):
-        sections = dict.fromkeys(members, sections)
     beams = beams_between(members, lengths, sections, elements, kind)
     made = []
     for letter in places:
@@ -127,12 +125,7 @@ def _check_form(
         if names_problems("", pair) or len(pair) != 2:
             found, fix = repr(pair), 'say ("A", "B")'
             problems.append(Problem(f"member {name}", found, "the names of two nodes", fix))
-    if isinstance(elements, Mapping):
-        missing = sorted(set(members) - set(elements))
-        if missing:
-            found = f"none for {', '.join(missing)}"
-            problems.append(Problem("elements", found, "one each", "add them"))
-    refuse(problems)
+    refuse(problems + missing_problems("elements", elements, members))
 
 
 def _check(
@@ -148,13 +141,7 @@ def _check(
         if strange:
             fix = "give it a place, or correct the name"
             problems.append(Problem(word, f"node {', '.join(strange)}", "known nodes", fix))
-    if isinstance(sections, Mapping):
-        missing = sorted(set(members) - set(sections))
-        if missing:
-            problems.append(
-                Problem("sections", f"none for {', '.join(missing)}", "one each", "add")
-            )
-    refuse(problems)
+    refuse(problems + missing_problems("sections", sections, members))
 
 
 def without_stretching(system: LinearPeriodic) -> LinearPeriodic:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,9 +16,6 @@ from ..core.inputs import are_finite
 from .assembly import AngleArrays, Array, in_own_axes, rotation, turned
 from .elements import placed_shapes
 from .structure import Freedoms, Structure
-
-if TYPE_CHECKING:
-    from .assembly import AngleArrays, Array
 
 
 def relative_deflection(arrays: AngleArrays, slide: Slide | None, theta: Array) -> Array:
@@ -31,9 +29,7 @@ def relative_deflection(arrays: AngleArrays, slide: Slide | None, theta: Array) 
     for placed in arrays.structure.elements:
         _, across = placed_shapes(placed, np.array([0.5, 1.0]))
         c, s = motion.products[placed.beam.name][:, 1:3].T[..., None]
-        local = np.tile(across, (len(theta), 1, 1))
-        for x, y in ((0, 1), (3, 4)):
-            local[:, :, x], local[:, :, y] = -s * across[:, y], c * across[:, y]
+        local = in_own_axes(np.tile(across, (len(theta), 1, 1)), c, -s)
         full = np.zeros((len(theta), 2, arrays.count))
         full[:, :, placed.indices] = local / placed.beam.length
         found.append(full[:, :, arrays.free])
@@ -102,16 +98,12 @@ class AxialForces:
         for e, (placed, own) in enumerate(arrays.local):
             c, s = motion.products[placed.beam.name][:, 1:3].T
             mass = placed.beam.section.mass_per_length * placed.length
-            ends = []
-            for x, y in ((0, 1), (3, 4)):
-                pair = field[:, placed.indices[[x, y]]]
-                ends.append(mass * (c * pair[:, 0] + s * pair[:, 1]))
+            first, last = mass * in_own_axes(field[:, placed.indices], c, s)[:, [0, 3]].T
             local = in_own_axes(q[:, placed.indices], c, s)
             # The element is held at its first end by minus its axial force there.
-            consistent = ends[0] / 3.0 + ends[1] / 6.0
-            found[:, e, 0] = -(local @ own.stiffness[0] + consistent)
-            found[:, e, 1] = ends[0]
-            found[:, e, 2] = (ends[1] - ends[0]) / 2.0
+            found[:, e, 0] = -(local @ own.stiffness[0] + first / 3.0 + last / 6.0)
+            found[:, e, 1] = first
+            found[:, e, 2] = (last - first) / 2.0
         return found
 
     def _at_rest(self, source: str, theta: Array) -> tuple[Array, Array]:
@@ -166,7 +158,7 @@ def _node_forces(arrays: AngleArrays) -> Array:
     found = np.zeros(arrays.count)
     for node in arrays.structure.nodes:
         for part, value in zip(("x", "y"), node.force, strict=True):
-            found[arrays.structure.freedoms.at(node.name, part)] += value
+            found[arrays.structure.freedoms.places[node.name, part]] += value
     return found
 
 
@@ -216,7 +208,6 @@ def _strains(arrays: AngleArrays, springs: Array, theta: Array) -> Array:
     elements = arrays.structure.elements
     longest = max(placed.length for placed in elements)
     motion = arrays.motion(theta)
-    parts = rotation(6)
     rows = []
     for placed in elements:
         half = placed.length / 2.0
@@ -224,10 +215,9 @@ def _strains(arrays: AngleArrays, springs: Array, theta: Array) -> Array:
         own[0, [0, 3]] = -1.0, 1.0
         own[1, [2, 5]] = -longest, longest
         own[2, [1, 4, 2, 5]] = -1.0, 1.0, -half, -half
-        c, s = motion.products[placed.beam.name][:, 1:3].T
-        turned = parts["1"] + c[:, None, None] * parts["c"] + s[:, None, None] * parts["s"]
+        c, s = motion.products[placed.beam.name][:, 1:3].T[..., None]
         placed_rows = np.zeros((len(theta), 3, arrays.count))
-        placed_rows[:, :, placed.indices[:6]] = own @ turned
+        placed_rows[:, :, placed.indices[:6]] = in_own_axes(np.tile(own, (len(theta), 1, 1)), c, -s)
         rows.append(placed_rows[:, :, arrays.free])
     sprung = np.eye(len(springs))[springs > 0.0]
     rows.append(np.broadcast_to(sprung, (len(theta), *sprung.shape)))
@@ -329,8 +319,10 @@ def linear_system(
     free = arrays.free
     slide = Slide(arrays) if structure.sliding else None
     require_held(arrays, springs[free], slide)
-    axial = AxialForces(arrays, np.diag(springs[free]), lumped, gravity, slide)
-    acting = _sources(structure, lumped, gravity)
+    mass, stiffness = np.diag(lumped[free]), np.diag(springs[free])
+    axial = AxialForces(arrays, stiffness, lumped, gravity, slide)
+    at_nodes = [("M", "lumped_mass", mass), ("K", None, stiffness)]
+    at_nodes.append(("C", None, np.diag(dampers[free])))
     terms = [
         Term("M", "distributed_mass", partial(arrays.sum, "mass")),
         Term("K", "elasticity", arrays.stiffness),
@@ -338,10 +330,9 @@ def linear_system(
         Term("g", "distributed_mass", partial(arrays.inertia_force, derivative=1)),
     ]
     terms += _form_terms(arrays, form)
-    mass, stiffness = np.diag(lumped[free]), np.diag(springs[free])
-    terms += _constant_terms(mass, stiffness, np.diag(dampers[free]))
+    terms += [Term(*found) for found in at_nodes if np.any(found[2])]
     terms += _damping_terms(arrays, rayleigh, mass, stiffness)
-    terms += _loading_terms(axial, acting, geometric_stiffness)
+    terms += _loading_terms(axial, geometric_stiffness)
     if slide is not None:
         terms = slid_terms(terms, slide, form=form)
     if not structure.moving:
@@ -439,21 +430,11 @@ def lumped_values(
             ("rotation", turning, node.inertia),
         )
         for part, name, inertia in inertias:
-            place = freedoms.at(node.name, name)
+            place = freedoms.places[node.name, name]
             mass[place] += inertia
             springs[place] += node.stiffness.get(part, 0.0)
             dampers[place] += node.damping.get(part, 0.0)
     return mass, springs, dampers
-
-
-def _sources(structure: Structure, lumped: Array, gravity: tuple[float, float]) -> list[str]:
-    """Return what loads the beams: their own mass, lumped masses, constant loads."""
-    found = ["distributed"] if structure.moving else []
-    if structure.moving and np.any(lumped):
-        found.append("lumped")
-    if any(gravity) or any(any(node.force) for node in structure.nodes):
-        found.append("static")
-    return found
 
 
 def _form_terms(arrays: AngleArrays, form: str) -> list[Term]:
@@ -469,11 +450,6 @@ def _form_terms(arrays: AngleArrays, form: str) -> list[Term]:
 def _minus_mass_slope(arrays: AngleArrays, theta: Array) -> Array:
     half = arrays.sum("mass slope", theta)
     return -half - np.swapaxes(half, -1, -2)
-
-
-def _constant_terms(mass: Array, springs: Array, dampers: Array) -> list[Term]:
-    found = [("M", "lumped_mass", mass), ("K", None, springs), ("C", None, dampers)]
-    return [Term(array, scale, value) for array, scale, value in found if np.any(value)]
 
 
 def _damping_terms(
@@ -495,21 +471,19 @@ def _damping_terms(
     return found
 
 
-def _loading_terms(axial: AxialForces, acting: list[str], stiffening: bool) -> list[Term]:
+def _loading_terms(axial: AxialForces, stiffening: bool) -> list[Term]:
     """Return forces of lumped masses and constant loads, and geometric stiffness of all."""
-    found = []
-    scales = {"distributed": "distributed_mass", "lumped": "lumped_mass", "static": None}
-    if "lumped" in acting:
-        found.append(Term("f", "lumped_mass", partial(axial.force, "lumped")))
-        found.append(Term("g", "lumped_mass", partial(_lumped_impulse, axial)))
-    if "static" in acting:
+    found, stiff = [], []
+    if axial.arrays.structure.moving:
+        stiff.append(Term("Kg", "distributed_mass", partial(axial.geometric, "distributed"), 2))
+        if np.any(axial.lumped):
+            found.append(Term("f", "lumped_mass", partial(axial.force, "lumped")))
+            found.append(Term("g", "lumped_mass", partial(_lumped_impulse, axial)))
+            stiff.append(Term("Kg", "lumped_mass", partial(axial.geometric, "lumped"), 2))
+    if any(axial.gravity) or np.any(axial.node_forces):
         found.append(Term("p", None, partial(axial.force, "static")))
-    if stiffening:
-        found += [
-            Term("Kg", scales[s], partial(axial.geometric, s), power=0 if s == "static" else 2)
-            for s in acting
-        ]
-    return found
+        stiff.append(Term("Kg", None, partial(axial.geometric, "static")))
+    return found + stiff if stiffening else found
 
 
 def _lumped_impulse(axial: AxialForces, theta: Array) -> Array:
@@ -519,7 +493,7 @@ def _lumped_impulse(axial: AxialForces, theta: Array) -> Array:
 
 def _frozen(term: Term) -> Term:
     """Return the term of a structure that does not move as a constant one."""
-    return Term(term.array, term.scale, term(np.zeros(1))[0], term.power)
+    return replace(term, function=term(np.zeros(1))[0])
 
 
 # What a term becomes: its new array, and whether Z or Z' stands to its left and right, or whether
@@ -558,13 +532,9 @@ class Slide:
         self.carried = structure.beam(str(node.slides_on))
         self.guided = next(beam for beam in structure.beams if node.name in (beam.start, beam.end))
         self.along = 0.0 if self.guided.start == node.name else self.guided.length
-        place = {full: free for free, full in enumerate(arrays.free)}
-        self.x, self.y = (place[structure.freedoms.at(node.name, part)] for part in ("x", "y"))
-        self.elements = [
-            (placed, np.array([place.get(i, -1) for i in placed.indices]))
-            for placed in structure.elements
-            if placed.beam is self.carried
-        ]
+        places = [structure.freedoms.places[node.name, part] for part in ("x", "y")]
+        self.x, self.y = np.searchsorted(arrays.free, places)
+        self.elements = [placed for placed in structure.elements if placed.beam is self.carried]
 
     def place(self, theta: Array) -> tuple[Array, Array]:
         """Return the rigid place x1 of the pin on the beam [m] and its derivative."""
@@ -578,37 +548,33 @@ class Slide:
     def rows(self, theta: Array, derivative: int) -> tuple[Array, Array]:
         """Return displacements along and across the beam at the pin, or derivatives by the place.
 
-        Rows ``(nt, n)`` for the coordinates at the ends of the elements in the beam's axes.
+        Rows ``(nt, N)`` for all coordinates, those at the ends of the elements in the beam's axes.
         """
         place, _ = self.place(theta)
-        ends = np.array([placed.start for placed, _ in self.elements])
+        ends = np.array([placed.start for placed in self.elements])
         number = np.clip(np.searchsorted(ends, place, side="right") - 1, 0, len(ends) - 1)
-        found = np.zeros((2, len(theta), len(self.arrays.free) + 1))
+        along, across = np.zeros((2, len(theta), self.arrays.count))
         for k in np.unique(number):
-            placed, indices = self.elements[k]
-            here = np.flatnonzero(number == k)
+            placed, here = self.elements[k], np.flatnonzero(number == k)
             xi = np.clip((place[here] - placed.start) / placed.length, 0.0, 1.0)
-            for part, shape in zip(found, placed_shapes(placed, xi, derivative), strict=True):
-                part[here[:, None], indices] += shape
-        # Held coordinates have met in the last column.
-        return found[0, :, :-1], found[1, :, :-1]
+            where = np.ix_(here, placed.indices)
+            along[where], across[where] = placed_shapes(placed, xi, derivative)
+        return along, across
 
     def turned(self, row: Array, theta: Array, slope: bool = False) -> Array:
-        """Return a row of :meth:`rows` by the fixed axes, or its derivative by the beam's angle."""
+        """Return a row of :meth:`rows` by the fixed axes, or its derivative by the beam's angle.
+
+        Of the free coordinates alone, ``(nt, n)``.
+        """
         c, s = self._axis(theta)
         if slope:
             c, s = -s, c
         found = np.zeros_like(row) if slope else row.copy()
-        for _, indices in self.elements:
-            for x, y in (indices[0:2], indices[3:5]):
-                # An end that the support holds has no coordinate.
-                along = row[:, x] if x >= 0 else 0.0
-                across = row[:, y] if y >= 0 else 0.0
-                if x >= 0:
-                    found[:, x] = c * along - s * across
-                if y >= 0:
-                    found[:, y] = s * along + c * across
-        return found
+        for placed in self.elements:
+            turning = [0, 1, 3, 4]
+            by_axes = in_own_axes(row[:, placed.indices], c, -s)
+            found[:, placed.indices[turning]] = by_axes[:, turning]
+        return found[:, self.arrays.free]
 
     def basis(self, theta: Array) -> Array:
         """Return Z at crank angles, ``(nt, n, n - 1)``."""
@@ -672,19 +638,15 @@ def slid_terms(terms: Iterable[Term], slide: Slide, *, form: str) -> list[Term]:
     found = []
     for term in terms:
         if term.array not in _RULES:
-            found.append(_changed(term, term.array, partial(_slid_vector, term, slide)))
+            found.append(replace(term, function=partial(_slid_vector, term, slide)))
             continue
         for array, left, right in _RULES[term.array]:
             if form == "full" or "Z'" not in (left, right):
                 between = partial(_slid_matrix, term, slide, (left, right))
-                found.append(_changed(term, array, between))
+                found.append(replace(term, array=array, function=between))
         if form != "full" and term.array == "M":
             found.append(Term("C", term.scale, partial(_minus_slope, term, slide), term.power + 1))
     return found
-
-
-def _changed(term: Term, array: str, function: partial[Array]) -> Term:
-    return Term(array, term.scale, function, term.power)
 
 
 def _slid_vector(term: Term, slide: Slide, theta: Array) -> Array:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
-from types import MappingProxyType
 from typing import Any
 
 from ..core.errors import Problem, bad, refuse
@@ -16,26 +15,23 @@ from ..linkages.linkage import LinkMotion
 from .assembly import Array
 from .linear import linear_system
 from .section import Section
-from .structure import DIRECTIONS, Node, Structure, beams_between, node_value_problems
+from .structure import (
+    DIRECTIONS,
+    Node,
+    Structure,
+    beams_between,
+    missing_problems,
+    node_value_problems,
+)
 
-# The links that bend, with the joints at their ends; the first is the origin of the link's axes.
-BARS: Mapping[type[Linkage], Mapping[str, tuple[str, str]]] = MappingProxyType(
-    {
-        FourBar: {"crank": ("A", "B"), "coupler": ("B", "C"), "follower": ("D", "C")},
-        SliderCrank: {"crank": ("A", "B"), "coupler": ("B", "C")},
-        QuickReturn: {"crank": ("A", "B"), "rod": ("D", "C")},
-    }
-)
 # The crank turns with its shaft; pins to the frame hold a place; a slider moves along x.
-_HELD: Mapping[type[Linkage], Mapping[str, tuple[str, ...]]] = MappingProxyType(
-    {
-        FourBar: {"A": DIRECTIONS, "D": ("x", "y")},
-        SliderCrank: {"A": DIRECTIONS, "C": ("y",)},
-        QuickReturn: {"A": DIRECTIONS, "D": ("x", "y")},
-    }
-)
+_HELD: Mapping[type[Linkage], Mapping[str, tuple[str, ...]]] = {
+    FourBar: {"A": DIRECTIONS, "D": ("x", "y")},
+    SliderCrank: {"A": DIRECTIONS, "C": ("y",)},
+    QuickReturn: {"A": DIRECTIONS, "D": ("x", "y")},
+}
 # Pins that slide along a bar.
-_SLIDING: Mapping[type[Linkage], Mapping[str, str]] = MappingProxyType({QuickReturn: {"B": "rod"}})
+_SLIDING: Mapping[type[Linkage], Mapping[str, str]] = {QuickReturn: {"B": "rod"}}
 
 
 def beam_linkage(
@@ -76,21 +72,27 @@ def beam_linkage(
     >>> print(structure.size, structure.labels[:4])
     9 ('B.x', 'B.y', 'B.crank', 'B.coupler')
     """
-    bars = BARS.get(type(linkage))
-    if bars is None:
+    if type(linkage) not in _HELD:
         found = type(linkage).__name__
-        expected = f"one of {', '.join(kind.__name__ for kind in BARS)}"
+        expected = f"one of {', '.join(known.__name__ for known in _HELD)}"
         raise bad("beam_linkage", found, expected, "make a Structure from its beams and nodes")
     linkage.require_full_turn()
+    # The links that bend: a slider and a block have one joint.
+    bars = {name: (ends[0], ends[1]) for name, ends in linkage.bars.items() if len(ends) == 2}
     _check_names(bars, sections, elements, joint_masses, nodes)
     lengths = {name: float(linkage.lengths[name]) for name in bars}
     beams = beams_between(bars, lengths, sections, elements, kind)
-    made = tuple(
-        _node(letter, type(linkage), joint_masses or {}, nodes or {}) for letter in _letters(bars)
-    )
+    made = []
+    for letter in _letters(bars):
+        values: dict[str, Any] = {
+            "held": _HELD[type(linkage)].get(letter, ()),
+            "slides_on": _SLIDING.get(type(linkage), {}).get(letter),
+            "mass": (joint_masses or {}).get(letter, 0.0),
+        }
+        made.append(Node(name=letter, **{**values, **(nodes or {}).get(letter, {})}))
     return Structure(
         beams=beams,
-        nodes=made,
+        nodes=tuple(made),
         configuration=partial(_configuration, linkage, tuple(bars)),
         provenance={**(provenance or {}), **linkage.provenance},
     )
@@ -176,20 +178,6 @@ def _letters(bars: Mapping[str, tuple[str, str]]) -> tuple[str, ...]:
     return tuple(sorted({letter for pair in bars.values() for letter in pair}))
 
 
-def _node(
-    letter: str,
-    linkage: type[Linkage],
-    masses: Mapping[str, float],
-    given: Mapping[str, Mapping[str, Any]],
-) -> Node:
-    values: dict[str, Any] = {
-        "held": _HELD[linkage].get(letter, ()),
-        "slides_on": _SLIDING.get(linkage, {}).get(letter),
-        "mass": masses.get(letter, 0.0),
-    }
-    return Node(name=letter, **{**values, **given.get(letter, {})})
-
-
 def _configuration(
     linkage: Linkage, names: tuple[str, ...], theta: Array
 ) -> Mapping[str, LinkMotion]:
@@ -221,8 +209,5 @@ def _check_names(
         if strange:
             expectation = f"some of {sorted(expected)}"
             problems.append(Problem(name, ", ".join(strange), expectation, "correct the name"))
-    for name in ("sections", "elements"):
-        missing = sorted(links - known[name][0])
-        if missing:
-            problems.append(Problem(name, f"none for {', '.join(missing)}", "one each", "add it"))
-    refuse(problems)
+    problems += missing_problems("sections", sections, links)
+    refuse(problems + missing_problems("elements", elements, links))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from itertools import pairwise
@@ -64,10 +64,6 @@ class Freedoms:
     def free_labels(self) -> tuple[str, ...]:
         """Names of the free coordinates."""
         return tuple(self.all[i].label for i in self.free)
-
-    def at(self, node: str, part: str) -> int:
-        """Return the place of a coordinate of a node: ``x``, ``y``, or a beam's name (rotation)."""
-        return self.places[node, part]
 
 
 class _Numbering:
@@ -367,8 +363,7 @@ class Structure:
             require_kind(what, given, (tuple, list), "give them in a row")
             for one in given:
                 require_kind(what, one, kind, f"make each with {kind.__name__}")
-        problems = _name_problems(self.beams, self.nodes)
-        refuse(problems)
+        refuse(_name_problems(self.beams, self.nodes))
         self._require_connected()
         self._require_closed()
 
@@ -506,17 +501,17 @@ class Structure:
 def beams_between(
     ends: Mapping[str, tuple[str, str]],
     lengths: Mapping[str, float],
-    sections: Mapping[str, Section],
+    sections: Section | Mapping[str, Section],
     elements: int | Mapping[str, int | tuple[float, ...]],
     kind: str,
 ) -> tuple[Beam, ...]:
-    """Return a beam for each pair of nodes, with its own or the same elements."""
+    """Return a beam for each pair of nodes, with its own or the same section and elements."""
     return tuple(
         Beam(
             name=name,
             start=start,
             end=end,
-            section=sections[name],
+            section=sections[name] if isinstance(sections, Mapping) else sections,
             length=lengths[name],
             elements=elements[name] if isinstance(elements, Mapping) else elements,
             kind=kind,
@@ -549,6 +544,13 @@ def node_value_problems(nodes: object) -> list[Problem]:
         for key in values
         if key not in known
     ]
+
+
+def missing_problems(where: str, given: object, names: Iterable[str]) -> list[Problem]:
+    """Return what is wrong with values by name that lack some; one value for all lacks none."""
+    missing = sorted(set(names) - set(given)) if isinstance(given, Mapping) else []
+    found = f"none for {', '.join(missing)}"
+    return [Problem(where, found, "one each", "add them")] if missing else []
 
 
 def _division_problems(where: str, elements: Any) -> list[Problem]:

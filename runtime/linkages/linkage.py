@@ -390,14 +390,6 @@ class Linkage(ABC):
         return -1.0 if getattr(self, "assembly", "open") == "crossed" else 1.0
 
     @property
-    def geometry(self) -> Mapping[str, float]:
-        """Geometry as the emitted modules take it: lengths, and the sign of the assembly."""
-        geometry = dict(self.lengths)
-        if hasattr(self, "assembly"):
-            geometry["assembly"] = self.branch
-        return geometry
-
-    @property
     @abstractmethod
     def limits(self) -> Limits:
         """Where the loop can close."""
@@ -468,13 +460,13 @@ class Linkage(ABC):
         self, kind: type[M], theta: ArrayLike, speed: ArrayLike, acceleration: ArrayLike
     ) -> M:
         """Return the motion; its error and checks are computed when they are first read."""
-        angles, drive = drive_of(theta, speed, acceleration)
+        angles, speeds, changes, shape = checked_drive(theta, speed, acceleration)
+        drive = [np.array(np.broadcast_to(item, shape)) for item in (speeds, changes)]
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             moved = emitted(self, self.kinematics, "motion", angles, self.unit_lengths)
         m = {"theta2": angles, **{name: np.asarray(value) for name, value in moved.items()}}
         reached = np.logical_and.reduce([np.isfinite(value) for value in m.values()])
         self.require(reached & self._decided(m), angles, self._expected)
-        shape = drive[0].shape
         fields: dict[str, Any] = {}
         with np.errstate(over="ignore", invalid="ignore"):
             moved = driven(m, *drive)
@@ -663,15 +655,6 @@ def require_linkage(linkage: object) -> None:
     if not isinstance(linkage, Linkage):
         wrong = type(linkage).__name__
         raise bad("linkage", wrong, "FourBar, SliderCrank or QuickReturn", "give one")
-
-
-def drive_of(
-    theta: ArrayLike, speed: ArrayLike, acceleration: ArrayLike
-) -> tuple[Array, tuple[Array, Array]]:
-    """Return the angles, and speed and acceleration in the shape of all three."""
-    *given, shape = checked_drive(theta, speed, acceleration)
-    first, second = (np.array(np.broadcast_to(item, shape)) for item in given[1:])
-    return given[0], (first, second)
 
 
 def checked_drive(

@@ -121,11 +121,6 @@ class QuickReturn(Linkage):
         refuse(problems)
 
     @property
-    def geometry(self) -> Mapping[str, float]:
-        """Frame and crank, as the emitted modules take them."""
-        return {"frame": self.frame, "crank": self.crank}
-
-    @property
     def eps(self) -> float:
         """Crank over frame: below 1 the rod swings, above 1 it turns with the crank."""
         return self.crank / self.frame

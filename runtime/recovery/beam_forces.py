@@ -353,17 +353,15 @@ def evaluated(
     stations: Stations,
     method: str,
     names: tuple[str, ...] = QUANTITIES,
-    *,
-    frozen: bool = False,
 ) -> dict[str, Array]:
-    """Return quantities ``(nt, stations)`` in a motion; of a frozen one, without any rates."""
+    """Return quantities ``(nt, stations)`` in a motion."""
     chosen = stations_of(required_structure(system), stations)
 
     def piece(forms: ElementForms, values: MotionValues) -> dict[str, Array]:
         made, shape = recovery(forms, chosen, method), (len(forms.theta), len(chosen))
         return {name: np.broadcast_to(values(made[name]), shape) for name in names}
 
-    return over_motion(system, motion, piece, frozen=frozen)
+    return over_motion(system, motion, piece)
 
 
 def propagated(system: LinearPeriodic, motion: BeamMotion, stations: Stations) -> Array:

@@ -38,6 +38,7 @@ class BeamMotion:
     error: Array | None = None  # absolute, of each coordinate, (n,)
     period: float | None = None  # [rad], divided evenly by the angles, from 0; None: not periodic
     solved: str | None = None  # method of :func:`steady_state` that found it
+    frozen: bool = False  # True: without accelerations, whatever the equation of motion says
     provenance: Mapping[str, str] = field(default_factory=dict)
     checks: Mapping[str, Check] = field(default_factory=dict)
 

@@ -88,16 +88,13 @@ def in_motion(
 
 
 class MotionValues:
-    """Values of forms in a piece of a motion, accelerations by the equation of motion.
+    """Values of forms in a piece of a motion, accelerations by the equation of motion."""
 
-    In a frozen motion there are none.
-    """
-
-    def __init__(self, forms: ElementForms, motion: BeamMotion, chunk: slice, frozen: bool) -> None:
+    def __init__(self, forms: ElementForms, motion: BeamMotion, chunk: slice) -> None:
         self.speed = motion.speed
         self.q, self.slope = motion.q[chunk], motion.slope[chunk]
         self.second = np.zeros_like(self.q)
-        if not frozen:
+        if not motion.frozen:
             second = forms.acceleration.values(self.speed, self.q, self.slope)
             self.second = second / self.speed**2
 
@@ -117,12 +114,10 @@ def over_motion(
     system: LinearPeriodic,
     motion: BeamMotion,
     piece: Callable[[ElementForms, MotionValues], dict[str, Array]],
-    *,
-    frozen: bool = False,
 ) -> dict[str, Array]:
     """Return arrays over the angles of a motion by name, joined from its pieces."""
     pieces = []
     for chunk in chunks(motion):
         forms = checked_forms(system, motion.theta[chunk])
-        pieces.append(piece(forms, MotionValues(forms, motion, chunk, frozen)))
+        pieces.append(piece(forms, MotionValues(forms, motion, chunk)))
     return {name: np.concatenate([found[name] for found in pieces]) for name in pieces[0]}

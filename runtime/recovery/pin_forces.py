@@ -204,12 +204,12 @@ def _at_nodes(forms: ElementForms, values: MotionValues) -> dict[str, Array]:
         if last:
             found[f"{placed.beam.end} {placed.beam.name}"] = fixed[:, 3:6]
     for node in structure.nodes:
-        x, y = (freedoms.at(node.name, part) for part in ("x", "y"))
+        x, y = (freedoms.places[node.name, part] for part in ("x", "y"))
         momentum += lumped[:, [x, y]]
         if not (node.held or node.stiffness or node.damping):
             continue
         meeting = [b.name for b in structure.beams if node.name in (b.start, b.end)]
-        turning = {freedoms.at(node.name, name) for name in meeting}
+        turning = {freedoms.places[node.name, name] for name in meeting}
         moments = sum(resisted[:, place] for place in turning)
         found[node.name] = np.stack([resisted[:, x], resisted[:, y], moments], axis=-1)
     outside = _outside_forces(forms, values)
@@ -232,7 +232,7 @@ def _outside_forces(forms: ElementForms, values: MotionValues) -> Array:
     lumped = forms.factor["lumped_mass"] * forms.lumped
     nodes = values(forms.outside.turned(lumped[:, None] * forms.spread))
     for node in forms.structure.nodes:
-        places = [forms.structure.freedoms.at(node.name, part) for part in ("x", "y")]
+        places = [forms.structure.freedoms.places[node.name, part] for part in ("x", "y")]
         total += nodes[:, places]
     return total
 

@@ -65,12 +65,9 @@ def stresses(
     stations: Stations,
     method: str,
     factors: tuple[Array, Array],
-    *,
-    frozen: bool = False,
 ) -> tuple[Array, Array]:
     """Return axial stress and bending stress at the positive fibre [Pa], ``(nt, stations)``."""
-    names = ("axial", "moment")
-    found = evaluated(system, motion, stations, method, names, frozen=frozen)
+    found = evaluated(system, motion, stations, method, ("axial", "moment"))
     return found["axial"] * factors[0], -found["moment"] * factors[1]
 
 
@@ -78,14 +75,6 @@ def largest_difference(first: tuple[Array, Array], second: tuple[Array, Array]) 
     """Return the largest difference of the stresses of a fibre [Pa]."""
     axial, bending = (np.abs(a - b) for a, b in zip(first, second, strict=True))
     return float(np.max(axial + bending))
-
-
-def motion_error(
-    system: LinearPeriodic, motion: BeamMotion, stations: Stations, factors: tuple[Array, Array]
-) -> float:
-    """Return what the error of the motion can do to a stress [Pa]."""
-    doubt = propagated(system, motion, stations)
-    return float(np.max(factors[0]) * doubt[0] + np.max(factors[1]) * doubt[2])
 
 
 def frozen(system: LinearPeriodic, motion: BeamMotion) -> BeamMotion:
@@ -98,7 +87,7 @@ def frozen(system: LinearPeriodic, motion: BeamMotion) -> BeamMotion:
         load = rows.get("1", np.zeros((len(found[chunk]), forms.arrays.count)))
         solved = np.linalg.solve(rows["q"][:, free], -load[:, free, None])
         found[chunk] = solved[..., 0]
-    return replace(motion, q=found, qd=np.zeros_like(found))
+    return replace(motion, q=found, qd=np.zeros_like(found), frozen=True)
 
 
 def energy_gap(system: LinearPeriodic, motion: BeamMotion) -> float:
@@ -458,9 +447,8 @@ def _still(
     method: str,
     levers: tuple[Array, Array],
 ) -> dict[str, Array]:
-    still = frozen(system, moving)
-    axial, bending = stresses(system, still, stations, method, levers, frozen=True)
-    return {"axial": axial, "bending": bending}
+    still = stresses(system, frozen(system, moving), stations, method, levers)
+    return dict(zip(("axial", "bending"), still, strict=True))
 
 
 def _doubt(
@@ -471,7 +459,8 @@ def _doubt(
     levers: tuple[Array, Array],
     own: tuple[Array, Array],
 ) -> dict[str, float | str]:
-    by_motion = motion_error(system, moving, stations, levers)
+    axial, _, moment = propagated(system, moving, stations)
+    by_motion = float(np.max(levers[0]) * axial + np.max(levers[1]) * moment)
     norm = "largest error of a stress over angles and stations [Pa]"
     finer = on_finer_mesh(system, moving)
     if finer is None:

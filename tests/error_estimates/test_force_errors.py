@@ -22,7 +22,8 @@ def forces(machine, theta, speed, acceleration, outside):
     joint.
     """
     mechanism = _NAMES[type(machine.linkage).__name__]
-    numbers = {**machine.linkage.geometry, "theta2": theta}
+    linkage = machine.linkage
+    numbers = {**linkage.lengths, "assembly": linkage.branch, "theta2": theta}
     numbers |= {"speed": speed, "acceleration": acceleration}
     for n, link in enumerate(machine.linkage.links, start=2):
         mass = machine.mass(link)

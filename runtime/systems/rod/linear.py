@@ -131,7 +131,7 @@ def _assembled(
     linkage.require_full_turn()
     system = assemble(
         emitted.module,
-        geometry={**linkage.geometry, "length": length},
+        geometry={"frame": frame, "crank": linkage.crank, "length": length},
         parameters=parameters,
         basis=basis,
         drop=emitted.dropped,

@@ -137,10 +137,10 @@ class Equations:
         at = self.terms(t, x, v)
         matrix, a, multipliers = self._accelerations(at)
         varied: Mapping[str, Array] = {}
-        right = np.empty((*matrix.shape[:-1], 2 * n))
         if self.system.variations is None:
-            self._differences(t, x, v, at, a, multipliers, right)
+            right = self._differences(t, x, v, at, (a, multipliers))
         else:
+            right = np.empty((*matrix.shape[:-1], 2 * n))
             states = (x * columns, v * columns, a * columns, multipliers * rows)
             varied = self.system.variations(*states, t)
             right[..., :n, :n] = varied["stiffness"]
@@ -152,16 +152,9 @@ class Equations:
         return Linearised(a, multipliers, slopes[..., :n, :n], slopes[..., :n, n:], at, varied)
 
     def _differences(
-        self,
-        t: Array,
-        x: Array,
-        v: Array,
-        at: Mapping[str, Array],
-        a: Array,
-        multipliers: Array,
-        right: Array,
-    ) -> None:
-        """Fill in how the equations vary with accelerations and multipliers held."""
+        self, t: Array, x: Array, v: Array, at: Mapping[str, Array], held: tuple[Array, Array]
+    ) -> Array:
+        """Return how the equations vary with accelerations and multipliers held."""
         n = self.n
         wide = float(np.max(np.abs(x), initial=0.0)) or 1.0
         fast = float(np.max(np.abs(v), initial=0.0)) or wide
@@ -173,8 +166,8 @@ class Equations:
         places = x + steps[0] * change[:, :n].reshape(lead)
         speeds = v + steps[1] * change[:, n:].reshape(lead)
         away = self.terms(np.broadcast_to(t, places.shape[:-1]), places, speeds)
-        defect = self._defect(away, a, multipliers) - self._defect(at, a, multipliers)
-        right[...] = np.moveaxis(defect, 0, -1) / np.repeat(steps, n)
+        defect = self._defect(away, *held) - self._defect(at, *held)
+        return np.asarray(np.moveaxis(defect, 0, -1) / np.repeat(steps, n))
 
     def _defect(self, at: Mapping[str, Array], a: Array, multipliers: Array) -> Array:
         """Return what accelerations and multipliers leave of the equations, scaled."""

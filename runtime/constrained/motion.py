@@ -20,7 +20,7 @@ from ..core.errors import (
 )
 from ..core.families import Constrained, Guard
 from ..core.families.multipliers import check_rank, scaling
-from ..core.inputs import numbers, require_kind
+from ..core.inputs import numbers, require_between, require_kind
 from ..core.plotting import Axes, axes_or_new, coordinates_label
 from ..core.results import BROADCAST, FAIR, Check, Result, provenance
 from .collocation import collocation
@@ -387,7 +387,9 @@ def constrained_motion(
     require_kind("system", system, Constrained, "take the .system() of a scene with constraints")
     first, last = _span(system.period if span is None else span)
     times = _times(samples, first, last)
-    _check_numbers(rtol, bound)
+    require_between("rtol", rtol, 1e-14, 0.1, "choose 1e-9")
+    if not (isinstance(bound, Real) and bound > 1):
+        raise bad("bound", repr(bound), "a number above 1", "choose 1e9")
     start = _start(system, q, qd, first)
     kept = tuple(system.guards if guards is None else guards)
     found = march(system, *start, times, rtol, kept, bound, progress)
@@ -625,13 +627,3 @@ def _times(samples: int | ArrayLike, first: float, last: float) -> Array:
     if not inside or given[0] < first or given[-1] > last or not np.all(np.diff(given) > 0):
         raise bad("samples", "times", f"rising times from {first:g} to {last:g}", "correct them")
     return np.unique(np.concatenate([[first], given, [last]]))
-
-
-def _check_numbers(rtol: float, bound: float) -> None:
-    for name, value in (("rtol", rtol), ("bound", bound)):
-        if not isinstance(value, Real):
-            raise bad(name, repr(value), "a number", "correct it")
-    if not 1e-14 <= rtol < 0.1:
-        raise bad("rtol", rtol, "a number from 1e-14 to 0.1", "choose 1e-9")
-    if not bound > 1:
-        raise bad("bound", bound, "a number above 1", "choose 1e9")

@@ -343,19 +343,12 @@ def _angle_of(sine2: float, cosine2: float) -> float:
     return float(2.0 * np.arctan2(np.sqrt(max(sine2, 0.0)), np.sqrt(max(cosine2, 0.0))))
 
 
-@dataclass(frozen=True)
-class Outputs:
-    """What of a kind of linkage can be ranged."""
-
-    links: tuple[str, ...]  # the output first
-    sliding: str  # joint that slides, and does not turn: its clearance is across its guide
-    route: Callable[[Any, str], Route]  # to the play of one of the links
-
-
-OUTPUTS: Mapping[type, Outputs] = {
-    FourBar: Outputs(("follower", "coupler"), "", _four_bar),
-    SliderCrank: Outputs(("slider", "coupler"), "41", _slider_crank),
-    QuickReturn: Outputs(("rod",), "34", _quick_return),
+# Of a kind of linkage the links that can be ranged, the output first; the joint that slides and
+# does not turn: its clearance is across its guide; and what makes the route to the play of a link.
+_OUTPUTS: Mapping[type, tuple[tuple[str, ...], str, Callable[[Any, str], Route]]] = {
+    FourBar: (("follower", "coupler"), "", _four_bar),
+    SliderCrank: (("slider", "coupler"), "41", _slider_crank),
+    QuickReturn: (("rod",), "34", _quick_return),
 }
 
 
@@ -559,29 +552,33 @@ def clearance_range(
     0.0503 0.0503
     """
     require_linkage(linkage)
-    outputs = next(of for kind, of in OUTPUTS.items() if isinstance(linkage, kind))
-    link = outputs.links[0] if link is None else link
-    if not is_one_of(link, outputs.links):
-        raise bad("link", shown(link), f"one of {', '.join(outputs.links)}", "choose one")
+    links, sliding, route = next(of for kind, of in _OUTPUTS.items() if isinstance(linkage, kind))
+    link = links[0] if link is None else link
+    if not is_one_of(link, links):
+        raise bad("link", shown(link), f"one of {', '.join(links)}", "choose one")
     plays = _checked(linkage, clearances, joint)
     if theta is None and linkage.crank_turns:
         theta = np.linspace(0.0, math.tau, 361)
     elif theta is None:
         theta = np.concatenate([np.linspace(*ends, 181) for ends in linkage.crank_ranges()])
-    task = _Task(linkage, link, outputs, plays, finite_array("theta", theta, "angles [rad]"))
+    halves = {name: math.ldexp(c / 2.0, linkage.scale) for name, c in plays.items()}
+    guide = halves.pop(sliding, 0.0)
+    slack = math.fsum(halves.values()), guide
+    angles = finite_array("theta", theta, "angles [rad]")
+    task = _Task(linkage, link, route(linkage, link), slack, angles)
     play = task.play
     errors = DeferredGroup(partial(_errors, task))
     nominal, below, above, small = (
         task.in_units(part) for part in (play.nominal, play.below, play.above, play.small)
     )
     least, greatest = _extremes(task)
-    given = {f"clearances.{name}": repr(c) for name, c in task.clearances.items()}
-    unit = "m" if task.link == "slider" else "rad"
+    given = {f"clearances.{name}": repr(c) for name, c in plays.items()}
+    unit = "m" if link == "slider" else "rad"
     return ClearanceRange(
         linkage=linkage,
-        link=task.link,
-        clearances=task.clearances,
-        theta2=task.theta,
+        link=link,
+        clearances=plays,
+        theta2=angles,
         nominal=nominal,
         lower=nominal - below,
         upper=nominal + above,
@@ -608,22 +605,9 @@ class _Task:
 
     linkage: FourBar | SliderCrank | QuickReturn
     link: str
-    outputs: Outputs
-    clearances: Mapping[str, float]
+    route: Route  # to the play of this output
+    slack: tuple[float, float]  # radius of the play of all pins, half the clearance of the guide
     theta: Array
-
-    @property
-    def route(self) -> Route:
-        """The way to the play of this output."""
-        return self.outputs.route(self.linkage, self.link)
-
-    @cached_property
-    def slack(self) -> tuple[float, float]:
-        """Radius of the play of all pins, and half the clearance across the guide."""
-        scale = self.linkage.scale
-        halves = {name: math.ldexp(c / 2.0, scale) for name, c in self.clearances.items()}
-        guide = halves.pop(self.outputs.sliding, 0.0)
-        return math.fsum(halves.values()), guide
 
     @cached_property
     def position(self) -> CrankPosition:

@@ -331,20 +331,29 @@ def _doubt(
     own: Mapping[str, Array],
 ) -> dict[str, Any]:
     norm = "largest error of axial force [N], shear force [N], moment [N m]"
-    finer = on_finer_mesh(system, moving)
-    if finer is None:
-        other = next(name for name in METHODS if name != method)
-        better = evaluated(system, moving, stations, other, FORCES)
-        norm = f"{norm}; that of the mesh's frequencies apart"
-    else:
-        better = evaluated(*finer, stations, "equilibrium", FORCES)
+    better, finer = compared(system, moving, stations, method, FORCES)
     gaps = np.array([np.max(np.abs(own[name] - better[name])) for name in FORCES])
     sizes = np.array([np.max(np.abs(own[name])) for name in FORCES])
-    share = 1.0 if finer is None else CAUTION
+    share = CAUTION if finer else 1.0
     return {
         "error": share * gaps + propagated(system, moving, stations) + ROUNDING * sizes,
-        "error_norm": norm,
+        "error_norm": norm if finer else f"{norm}; that of the mesh's frequencies apart",
     }
+
+
+def compared(
+    system: LinearPeriodic,
+    motion: BeamMotion,
+    stations: Stations,
+    method: str,
+    names: tuple[str, ...],
+) -> tuple[dict[str, Array], bool]:
+    """Return quantities on a finer mesh, or else by the other method; and whether there is one."""
+    finer = on_finer_mesh(system, motion)
+    if finer is not None:
+        return evaluated(*finer, stations, "equilibrium", names), True
+    other = next(name for name in METHODS if name != method)
+    return evaluated(system, motion, stations, other, names), False
 
 
 def evaluated(

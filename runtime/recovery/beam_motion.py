@@ -85,18 +85,23 @@ def beam_motion(system: LinearPeriodic, motion: Motion | float | None) -> BeamMo
     if isinstance(motion, Real) and not isinstance(motion, bool):
         # Mesh and equations err far more than this.
         motion = quiet_state(system, float(numbers("motion", motion)), 1e-7)
-    if isinstance(motion, SteadyState):
-        made = _steady(motion)
-    elif isinstance(motion, Trajectory):
-        peak = np.max(np.abs(motion.q), axis=0)
+    if isinstance(motion, (SteadyState, Trajectory)):
+        if np.size(motion.speed) != 1:
+            found = f"{np.size(motion.speed)} speeds"
+            raise bad("motion", found, "one", "take them one by one, or the curve over speeds")
+        q, qd = (value.reshape(value.shape[-2:]) for value in (motion.q, motion.qd))
+        steady = isinstance(motion, SteadyState)
         made = BeamMotion(
             theta=motion.theta,
-            q=motion.q,
-            qd=motion.qd,
-            speed=motion.speed,
-            error=np.asarray(motion.error) * peak,
+            q=q,
+            qd=qd,
+            speed=float(np.reshape(motion.speed, ())),
+            error=np.ravel(motion.error) * np.max(np.abs(q), axis=0),
+            period=motion.period if isinstance(motion, SteadyState) else None,
+            solved=motion.method if steady else None,
             provenance=motion.provenance,
-            checks=_checks(motion),
+            # Less the linear range, which is checked anew; ask the motion whether it is stable.
+            checks={f"motion {k}": v for k, v in motion.checks.items() if k != "linear range"},
         )
     elif isinstance(motion, BeamMotion):
         made = motion
@@ -112,29 +117,6 @@ def beam_motion(system: LinearPeriodic, motion: Motion | float | None) -> BeamMo
 def chunks(motion: BeamMotion) -> list[slice]:
     """Return pieces of 256 angles of a motion, so that the arrays of one fit the memory."""
     return [slice(start, start + 256) for start in range(0, len(motion.theta), 256)]
-
-
-def _steady(motion: SteadyState) -> BeamMotion:
-    if motion.speed.size != 1:
-        found = f"{motion.speed.size} speeds"
-        raise bad("motion", found, "one", "take them one by one, or the curve over speeds")
-    q, qd = (value.reshape(value.shape[-2:]) for value in (motion.q, motion.qd))
-    return BeamMotion(
-        theta=motion.theta,
-        q=q,
-        qd=qd,
-        speed=float(motion.speed.reshape(())),
-        error=np.asarray(motion.error).reshape(-1) * np.max(np.abs(q), axis=0),
-        period=motion.period,
-        solved=motion.method,
-        provenance=motion.provenance,
-        checks=_checks(motion),
-    )
-
-
-def _checks(motion: SteadyState | Trajectory) -> dict[str, Check]:
-    """Return the checks of a motion, less the linear range; ask the motion whether it is stable."""
-    return {f"motion {k}": v for k, v in motion.checks.items() if k != "linear range"}
 
 
 def standing(system: LinearPeriodic, motion: object) -> BeamMotion:

@@ -69,9 +69,13 @@ def on_finer_mesh(
         return None
     if still:
         return finer, standing(finer, None)
-    q, qd = _kept_or_found(system, finer, motion)
+    # The steady state of the last speed is kept.
+    kept = system.kept.get(_KEPT)
+    if kept is None or kept[0][0] != motion.speed or len(kept[1]) != len(motion.theta):
+        found = solved(finer, motion.speed, intervals_for(motion.q), len(motion.theta))
+        kept = system.kept[_KEPT] = (np.array([motion.speed]), *found)
     return finer, BeamMotion(
-        theta=motion.theta, q=q, qd=qd, speed=motion.speed, period=motion.period
+        theta=motion.theta, q=kept[1], qd=kept[2], speed=motion.speed, period=motion.period
     )
 
 
@@ -87,17 +91,6 @@ def with_mesh(
     if finer is None:
         return {"error": error, "error_norm": f"{norm}, by that of the motion; the mesh apart"}
     return {"error": error + CAUTION * change(*finer), "error_norm": norm}
-
-
-def _kept_or_found(
-    system: LinearPeriodic, finer: LinearPeriodic, motion: BeamMotion
-) -> tuple[Array, Array]:
-    """Return the steady state on the finer mesh; that of the last speed is kept."""
-    kept = system.kept.get(_KEPT)
-    if kept is None or kept[0][0] != motion.speed or len(kept[1]) != len(motion.theta):
-        found = solved(finer, motion.speed, intervals_for(motion.q), len(motion.theta))
-        kept = system.kept[_KEPT] = (np.array([motion.speed]), *found)
-    return kept[1], kept[2]
 
 
 def intervals_for(q: Array) -> int:

@@ -24,6 +24,7 @@ from .beam_forces import (
     METHODS,
     Station,
     Stations,
+    compared,
     evaluated,
     propagated,
     recovery,
@@ -32,7 +33,7 @@ from .beam_forces import (
 )
 from .beam_motion import BeamMotion, beam_motion, chunks
 from .beam_result import StationResult, checked_forms, in_motion, stations_on
-from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
+from .finer_mesh import CAUTION, ROUNDING
 
 if TYPE_CHECKING:
     from .beam_motion import Motion
@@ -67,8 +68,11 @@ def stresses(
     factors: tuple[Array, Array],
 ) -> tuple[Array, Array]:
     """Return axial stress and bending stress at the positive fibre [Pa], ``(nt, stations)``."""
-    found = evaluated(system, motion, stations, method, ("axial", "moment"))
-    return found["axial"] * factors[0], -found["moment"] * factors[1]
+    return _of_forces(evaluated(system, motion, stations, method, ("axial", "moment")), factors)
+
+
+def _of_forces(forces: Mapping[str, Array], factors: tuple[Array, Array]) -> tuple[Array, Array]:
+    return forces["axial"] * factors[0], -forces["moment"] * factors[1]
 
 
 def largest_difference(first: tuple[Array, Array], second: tuple[Array, Array]) -> float:
@@ -462,15 +466,12 @@ def _doubt(
     axial, _, moment = propagated(system, moving, stations)
     by_motion = float(np.max(levers[0]) * axial + np.max(levers[1]) * moment)
     norm = "largest error of a stress over angles and stations [Pa]"
-    finer = on_finer_mesh(system, moving)
-    if finer is None:
-        other = next(name for name in METHODS if name != method)
-        by_mesh = largest_difference(own, stresses(system, moving, stations, other, levers))
+    better, finer = compared(system, moving, stations, method, ("axial", "moment"))
+    by_mesh = largest_difference(own, _of_forces(better, levers))
+    if not finer:
+        norm = f"{norm}, that of the mesh's frequencies apart"
         if method == "equilibrium":
             by_mesh *= float(np.sqrt(energy_gap(system, moving)))
-        norm = f"{norm}, that of the mesh's frequencies apart"
-    else:
-        by_mesh = largest_difference(own, stresses(*finer, stations, "equilibrium", levers))
     largest = float(np.max(np.abs(own[0]) + np.abs(own[1])))
     return {
         "error": by_motion + CAUTION * by_mesh + ROUNDING * largest,

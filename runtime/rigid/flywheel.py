@@ -300,14 +300,10 @@ def _sampled(machine: Machine, speed: float) -> tuple[Array, Array, float]:
 
 
 def _integral(values: Array) -> Array:
-    """Return the integral of samples over a turn less their mean, of zero mean itself."""
+    """Return the integral of evenly many samples over a turn less their mean, of zero mean."""
     harmonics = np.fft.rfft(values)
-    order = np.arange(harmonics.size, dtype=float)
-    order[0] = 1.0
-    harmonics = harmonics / (1j * order)
-    harmonics[0] = 0.0
-    if values.size % 2 == 0:
-        harmonics[-1] = 0.0  # the highest one has no sine among the samples
+    harmonics[1:] /= 1j * np.arange(1.0, harmonics.size)
+    harmonics[[0, -1]] = 0.0  # the highest one has no sine among the samples
     return np.fft.irfft(harmonics, n=values.size)
 
 

@@ -627,12 +627,8 @@ def _rounded_up(value: float) -> str:
 
 def _starts(design: Design) -> list[Array]:
     """Return further starts, the same ones each time: nothing, and four directions."""
-    links = len(design.stiffness)
-    starts = [design.realised(np.zeros(design.count), [False] * links)]
-    for u, v in ((-0.7, 0.0), (0.7, 0.0), (0.0, 0.7), (0.0, -0.7)):
-        p = np.tile([0.5, 0.5 * u, 0.5 * v, 0.25], links)
-        starts.append(design.realised(p, [False] * links))
-    return starts
+    starts = [(0.0, 0.0, 0.0), (0.5, -0.7, 0.0), (0.5, 0.7, 0.0), (0.5, 0.0, 0.7), (0.5, 0.0, -0.7)]
+    return [np.tile(each, len(design.stiffness)) for each in starts]
 
 
 def _descended(search: Search, problem: PeakProblem, bound: float, start: Array) -> Candidate:

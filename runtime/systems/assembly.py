@@ -90,16 +90,24 @@ def assemble(
     """
     require_kind("module", module, ModuleType, "import one of elastolink.generated")
     check_module(module, "linear_periodic", parameters)
-    missing = sorted(set(module.EXTERNAL) - set(external or {}))
+    external = external or {}
+    missing = sorted(set(module.EXTERNAL) - set(external))
     if missing:
         raise bad("external", f"none for {missing}", "a function of angle each", "pass them")
-    rows = _rows(module, drop)
+    rows: tuple[_Row, ...] = module.TERMS
+    if drop:
+        gone, come = dropped_names(module, drop)
+        rows = (*(row for row in rows if row not in gone), *come)
     integrals = _integrals(module, geometry, basis, rows)
     modal = _modal_arrays(module, modes, integrals, rows)
-    shared = _angle_kernels(module, geometry, external or {})
+    shared = _angle_kernels(module, geometry, external)
     terms = []
     for array, power, scale, angle, mode in rows:
-        function = _function(angle, modal[mode], shared, external or {})
+        function = modal[mode]
+        if angle is not None:
+            kernel = shared.get(angle)
+            factor = partial(_of_kernel, kernel, angle) if kernel else external[angle]
+            function = partial(_multiplied, factor, function)
         terms.append(Term(array, scale, function, power))
     size = (
         next(v.shape[0] for v in modal.values() if not callable(v)) if basis is None else basis.size
@@ -115,15 +123,6 @@ def assemble(
             _scales, module.scales, module.RETURNS["scales"], names, fixed
         )
     return LinearPeriodic(size=size, terms=tuple(terms), parameters=dict(parameters), **attributes)
-
-
-def _rows(module: ModuleType, drop: Collection[str]) -> tuple[_Row, ...]:
-    """Return the separated terms, without those of the terms of the energies that are left out."""
-    rows: tuple[_Row, ...] = module.TERMS
-    if not drop:
-        return rows
-    gone, come = dropped_names(module, drop)
-    return (*(row for row in rows if row not in gone), *come)
 
 
 # Functions with some arguments given, and no module among them, so that systems can be pickled.
@@ -275,20 +274,6 @@ def _angle_kernels(
         shared = Remembered(partial(_kernel_values, function, names, fixed, passed))
         kernels |= dict.fromkeys(names, shared)
     return kernels
-
-
-def _function(
-    angle: str | None,
-    modal: Array | Callable[[Array], Array],
-    shared: Mapping[str, _Kernel],
-    external: Mapping[str, Callable[[Array], Array]],
-) -> Array | Callable[[Array], Array]:
-    """Return the modal array, or the function of angle that multiplies it."""
-    if angle is None:
-        return modal
-    emitted = angle in shared
-    factor = partial(_of_kernel, shared[angle], angle) if emitted else external[angle]
-    return partial(_multiplied, factor, modal)
 
 
 def _of_kernel(kernel: _Kernel, name: str, theta: Array) -> Array:

@@ -51,15 +51,9 @@ def beams_of_scene(scene: Scene) -> LinearPeriodic:
 
 def section(table: Mapping[str, Any]) -> Section:
     """Return the section of a link's table."""
-    return Section(
-        area=table["area"],
-        second_moment=table["second_moment"],
-        modulus=table["modulus"],
-        density=table["density"],
-        thickness=table.get("thickness"),
-        shear_stiffness=table.get("shear_stiffness"),
-        retardation=table.get("retardation_time", 0.0),
-    )
+    names = ("area", "second_moment", "modulus", "density", "thickness", "shear_stiffness")
+    given = {name: table[name] for name in names if name in table}
+    return Section(**given, retardation=table.get("retardation_time", 0.0))
 
 
 def _frame(

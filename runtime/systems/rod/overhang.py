@@ -10,7 +10,7 @@ import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache, partial
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -177,17 +177,12 @@ def _counted(place: Array, roots: Array) -> dict[str, Check]:
     return {"roots counted": Check(float(worst), 0.0)}
 
 
-class _Modes(NamedTuple):
-    """Modes at places of the block: all arrays read-only."""
-
-    place: Array
-    roots: Array
-    ends: dict[str, Array]
-    """What the emitted ``end_values`` gives, the places as a column and the roots as ``beta``."""
-
-
 @lru_cache(maxsize=_KEPT)
-def _modes(size: int, places: bytes) -> _Modes:
+def _modes(size: int, places: bytes) -> dict[str, Array]:
+    """Return what the emitted ``end_values`` gives, with places, a column, and roots ``beta``.
+
+    All arrays are read-only.
+    """
     place = np.frombuffer(places)
     column, roots = place[:, None], overhang_roots(place, size)
     values = _end_values(roots, column)
@@ -195,13 +190,13 @@ def _modes(size: int, places: bytes) -> _Modes:
     ends |= {"place": column, "beta": roots}
     for array in ends.values():
         array.setflags(write=False)
-    return _Modes(place, roots, ends)
+    return ends
 
 
 @lru_cache(maxsize=_KEPT)
 def _integrals(size: int, places: bytes) -> dict[str, Array]:
     """Return the integrals that are not diagonal, from the emitted closed forms."""
-    ends = _modes(size, places).ends
+    ends = _modes(size, places)
     own_values = _own_integrals(*(ends[name] for name in _OF_OWN))
     own = dict(zip(emitted.RETURNS["own_integrals"], own_values, strict=True))
     found = {"moment": own["moment_integral"], "mean": own["mean"]}
@@ -248,7 +243,7 @@ class OverhangBasis:
 
     def roots(self, place: Array) -> Array:
         """Return beta of each mode at places xi of the block, shape ``(nt, n)``."""
-        return self._modes(place).roots
+        return self._modes(place)["beta"]
 
     def frequencies(
         self, place: ArrayLike, *, length: float, bending_stiffness: float, mass_per_length: float
@@ -290,7 +285,7 @@ class OverhangBasis:
 
         The names are those of the emitted function ``end_values``.
         """
-        return dict(self._modes(place).ends)
+        return dict(self._modes(place))
 
     def shapes(self, x: Array, place: Array, derivative: int = 0) -> Array:
         """Return the shapes or a derivative by eta, to the third; see :class:`MovingBasis`.
@@ -345,18 +340,18 @@ class OverhangBasis:
         """Evaluate one function up to the block and another beyond it."""
         modes = self._modes(place)
         eta = require_points(x)
-        xi, beta = modes.place[:, None, None], modes.roots[:, None, :]
+        xi, beta = modes["place"][:, :, None], modes["beta"][:, None, :]
         eta = eta[None, :, None]
         sides = []
         for function, point, wanted in zip(
             both, (np.minimum(eta, xi), np.maximum(eta, xi)), names, strict=True
         ):
-            factors = (modes.ends[name][:, None, :] for name in wanted)
+            factors = (modes[name][:, None, :] for name in wanted)
             # Far from the tip of a high mode the form that holds near it, which is not chosen
             # there, divides by an exponential that has underflowed.
             with np.errstate(divide="ignore", invalid="ignore"):
                 sides.append(function(beta, point, xi, *factors)[which])
         return np.asarray(np.where(eta <= xi, *sides))
 
-    def _modes(self, place: Array) -> _Modes:
+    def _modes(self, place: Array) -> dict[str, Array]:
         return _modes(self.size, require_places(place).tobytes())

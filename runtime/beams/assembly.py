@@ -224,7 +224,7 @@ def rigid_motion(structure: Structure, theta: Array) -> RigidMotion:
     freedoms = structure.freedoms.all
     first = np.zeros((len(theta), len(freedoms)))
     second = np.zeros_like(first)
-    for beam in structure.beams:
+    for beam in structure.beams if structure.moving else ():
         own = moving[beam.name]
         points: dict[float, PointMotion] = {}
         across = np.stack([-np.sin(own.angle), np.cos(own.angle)], axis=-1)

@@ -14,10 +14,9 @@ import numpy as np
 from ..core.errors import bad
 from ..core.families import LinearPeriodic, Term
 from .assembly import AngleArrays, Array, rotation, rotation_slope
-from .elements import ElementArrays
 from .linear import AxialForces, lumped_values
 from .recovery_forms import LinearForm
-from .structure import PlacedElement, Structure
+from .structure import Structure
 
 # The terms that the structure itself gives; all others are taken for forces from outside.
 _OWN = {
@@ -71,6 +70,7 @@ class ElementForms:
         self.structure = required_structure(system)
         self.theta = theta
         self.arrays = AngleArrays(self.structure)
+        self.elements = self.arrays.local  # every element with its arrays in its own axes
         self.lumped, self.springs, self.dampers = lumped_values(self.structure)
         self.full = system.has("A") or not self.structure.moving
         self.factor = {
@@ -83,11 +83,9 @@ class ElementForms:
                 ("retardation", 1.0),
             )
         }
-
-    @property
-    def elements(self) -> tuple[tuple[PlacedElement, ElementArrays], ...]:
-        """Every element with its arrays in its own axes."""
-        return self.arrays.local
+        dampings = (("rayleigh_stiffness", "rayleigh elastic"), ("retardation", "viscous"))
+        for name, kind in dampings:
+            self.factor[name] *= self.has_damping(kind)
 
     @cached_property
     def spread(self) -> Array:
@@ -246,10 +244,10 @@ class ElementForms:
         placed, at = self.elements[e][0], self.turning[e]
         found = self.local(e)
         tau = placed.beam.section.retardation * self.factor["retardation"]
-        if tau and self.has_damping("viscous"):
+        if tau:
             found = found + self.rate(e).scaled(tau)
         share = self.factor["rayleigh_stiffness"]
-        if share and self.has_damping("rayleigh elastic"):
+        if share:
             found = found + LinearForm({("dq", 1): share * at.own})
         return found.scaled(self.factor["elasticity"])
 
@@ -285,9 +283,8 @@ class ElementForms:
         """Return the forces of springs and dampers at the nodes, of every coordinate."""
         pick = np.tile(self.spread, (len(self.theta), 1, 1))
         parts = {("q", 0): self.springs[:, None] * pick}
-        drag = self.dampers if self.has_damping(None) else np.zeros(len(self.dampers))
-        if self.has_damping("rayleigh springs"):
-            drag = drag + self.factor["rayleigh_stiffness"] * self.springs
+        drag = self.dampers * self.has_damping(None)
+        drag = drag + self.factor["rayleigh_stiffness"] * self.springs
         if np.any(drag):
             parts["dq", 1] = drag[:, None] * pick
         return LinearForm(parts)

@@ -58,7 +58,10 @@ class AxialForces:
         self.lumped = lumped_mass
         self.gravity = gravity
         self.slide = slide
-        self.node_forces = _node_forces(arrays)
+        self.node_forces: Array = np.zeros(arrays.count)
+        for node in arrays.structure.nodes:
+            for part, value in zip(("x", "y"), node.force, strict=True):
+                self.node_forces[arrays.structure.freedoms.places[node.name, part]] += value
 
     def force(self, source: str, theta: Array) -> Array:
         """Return the generalised forces of a source at unit crank speed, ``(nt, n)``."""
@@ -152,14 +155,6 @@ class AxialForces:
             r = rotation(len(own.mass))
             found.append(np.stack([turned(r, part, r) for part in own.geometric]))
         return found
-
-
-def _node_forces(arrays: AngleArrays) -> Array:
-    found = np.zeros(arrays.count)
-    for node in arrays.structure.nodes:
-        for part, value in zip(("x", "y"), node.force, strict=True):
-            found[arrays.structure.freedoms.places[node.name, part]] += value
-    return found
 
 
 def require_held(arrays: AngleArrays, springs: Array, slide: Slide | None) -> None:

@@ -215,9 +215,10 @@ class FourBar(Linkage):
         return self._moved(FourBarMotion, theta, speed, acceleration)
 
     @property
-    def _expected(self) -> str:
+    def reachable(self) -> str:
+        """Which diagonals and crank angles there are, in words."""
         shortest, longest = self.reach
-        return f"a diagonal BD between {shortest:g} and {longest:g}, {self.reachable}"
+        return f"a diagonal BD between {shortest:g} and {longest:g}, {super().reachable}"
 
     def _error(self, m: Mapping[str, Array]) -> Array:
         """Return what a unit round-off of the angle and of each length does, three times.

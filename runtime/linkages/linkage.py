@@ -466,7 +466,7 @@ class Linkage(ABC):
             moved = emitted(self, self.kinematics, "motion", angles, self.unit_lengths)
         m = {"theta2": angles, **{name: np.asarray(value) for name, value in moved.items()}}
         reached = np.logical_and.reduce([np.isfinite(value) for value in m.values()])
-        self.require(reached & self._decided(m), angles, self._expected)
+        self.require(reached & self._decided(m), angles)
         fields: dict[str, Any] = {}
         with np.errstate(over="ignore", invalid="ignore"):
             moved = driven(m, *drive)
@@ -529,16 +529,12 @@ class Linkage(ABC):
         spans = " or ".join(f"({low:.6g}, {high:.6g})" for low, high in self.crank_ranges())
         return f"a crank angle in {spans} rad, give or take whole turns"
 
-    def require(self, reached: NDArray[np.bool_], theta: Array, expected: str = "") -> None:
+    def require(self, reached: NDArray[np.bool_], theta: Array) -> None:
         """Raise BadInput, with the first crank angle that is not reached."""
         if not np.all(reached):
             first = float(np.ravel(theta)[np.argmin(np.ravel(reached))])
             fix = "this linkage cannot reach the angle, or folds there; keep theta inside its range"
-            raise bad("theta", f"{first:.6g} rad", expected or self.reachable, fix)
-
-    @property
-    def _expected(self) -> str:
-        return self.reachable
+            raise bad("theta", f"{first:.6g} rad", self.reachable, fix)
 
     def _decided(self, m: Mapping[str, Array]) -> NDArray[np.bool_]:
         """Return where the position is one that the lengths decide, and within the links' ends."""

@@ -204,7 +204,7 @@ def _integrals(placed: PlacedElement, xi: Array) -> dict[str, Array]:
     }
 
 
-QUANTITIES = ("along", "across", "slope", *FORCES)
+QUANTITIES = (*_FIELDS, *FORCES)
 _UNITS = {"along": "m", "across": "m", "slope": "rad", "axial": "N", "shear": "N", "moment": "N m"}
 
 

@@ -67,7 +67,6 @@ class Energies:
         self.forms, self.values = forms, values
         self.speed, self.q, self.slope = values.speed, values.q, values.slope
         self.rigid = forms.arrays.motion(forms.theta)
-        self.still = not forms.structure.moving
         self.changing = {power: slope(forms.theta) for power, slope in slopes.items()}
 
     def _spread(self, form: LinearForm, like: Array) -> Array:
@@ -100,7 +99,6 @@ class Energies:
         turned = at.rate[:, None] * _times(at.slope, self.q)
         rate = _times(at.own, self.slope) + turned
         first = np.einsum("tij,tj->ti", at.back, self.rigid.first[:, placed.indices])
-        first = np.zeros_like(first) if self.still else first
         spun = at.rate[:, None] * local
         w = self.speed
         sums["kinetic"] += 0.5 * w**2 * _square(first + rate, mass, spun, across, centre)
@@ -113,7 +111,8 @@ class Energies:
         work += _dot(spun, direct @ across + sideways @ centre - towards @ across)
         forces = self._spread(forms.strain(e), local) @ own.stiffness
         # Rayleigh's damping knows the rates of the coordinates alone; it turns nothing.
-        passive = self._rayleigh(e) @ own.stiffness
+        resisted = forms.factor["rayleigh_stiffness"] * stiff * w * _times(at.own, self.slope)
+        passive = resisted @ own.stiffness
         work += _dot(turned, forces - passive)
         work += self._stiffening(e, local, turned, rate, sums)
         weight = forms.weight(e)
@@ -127,13 +126,6 @@ class Energies:
         lost += w * _dot(_times(at.own, self.slope), passive)
         sums["dissipated"] += lost
         return 0.5 * _dot(local, elastic)
-
-    def _rayleigh(self, e: int) -> Array:
-        forms, at = self.forms, self.forms.turning[e]
-        if not forms.has_damping("rayleigh elastic"):
-            return np.zeros((len(forms.theta), at.own.shape[1]))
-        share = forms.factor["rayleigh_stiffness"] * forms.factor["elasticity"]
-        return np.asarray(share * self.speed * _times(at.own, self.slope))
 
     def _stiffening(
         self, e: int, local: Array, turned: Array, rate: Array, sums: dict[str, Array]
@@ -165,7 +157,7 @@ class Energies:
         forms, free = self.forms, self.forms.arrays.free
         lumped = forms.factor["lumped_mass"] * forms.lumped
         count = (len(forms.theta), forms.arrays.count)
-        first = np.zeros(count) if self.still else self.rigid.first
+        first = self.rigid.first
         speeds = first.copy()
         speeds[:, free] += self.slope
         speeds = self.speed * speeds

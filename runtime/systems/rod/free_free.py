@@ -82,7 +82,10 @@ class FreeFreeModes:
 
     @cached_property
     def _constants(self) -> tuple[Array, Array, Array, Array]:
-        """Phase, amplitude and weight of the modes, and their slope at the right end."""
+        """Phase, amplitude and weight of the modes, and their slope at the right end.
+
+        At the left it is ``-parity`` times that.
+        """
         number = np.arange(1, self.size + 1)
         phase = np.asarray((number + 1) % 4 * (pi / 2), dtype=np.float64)
         amplitude, weight, slope = _mode_constants(self.roots, self.parity)
@@ -92,11 +95,6 @@ class FreeFreeModes:
     def left_values(self) -> Array:
         """Values at the left end, shape ``(size,)``."""
         return 2.0 * self.parity
-
-    @property
-    def end_slopes(self) -> Array:
-        """Slopes at the right end, shape ``(size,)``; at the left ``-parity`` times that."""
-        return self._constants[3]
 
     def __call__(self, eta: ArrayLike) -> tuple[Array, Array, Array, Array]:
         """Return the modes and three derivatives along eta, each ``(*eta.shape, size)``.
@@ -119,7 +117,7 @@ class FreeFreeModes:
         foreshortening, ``int s alpha ds`` and alpha at the left end, where ``alpha' = -psi_i'
         psi_j' / 2`` has no mean.
         """
-        b, p, ends = self.roots, self.parity, self.end_slopes
+        b, p, ends = self.roots, self.parity, self._constants[3]
         rows, columns = np.triu_indices(self.size, 1)
         pairs = (array[pick] for array in (b, ends, p) for pick in (rows, columns))
         products = dict(

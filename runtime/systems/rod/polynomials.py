@@ -132,17 +132,13 @@ def jacobi(size: int, x: Array, upper: int, lower: int) -> tuple[Array, Array, A
                 for m in range(4)
             ]
         )
-    norms = np.array([_inverse_norm(k, a, b) for k in range(size)])
+    # One over the norms, exact under the root.
+    shares = (Fraction(comb(k + a + b, a), comb(k + a, a)) for k in range(size))
+    norms = np.array([sqrt((2 * k + a + b + 1) * share) for k, share in enumerate(shares)])
     value, first, second, third = (
         np.stack([row[m] for row in rows[:size]], axis=-1) * norms * 2**m for m in range(4)
     )
     return value, first, second, third
-
-
-def _inverse_norm(k: int, a: int, b: int) -> float:
-    """Return one over the norm of a Jacobi polynomial on [0, 1]."""
-    square = (2 * k + a + b + 1) * Fraction(comb(k + a + b, a), comb(k + a, a))
-    return sqrt(square)
 
 
 class _TwoSided(ABC):

@@ -124,14 +124,9 @@ def at_places(part: Array, count: int) -> Array:
 
     Their twofold integral from 0, their integral and their value.
     """
-    twice_x = 4.0 * part - 2.0
-    # Chebyshev polynomials, whose recurrence is the shortest: most of the time is overhead.
-    values = np.empty((count + 2, len(part)))
-    values[0], values[1] = 1.0, 0.5 * twice_x
-    for k in range(2, count + 2):
-        np.multiply(twice_x, values[k - 1], out=values[k])
-        values[k] -= values[k - 2]
-    return (values.T @ _by_chebyshev(count)).reshape(-1, 3, count)
+    # Chebyshev polynomials have the shortest recurrence: most of the time is overhead.
+    values = np.polynomial.chebyshev.chebvander(2.0 * part - 1.0, count + 1)
+    return np.asarray(values @ _by_chebyshev(count)).reshape(-1, 3, count)
 
 
 @lru_cache(maxsize=64)

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, bad
 from ..core.inputs import is_one_of, numbers, require_whole
+from ..core.maxima import bracketed_roots
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .circuits import Circuit, Complex, Taylor, planar
@@ -630,23 +631,22 @@ def slowest(path: Path, sharp: Array) -> Slow:
     following = np.roll(rate, -1)
     starts = np.flatnonzero((rate < 0) & (following >= 0))
     low, high = s[starts], np.append(s, s[0] + TURN)[starts + 1]
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        rising = _squared_speed_rate(path(middle, 2)) >= 0
-        low, high = np.where(rising, low, middle), np.where(rising, middle, high)
-    least = _polished(path, 0.5 * (low + high), low, high)
+    rough, width, _ = bracketed_roots(
+        lambda _, at: (_squared_speed_rate(path(at, 2)), 0.0), low, high
+    )
+    least = _polished(path, rough, width)
     return Slow(least % TURN, np.abs(path(least, 1).derivative(1)), fastest)
 
 
-def _polished(path: Path, s: Array, low: Array, high: Array) -> Array:
-    """Take the step to the least speed once more; bisection stops at the noise of its sign."""
+def _polished(path: Path, s: Array, width: Array) -> Array:
+    """Take the step to the least speed once more; brackets stop at the noise of its rate's sign."""
     at = path(s, 2)
     first, second = at.derivative(1), at.derivative(2)
     size = np.abs(second) ** 2
     step = np.where(size > 0, -(first * second.conj()).real / np.where(size > 0, size, 1.0), 0.0)
     near = s + step
     better = np.abs(path(near, 1).derivative(1)) < np.abs(first)
-    inside = np.abs(step) <= 1e-6 + (high - low)
+    inside = np.abs(step) <= 1e-6 + width
     return np.where(better & inside, near, s)
 
 

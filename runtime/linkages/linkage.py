@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import Problem, bad
-from ..core.inputs import is_finite, is_one_of, numbers
+from ..core.inputs import is_finite, is_one_of, numbers, require_kind
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Deferred, DeferredChecks, DeferredField, Result, provenance
 from ..core.twofold import Twofold
@@ -648,9 +648,7 @@ def _checks(linkage: Linkage, m: Mapping[str, Array]) -> dict[str, Check]:
 
 def require_linkage(linkage: object) -> None:
     """Raise BadInput for what is no linkage."""
-    if not isinstance(linkage, Linkage):
-        wrong = type(linkage).__name__
-        raise bad("linkage", wrong, "FourBar, SliderCrank or QuickReturn", "give one")
+    require_kind("linkage", linkage, Linkage, "give a FourBar, SliderCrank or QuickReturn")
 
 
 def checked_drive(

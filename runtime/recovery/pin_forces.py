@@ -198,10 +198,9 @@ def _at_nodes(forms: ElementForms, values: MotionValues) -> dict[str, Array]:
         fixed = values(forms.end_forces(e).turned(back))
         resisted[:, placed.indices] += fixed
         momentum += fixed[:, [0, 1]] + fixed[:, [3, 4]]
-        last = placed.number == len(placed.beam.places) - 2
         if placed.number == 0:
             found[f"{placed.beam.start} {placed.beam.name}"] = fixed[:, :3]
-        if last:
+        if placed.number == len(placed.beam.places) - 2:
             found[f"{placed.beam.end} {placed.beam.name}"] = fixed[:, 3:6]
     for node in structure.nodes:
         x, y = (freedoms.places[node.name, part] for part in ("x", "y"))

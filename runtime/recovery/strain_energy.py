@@ -86,7 +86,7 @@ class Energies:
         self._nodes(sums)
         if forms.outside.parts:
             force = forms.outside.turned(forms.mass).values(self.speed, self.q, self.slope)
-            sums["dissipated"] += _dot(self.speed * self.slope, force)
+            sums["dissipated"] += np.vecdot(self.speed * self.slope, force)
         return {"strain": strain, **sums}
 
     def _element(self, e: int, sums: dict[str, Array]) -> Array:
@@ -107,25 +107,25 @@ class Energies:
         sideways = self._spread(forms.across(e), local)
         towards = self._spread(forms.centripetal(e), local)
         virtual = first + turned
-        work = _dot(virtual, direct @ mass + sideways @ across.T - towards @ centre)
-        work += _dot(spun, direct @ across + sideways @ centre - towards @ across)
+        work = np.vecdot(virtual, direct @ mass + sideways @ across.T - towards @ centre)
+        work += np.vecdot(spun, direct @ across + sideways @ centre - towards @ across)
         forces = self._spread(forms.strain(e), local) @ own.stiffness
         # Rayleigh's damping knows the rates of the coordinates alone; it turns nothing.
         resisted = forms.factor["rayleigh_stiffness"] * stiff * w * _times(at.own, self.slope)
         passive = resisted @ own.stiffness
-        work += _dot(turned, forces - passive)
+        work += np.vecdot(turned, forces - passive)
         work += self._stiffening(e, local, turned, rate, sums)
         weight = forms.weight(e)
         carried = weight @ mass
-        power = w * _dot(first + rate, carried) + w * _dot(spun, weight @ across)
+        power = w * np.vecdot(first + rate, carried) + w * np.vecdot(spun, weight @ across)
         sums["loads"] += power
         # The direct part holds the weight; the drive's own share is what is left without it.
         sums["drive"] += w * work
         elastic = stiff * (local @ own.stiffness)
-        lost = _dot(w * rate, forces - elastic - passive)
-        lost += w * _dot(_times(at.own, self.slope), passive)
+        lost = np.vecdot(w * rate, forces - elastic - passive)
+        lost += w * np.vecdot(_times(at.own, self.slope), passive)
         sums["dissipated"] += lost
-        return 0.5 * _dot(local, elastic)
+        return np.asarray(0.5 * np.vecdot(local, elastic))
 
     def _stiffening(
         self, e: int, local: Array, turned: Array, rate: Array, sums: dict[str, Array]
@@ -137,19 +137,19 @@ class Energies:
             weights = forces[:, e] * self.speed**power
             kernel = np.tensordot(weights, geometric, axes=1)
             pull = np.einsum("tij,tj->ti", kernel, local)
-            change = _dot(turned, pull)
+            change = np.vecdot(turned, pull)
             if power in self.changing:
                 rates = self.changing[power][:, e] * self.speed**power
                 slope = np.tensordot(rates, geometric, axes=1)
                 change = 0.5 * np.einsum("ti,tij,tj->t", local, slope, local) + change
-            energy = 0.5 * _dot(local, pull)
+            energy = 0.5 * np.vecdot(local, pull)
             if power == 0:
                 sums["stiffening"] += energy
                 total += change
             else:
                 # Of inertia: the energy is kinetic, -1/2 td^2 q Kg q, and so is its momentum.
                 sums["stiffening"] -= energy
-                total -= change + 2.0 * _dot(rate - turned, pull)
+                total -= change + 2.0 * np.vecdot(rate - turned, pull)
         return total
 
     def _nodes(self, sums: dict[str, Array]) -> None:
@@ -167,29 +167,25 @@ class Energies:
         inertia[:, free] -= drag * lumped[free]
         loads = self._spread(forms.node_loads(), first)
         weight = forms.axial.weight_field(forms.theta) * lumped
-        sums["drive"] += self.speed * _dot(first, inertia - loads)
-        sums["loads"] += _dot(speeds, weight + loads)
+        sums["drive"] += self.speed * np.vecdot(first, inertia - loads)
+        sums["loads"] += np.vecdot(speeds, weight + loads)
         q = np.zeros(count)
         q[:, free] = self.q
         sums["springs"] += 0.5 * q**2 @ forms.springs
         holds = self._spread(forms.node_holds(), first)
         rates = np.zeros(count)
         rates[:, free] = self.speed * self.slope
-        sums["dissipated"] += _dot(rates, holds - q * forms.springs)
+        sums["dissipated"] += np.vecdot(rates, holds - q * forms.springs)
 
 
 def _times(matrices: Array, vectors: Array) -> Array:
     return np.asarray(np.matmul(matrices, vectors[..., None])[..., 0])
 
 
-def _dot(left: Array, right: Array) -> Array:
-    return np.asarray(np.sum(left * right, axis=-1))
-
-
 def _square(direct: Array, mass: Array, spun: Array, across: Array, centre: Array) -> Array:
     """Return the square of ``N direct + J N spun`` over the mass."""
-    plain = _dot(direct @ mass, direct) + _dot(spun @ centre, spun)
-    return plain + 2.0 * _dot(direct, spun @ across.T)
+    plain = np.vecdot(direct @ mass, direct) + np.vecdot(spun @ centre, spun)
+    return np.asarray(plain + 2.0 * np.vecdot(direct, spun @ across.T))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import Problem, bad, refuse, shown
-from ..core.inputs import are_finite, is_one_of, numbers
+from ..core.inputs import are_finite, is_one_of, numbers, require_kind
 from ..linkages.linkage import Array, Linkage
 from .loads import FRAME, Load, Spring, TorsionSpring, Wrench
 from .masses import MassDistribution
@@ -61,9 +61,7 @@ class Machine:
 
     def __post_init__(self) -> None:
         """Check every part, and hold copies that do not change."""
-        if not isinstance(self.linkage, Linkage):
-            given = type(self.linkage).__name__
-            raise bad("Machine.linkage", given, "a linkage", "give a FourBar, for example")
+        require_kind("Machine.linkage", self.linkage, Linkage, "give a FourBar, for example")
         problems = _mass_problems(self.masses, self.linkage.links)
         if not are_finite(self.gravity, 2):
             fix = "write it like (0.0, -9.81)"
@@ -232,8 +230,7 @@ def power_of(by_link: Mapping[str, Wrench], motion: Any) -> Array:
 
 def require_machine(machine: object) -> None:
     """Raise BadInput for what is no Machine."""
-    if not isinstance(machine, Machine):
-        raise bad("machine", type(machine).__name__, "a Machine", "build one of a linkage")
+    require_kind("machine", machine, Machine, "build one of a linkage")
 
 
 def _sum(parts: Iterable[Array], motion: Any) -> Array:

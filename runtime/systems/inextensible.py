@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from types import ModuleType
 from typing import TYPE_CHECKING
 
@@ -83,13 +83,9 @@ class InextensibleCoupler:
     modes: int
     assembly: float
 
-    @cached_property
-    def _straight(self) -> Stations:
-        return coupler_stations(self.modes)
-
     def stations(self, parameters: Mapping[str, float]) -> Stations:
         """Return the stations of a coupler with its initial bow."""
-        stations = self._straight
+        stations = coupler_stations(self.modes)
         if bow := parameters["bow"]:
             # A bow b sin(pi s) has the slope (pi b / l3) cos(pi s) at its pins.
             angle = np.pi * bow / parameters["coupler"] * stations.shapes[0]
@@ -127,7 +123,7 @@ class InextensibleCoupler:
 
     def shape(self, q: Array, places: Array) -> Array:
         """Return deflections from the chord over the length at places s, ``(*batch, ns)``."""
-        angle = q @ self._straight.shapes
+        angle = q @ coupler_stations(self.modes).shapes
         x, y = np.cos(angle), np.sin(angle)
         along, across = (part.sum(axis=-1, keepdims=True) for part in (x, y))
         weights = _integrals(angle.shape[-1], tuple(places.tolist()))

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families.emitted import array_function
-from ..core.inputs import is_finite, numbers_in_a_row, require_positive
+from ..core.inputs import is_finite, numbers_in_a_row, require_one_of, require_positive
 
 if TYPE_CHECKING:
     from .structure import PlacedElement
@@ -79,7 +79,7 @@ def element_arrays(
 
     Aannaque (4.11)-(4.24), (4.38), (4.39), (A.3), (A.4), (A.7), (A.8), the slips mended.
     """
-    _check_kind(kind)
+    require_one_of("kind", kind, KINDS)
     sizes: dict[str, Any] = {
         "length": length,
         "axial_stiffness": axial_stiffness,
@@ -157,7 +157,7 @@ def _shape_rows(
     bending_stiffness: float | None,
     shear_stiffness: float | None,
 ) -> dict[str, Array]:
-    _check_kind(kind)
+    require_one_of("kind", kind, KINDS)
     place = numbers_in_a_row("xi", xi)
     if not np.all((place >= 0.0) & (place <= 1.0)):
         raise bad("xi", xi, "places from 0 to 1", "divide by the element's length")
@@ -189,11 +189,6 @@ def _in_range(
             "choose other units",
         )
     return found
-
-
-def _check_kind(kind: str) -> None:
-    if not isinstance(kind, str) or kind not in KINDS:
-        raise bad("kind", repr(kind), f"one of {KINDS}", "correct it")
 
 
 def _fixed(array: Array) -> Array:

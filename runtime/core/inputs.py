@@ -103,6 +103,15 @@ def is_one_of(value: object, names: Iterable[str]) -> bool:
     return isinstance(value, str) and value in names
 
 
+def require_one_of(
+    where: str, value: object, names: Iterable[str], fix: str = "correct the name"
+) -> None:
+    """Refuse what is not one of several texts."""
+    known = tuple(names)
+    if not is_one_of(value, known):
+        raise bad(where, shown(value), f"one of {', '.join(known)}", fix)
+
+
 def number_problems(
     where: str, given: Mapping[str, Any], sign: str = "any", fix: str = "correct it"
 ) -> list[Problem]:

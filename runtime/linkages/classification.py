@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad, shown
-from ..core.inputs import is_one_of
+from ..core.inputs import require_one_of
 from ..core.plotting import Axes
 from ..core.results import Result, provenance
 from .four_bar import FourBar, LoopSums
@@ -341,8 +341,7 @@ def classify(
     if not (isinstance(tolerance, Real) and 0 <= tolerance < 1):
         expected = "a relative tolerance of at least 0 and below 1"
         raise bad("tolerance", repr(tolerance), expected, "0 asks for exact change points")
-    if not is_one_of(input, ("crank", "follower")):
-        raise bad("input", shown(input), "'crank' or 'follower'", "choose one")
+    require_one_of("input", input, ("crank", "follower"))
     if isinstance(linkage, (SliderCrank, QuickReturn)):
         if input != "crank":
             driven = f"the follower of a {type(linkage).__name__}"

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import Problem, bad, refuse, shown
-from ..core.inputs import is_finite, is_one_of, require_kind
+from ..core.inputs import is_finite, require_kind, require_one_of
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import (
     BROADCAST,
@@ -554,8 +554,7 @@ def clearance_range(
     require_linkage(linkage)
     links, sliding, route = next(of for kind, of in _OUTPUTS.items() if isinstance(linkage, kind))
     link = links[0] if link is None else link
-    if not is_one_of(link, links):
-        raise bad("link", shown(link), f"one of {', '.join(links)}", "choose one")
+    require_one_of("link", link, links)
     plays = _checked(linkage, clearances, joint)
     if theta is None and linkage.crank_turns:
         theta = np.linspace(0.0, math.tau, 361)

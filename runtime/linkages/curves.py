@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, bad
-from ..core.inputs import is_one_of, numbers, require_whole
+from ..core.inputs import numbers, require_one_of, require_whole
 from ..core.maxima import bracketed_roots
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
@@ -256,8 +256,7 @@ def coupler_curve(
 
 def _place(linkage: Linkage, link: str, along: float, across: float) -> complex:
     """Return the place in the link as a complex number [m], or raise BadInput."""
-    if not is_one_of(link, linkage.links):
-        raise bad("link", repr(link), f"one of {', '.join(linkage.links)}", "choose a moving link")
+    require_one_of("link", link, linkage.links, "choose a moving link")
     pair = [numbers(name, value) for name, value in (("along", along), ("across", across))]
     if pair[0].size != 1 or pair[1].size != 1:
         raise bad("along, across", f"{along!r}, {across!r}"[:60], "two lengths", "correct it")

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import bad
+from ..core.inputs import require_one_of
 from ..core.results import Check, Result, provenance
 from .linkage import Array, finite_array
 
@@ -94,8 +95,7 @@ def mobility(
     if not names:
         raise bad("pins", "none", "at least one pin", "describe the chain")
     fixed = names[0] if frame is None else frame
-    if fixed not in names:
-        raise bad("frame", repr(frame), f"one of {', '.join(names)}", "name a link of the chain")
+    require_one_of("frame", fixed, names, "name a link of the chain")
     if not isinstance(higher_pairs, Integral) or higher_pairs < 0:
         raise bad("higher_pairs", repr(higher_pairs), "a whole number, at least 0", "count again")
     if higher_pairs and coordinates is not None:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import Problem, bad
-from ..core.inputs import is_finite, is_one_of, numbers, require_kind
+from ..core.inputs import is_finite, is_one_of, numbers, require_kind, require_one_of
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Deferred, DeferredChecks, DeferredField, Result, provenance
 from ..core.twofold import Twofold
@@ -191,9 +191,7 @@ class Motion(Result, ABC):
         BadInput
             If the linkage has no such moving link.
         """
-        if name not in self.linkage.links:
-            known = ", ".join(self.linkage.links)
-            raise bad("link", repr(name), f"one of {known}", "choose a moving link")
+        require_one_of("link", name, self.linkage.links, "choose a moving link")
         if name == "crank":
             return self._about(0.0, self.theta2, self.omega2, self.alpha2)
         return self._other_link(name)
@@ -498,10 +496,8 @@ class Linkage(ABC):
             If the crank cannot turn fully, or the motion has no such field.
         """
         self.require_full_turn()
-        known = {**self.moves.places, **self.moves.rates}
-        if name not in known:
-            fields = f"one of {', '.join(known)}"
-            raise bad("source", repr(name), fields, "choose a field of the motion")
+        known = (*self.moves.places, *self.moves.rates)
+        require_one_of("source", name, known, "choose a field of the motion")
         return lambda theta: np.asarray(getattr(self.motion(theta), name))
 
     @property

@@ -23,7 +23,7 @@ from ..beams.recovery_forms import LinearForm, stacked
 from ..beams.structure import Beam, PlacedElement, Structure
 from ..core.errors import BadInput, Problem, bad, shown
 from ..core.families import LinearPeriodic
-from ..core.inputs import is_one_of, is_whole, numbers
+from ..core.inputs import is_whole, numbers, require_one_of
 from ..core.plotting import Axes, axes_or_new
 from .beam_motion import BeamMotion, beam_motion
 from .beam_result import (
@@ -99,8 +99,7 @@ def _station(structure: Structure, beam: Beam, place: float) -> Station:
 
 def require_method(method: str) -> None:
     """Refuse a way to recover forces that is not known."""
-    if not is_one_of(method, METHODS):
-        raise bad("method", repr(method), f"one of {METHODS}", "choose 'equilibrium'")
+    require_one_of("method", method, METHODS, "choose 'equilibrium'")
 
 
 def recovery(
@@ -254,8 +253,7 @@ class BeamForces(StationResult):
         BadInput
             If either is unknown.
         """
-        if quantity not in QUANTITIES:
-            raise bad("quantity", repr(quantity), f"one of {QUANTITIES}", "correct the name")
+        require_one_of("quantity", quantity, QUANTITIES)
         return np.asarray(getattr(self, quantity)[:, stations_on(self.links, link)])
 
     def plot(self, ax: Axes | None = None, quantity: str = "moment") -> Axes:

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from ..beams.assembly import Array
 from ..beams.element_forms import ElementForms
 from ..beams.recovery_forms import LinearForm
-from ..core.errors import LINEAR_RANGE, bad, warn_of_large_deflection
+from ..core.errors import LINEAR_RANGE, warn_of_large_deflection
 from ..core.families import LinearPeriodic
+from ..core.inputs import require_one_of
 from ..core.results import Check, DeferredField, DeferredGroup, Result, provenance
 from .beam_motion import BeamMotion, chunks
 
@@ -51,9 +52,7 @@ class StationResult(BeamResult):
 
 def stations_on(links: tuple[str, ...], link: str) -> NDArray[np.int64]:
     """Return the places of a beam's stations among all; refuse a beam that has none."""
-    if link not in links:
-        known = ", ".join(dict.fromkeys(links))
-        raise bad("link", repr(link), f"one of {known}", "choose one with stations")
+    require_one_of("link", link, dict.fromkeys(links), "choose one with stations")
     return np.flatnonzero(np.array(links) == link).astype(np.int64)
 
 

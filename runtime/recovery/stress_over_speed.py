@@ -13,7 +13,7 @@ from ..beams.element_forms import required_structure
 from ..beams.recovery_forms import RIGID, LinearForm
 from ..core.errors import LINEAR_RANGE, bad
 from ..core.families import DAMPING, Array, LinearPeriodic
-from ..core.inputs import numbers, require_between
+from ..core.inputs import numbers, require_between, require_one_of
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import differentiated, even_angles
@@ -123,9 +123,7 @@ class StressCurve(Result):
         BadInput
             If the link has no station.
         """
-        if link not in self.links:
-            fix = "choose one with stations"
-            raise bad("link", repr(link), f"one of {', '.join(self.links)}", fix)
+        require_one_of("link", link, self.links, "choose one with stations")
         return np.asarray(self.maximum[:, self.links.index(link)])
 
     def at(self, places: NDArray[np.intp]) -> StressCurve:

@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 from ..beams.assembly import Array
 from ..beams.element_forms import ElementForms, required_structure
 from ..beams.recovery_forms import LinearForm, stacked
-from ..core.errors import Problem, bad, refuse
+from ..core.errors import Problem, refuse
 from ..core.families import LinearPeriodic
-from ..core.inputs import is_finite, numbers_in_a_row
+from ..core.inputs import is_finite, numbers_in_a_row, require_one_of
 from ..core.maxima import polished
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import DeferredField, DeferredGroup
@@ -262,10 +262,8 @@ class StressResult(StationResult):
         BadInput
             If either is unknown.
         """
-        if name not in FIBRES:
-            raise bad("fibre", repr(name), f"one of {FIBRES}", "correct the name")
-        if part not in PARTS:
-            raise bad("part", repr(part), f"one of {PARTS}", "correct the name")
+        require_one_of("fibre", name, FIBRES)
+        require_one_of("part", part, PARTS)
         sign = 1.0 if name == "positive" else -1.0
         whole = self.axial + sign * self.bending
         if part == "all":

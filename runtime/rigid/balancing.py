@@ -9,8 +9,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.errors import BadInput, bad, shown
-from ..core.inputs import is_one_of, names_in_a_row, require_mapping, require_whole
+from ..core.errors import BadInput, bad
+from ..core.inputs import names_in_a_row, require_mapping, require_one_of, require_whole
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..linkages.linkage import Array, finite_array
@@ -23,7 +23,7 @@ from .counterweights import (
     case_counterweights,
     with_counterweights,
 )
-from .machine import Machine, finite_number, require_link, require_machine
+from .machine import Machine, finite_number, require_machine
 from .optimum import Candidate, Design, ForceBasis, Measure, Search, best_counterweights
 from .peaks import TERMS
 
@@ -246,8 +246,7 @@ def _searched(
 ) -> Search:
     require_machine(machine)
     speed, acceleration = finite_number(speed, "speed"), finite_number(acceleration, "acceleration")
-    if measure not in ("peak", "rms"):
-        raise bad("measure", repr(measure), "'peak' or 'rms'", "choose one")
+    require_one_of("measure", measure, ("peak", "rms"))
     wanted = _terms(DEFAULT_WEIGHTS if weights is None else weights, "weights", zero=True)
     tops = _terms({} if limits is None else limits, "limits", zero=False)
     wanted = {term: weight for term, weight in wanted.items() if weight > 0.0}
@@ -394,8 +393,7 @@ def _terms(given: Mapping[str, float], where: str, *, zero: bool) -> dict[str, f
     require_mapping(where, given, 'say {"torque": 1.0}, for example')
     terms = {}
     for term, value in given.items():
-        if term not in TERMS:
-            raise bad(where, repr(term), f"one of {', '.join(TERMS)}", "correct the name")
+        require_one_of(where, term, TERMS)
         number = finite_number(value, f"{where}.{term}")
         if number < 0.0 or (number == 0.0 and not zero):
             expected = "zero or more" if zero else "above zero"
@@ -411,7 +409,7 @@ def _links(machine: Machine, links: Sequence[str] | None) -> tuple[str, ...]:
         return tuple(link for link in (moving[0], moving[-1]) if link != "slider")
     chosen = names_in_a_row("links", links)
     for link in chosen:
-        require_link(link, tuple(name for name in moving if name != "slider"), "links")
+        require_one_of("links", link, [name for name in moving if name != "slider"])
     if not chosen or len(set(chosen)) != len(chosen):
         raise bad("links", repr(chosen), "different links, at least one", "correct the list")
     return chosen
@@ -424,7 +422,7 @@ def _units(
     bounds = Bounds() if bounds is None else bounds
     given = bounds if isinstance(bounds, Mapping) else dict.fromkeys(links, bounds)
     for link, each in given.items():
-        require_link(link, links, "bounds")
+        require_one_of("bounds", link, links)
         if not isinstance(each, Bounds):
             raise bad("bounds", type(each).__name__, "Bounds", "give Bounds(mass=..., offset=...)")
     whole = sum(machine.mass(link).mass for link in machine.linkage.links)
@@ -564,8 +562,7 @@ def trade_off(
     [0.   0.35 0.7 ] [1.52 1.13 1.  ]
     """
     for name, term in (("first", first), ("second", second)):
-        if not is_one_of(term, TERMS):
-            raise bad(name, shown(term), f"one of {', '.join(TERMS)}", "correct the name")
+        require_one_of(name, term, TERMS)
     if first == second:
         raise bad("second", repr(second), "another force than the first", "choose another")
     require_whole("points", points, 2, 1000)

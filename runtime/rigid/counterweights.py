@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
-from ..core.errors import Problem, bad, refuse, shown
-from ..core.inputs import is_one_of, number_problems
-from .machine import Machine, finite_number, require_link, require_machine
+from ..core.errors import Problem, bad, refuse
+from ..core.inputs import number_problems, require_one_of
+from .machine import Machine, finite_number, require_machine
 from .masses import MassDistribution
 
 
@@ -131,7 +131,7 @@ def with_counterweights(machine: Machine, counterweights: Iterable[Counterweight
     require_machine(machine)
     masses = dict(machine.masses)
     for weight in counterweights:
-        require_link(weight.link, tuple(machine.linkage.links), "Counterweight.link")
+        require_one_of("Counterweight.link", weight.link, machine.linkage.links)
         masses[weight.link] = masses.get(weight.link, MassDistribution()) + weight.distribution
     return replace(machine, masses=masses)
 
@@ -206,13 +206,12 @@ def case_counterweights(
         finite.
     """
     known = (*CASES, "reciprocating")
-    if not is_one_of(case, known):
-        raise bad("case", shown(case), f"one of {', '.join(known)}", "choose one")
+    require_one_of("case", case, known)
     require_machine(machine)
     links = tuple(machine.linkage.links)
     if isinstance(offsets, Mapping):
         for link in offsets:
-            require_link(link, links, "offsets")
+            require_one_of("offsets", link, links)
 
     def place(moments: Mapping[str, complex]) -> dict[str, Counterweight]:
         """Return counterweights with these first moments; none where there is nothing to do."""

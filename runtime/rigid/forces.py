@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import bad
-from ..core.inputs import names_in_a_row
+from ..core.inputs import names_in_a_row, require_one_of
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import BROADCAST, Deferred, DeferredChecks, DeferredField, Result, provenance
 from ..linkages.linkage import JOINTS, TURN, Array, checked_drive
@@ -143,8 +143,7 @@ class RigidForces(Result):
         if joint is None:
             first = ("frame", "34", "torque", "moment")
             joint = next(name for name in first if known[name][0] in self.values)
-        if joint not in known:
-            raise bad("joint", repr(joint), f"one of {sorted(known)}", "correct the name")
+        require_one_of("joint", joint, sorted(known))
         *names, label = known[joint]
         columns = [self[name] for name in names]
         if columns[0].ndim == 0:

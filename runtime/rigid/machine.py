@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import Problem, bad, refuse, shown
-from ..core.inputs import are_finite, is_one_of, numbers, require_kind
+from ..core.inputs import are_finite, numbers, require_kind, require_one_of
 from ..linkages.linkage import Array, Linkage
 from .loads import FRAME, Load, Spring, TorsionSpring, Wrench
 from .masses import MassDistribution
@@ -100,8 +100,7 @@ class Machine:
 
         self.linkage.require_full_turn()
         known = rigid_forces(self, np.zeros(1), speed).values
-        if name not in known:
-            raise bad("source", repr(name), f"one of {', '.join(known)}", "choose a force")
+        require_one_of("source", name, known, "choose a force")
         # What is wanted alone takes a shorter way than all pin forces.
         alone = {"shaking_x": "shaking_force", "shaking_y": "shaking_force"}.get(name, name)
         outputs = [output for output in OUTPUTS if output == alone] or ["pins"]
@@ -282,9 +281,3 @@ def finite_number(value: object, where: str) -> float:
     if number.size != 1 or not np.isfinite(number).all():
         raise bad(where, shown(value), "a finite number", "correct it")
     return float(number.item())
-
-
-def require_link(link: object, links: tuple[str, ...], where: str) -> None:
-    """Raise BadInput where a linkage has no such moving link."""
-    if not is_one_of(link, links):
-        raise bad(where, repr(link), f"one of {', '.join(links)}", "correct the name")

@@ -10,6 +10,7 @@ from importlib import import_module
 from ....derive.spec import ModelSpec
 from ...core.errors import bad
 from ...core.families import LinearPeriodic
+from ...core.inputs import require_one_of
 from ...core.modules import EmittedModule, find_module
 from ...linkages import QuickReturn
 from ..assembly import assemble
@@ -110,8 +111,7 @@ def rod_system(
 
 def moving_basis(name: str, modes: int) -> MovingBasis:
     """Return the basis of a name with a number of shapes."""
-    if name not in BASES:
-        raise bad("basis", repr(name), f"one of {list(BASES)}", "choose one")
+    require_one_of("basis", name, BASES)
     module, kind = BASES[name]
     basis: MovingBasis = getattr(import_module(module, __package__), kind)(modes)
     return basis

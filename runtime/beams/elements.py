@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.errors import bad
+from ..core.errors import bad, refuse
 from ..core.families.emitted import array_function
-from ..core.inputs import is_finite, numbers_in_a_row, require_one_of, require_positive
+from ..core.inputs import number_problems, numbers_in_a_row, require_one_of, require_positive
 
 if TYPE_CHECKING:
     from .structure import PlacedElement
@@ -89,9 +89,7 @@ def element_arrays(
     if kind == "timoshenko":
         sizes["shear_stiffness"], inertias["rotary_inertia"] = shear_stiffness, rotary_inertia
     _require_sizes(sizes)
-    for name, value in inertias.items():
-        if not (is_finite(value) and value >= 0.0):
-            raise bad(name, repr(value), "a finite number, not negative", "give one")
+    refuse(number_problems("element", inertias, "not negative"))
     found = _in_range(array_function(_emitted("element", kind), "element"), **sizes, **inertias)
     arrays = {name: value for name, value in found.items() if not name.startswith("geometric")}
     geometric = np.stack([found[f"geometric_{k}"] for k in range(3)])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -37,6 +37,7 @@ def relative_deflection(arrays: AngleArrays, slide: Slide | None, theta: Array) 
     return rows if slide is None else np.asarray(rows @ slide.basis(theta))
 
 
+@dataclass(frozen=True, eq=False)
 class AxialForces:
     """Axial forces along every element, and the geometric stiffness that they give.
 
@@ -45,23 +46,21 @@ class AxialForces:
     slide.
     """
 
-    def __init__(
-        self,
-        arrays: AngleArrays,
-        constant_stiffness: Array,
-        lumped_mass: Array,
-        gravity: tuple[float, float],
-        slide: Slide | None = None,
-    ) -> None:
-        self.arrays = arrays
-        self.springs = constant_stiffness
-        self.lumped = lumped_mass
-        self.gravity = gravity
-        self.slide = slide
-        self.node_forces: Array = np.zeros(arrays.count)
-        for node in arrays.structure.nodes:
+    arrays: AngleArrays
+    springs: Array
+    lumped: Array
+    gravity: tuple[float, float]
+    slide: Slide | None = None
+
+    @cached_property
+    def node_forces(self) -> Array:
+        """Constant loads on the nodes, of every coordinate: ``(N,)``."""
+        found = np.zeros(self.arrays.count)
+        structure = self.arrays.structure
+        for node in structure.nodes:
             for part, value in zip(("x", "y"), node.force, strict=True):
-                self.node_forces[arrays.structure.freedoms.places[node.name, part]] += value
+                found[structure.freedoms.places[node.name, part]] += value
+        return found
 
     def force(self, source: str, theta: Array) -> Array:
         """Return the generalised forces of a source at unit crank speed, ``(nt, n)``."""

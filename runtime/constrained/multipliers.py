@@ -102,14 +102,8 @@ class ConstrainedMultipliers(Result):
         ax = multiplier_plane(ax)
         ax.plot(self.physical.real, self.physical.imag, "o", markersize=4, label="physical")
         if len(self.others):
-            ax.plot(
-                self.others.real,
-                self.others.imag,
-                "s",
-                markersize=7,
-                markerfacecolor="none",
-                label="of the constraints",
-            )
+            x, y = self.others.real, self.others.imag
+            ax.plot(x, y, "s", markersize=7, markerfacecolor="none", label="of the constraints")
             ax.legend(frameon=False, fontsize="small")
         return ax
 

@@ -62,9 +62,9 @@ class Harmonics(Result):
     remainder: float
     evaluations: int
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("a", "b", "amplitude", "phase"), ("harmonic",))
-    }
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
+        ("a", "b", "amplitude", "phase"), ("harmonic",)
+    )
     exported: ClassVar[tuple[str, ...]] = ("amplitude", "phase")
     column_units: ClassVar = {"rad": "phase"}
 

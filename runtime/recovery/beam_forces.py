@@ -157,9 +157,7 @@ def _by_equilibrium(forms: ElementForms, e: int, xi: Array) -> dict[str, LinearF
     plain = direct - forms.centripetal(e)
     ends = forms.end_forces(e)
     size = len(forms.elements[e][1].mass)
-    pick = np.zeros((3, len(xi), size))
-    for row in range(3):
-        pick[row, :, row] = 1.0
+    pick = np.repeat(np.eye(3, size)[:, None], len(xi), axis=1)
     lever = (placed.length * xi)[:, None]
     # The inertia m a of the part: along, across, and its moment about the place.
     along = plain.turned(mass * weights["u"]) - across.turned(mass * weights["v"])

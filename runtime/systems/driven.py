@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from ..core.errors import bad
@@ -16,15 +17,9 @@ from ..core.modules import EmittedModule
 DRIVE = ("theta", "theta_d1", "theta_d2")
 
 
-@dataclass(frozen=True)
-class Given:
-    """An argument of emitted functions that is what it is, whatever the state."""
-
-    value: Any
-
-    def __call__(self, q: Array, time: Array) -> Any:
-        """Return it."""
-        return self.value
+def _whatever_the_state(value: Any, q: Array, time: Array) -> Any:
+    """Return an argument of emitted functions that does not depend on coordinates and time."""
+    return value
 
 
 @dataclass(frozen=True)
@@ -40,8 +35,8 @@ class Driven:
     def __call__(self, parameters: Mapping[str, float], drive: Drive) -> Constrained:
         """Return the system; a parameter that is called ``speed`` is the drive's."""
         module = self.emitted.module
-        given = {name: Given(value) for name, value in zip(DRIVE, drive, strict=True)}
-        external = {name: given[name] for name in module.EXTERNAL}
+        given = dict(zip(DRIVE, drive, strict=True))
+        external = {name: partial(_whatever_the_state, given[name]) for name in module.EXTERNAL}
         values = {**parameters, **self.fixed, "speed": drive.speed}
         return Constrained.from_module(
             module, {name: values[name] for name in module.PARAMETERS}, external=external

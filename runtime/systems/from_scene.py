@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -51,21 +51,15 @@ def coupler_system(scene: Scene) -> LinearPeriodic:
         labels=tuple(f"Y{m}/l3" for m in range(1, modes + 1)),
         limits=_COUPLER_LIMITS,
         reference_length=linkage.lengths["coupler"],
-        shape=PinnedModes(modes),
+        shape=partial(_pinned_modes, modes),
         provenance={**_origin(scene), **emitted.provenance, "nonlinear": "inextensible"},
     )
 
 
-@dataclass(frozen=True)
-class PinnedModes:
-    """Mode shapes ``sin(m pi x / l)`` of a pinned beam, as a function of x over length."""
-
-    modes: int  # how many
-
-    def __call__(self, x: Array) -> Array:
-        """Return the shapes at ``x`` of shape ``(nx,)`` as an array ``(nx, modes)``."""
-        m = np.arange(1, self.modes + 1)
-        return np.asarray(np.sin(np.pi * np.multiply.outer(np.asarray(x, dtype=float), m)))
+def _pinned_modes(modes: int, x: Array) -> Array:
+    """Return mode shapes ``sin(m pi x / l)`` of a pinned beam at x over length, ``(nx, modes)``."""
+    m = np.arange(1, modes + 1)
+    return np.asarray(np.sin(np.pi * np.multiply.outer(np.asarray(x, dtype=float), m)))
 
 
 def hill_system(scene: Scene) -> LinearPeriodic:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -200,11 +200,6 @@ class Spring:
         """The links concerned, the frame among them."""
         return self.first[0], self.second[0]
 
-    @property
-    def dampers(self) -> Spring | None:
-        """The damper alone; None where there is none."""
-        return replace(self, stiffness=0.0, preload=0.0) if self.damping else None
-
     def wrenches(self, motion: Any, crank_speed: Array) -> dict[str, Wrench]:
         """Return the wrench on each of the links; see :meth:`Load.wrenches`."""
         a, b, span, length = self._span(motion)
@@ -299,11 +294,6 @@ class TorsionSpring:
     def links(self) -> tuple[str, ...]:
         """The links concerned, the frame among them."""
         return self.first, self.second
-
-    @property
-    def dampers(self) -> TorsionSpring | None:
-        """The damper alone; None where there is none."""
-        return replace(self, stiffness=0.0, preload=0.0) if self.damping else None
 
     def wrenches(self, motion: Any, crank_speed: Array) -> dict[str, Wrench]:
         """Return the wrench on each of the links; see :meth:`Load.wrenches`."""

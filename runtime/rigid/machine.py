@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import astuple, dataclass, field
+from dataclasses import astuple, dataclass, field, replace
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -197,8 +197,9 @@ def wrenches(
     if part in ("all", "springs"):
         sources += [spring.wrenches(motion, crank_speed) for spring in machine.springs]
     elif part == "nonconservative":
-        dampers = (spring.dampers for spring in machine.springs)
-        sources += [item.wrenches(motion, crank_speed) for item in dampers if item is not None]
+        damped = (spring for spring in machine.springs if spring.damping)
+        dampers = (replace(spring, stiffness=0.0, preload=0.0) for spring in damped)
+        sources += [damper.wrenches(motion, crank_speed) for damper in dampers]
     total: dict[str, Wrench] = {}
     for source in sources:
         for link, (fx, fy, couple) in source.items():

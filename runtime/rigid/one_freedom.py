@@ -31,9 +31,8 @@ class OneFreedom:
         if not (is_finite(flywheel) and flywheel >= 0):
             raise bad("flywheel", shown(flywheel), "a finite inertia, zero or more", "correct it")
         self.machine, self.flywheel = machine, float(flywheel)
-        self.hasty = any(load.given == "motion" for load in machine.loads) or any(
-            spring.dampers is not None for spring in machine.springs
-        )
+        self.hasty = any(load.given == "motion" for load in machine.loads)
+        self.hasty |= any(spring.damping != 0.0 for spring in machine.springs)
         self._bare = Machine(machine.linkage, machine.masses)
 
     def coefficients(self, theta: Any) -> tuple[Array, Array]:

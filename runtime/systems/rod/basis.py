@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...core.errors import Problem, bad, refuse
-from ...core.inputs import is_finite, numbers, require_whole
+from ...core.inputs import is_finite, numbers
 
 Array = NDArray[np.float64]
 
@@ -69,16 +69,6 @@ def require_array(name: str) -> None:
     known = (*MATRIX_ARRAYS, *VECTOR_ARRAYS)
     if name not in known:
         raise bad("array", name, f"one of {', '.join(known)}", "see MovingBasis")
-
-
-def require_modes(modes: object, most: int, why: str) -> int:
-    """Return a number of shapes, refused where it is none from 1 to the most."""
-    return require_whole("modes", modes, 1, most, f"take fewer: {why}")
-
-
-def require_derivative(derivative: int, most: int = 3) -> int:
-    """Return the order of a derivative by eta, refused where it is not offered."""
-    return require_whole("derivative", derivative, 0, most, "higher ones are not offered")
 
 
 def require_places(place: ArrayLike, alone: bool = False) -> Array:

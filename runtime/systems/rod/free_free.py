@@ -16,14 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ....generated import beam_free_free_modes as emitted
-from .basis import (
-    Array,
-    require_array,
-    require_derivative,
-    require_modes,
-    require_places,
-    require_points,
-)
+from ...core.inputs import require_whole
+from .basis import Array, require_array, require_places, require_points
 
 _Function = Callable[..., tuple[Array, ...]]
 _root_defect: _Function = emitted.root_defect
@@ -67,8 +61,8 @@ class FreeFreeModes:
     size: int
 
     def __post_init__(self) -> None:
-        why = "the beam has long ceased to be slender for such modes"
-        object.__setattr__(self, "size", require_modes(self.size, 1000, why))
+        fix = "take fewer: the beam has long ceased to be slender for such modes"
+        object.__setattr__(self, "size", require_whole("modes", self.size, 1, 1000, fix))
 
     @cached_property
     def roots(self) -> Array:
@@ -162,7 +156,8 @@ class FreeFreeBasis:
 
     def shapes(self, x: Array, place: Array, derivative: int = 0) -> Array:
         """Return the shapes or a derivative by eta, to the third; see :class:`MovingBasis`."""
-        derivative = require_derivative(derivative)
+        fix = "higher ones are not offered"
+        derivative = require_whole("derivative", derivative, 0, 3, fix)
         lean, _ = self._lean(place)
         points = require_points(x)
         eta = points[:, None]

@@ -17,17 +17,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from ....generated import quick_return_overhang_modes as emitted
 from ...core.errors import bad
+from ...core.inputs import require_whole
 from ...core.plotting import axes_or_new
 from ...core.results import Check, DeferredChecks, Result, provenance
-from .basis import (
-    Array,
-    require_array,
-    require_derivative,
-    require_modes,
-    require_numbers,
-    require_places,
-    require_points,
-)
+from .basis import Array, require_array, require_numbers, require_places, require_points
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -41,7 +34,8 @@ _OF_OWN, _OF_PAIR = (
     tuple(inspect.signature(function).parameters) for function in (_own_integrals, _pair_integrals)
 )
 _MOST = 1000
-_WHY = "the beam has long ceased to be slender for such modes"
+_FEWER = "take fewer: the beam has long ceased to be slender for such modes"
+_OFFERED = "higher ones are not offered"
 _ROUND = float(np.finfo(float).eps)
 _TINY = float(np.finfo(float).tiny)
 _KEPT = 8  # arrays of places whose modes and integrals are remembered
@@ -93,7 +87,7 @@ def overhang_roots(place: ArrayLike, modes: int) -> Array:
     bracket (Wittrick and Williams' count with the two bays held at the block); Newton's method,
     halving where it leaves the bracket, goes on to round-off.
     """
-    modes = require_modes(modes, _MOST, _WHY)
+    modes = require_whole("modes", modes, 1, _MOST, _FEWER)
     xi = require_places(place, alone=True)
     lower, upper = (bound.ravel() for bound in _brackets(xi, modes))
     where = np.repeat(xi, modes)
@@ -234,7 +228,7 @@ class OverhangBasis:
     size: int
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "size", require_modes(self.size, _MOST, _WHY))
+        object.__setattr__(self, "size", require_whole("modes", self.size, 1, _MOST, _FEWER))
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -292,7 +286,7 @@ class OverhangBasis:
 
         At the block itself the third derivative is that on the side of the pin.
         """
-        derivative = require_derivative(derivative)
+        derivative = require_whole("derivative", derivative, 0, 3, _OFFERED)
         values = (("left_amplitude",), ("right_amplitude",))
         both = (emitted.modes_before, emitted.modes_beyond)
         return self._on_rod(x, place, both, values, derivative)
@@ -302,7 +296,7 @@ class OverhangBasis:
 
         And its derivatives by eta, to the second; the places are those of :meth:`shapes`.
         """
-        derivative = require_derivative(derivative, most=2)
+        derivative = require_whole("derivative", derivative, 0, 2, _OFFERED)
         values = (
             ("left_amplitude", "left_growth", "rate", "span_rate"),
             ("right_amplitude", "right_growth", "rate", "hang_rate"),

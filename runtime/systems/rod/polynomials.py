@@ -22,7 +22,8 @@ from numpy.typing import NDArray
 
 from ....generated import quick_return_rod_polynomials as emitted
 from ...core.errors import bad
-from .basis import require_array, require_derivative, require_modes, require_places, require_points
+from ...core.inputs import require_whole
+from .basis import require_array, require_places, require_points
 
 Array = NDArray[Any]  # doubles, or long doubles for tables
 _Kernel = Callable[..., tuple[Array, ...]]
@@ -169,7 +170,8 @@ class _TwoSided(ABC):
 
         At the block itself the values are those of the side of the pin.
         """
-        field = ("value", "slope", "curvature", "shear")[require_derivative(derivative)]
+        order = require_whole("derivative", derivative, 0, 3, "higher ones are not offered")
+        field = ("value", "slope", "curvature", "shear")[order]
         eta = require_points(x)[None, :]
         xi = self._places(place)[:, None]
         length = np.where(xi < 1, 1 - xi, 1.0)
@@ -248,8 +250,8 @@ class PolynomialBasis(_TwoSided):
     orthogonal: bool = True
 
     def __post_init__(self) -> None:
-        size = require_modes(self.size, 400, "their exact integrals take minutes")
-        object.__setattr__(self, "size", size)
+        fix = "take fewer: their exact integrals take minutes"
+        object.__setattr__(self, "size", require_whole("modes", self.size, 1, 400, fix))
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -325,8 +327,8 @@ class TwoSegmentBasis(_TwoSided):
     size: int
 
     def __post_init__(self) -> None:
-        why = "round-off takes the low frequencies' digits, and 16 are converged"
-        object.__setattr__(self, "size", require_modes(self.size, 40, why))
+        fix = "take fewer: round-off takes the low frequencies' digits, and 16 are converged"
+        object.__setattr__(self, "size", require_whole("modes", self.size, 1, 40, fix))
 
     @property
     def labels(self) -> tuple[str, ...]:

@@ -32,7 +32,7 @@ from ..core.results import (
     provenance,
 )
 from .four_bar import FourBar
-from .linkage import EPS, JOINTS, Array, finite_array, require_linkage
+from .linkage import EPS, JOINTS, Array, finite_array, over, require_linkage
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
 
@@ -134,11 +134,6 @@ class _Half:
         return np.asarray(2.0 * np.arctan2(self.cosine, self.sine))
 
 
-def _over(part: Array, whole: Array) -> Array:
-    """Return a quotient, zero where there is nothing to divide by."""
-    return np.asarray(np.divide(part, whole, out=np.zeros(np.shape(whole)), where=whole > 0.0))
-
-
 def _apart(low: _Half, high: _Half, rise: Array) -> Array:
     """Return the difference of two angles; ``rise`` is that of sin^2 of the halves.
 
@@ -146,7 +141,7 @@ def _apart(low: _Half, high: _Half, rise: Array) -> Array:
     """
     total = high.sine * low.cosine + high.cosine * low.sine
     cosine = high.cosine * low.cosine + high.sine * low.sine
-    return np.asarray(2.0 * np.arctan2(_over(rise, total), cosine))
+    return np.asarray(2.0 * np.arctan2(over(rise, total), cosine))
 
 
 def _of_angles(
@@ -280,8 +275,8 @@ def _across_slider(gap: ArrayLike, radius: ArrayLike, guide: ArrayLike, *, coupl
     )
     folds = (coupler - r) <= far
     # The differences of the legs from those of their squares: small ones keep their digits.
-    fall = _over(r * (2.0 * coupler - r) + w * (2.0 * g + w), least + nominal)
-    rise = _over(r * (2.0 * coupler + r) + shed * (2.0 * g - shed), nominal + greatest)
+    fall = over(r * (2.0 * coupler - r) + w * (2.0 * g + w), least + nominal)
+    rise = over(r * (2.0 * coupler + r) + shed * (2.0 * g - shed), nominal + greatest)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         small = 2.0 * (r * coupler + w * g) / nominal
     small = np.where((r == 0.0) & (w * g == 0.0), 0.0, small)

@@ -18,7 +18,7 @@ from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .circuits import Circuit, Complex, Taylor, planar
 from .four_bar import FourBar
-from .linkage import EPS, TURN, Array, Linkage, require_linkage
+from .linkage import EPS, TURN, Array, Linkage, over, require_linkage
 
 # Panels to begin with, and how often they are halved.
 _PANELS, _HALVINGS = 24, 60
@@ -641,8 +641,7 @@ def _polished(path: Path, s: Array, width: Array) -> Array:
     """Take the step to the least speed once more; brackets stop at the noise of its rate's sign."""
     at = path(s, 2)
     first, second = at.derivative(1), at.derivative(2)
-    size = np.abs(second) ** 2
-    step = np.where(size > 0, -(first * second.conj()).real / np.where(size > 0, size, 1.0), 0.0)
+    step = over(-(first * second.conj()).real, np.abs(second) ** 2)
     near = s + step
     better = np.abs(path(near, 1).derivative(1)) < np.abs(first)
     inside = np.abs(step) <= 1e-6 + width
@@ -786,9 +785,8 @@ def _each_once(path: Path, pairs: Array) -> Doubles:
 
 
 def _crossing_sine(one: Taylor, two: Taylor) -> Array:
-    product = np.abs(one.c[1]) * np.abs(two.c[1])
-    sine = np.abs((one.c[1].conj() * two.c[1]).imag) / np.where(product > 0, product, 1.0)
-    return np.asarray(np.where(product > 0, sine, 0.0))
+    across = np.abs((one.c[1].conj() * two.c[1]).imag)
+    return over(across, np.abs(one.c[1]) * np.abs(two.c[1]))
 
 
 def _turn(x: Array) -> Array:

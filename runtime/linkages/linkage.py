@@ -671,6 +671,11 @@ def finite_array(name: str, value: ArrayLike, meaning: str) -> Array:
     return array
 
 
+def over(part: Array, whole: Array) -> Array:
+    """Return a quotient, zero where there is nothing to divide by."""
+    return np.asarray(np.divide(part, whole, out=np.zeros(np.shape(whole)), where=whole > 0.0))
+
+
 def length_problems(owner: str, lengths: Mapping[str, Any]) -> list[Problem]:
     """Return what is wrong with lengths that must be positive."""
     return [

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.results import Check
-from ..linkages.linkage import EPS, Array, Linkage, Motion
+from ..linkages.linkage import EPS, Array, Linkage, Motion, over
 from ..linkages.parametric import ANGLE
 from .evaluation import BLOCK, COUPLES, ParametricMachine
 from .loads import Load, Spring, Wrench, at_first_joint, frozen
@@ -54,11 +54,6 @@ def error_and_size(
         part = tuple(_FrozenLoad(one.load, one.force[where], one.couple[where]) for one in loads)
         errors[where], size[where] = _of_block(machine, part, *(item[where] for item in given))
     return errors.reshape(batch), size.reshape(batch)
-
-
-def _share_of(errors: Array, size: Array) -> Array:
-    """Return the error over what is added up, zero where nothing acts."""
-    return np.where(size > 0.0, errors / np.where(size > 0.0, size, 1.0), 0.0)
 
 
 @dataclass(frozen=True)
@@ -119,7 +114,7 @@ def _of_block(
         # random machines near folds, near change points and with short links the worst needed 18.4
         # against 60 digits, all others less than 9 (tests/error_estimates has a part of them).
         errors, size = 18.5 * EPS / 2.0 * (moved + pulls), size + pulls
-        known = np.isfinite(errors) & (_share_of(errors, size) <= _MEANINGFUL)
+        known = np.isfinite(errors) & (over(errors, size) <= _MEANINGFUL)
     return np.where(known, errors, np.inf), size
 
 
@@ -187,7 +182,7 @@ def checks(
     errors, size = error_and_size(machine, *given)
     allowed = np.maximum(errors, np.finfo(float).tiny)
     broken = sum(int(np.count_nonzero(~np.isfinite(value))) for value in values.values())
-    share = float(np.max(_share_of(errors, size)))
+    share = float(np.max(over(errors, size)))
     with np.errstate(over="ignore", invalid="ignore"):
         gaps = _Balance(machine, *given).residuals(forces)
         return {

@@ -13,9 +13,9 @@ from ..core.families import Array, LinearPeriodic
 from ..core.trigonometric import interpolated
 from ..periodic.equation import Equation
 from ..periodic.periodic_motion import SteadyState
-from ..recovery.beam_forces import stations_of
+from ..recovery.beam_forces import propagated, stations_of
 from ..recovery.beam_motion import beam_motion
-from ..recovery.stresses import FIBRES, fibre_factors, motion_error, stress_operator, stresses
+from ..recovery.stresses import FIBRES, fibre_factors, stress_operator, stresses
 from ..scenes import Scene
 from .coefficient_changes import moved_systems
 
@@ -42,8 +42,8 @@ class StressRow:
         factors = fibre_factors(system, stations_of(required_structure(system), self._stations))
         axial, bending = stresses(system, moving, self._stations, self.method, factors)
         sign = 1.0 if self.fibre == FIBRES[0] else -1.0
-        doubt = motion_error(system, moving, self._stations, factors)
-        return (axial + sign * bending)[:, 0], doubt
+        doubt = propagated(system, moving, self._stations)
+        return (axial + sign * bending)[:, 0], doubt[0] * factors[0][0] + doubt[2] * factors[1][0]
 
     def _parts(self, system: LinearPeriodic, angles: Array, speed: float) -> tuple[Array, ...]:
         """Return the rows on q and dq/dtheta, ``(nt, n)``, and what is without motion."""

@@ -371,18 +371,15 @@ class Gallery(Result):
 
         ax = axes_or_new(ax)
         rows = self.rows
-        places = range(len(rows))
-        sizes = [row.share for _, row in rows]
-        known = [bool(row.differs) for _, row in rows]
-        for flag, colour, label in (
+        for known, colour, label in (
             (False, "#1f5a8c", "should agree"),
             (True, "#b5541c", "known to differ"),
         ):
-            chosen = [i for i in places if known[i] is flag]
-            ax.plot([sizes[i] for i in chosen], chosen, "o", color=colour, ms=4, label=label)
+            chosen = {i: row.share for i, (_, row) in enumerate(rows) if bool(row.differs) is known}
+            ax.plot(list(chosen.values()), list(chosen), "o", color=colour, ms=4, label=label)
         ax.axvline(1.0, color="0.5", lw=0.8)
         ax.set_xscale("symlog", linthresh=0.1)
-        ax.set_yticks(list(places), [f"{entry.label}" for entry, _ in rows], fontsize=6)
+        ax.set_yticks(range(len(rows)), [entry.label for entry, _ in rows], fontsize=6)
         ax.invert_yaxis()
         ax.set_xlabel("deviation over tolerance")
         ax.legend(loc="best")

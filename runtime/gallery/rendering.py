@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import io
 import os
 import tempfile
 import warnings
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from html import escape
+from importlib import resources
 from pathlib import Path
 
 import numpy as np
@@ -19,21 +19,7 @@ from ..core.results import Check
 from . import records
 from .records import KINDS, FigureEntry, Gallery, Quoted, Shown, Table, counts
 
-_CSS = """
-body { font: 15px/1.5 Georgia, serif; color: #222; max-width: 62rem; margin: 2rem auto;
-  padding: 0 1rem; }
-h1, h2, h3, th, .note { font-family: Helvetica, Arial, sans-serif; }
-h1 { font-size: 1.6rem; } h2 { font-size: 1.15rem; margin-top: 3rem; }
-h3 { font-size: 1rem; }
-img { max-width: 100%; height: auto; display: block; }
-table { border-collapse: collapse; font-size: 0.85rem; margin: 0.8rem 0; }
-th, td { border-bottom: 1px solid #ddd; padding: 0.25rem 0.6rem; text-align: left;
-  vertical-align: top; }
-td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-.agrees { color: #2c6b37; } .known { color: #a3480f; }
-.differs { color: #b00020; font-weight: bold; }
-.note { font-size: 0.85rem; color: #444; }
-""".strip()
+_STYLE = (resources.files(__package__) / "data" / "page.css").read_text("utf-8")
 
 
 def figures(document: str | None = None, figure: str | None = None) -> tuple[FigureEntry, ...]:
@@ -113,7 +99,7 @@ def render(entry: FigureEntry, *, picture: bool = True) -> tuple[Shown, bytes | 
     """Draw one figure; return it with its numbers, and the PNG file's bytes where wanted."""
     import matplotlib as mpl
 
-    from ..core.plotting import new_figure
+    from ..core.plotting import figure_bytes, new_figure
     from .drawing import SETTINGS, finish
 
     with mpl.rc_context(), warnings.catch_warnings():
@@ -127,11 +113,7 @@ def render(entry: FigureEntry, *, picture: bool = True) -> tuple[Shown, bytes | 
         axes = list(np.ravel(canvas.subplots(*entry.panels, squeeze=False, subplot_kw=options)))
         shown = entry.show(axes)
         finish(axes, entry.panels[1], entry.axes, entry.panel, entry.legend)
-        if not picture:
-            return shown, None
-        buffer = io.BytesIO()
-        canvas.savefig(buffer, format="png", dpi=150, metadata={"Software": None})
-        return shown, buffer.getvalue()
+        return shown, figure_bytes(canvas, ".png") if picture else None
 
 
 def _gallery(shown: Sequence[Shown], folder: str, files: tuple[str, ...]) -> Gallery:
@@ -176,7 +158,7 @@ def page(title: str, shown: Sequence[Shown]) -> str:
     rows = [row for item in shown for row in item.quoted]
     parts = [
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
-        f"<title>{escape(title)}</title>\n<style>\n{_CSS}\n</style>\n</head>\n<body>",
+        f"<title>{escape(title)}</title>\n<style>\n{_STYLE}</style>\n</head>\n<body>",
         f"<h1>{escape(title)}</h1>",
         f"<p>{len(shown)} figures redrawn, and what is computed held against:</p>\n<ul>",
         *(f"<li>{escape(line)}</li>" for line in counts(rows)),

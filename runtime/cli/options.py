@@ -239,15 +239,12 @@ def finish(
     is ``result.plot`` where nothing else draws; the JSON holds ``more`` beside the result; and the
     self-checks of the results ``beside`` count too.
     """
+    from ..core.results import worst_checks
+
     draw_into(options, draw or result.plot)
     if (path := kept_file(options)) is not None:
         result.save(path)
-    checks = dict(result.checks)
-    for other in beside:
-        for name, check in other.checks.items():
-            # Where two have a check of one name, the one that failed is told.
-            if name not in checks or (checks[name].passed and not check.passed):
-                checks[name] = check
+    checks = worst_checks(one.checks for one in (result, *beside))
     passed = all(check.passed for check in checks.values())
     content = {**result.to_dict(), **(more or {}), "passed": passed} if options.json else None
     say(options, content, "\n".join([*lines, *_verdict(result, checks)]))
@@ -360,7 +357,7 @@ def _verdict(result: Result, checks: Mapping[str, Check]) -> list[str]:
         *([error_line] if error.size else []),
         *(
             f"check:  {name}: {check.value:.2g} (limit {check.limit:.2g})"
-            for name, check in sorted(checks.items())
+            for name, check in checks.items()
         ),
     ]
 

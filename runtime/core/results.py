@@ -6,7 +6,7 @@ import io
 import json
 import os
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from functools import cached_property, partial
 from html import escape
@@ -46,6 +46,25 @@ class Check:
     def passed(self) -> bool:
         """True where the value is a number within the limit."""
         return bool(self.value <= self.limit)
+
+    @property
+    def share(self) -> float:
+        """The value over the limit; infinite where it is no number, or passes a limit of 0."""
+        if np.isnan(self.value):
+            return float("inf")
+        if self.limit > 0.0:
+            return float(self.value / self.limit)
+        return 0.0 if self.passed else float("inf")
+
+
+def worst_checks(found: Iterable[Mapping[str, Check]]) -> dict[str, Check]:
+    """Return of each self-check the one that came closest to its limit, or went beyond it most."""
+    worst: dict[str, Check] = {}
+    for checks in found:
+        for name, check in checks.items():
+            if name not in worst or check.share > worst[name].share:
+                worst[name] = check
+    return dict(sorted(worst.items()))
 
 
 @dataclass(frozen=True)

@@ -69,9 +69,7 @@ class Quoted:
     @property
     def share(self) -> float:
         """Size of the deviation over the tolerance; infinite where none is allowed."""
-        if self.deviation == 0.0:
-            return 0.0
-        return abs(self.deviation) / self.tolerance if self.tolerance > 0.0 else float("inf")
+        return Check(abs(self.deviation), self.tolerance).share
 
     @property
     def check(self) -> Check:

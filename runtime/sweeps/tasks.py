@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import partial
 from importlib import import_module
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ..core.errors import LINEAR_RANGE, ElastolinkError, bad, deflections_beyond
 from ..core.families import Array, LinearPeriodic
-from ..core.results import Check, Result
+from ..core.results import Check, Result, worst_checks
 from ..core.units import DIMENSIONS
 from ..scenes import Scene, with_numbers
 from ..scenes.tolerances import flat
@@ -69,7 +69,7 @@ class Piece:
             "; ".join(methods),
             _largest([part.error for part in parts]),
             next((part.error_norm for part in parts if part.error_norm), ""),
-            _worst(part.checks for part in parts),
+            worst_checks(part.checks for part in parts),
         )
 
 
@@ -93,24 +93,6 @@ class Task:
     rows: bool = False  # whether a piece wants its last axis whole
     outputs: Outputs = None  # arrays that are kept unless told otherwise; None for all
     function: Callable[..., Any] | None = None  # of the user's, which a store knows by its content
-
-
-def _worst(checks: Iterable[Mapping[str, Check]]) -> dict[str, Check]:
-    """Return of each self-check the one that came closest to its limit, or went beyond it most."""
-    found: dict[str, Check] = {}
-    for each in checks:
-        for name, check in each.items():
-            if name not in found or _share(check) > _share(found[name]):
-                found[name] = check
-    return dict(sorted(found.items()))
-
-
-def _share(check: Check) -> float:
-    if np.isnan(check.value):
-        return float("inf")
-    if check.limit > 0:
-        return float(check.value / check.limit)
-    return -1.0 if check.passed else float("inf")
 
 
 def _largest(error: object) -> float:
@@ -144,7 +126,7 @@ def _of_result(arrays: Mapping[str, AnyArray], *results: Result) -> Piece:
         results[0].method,
         _largest([_largest(result.error) for result in results]),
         results[0].error_norm,
-        _worst(result.checks for result in results),
+        worst_checks(result.checks for result in results),
     )
 
 
@@ -357,7 +339,7 @@ def _each(
     checks = {"linear range": Check(max(beyond), LINEAR_RANGE)} if beyond else {}
     if results or not arrays:
         found = _of_result(joined, *results)
-        return replace(found, checks=_worst([found.checks, checks]), failures=failures)
+        return replace(found, checks=worst_checks([found.checks, checks]), failures=failures)
     name = getattr(function, "__name__", "function")
     return Piece(joined, name, float("nan"), "none: the function gives none", checks, failures)
 

@@ -358,20 +358,10 @@ def sweep(
     if store is None:
         found = _in_memory(plan, executor, progress)
     else:
-        found = _stored(plan, executor, _place(store), progress)
+        found = _through_store(plan, executor, _place(store), progress)
     if "linear range" in found.checks:
         warn_of_large_deflection(found.checks["linear range"].value)
     return found
-
-
-def _stored(plan: Plan, executor: Executor | None, place: Path, progress: bool) -> Sweep:
-    request = request_of(plan.task, plan.subject, plan.grid, plan.options, plan.outputs)
-    kept = Store(place, request, plan.grid)
-    done = kept.finished()
-    if done is not None:
-        return _assembled(plan, done, place, plan.grid.pieces)
-    with kept.opened():
-        return _through_store(plan, kept, executor, progress)
 
 
 @dataclass(frozen=True)
@@ -404,7 +394,7 @@ def planned(
     require_mapping("options", {} if options is None else options, "say options={'speed': 50.0}")
     told = dict(options or {})
     known = axis_units(subject)
-    if isinstance(subject, Scene) and task.of_systems:
+    if isinstance(subject, Scene) and task.function is None:
         made: object = subject.linear_system() if task.name in NAMED else subject.system()
         # A scene whose numbers are axes becomes a system at each point.
         numbers = set() if task.rows else scene_numbers(subject) & {*grid.names}
@@ -546,20 +536,24 @@ def _in_memory(plan: Plan, executor: Executor | None, progress: bool) -> Sweep:
     return _assembled(plan, summary.whole(whole), None, 0)
 
 
-def _through_store(plan: Plan, kept: Store, executor: Executor | None, progress: bool) -> Sweep:
-    summary = Summary(plan.grid)
-    wanted = []
-    for number in range(plan.grid.pieces):
-        piece = kept.read(number)
-        if piece is None:
-            wanted.append(number)
-        else:
+def _through_store(plan: Plan, executor: Executor | None, place: Path, progress: bool) -> Sweep:
+    request = request_of(plan.task, plan.subject, plan.grid, plan.options, plan.outputs)
+    kept, summary, wanted = Store(place, request, plan.grid), Summary(plan.grid), []
+    done = kept.finished()
+    if done is not None:
+        return _assembled(plan, done, place, plan.grid.pieces)
+    with kept.opened():
+        for number in range(plan.grid.pieces):
+            piece = kept.read(number)
+            if piece is None:
+                wanted.append(number)
+            else:
+                summary.add(number, piece)
+        for number, piece in _pieces(plan, executor, wanted, progress):
             summary.add(number, piece)
-    for number, piece in _pieces(plan, executor, wanted, progress):
-        summary.add(number, piece)
-        kept.write(number, piece)
-    joined = kept.join(summary.shapes, summary.whole({}))
-    found = _assembled(plan, joined, kept.path, plan.grid.pieces - len(wanted))
+            kept.write(number, piece)
+        joined = kept.join(summary.shapes, summary.whole({}))
+    found = _assembled(plan, joined, place, plan.grid.pieces - len(wanted))
     return replace(found, damaged=tuple(kept.damaged))
 
 
@@ -595,7 +589,6 @@ class SweepEstimate:
     points: int
     pieces: int
     seconds: float  # of the whole sweep, each worker having a core of its own
-    piece_seconds: float  # of the piece that was timed
     bytes: int  # of the outputs, in memory or in the store
     piece_bytes: int  # most memory that a worker held beside its subject during that piece
     workers: int
@@ -680,7 +673,6 @@ def estimate_sweep(
         points=plan.grid.points,
         pieces=plan.grid.pieces,
         seconds=seconds * share / at_once,
-        piece_seconds=seconds,
         bytes=round(held * share),
         piece_bytes=int(peak),
         workers=workers,

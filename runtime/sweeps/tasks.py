@@ -89,10 +89,10 @@ class Task:
     name: str  # in a manifest
     run: Run
     chunk: int  # points of a piece unless told otherwise
-    of_systems: bool = True  # whether a scene is turned into its system
     rows: bool = False  # whether a piece wants its last axis whole
     outputs: Outputs = None  # arrays that are kept unless told otherwise; None for all
-    function: Callable[..., Any] | None = None  # of the user's, which a store knows by its content
+    # Of the user's, which takes a scene as it is; a store knows it by its content.
+    function: Callable[..., Any] | None = None
 
 
 def _largest(error: object) -> float:
@@ -461,4 +461,4 @@ def task_of(what: str | Callable[..., Any]) -> Task:
         fix = "give 'stability_chart', or a function of your own"
         raise bad("sweep", repr(what)[:60], "a name or a function", fix)
     name = f"{getattr(what, '__module__', '')}.{getattr(what, '__qualname__', repr(what))}"
-    return Task(name, partial(_each, what), 16, of_systems=False, function=what)
+    return Task(name, partial(_each, what), 16, function=what)

@@ -19,7 +19,8 @@ def add(commands: Any) -> None:
     opt.add(parser, {"--at START:STOP:COUNT[UNIT]": at})
     over = "of boundaries: the second parameter and its values; default five of the chart's y"
     opt.add(parser, {"--over NAME=START:STOP:COUNT[UNIT]": over})
-    opt.add(parser, {"--trials N": "machines at random that check the bands; default 32"}, type=int)
+    trials = "machines at random that check the bands; default %(default)s"
+    opt.add(parser, {"--trials N": trials}, type=int, default=32)
     opt.add(parser, {"--seed N": "of all that is random; default 0"}, type=int, default=0)
     opt.add(parser, {"--row NAME": "the row that --plot draws; default those of the first unit"})
 
@@ -43,10 +44,8 @@ def _bands(options: argparse.Namespace) -> int:
         name, values = opt.pair(options.over, "--over", "NAME=START:STOP:COUNT", example)
         dimension = scene.layout.parameters.get(name, "dimensionless")
         over = name, opt.values(values, dimension, "--over")
-    trials = 32 if options.trials is None else options.trials
-    found = design.tolerance_bands(
-        scene, options.of, at, over=over, trials=trials, seed=options.seed
-    )
+    drawn = {"trials": options.trials, "seed": options.seed}
+    found = design.tolerance_bands(scene, options.of, at, over=over, **drawn)
     return opt.finish(options, found, _lines(found), lambda ax: found.plot(ax, options.row))
 
 

@@ -110,7 +110,7 @@ class PeriodicFunction:
 
     @classmethod
     def from_callable(
-        cls, f: Callable[[Array], ArrayLike], tol: float | None = None, name: str | None = None
+        cls, f: Callable[[Array], ArrayLike], tol: float | None = None
     ) -> PeriodicFunction:
         """Find the Fourier series of a function, doubling the samples until the tail is small.
 
@@ -123,8 +123,6 @@ class PeriodicFunction:
             more so the slower the coefficients fall.  By default round-off:
             the doubling stops at 8 machine epsilons, or where the tail is below 1e-11 and does not
             fall any more (the round-off of ``f`` itself); the level reached enters ``error``.
-        name : str, optional
-            What to call the function in an error; by default its own name.
 
         Returns
         -------
@@ -140,7 +138,7 @@ class PeriodicFunction:
             If values are not finite or of the wrong shape, or the tail is still too large with
             65536 samples (the function, or a derivative of it, jumps).
         """
-        label = str(name or getattr(f, "__name__", type(f).__name__))
+        label = getattr(f, "__name__", type(f).__name__)
         if tol is not None and not 0.0 < tol < 1.0:
             raise bad("tol", tol, "a number between 0 and 1", "leave it out for round-off")
         count, before, settled = _FEWEST, np.inf, False

@@ -52,13 +52,13 @@ def _stress(drop: tuple[str, ...]) -> Array:
     return np.asarray(np.max(stresses(beams(1, drop), _SPEEDS).maximum, axis=1))
 
 
-@lru_cache(maxsize=2)
-def real_parts(drop: tuple[str, ...] = THESIS) -> Array:
+@lru_cache(maxsize=1)
+def real_parts() -> Array:
     """Return the larger real part of each pair of multipliers, by falling modulus, (ns, 4).
 
     With one damping ratio they follow one another as the modes do, but where two pairs meet.
     """
-    system = reduced_system(beams(1, drop), _MODES)
+    system = reduced_system(beams(1), _MODES)
     real = floquet_multipliers(system, _SPEEDS, rtol=1e-6).multipliers.real
     return np.asarray(np.max(real.reshape(len(_SPEEDS), _MODES, 2), axis=-1))
 

@@ -91,10 +91,8 @@ def write(
     )
 
 
-def arrow(
-    ax: Axes, tail: ArrayLike, vector: ArrayLike, colour: str, text: str = "", side: float = 0.0
-) -> None:
-    """Draw a vector to the scale of the axes; its name beyond the head, some points to its left."""
+def arrow(ax: Axes, tail: ArrayLike, vector: ArrayLike, colour: str, text: str = "") -> None:
+    """Draw a vector to the scale of the axes; its name beyond the head."""
     start, way = np.asarray(tail, dtype=float), np.asarray(vector, dtype=float)
     head = start + way
     _head(ax, start, head, colour, ",head_length=0.45,head_width=0.2", lw=1.6, mutation_scale=14)
@@ -102,9 +100,7 @@ def arrow(
     ax.update_datalim([start, head])
     ax.autoscale_view()
     if text:
-        along = way / (np.hypot(*way) or 1.0)
-        left = np.array([-along[1], along[0]])
-        write(ax, head, text, 11.0 * along + side * left, color=colour)
+        write(ax, head, text, 11.0 * way / (np.hypot(*way) or 1.0), color=colour)
 
 
 def _head(

@@ -76,7 +76,7 @@ def _march(step: float, turns: int, start: tuple[float, float] | None = None) ->
     return 2.0 * h * every * np.arange(float(len(kept))), kept[:, 0], kept[:, 2] / h
 
 
-def _kutta_merson(turns: int, rtol: float = 1e-4) -> _Run:
+def _kutta_merson(turns: int) -> _Run:
     """March from rest with the Kutta-Merson programme, values kept at each degree."""
 
     def generator(angles: Array) -> Array:
@@ -90,8 +90,8 @@ def _kutta_merson(turns: int, rtol: float = 1e-4) -> _Run:
     begin = simulate(*_system(1), 0.25 / _LAMBDA, samples=16 * round(_LAMBDA))
     sizes = [np.max(np.abs(values)) for values in (begin.q, begin.qd / begin.speed, 1.0)]
     theta, start = np.radians(np.arange(360.0 * turns + 1.0)), np.array([0.0, 0.0, 1.0])
-    atol = 1e-2 * rtol * np.array(sizes)
-    states = kutta_merson(generator, theta, start, rtol, atol, first=0.1 / _LAMBDA)
+    atol = 1e-6 * np.array(sizes)
+    states = kutta_merson(generator, theta, start, 1e-4, atol, first=0.1 / _LAMBDA)
     return theta, states[:, 0], states[:, 1]
 
 

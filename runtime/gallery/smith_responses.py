@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import find_peaks
 
-from ..hill import discriminant
+from ..hill import characteristic_exponents
 from ..periodic import simulate, steady_state
 from .drawing import COLOURS, Array, Panels, mark_fractions, panel_title, peak, turn
 from .records import Drawn
@@ -59,10 +59,9 @@ def _vibrations(equation: str, speed: float) -> float:
     """Return the undamped characteristic exponent: free vibrations in one crank cycle."""
     f = _RIG.function(equation)
     lam2 = (_RIG.frequency / speed) ** 2
-    half = float(discriminant(f, lam2, 1.0).value)
-    # Within a region the exponent has the region's own real part.
-    part = float(np.arccos(np.clip(half, -1.0, 1.0))) / (2 * pi)
-    # The half trace fixes it up to sign and whole numbers; the mean stiffness says which.
+    # Within a region its imaginary part is the region's own.
+    part = float(characteristic_exponents(f, lam2, 1.0).nu)
+    # Known up to sign and whole numbers; the mean stiffness says which.
     near = float(np.sqrt(lam2 + f.mean))
     candidates = [whole + sign * part for whole in range(int(near) + 3) for sign in (-1, 1)]
     return min(candidates, key=lambda value: abs(value - near))

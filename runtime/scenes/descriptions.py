@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from importlib import resources
 from typing import Any, get_args
 
 from ..core.units import DIMENSIONS, text_pattern
@@ -240,8 +241,7 @@ def keys_page() -> str:
         for table in layout.tables:
             found.setdefault(table, []).append(layout)
     lines = [
-        *_INTRODUCTION,
-        "",
+        (resources.files(__package__) / "data" / "keys.md").read_text("utf-8"),
         "| mechanism | formulation | links that bend | tables |",
         "|---|---|---|---|",
     ]
@@ -252,27 +252,8 @@ def keys_page() -> str:
     lines += ["", *_table_lines(_ANY.model, LAYOUTS)]
     for table, layouts in sorted(found.items(), key=lambda pair: pair[0].name):
         lines += _table_lines(table, layouts)
-    return "\n".join([*lines, _MADE])
-
-
-_INTRODUCTION = """\
-# Keys of a scene
-
-A scene is a TOML file: tables of keys. `elastolink new` writes one to begin with, and
-`elastolink show SCENE --toml` a built-in one.
-
-- A quantity is a number in the unit below, or a text with any unit of its dimension: `"15 in"`,
-  `"0.31 kg/m"`, `"500 rpm"`.
-- A single quantity may have a tolerance, `"381 mm +- 0.1 mm"` or `"0.31 kg/m +- 2 %"`; standard
-  deviations stand in `[deviations]`, under dotted keys (`docs/tolerances.md`).
-- `title` and `source`, two texts, stand above the tables.
-- `[schema]` declares the tables of a mechanism of one's own (`docs/own_model.md`).
-- With `elastolink schema > scene.schema.json`, and `#:schema ./scene.schema.json` as the first line
-  of a scene, editors complete and check it (Taplo, Even Better TOML).
-
-`[model]` says of which kind a scene is, and so which tables it may have:
-""".splitlines()
-_MADE = "Made by `elastolink schema --page` of the tables that the loader reads."
+    made = "Made by `elastolink schema --page` of the tables that the loader reads."
+    return "\n".join([*lines, made])
 
 
 def _default(value: object) -> str:

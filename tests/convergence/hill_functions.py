@@ -18,7 +18,7 @@ def functions():
     out = {"24 harmonics": el.PeriodicFunction(a, b)}
     for lengths in ((5, 1, 5, 2), (10, 1, 10, 4), (2, 1, 2, 2)):
         name = f"f3 ({','.join(map(str, lengths))})"
-        out[name] = el.PeriodicFunction.from_callable(end_load(*lengths), name=name)
+        out[name] = el.PeriodicFunction.from_callable(end_load(*lengths))
     return out
 
 

@@ -44,17 +44,12 @@ def extrema(count: int) -> Array:
     return x
 
 
-@lru_cache(maxsize=64)
-def extrema_analysis(count: int) -> Array:
-    """Return the matrix from values at :func:`extrema` to coefficients, ``(count, count)``."""
-    j, k = np.arange(count)[:, None], np.arange(count)
-    degree = count - 1
-    steps = (j * k) % (2 * degree)
-    matrix: Array = np.cos(steps * (np.pi / degree)) * (2.0 / degree)
-    matrix[:, [0, -1]] *= 0.5
-    matrix[[0, -1]] *= 0.5
-    matrix.setflags(write=False)
-    return matrix
+def extrema_coefficients(values: Array) -> Array:
+    """Return the coefficients of the series through values at :func:`extrema`, ``(count, ...)``."""
+    turn = np.concatenate([values, values[-2:0:-1]])
+    found: Array = np.fft.rfft(turn, axis=0).real / (len(values) - 1)
+    found[[0, -1]] *= 0.5
+    return found
 
 
 def basis(x: Array, count: int) -> Array:

@@ -509,7 +509,7 @@ class _Surface:
         """Return Chebyshev coefficients along both axes, values along one that is taken whole."""
         table = found.values
         if not found.direct:
-            table = np.tensordot(chebyshev.extrema_analysis(len(found.outer)), table, axes=1)
+            table = chebyshev.extrema_coefficients(table)
         if self.count:
             table = np.einsum("ij,ljk->lik", chebyshev.analysis(self.count), table, optimize=True)
         return np.asarray(table)

@@ -18,7 +18,7 @@ import numpy as np
 from .errors import BadInput, ElastolinkError, SelfCheckFailed, bad
 from .files import Find, Keep, class_name, inline, inlined, pack, told, unpack, write_whole
 from .tables import BROADCAST as BROADCAST
-from .tables import LABELS, UNITS, by_name, depth_of, dims_of, tables, with_unit
+from .tables import LABELS, UNITS, by_name, labels_of, tables, with_unit
 
 if TYPE_CHECKING:
     import xarray
@@ -493,10 +493,9 @@ def _dataset(result: Result, *, split: bool) -> xarray.Dataset:
     data: dict[str, Any] = {}
     sizes: dict[str, int] = {}
     arrays, units = result.arrays(), result.units_of_columns()
-    labels = result._dimensions()
-    depth = depth_of(arrays, labels)
+    known = labels_of(arrays, result._dimensions())
     for name, value in arrays.items():
-        dims = dims_of(name, value, labels, depth)
+        dims = known.get(name)
         if dims is None or any(
             sizes.get(k, n) != n for k, n in zip(dims, value.shape, strict=True)
         ):

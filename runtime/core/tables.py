@@ -78,8 +78,7 @@ def tables(
     for own in sorted(axes.values(), key=len, reverse=True):
         if 0 not in own.values() and not any(own.items() <= whole.items() for whole in wholes):
             wholes.append(own)
-    first = {whole: i for i, whole in enumerate(map(_key, axes.values()))}
-    wholes.sort(key=lambda whole: first[_key(whole)])
+    wholes.sort(key=list(axes.values()).index)
     begun = next(whole for whole in wholes if main.items() <= whole.items())
     found = {"": _table(arrays, axes, begun, units, [n for n in order if not axes[n]])}
     for whole in wholes:
@@ -88,36 +87,27 @@ def tables(
     return found
 
 
-def _key(axes: Axes) -> tuple[tuple[str, int], ...]:
-    return tuple(axes.items())
-
-
-def dims_of(
-    name: str, array: AnyArray, dimensions: Mapping[str, tuple[str, ...]], depth: int
-) -> tuple[str, ...] | None:
-    """Return the labels of an array's axes; None where it declares none.
-
-    ``depth``: most axes that stand for the dots of :data:`BROADCAST`.
-    """
-    names, n = dimensions.get(name, ()), array.ndim
-    if not names and n:
-        return None
-    if names[:1] == BROADCAST:
-        lead = n - len(names) + 1
-        return (*(f"axis_{depth - lead + i}" for i in range(lead)), *names[1:])
-    extra = tuple(f"{names[-1]}_{i}" for i in range(1, n - len(names) + 1)) if names else ()
-    return (*names, *extra)[:n]
-
-
-def depth_of(arrays: Mapping[str, AnyArray], dimensions: Mapping[str, tuple[str, ...]]) -> int:
-    """Return the most axes that stand for the dots of :data:`BROADCAST`."""
+def labels_of(
+    arrays: Mapping[str, AnyArray], dimensions: Mapping[str, tuple[str, ...]]
+) -> dict[str, tuple[str, ...]]:
+    """Return the labels of each array's axes, of those that declare them or have none."""
     declared = {name: dimensions.get(name, ()) for name in arrays}
-    dotted = (
-        arrays[name].ndim - len(names) + 1
+    # How many axes stand for the dots of BROADCAST.
+    dotted = {
+        name: arrays[name].ndim - len(names) + 1
         for name, names in declared.items()
         if names[:1] == BROADCAST
-    )
-    return max(dotted, default=0)
+    }
+    most, found = max(dotted.values(), default=0), {}
+    for name, names in declared.items():
+        n = arrays[name].ndim
+        if name in dotted:
+            lead = (f"axis_{i}" for i in range(most - dotted[name], most))
+            found[name] = (*lead, *names[1:])
+        elif names or not n:
+            extra = (f"{names[-1]}_{i}" for i in range(1, n - len(names) + 1))
+            found[name] = (*names, *extra)[:n]
+    return found
 
 
 def _axes(
@@ -127,14 +117,12 @@ def _axes(
 
     Arrays without declared dimensions belong together where their shapes are the same.
     """
-    depth = depth_of(arrays, dimensions)
-    found: dict[str, Axes] = {}
+    known, found = labels_of(arrays, dimensions), dict[str, Axes]()
     for name, array in arrays.items():
-        labels = dims_of(name, array, dimensions, depth)
-        if labels is None:
-            shape = "x".join(map(str, array.shape))
-            labels = tuple(f"axis_{i}_of_{shape}" for i in range(array.ndim))
-        found[name] = {k: size for k, size in zip(labels, array.shape, strict=True) if size != 1}
+        shape = "x".join(map(str, array.shape))
+        alike = tuple(f"axis_{i}_of_{shape}" for i in range(array.ndim))
+        pairs = zip(known.get(name, alike), array.shape, strict=True)
+        found[name] = {label: size for label, size in pairs if size != 1}
     return found
 
 

@@ -140,21 +140,16 @@ def _chart(
         failures = _not_built(system, axes)
         if not failures:
             raise
-    shape = tuple(map(len, axes.values()))
-    built = np.ones(shape, bool)
+    built = np.ones(tuple(map(len, axes.values())), bool)
     built.flat[list(failures)] = False
-    arrays, charts = {}, []
+    numbers = np.arange(built.size).reshape(built.shape)
+    blocks, charts = [], []
     for place in _blocks(built):
         part = {name: axes[name][run] for name, run in zip(axes, place, strict=True)}
-        found, chart = _block(system, part, options, outputs)
+        arrays, chart = _block(system, part, options, outputs)
+        blocks.append((numbers[place].ravel(), arrays))
         charts.append(chart)
-        for name, values in found.items():
-            if name not in arrays:
-                kind = holding(values.dtype, failures)
-                arrays[name] = blank((built.size, *values.shape[1:]), kind)
-            own = arrays[name].reshape(*shape, *values.shape[1:])
-            own[place] = values.reshape(own[place].shape)
-    return replace(_of_result(arrays, *charts), failures=failures)
+    return replace(_of_result(_spread(blocks, failures), *charts), failures=failures)
 
 
 def _block(
@@ -247,13 +242,22 @@ def _by_geometry(
 
     for shape in np.unique(table, axis=0):
         solve(np.flatnonzero(np.all(table == shape, axis=1)))
-    arrays = {}
-    for name, first in (found[0][1] if found else {}).items():
-        kind = np.result_type(*(each[name] for _, each, _ in found))
-        arrays[name] = blank((count, *first.shape[1:]), holding(kind, failures))
-        for own, each, _ in found:
-            arrays[name][own] = each[name]
+    arrays = _spread([(own, each) for own, each, _ in found], failures)
     return replace(_of_result(arrays, *(each for _, _, each in found)), failures=failures)
+
+
+def _spread(
+    found: Sequence[tuple[NDArray[np.intp], Mapping[str, AnyArray]]], failures: Mapping[int, str]
+) -> dict[str, AnyArray]:
+    """Return the arrays of all points from those of some, by their places, the others blank."""
+    count = len(failures) + sum(len(places) for places, _ in found)
+    spread = {}
+    for name, first in (found[0][1] if found else {}).items():
+        kind = np.result_type(*(arrays[name] for _, arrays in found))
+        spread[name] = blank((count, *first.shape[1:]), holding(kind, failures))
+        for places, arrays in found:
+            spread[name][places] = arrays[name]
+    return spread
 
 
 def _points(axes: Mapping[str, Array]) -> dict[str, Array]:
@@ -329,13 +333,10 @@ def _each(
         arrays.append(_wanted(_arrays_of(answer), outputs))
         if isinstance(answer, Result):
             results.append(answer)
-    good = [each for each in range(len(arrays) + len(failures)) if each not in failures]
-    joined = {}
-    for name in arrays[0] if arrays else ():
-        values = _stacked(name, [found.get(name) for found in arrays])
-        kind = holding(values.dtype, failures)
-        joined[name] = blank((len(good) + len(failures), *values.shape[1:]), kind)
-        joined[name][good] = values
+    good = np.setdiff1d(np.arange(len(arrays) + len(failures)), list(failures))
+    names = arrays[0] if arrays else ()
+    stacked = {name: _stacked(name, [found.get(name) for found in arrays]) for name in names}
+    joined = _spread([(good, stacked)], failures)
     checks = {"linear range": Check(max(beyond), LINEAR_RANGE)} if beyond else {}
     if results or not arrays:
         found = _of_result(joined, *results)

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import argparse
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
@@ -161,10 +160,9 @@ def _chart(options: argparse.Namespace) -> int:
 
     scene = moving_scene(options)
     system = scene.linear_system()
-    axes = _Axes(scene, system)
     other = (options.y or "").partition("=")[0].strip() or scene.get("chart.y", None)
-    x, told_x = axes.chosen(options.x, "x", other)
-    y, told_y = axes.chosen(options.y, "y", x[0])
+    x, told_x = _axis(options.x, "x", other, scene, system)
+    y, told_y = _axis(options.y, "y", x[0], scene, system)
     said = [told for told in (told_x, told_y) if told]
     if x[0] == y[0]:
         raise bad("--y", repr(y[0]), "another parameter than along x", "choose one")
@@ -252,51 +250,47 @@ def _brief(value: float, dimension: str) -> str:
     return text.partition("(")[2].rstrip(")") or text
 
 
-@dataclass(frozen=True)
-class _Axes:
-    """The axes of a scene's charts; each comes with the line that says how it was chosen."""
+def _axis(
+    given: str | None, axis: str, other: str | None, scene: Scene, system: LinearPeriodic
+) -> tuple[Axis, str]:
+    """Return name and values along an axis, and the line that says how the scene chose it."""
+    known = scene.layout.parameters
+    if given is None:
+        return _axis_by_scene(axis, other, scene, system)
+    name, sign, text = given.partition("=")
+    name = name.strip()
+    if name not in known:
+        from ..scenes.validation import nearest
 
-    scene: Scene
-    system: LinearPeriodic
+        fix = nearest(name, known, "use one of these")
+        raise bad(f"--{axis}", repr(name), f"a parameter of {sorted(known)}", fix)
+    if not sign:
+        raise bad(f"--{axis}", repr(given), "NAME=START:STOP:COUNT[UNIT]", "add the values")
+    return (name, opt.values(text, known[name], f"--{axis}")), ""
 
-    def chosen(self, given: str | None, axis: str, other: str | None) -> tuple[Axis, str]:
-        """Return name and values along an axis, from the option or from the scene."""
-        known = self.scene.layout.parameters
-        if given is None:
-            return self._by_scene(axis, other)
-        name, sign, text = given.partition("=")
-        name = name.strip()
-        if name not in known:
-            from ..scenes.validation import nearest
 
-            fix = nearest(name, known, "use one of these")
-            raise bad(f"--{axis}", repr(name), f"a parameter of {sorted(known)}", fix)
-        if not sign:
-            raise bad(f"--{axis}", repr(given), "NAME=START:STOP:COUNT[UNIT]", "add the values")
-        return (name, opt.values(text, known[name], f"--{axis}")), ""
+def _axis_by_scene(
+    axis: str, other: str | None, scene: Scene, system: LinearPeriodic
+) -> tuple[Axis, str]:
+    """Return the axis that the scene gives, or one around a value."""
+    from ..stability.chart_axes import axis_of_scene
 
-    def _by_scene(self, axis: str, other: str | None) -> tuple[Axis, str]:
-        """Return the axis that the scene gives, or one around a value."""
-        from ..stability.chart_axes import axis_of_scene
-
-        scene = self.scene
-        found = axis_of_scene(scene, axis)
-        if found is not None:
-            return found, ""
-        name, points = scene.get(f"chart.{axis}", None), scene.get(f"chart.{axis}_points", 201)
-        given = {k: v for table in scene.tables.values() for k, v in table.items()}
-        speed = scene.get("operation.speed", 0.0)
-        values = {**given, **self.system.parameters, "speed": speed}
-        known = scene.layout.parameters
-        if axis == "x" and name is None and other != "speed" and "speed" in known:
-            name = "speed"
-        for one, dimension in known.items():
-            if one == (name or one) != other and values.get(one, 0.0) > 0.0:
-                low, high, told = around(one, values[one], dimension)
-                return (one, opt.spaced(low, high, max(points, 2))), told
-        missing = f"no chart.{axis}_range in scene {scene.name}, nor a value to choose it by"
-        fix = f"give --{axis} NAME=START:STOP:COUNT, or operation.speed"
-        raise bad(f"--{axis}", missing, "a parameter and its values", fix)
+    found = axis_of_scene(scene, axis)
+    if found is not None:
+        return found, ""
+    name, points = scene.get(f"chart.{axis}", None), scene.get(f"chart.{axis}_points", 201)
+    given = {k: v for table in scene.tables.values() for k, v in table.items()}
+    values = {**given, **system.parameters, "speed": scene.get("operation.speed", 0.0)}
+    known = scene.layout.parameters
+    if axis == "x" and name is None and other != "speed" and "speed" in known:
+        name = "speed"
+    for one, dimension in known.items():
+        if one == (name or one) != other and values.get(one, 0.0) > 0.0:
+            low, high, told = around(one, values[one], dimension)
+            return (one, opt.spaced(low, high, max(points, 2))), told
+    missing = f"no chart.{axis}_range in scene {scene.name}, nor a value to choose it by"
+    fix = f"give --{axis} NAME=START:STOP:COUNT, or operation.speed"
+    raise bad(f"--{axis}", missing, "a parameter and its values", fix)
 
 
 def _check_scale(options: argparse.Namespace) -> int:

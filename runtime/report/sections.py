@@ -28,6 +28,7 @@ from ..rigid.peaks import LABELS
 from ..scenes import Scene
 from ..scenes.pictures import draw_scene
 from ..scenes.scene import LINKAGES
+from ..scenes.tolerances import flat
 from ..stability import stability_chart
 from ..stability.chart_axes import axis_of_scene, measured_marks
 from .moving import SECONDS, moving_machine, positions
@@ -187,11 +188,7 @@ def _numbers(of: Subject) -> Iterator[Part]:
 
 def _as_given(scene: Scene, where: str) -> str:
     """Return a number as the file has it; else where it comes from."""
-    value: Any = scene.document
-    filled: Any = scene.given
-    for name in where.split("."):
-        value = value.get(name) if hasattr(value, "get") else None
-        filled = filled.get(name) if hasattr(filled, "get") else None
+    value, filled = (dict(flat(tables)).get(where) for tables in (scene.document, scene.given))
     if value is None:
         return "follows" if filled is None else "by default"
     return ", ".join(map(str, value)) if isinstance(value, list) else str(value)

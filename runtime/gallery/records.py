@@ -176,11 +176,8 @@ class FigureEntry:
     @property
     def stem(self) -> str:
         """Name of the picture's file, without its ending."""
-        parts = []
-        for part in self.label.split("."):
-            plain = "".join(c for c in part if c.isalnum() or c == "_")
-            digits = len(plain) - len(plain.lstrip("0123456789"))
-            parts.append((plain[:digits].zfill(2) if digits else "") + plain[digits:])
+        plain = (re.sub(r"\W", "", part) for part in self.label.split("."))
+        parts = (re.sub(r"^\d+", lambda digits: digits[0].zfill(2), part) for part in plain)
         return "_".join([self.document, *parts])
 
     def show(self, axes: Panels) -> Shown:

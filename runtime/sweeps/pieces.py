@@ -78,9 +78,8 @@ def grid_of(values: Mapping[str, ArrayLike], chunk: int, *, rows: bool = False) 
     axes = tuple(_axis(name, values[name]) for name in names)
     shape = [len(axis) for axis in axes]
     if prod(shape) > _MOST_POINTS:
-        raise bad(
-            "values", f"{prod(shape):.3g} points", f"at most {_MOST_POINTS:.0e}", "take fewer"
-        )
+        found = f"{prod(shape):.3g} points"
+        raise bad("values", found, f"at most {_MOST_POINTS:.0e}", "take fewer")
     parts = [1] * len(shape)
     inner = 1
     for axis in range(len(shape) - 1, -1, -1):
@@ -108,11 +107,8 @@ def _axis(name: object, given: ArrayLike) -> Array:
     except (TypeError, ValueError):
         raise bad(f"values of {name}", repr(given)[:60], "numbers", "correct them") from None
     if values.ndim != 1 or not values.size or not np.all(np.isfinite(values)):
-        raise bad(
-            f"values of {name}",
-            f"shape {values.shape}" if values.ndim != 1 or not values.size else "one not finite",
-            "at least one finite value, all in a line",
-            "give a range",
-        )
+        found = f"shape {values.shape}" if values.ndim != 1 or not values.size else "one not finite"
+        expected = "at least one finite value, all in a line"
+        raise bad(f"values of {name}", found, expected, "give a range")
     values.setflags(write=False)
     return values

@@ -53,14 +53,9 @@ def check_rank(jacobian: Array, columns: Array, rows: Array) -> None:
 
 
 def _redundant(found: str) -> RedundantConstraints:
-    return RedundantConstraints(
-        Problem(
-            "constraints",
-            found,
-            "rows that do not depend on each other at every state",
-            "drop a redundant constraint, or leave the position where the linkage can branch",
-        )
-    )
+    expected = "rows that do not depend on each other at every state"
+    fix = "drop a redundant constraint, or leave the position where the linkage can branch"
+    return RedundantConstraints(Problem("constraints", found, expected, fix))
 
 
 def kkt_matrix(mass: Array, jacobian: Array) -> Array:
@@ -94,13 +89,9 @@ def solve_multipliers(
     try:
         solved = np.linalg.solve(matrix, right[..., None])[..., 0]
     except np.linalg.LinAlgError as singular:
-        raise RedundantConstraints(
-            Problem(
-                "mass",
-                "a motion without inertia that the constraints allow",
-                "a mass matrix that is positive on what the constraints leave free",
-                "give that motion a mass, or hold it by a constraint",
-            )
-        ) from singular
+        found = "a motion without inertia that the constraints allow"
+        expected = "a mass matrix that is positive on what the constraints leave free"
+        fix = "give that motion a mass, or hold it by a constraint"
+        raise RedundantConstraints(Problem("mass", found, expected, fix)) from singular
     solved *= scale
     return solved[..., :n], solved[..., n:]

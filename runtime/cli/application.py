@@ -25,9 +25,8 @@ from .options import HelpFormatter, add, kept_file, picture
 
 # Files of subcommands, in the order of the help.
 _GROUPS = (
-    *("scenes", "linkages", "clearance", "forces", "response", "nonlinear"),
-    *("beams", "stability", "boundaries", "studies", "diagnosis", "stabilising"),
-    *("measured", "bands", "certified", "proofs", "report"),
+    *("scenes", "linkages", "clearance", "forces", "response"),
+    *("beams", "stability", "boundaries", "studies", "design", "pages"),
 )
 _BAD_INPUT = 2
 # Characters of a complaint; the longest list of choices has half as many.

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from .. import periodic, stability, sweeps
 from ..core.errors import bad
 from . import options as opt
+from .design import measured_points, points_option, with_points
 from .linkages import (
     around,
     at_speed,
@@ -23,7 +24,6 @@ from .linkages import (
     speeds_option,
     without_crank,
 )
-from .measured import measured_points, points_option, with_points
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from ...derive.spec import BEAM_FORMULATIONS, DERIVED_AS, INEXTENSIBLE, NAMED_DROPS
@@ -63,19 +64,27 @@ RIGID_FOUR_BAR = replace(
 SLIDER_CRANK = _rigid("slider_crank", SLIDER_CRANK_LENGTHS, SLIDER_CRANK_LINKS)
 QUICK_RETURN = _rigid("quick_return", QUICK_RETURN_LENGTHS, QUICK_RETURN_LINKS)
 
+
+def _coupler_tables(
+    coupler: Table, gravity: Table, parameters: Mapping[str, str]
+) -> tuple[Table, ...]:
+    """Return the tables of a four-bar linkage whose coupler bends."""
+    return (
+        FOUR_BAR_LENGTHS,
+        rigid_link("crank"),
+        coupler,
+        rigid_link("follower", inertia_required=True),
+        gravity,
+        OPERATION,
+        MEASURED,
+        chart_table(parameters),
+    )
+
+
 FLEXIBLE_COUPLER = Layout(
     "four_bar",
     ("complete", "printed", "reduced"),
-    (
-        FOUR_BAR_LENGTHS,
-        rigid_link("crank"),
-        COUPLER,
-        rigid_link("follower", inertia_required=True),
-        GRAVITY,
-        OPERATION,
-        MEASURED,
-        chart_table(_COUPLER_PARAMETERS),
-    ),
+    _coupler_tables(COUPLER, GRAVITY, _COUPLER_PARAMETERS),
     flexible=("coupler",),
     outputs=("stability", "forcing"),
     links=LINKS[1:],
@@ -99,16 +108,7 @@ _BENT_PARAMETERS = {
 INEXTENSIBLE_COUPLER = replace(
     FLEXIBLE_COUPLER,
     formulations=INEXTENSIBLE,
-    tables=(
-        FOUR_BAR_LENGTHS,
-        rigid_link("crank"),
-        _UNIFORM_COUPLER,
-        rigid_link("follower", inertia_required=True),
-        ACTING_GRAVITY,
-        OPERATION,
-        MEASURED,
-        chart_table(_BENT_PARAMETERS),
-    ),
+    tables=_coupler_tables(_UNIFORM_COUPLER, ACTING_GRAVITY, _BENT_PARAMETERS),
     outputs=("motion", "variations"),
     parameters=_BENT_PARAMETERS,
     closed_in_modes=False,

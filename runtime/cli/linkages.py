@@ -212,10 +212,10 @@ def speeds_option(default: str) -> dict[str, str]:
     return {"--speed SPEED": told}
 
 
-def drive_options(default: str, rest: str = "operation.acceleration") -> dict[str, str]:
-    """Return crank speed and acceleration; ``default`` and ``rest`` hold without them."""
-    told = f"crank acceleration, e.g. '25 rad/s**2', the unit of a plain number; default {rest}"
-    return {**speed_option(default), "--acceleration ALPHA": told}
+def drive_options(default: str) -> dict[str, str]:
+    """Return crank speed and acceleration; ``default`` says which speed holds without it."""
+    told = "e.g. '25 rad/s**2', the unit of a plain number; default operation.acceleration"
+    return {**speed_option(default), "--acceleration ALPHA": f"crank acceleration, {told}"}
 
 
 def drive_of(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 from math import cos, degrees, pi, radians, sin, sqrt
 
@@ -106,16 +107,14 @@ def linkage() -> FourBar:
 
 def cycle(frame: float | None = None) -> FourBarMotion:
     """Return one turn, a tenth of a degree apart, of the linkage or one with another frame."""
-    bars = linkage()
-    chosen = bars if frame is None else FourBar(frame, bars.crank, bars.coupler, bars.follower)
-    return chosen.motion(np.linspace(0.0, 2.0 * pi, 3601))
+    bars = linkage() if frame is None else replace(linkage(), frame=frame)
+    return bars.motion(np.linspace(0.0, 2.0 * pi, 3601))
 
 
 def figure_3_6(axes: Panels) -> None:
     """Draw both assemblies at one crank angle."""
     ax, bars, theta = sketch.canvas(axes[0]), linkage(), radians(130.0)
-    crossed = FourBar(bars.frame, bars.crank, bars.coupler, bars.follower, assembly="crossed")
-    joints = bars.motion(theta).joints
+    joints, crossed = bars.motion(theta).joints, replace(bars, assembly="crossed")
     a, b, d = (np.asarray(joints[name]) for name in "ABD")
     c = np.asarray(crossed.motion(theta).joints["C"])
     ax.plot(*np.transpose([b, d]), ":", color="0.4", lw=1.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import acos, cos, degrees, pi, radians, sin, sqrt
 
@@ -266,8 +266,8 @@ def _sizes(proportions: str) -> list[float]:
 
 def _with_coupler(linkage: FourBar, change: float, crossed: bool = False) -> FourBar:
     """Return the linkage whose coupler is longer: what a clearance taken up amounts to."""
-    sizes = (linkage.frame, linkage.crank, linkage.coupler + change, linkage.follower)
-    return FourBar(*sizes, assembly="crossed" if crossed else "open")
+    assembly = "crossed" if crossed else "open"
+    return replace(linkage, coupler=linkage.coupler + change, assembly=assembly)
 
 
 def _reach(linkage: FourBar, distance: float) -> float:

@@ -33,8 +33,6 @@ _BEAM_BUILDER = ("..systems.beam_scenes", "beams_of_scene")
 _BENT_BUILDER = ("..systems.inextensible", "inextensible_system")
 _OWN_BUILDER = (".own", "own_system")
 LINKAGES = {"four_bar": "FourBar", "slider_crank": "SliderCrank", "quick_return": "QuickReturn"}
-# Keys that no file gives and that follow from the others.
-_DERIVED = {"mass": "mass"}
 _MISSING = object()
 
 
@@ -212,7 +210,8 @@ class Scene:
             return self.layout.parameters.get(self.get(f"chart.{name[0]}"))
         found = self.layout.key(key)
         if found is None:
-            return _DERIVED.get(key.rpartition(".")[2])
+            # Masses that no file gives follow from other numbers.
+            return "mass" if key.endswith(".mass") else None
         return found.dimension if found.kind in {"quantity", "quantities"} else None
 
     def to_dict(self) -> dict[str, Any]:

@@ -280,19 +280,15 @@ class LinearPeriodic:
         BadInput
             If the term is not finite at a sample, or returns a wrong shape for many angles.
         """
-        known = self._spectrum_of.get(row)
-        if known is None:
+        if ("spectrum", row) not in self.kept:
             term = self.terms[row]
-            shape = self._shape_of(term.array)
-            known = self._spectrum_of[row] = term_spectrum(term, shape, self.period)
+            found = term_spectrum(term, self._shape_of(term.array), self.period)
+            self.kept["spectrum", row] = found
+        known: Array = self.kept["spectrum", row]
         return known
 
     def _shape_of(self, array: str) -> tuple[int, ...]:
         return (self.size,) * (2 if array in MATRICES else 1)
-
-    @cached_property
-    def _spectrum_of(self) -> dict[int, Array]:
-        return {}
 
     def __getstate__(self) -> dict[str, object]:
         """Return what is pickled: not the samples, which are made again where they are needed."""

@@ -266,8 +266,8 @@ def _sizes(proportions: str) -> list[float]:
 
 def _with_coupler(linkage: FourBar, change: float, crossed: bool = False) -> FourBar:
     """Return the linkage whose coupler is longer: what a clearance taken up amounts to."""
-    assembly = "crossed" if crossed else "open"
-    return replace(linkage, coupler=linkage.coupler + change, assembly=assembly)
+    coupler = linkage.coupler + change
+    return replace(linkage, coupler=coupler, assembly="crossed" if crossed else "open")
 
 
 def _reach(linkage: FourBar, distance: float) -> float:

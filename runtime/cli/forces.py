@@ -264,7 +264,14 @@ def _trade_off(
     first, second = names
     points = _POINTS if options.points is None else options.points
     curve = rigid.trade_off(machine, speed, first, second, points, **given)
-    lines = opt.columns((first, ".6f", curve.first_values), (second, ".6f", curve.second_values))
+    bodies = [point.counterweights for point in curve.points]
+    placed: list[tuple[str, str, Any]] = []
+    for link in dict.fromkeys(link for one in bodies for link in one):
+        for name, unit in (("mass", "kg"), ("along", "m"), ("across", "m")):
+            told = [getattr(one[link], name) if link in one else 0.0 for one in bodies]
+            placed.append((f"{link} {name} [{unit}]", ".4g", told))
+    peaks = (first, ".6f", curve.first_values), (second, ".6f", curve.second_values)
+    lines = opt.columns(*peaks, *placed)
     rows = [(f"({name})", f"{x:.6f}", f"{y:.6f}") for name, (x, y) in curve.cases.items()]
     lines += ["", *opt.table(("case", first, second), rows), ""]
     return opt.finish(options, curve, lines)
@@ -293,6 +300,13 @@ def _lines(found: rigid.Balancing) -> list[str]:
         lines.append(
             f"weighted sum: {found.value:.8g}, not below {found.lower_bound:.8g} within bounds"
         )
+        grown = [k for k, share in found.relative.items() if share > 1.0 and k not in weights]
+        if grown:
+            rest = ",".join([*(f"{name}={weight:g}" for name, weight in weights.items()), ""])
+            lines.append(
+                f"{', '.join(grown)}: larger than before, for want of a weight; "
+                f"try --weights {rest}{grown[0]}=1"
+            )
     return lines
 
 

@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import BadInput, ElastolinkWarning, bad, warn_of_large_deflection
 from ..core.families import LinearPeriodic
 from ..core.inputs import require_mapping, require_whole
-from ..core.plotting import Axes, axes_or_new
+from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.progress import bar
 from ..core.results import Result, provenance
 from ..core.tables import with_unit
@@ -229,6 +229,9 @@ class Sweep(Result):
         values = [axis[part] for axis, part in zip(self.axes.values(), thin, strict=True)]
         shown = np.asarray(self[name][tuple(thin)])
         units = {"speed": "rad/s", **self.units}
+        for place, key in enumerate(self.axes):
+            if units.get(key) == "rad/s" and key.endswith("speed"):
+                values[place], units[key] = RPM * values[place], "rpm"
         *labels, told = (with_unit(key, units.get(key, "")) for key in (*self.axes, name))
         ax.set_xlabel(labels[-1])
         if len(labels) == 1:

@@ -192,10 +192,19 @@ def test_the_best_counterweights_are_those_of_the_function(capsys, tmp_path):
     assert picture.stat().st_size > 0
 
 
+def test_forces_that_grow_for_want_of_a_weight_are_told(capsys):
+    plain = shown(capsys, "balance", SMITH, "--speed", "10")
+    advice = line_of(plain, "shaking_force, ").rpartition("--weights ")[2]
+    assert advice == "f23=1,torque=1,shaking_moment=1,shaking_force=1"
+    weighed = shown(capsys, "balance", SMITH, "--speed", "10", "--weights", advice)
+    force = next(line.split() for line in weighed.splitlines() if line.startswith("shaking_force"))
+    assert float(force[4]) < 1.0
+
+
 def test_a_trade_off_lists_curve_cases_and_counterweights(capsys):
     asked = ("balance", SMITH, "--trade-off", "shaking_force,torque", "--points", "3")
     text = shown(capsys, *asked)
-    assert all(f"({case})" in text for case in "abcd")
+    assert all(f"({case})" in text for case in "abcd") and "follower along [m]" in text
     found = told(capsys, *asked)
     for point, first in zip(found["points"], found["first_values"], strict=True):
         assert point["relative"]["shaking_force"] == pytest.approx(first, rel=1e-12)

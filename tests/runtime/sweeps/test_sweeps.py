@@ -637,7 +637,7 @@ def test_the_picture_of_growth_parts_stable_from_unstable():
     found = el.sweep("floquet_multipliers", scene, values)
     assert 0 < np.sum(found["stable"]) < found["stable"].size
     axes = found.plot(output="growth")
-    assert axes.get_xlabel() == "speed [rad/s]"
+    assert axes.get_xlabel() == "speed [rpm]"
     assert axes.get_ylabel().startswith("damping [N s/m")
     assert "black line: growth 0" in axes.get_title()
     (line,) = (one for one in axes.collections if hasattr(one, "levels"))
@@ -645,7 +645,7 @@ def test_the_picture_of_growth_parts_stable_from_unstable():
     points = np.concatenate([path.vertices for path in line.get_paths()])
     # No lines in the noise of the undamped row: each point has both kinds beside it.
     steps = np.array([np.ptp(values["speed"]) / 40, np.ptp(values["damping"]) / 8])
-    for speed, damping in points:
+    for speed, damping in points * (np.pi / 30.0, 1.0):
         gaps = np.abs(
             np.array(np.meshgrid(values["speed"], values["damping"])).T - (speed, damping)
         )

@@ -53,6 +53,7 @@ def pages(tmp_path_factory):
         pytest.skip("no site without pip install 'elastolink[docs]'")
     folder = tmp_path_factory.mktemp("site") / "docs"
     shutil.copytree(DOCS, folder, ignore=shutil.ignore_patterns("build", "__pycache__"))
+    shutil.copy(ROOT / "CONTRIBUTING.md", folder.parent)  # a page includes it
     spec = importlib.util.spec_from_file_location("made_pages", folder / "made_pages.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)

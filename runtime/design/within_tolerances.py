@@ -322,8 +322,8 @@ def _spread(points: Array, model: Array) -> list[Array]:
 KINDS = ("frequencies", "edges", "boundaries", "stress", "motion", "forces")
 Over = tuple[str, ArrayLike]
 _ANGLE = "crank angle [rad]"
-_MODES, _ANGLES, _SPEEDS, _VALUES = 6, 73, 21, 5  # by default
-_INSET = 0.05  # of a range, at either end, where the linkage folds
+# By default; and the part of a range of angles left out at its ends, where the linkage folds.
+_MODES, _ANGLES, _SPEEDS, _VALUES, _INSET = 6, 73, 21, 5, 0.05
 
 
 @dataclass(frozen=True)

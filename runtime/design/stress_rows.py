@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..beams.element_forms import required_structure
+from ..beams.recovery_forms import RIGID
 from ..core.families import Array, LinearPeriodic
 from ..core.trigonometric import interpolated
 from ..periodic.equation import Equation
@@ -50,8 +51,8 @@ class StressRow:
         form, _ = stress_operator(system, angles, self._stations, method=self.method)
         rows, row = form.at_speed(speed), FIBRES.index(self.fibre)
         blank = np.zeros((len(angles), 2, system.size))
-        q, dq, rest = (rows.get(k, blank[..., : blank.shape[-1]]) for k in ("q", "dq", "1"))
-        return q[:, row], dq[:, row], rest[:, row]
+        on_q, on_slope = (rows.get(name, blank)[:, row] for name in ("q", "dq"))
+        return on_q, on_slope, rows.get(RIGID, blank[..., 0])[:, row]
 
     def rows(self, system: LinearPeriodic, angle: float, equation: Equation) -> Array:
         """Return the stress and its rate as rows of the scaled state, ``(1, 2, m)``."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -214,13 +214,14 @@ def differences(
     """
     places = PLACES if value or below else PLACES - PLACES[0]
     step = part * (abs(value) or size)
-    fine, coarse = (difference_weights(places, unused) / step for unused in (0, 1))
+    fine, coarse = (difference_weights(tuple(places), unused) / step for unused in (0, 1))
     return places, step, (fine, coarse)
 
 
-def difference_weights(places: Array, unused: int) -> Array:
+@cache
+def difference_weights(places: tuple[float, ...], unused: int) -> Array:
     """Return the weights of values at places in the derivative at 0, some at either end unused."""
-    used = places[unused : len(places) - unused]
+    used = np.array(places[unused : len(places) - unused])
     powers = np.vander(used, increasing=True).T
     return np.pad(np.linalg.solve(powers, np.eye(len(used))[1]), unused)
 
@@ -251,15 +252,19 @@ _Terms = list[tuple[Part, str | None, Array]]
 
 
 def _terms(system: LinearPeriodic, theta: Array) -> _Terms:
-    """Return the terms of the equation by their Fourier coefficients."""
-    found: _Terms = []
-    for term in system.terms:
-        if term.array in SPEED_POWER:
-            table = np.fft.rfft(term(theta), axis=0)[: len(theta) // 2] / len(theta)
-            waved = 2.0 * table[1:]
-            series = np.concatenate([table[:1].real, waved.real, -waved.imag])
-            found.append(((term.array, term.power), term.scale, series))
-    return found
+    """Return the terms of the equation by their Fourier coefficients; the next call finds them."""
+    key = ("Fourier coefficients", len(theta))
+    if key not in system.kept:
+        found: _Terms = []
+        for term in system.terms:
+            if term.array in SPEED_POWER:
+                table = np.fft.rfft(term(theta), axis=0)[: len(theta) // 2] / len(theta)
+                waved = 2.0 * table[1:]
+                series = np.concatenate([table[:1].real, waved.real, -waved.imag])
+                found.append(((term.array, term.power), term.scale, series))
+        system.kept[key] = found
+    terms: _Terms = system.kept[key]
+    return terms
 
 
 def _parts(terms: _Terms, scales: Mapping[str, ArrayLike]) -> Parts:

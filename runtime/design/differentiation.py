@@ -65,6 +65,8 @@ Answer: TypeAlias = (
 # angle over that of the motion, over its peak; and what round-off of a sum's terms leaves, over all
 # of them without signs.
 _COLLIDED, _CANCELLED, _ANGLE, _SUMMED = 1e-6, 1e-6, 2.0, 4.0 * 2.0**-52
+# Entries of vectors at all nodes that are handled at once.
+_TOGETHER = 1 << 17
 # Angles of a period at which the motion is told whose stresses are differentiated.
 _SAMPLES = 512
 
@@ -313,6 +315,15 @@ class _Adjoint:
         return slope, error, shake
 
     def _solve(self, way: Method, equation: Equation, count: int) -> tuple[NDArray[Any], ...]:
+        """Solve for some members at a time, whose nodes stay in the cache."""
+        entries = 2 * equation.size**2 * way.stages * count
+        some = np.array_split(
+            np.arange(len(equation.speed)), -(-len(equation.speed) * entries // _TOGETHER)
+        )
+        parts = [self._solved_part(way, equation.take(one), count) for one in some if one.size]
+        return tuple(np.concatenate(each) for each in zip(*parts, strict=True))
+
+    def _solved_part(self, way: Method, equation: Equation, count: int) -> tuple[NDArray[Any], ...]:
         h = equation.period / count
         left = self.begin + h * np.arange(float(count))
         segments = segments_from(equation, left, h, way, slopes=True)

@@ -66,7 +66,7 @@ class Number:
         places = PLACES - PLACES[0] * self.one_sided
         table = np.stack([of(*self.at(step * place), step * place) for place in places])
         first, second = (
-            np.tensordot(difference_weights(places, unused) / step, table, axes=1)
+            np.tensordot(difference_weights(tuple(places), unused) / step, table, axes=1)
             for unused in (0, 1)
         )
         return first, np.abs(first - second)

@@ -71,6 +71,13 @@ def test_a_region_of_two_modes_together():
             assert np.all(much < 1.0) and np.any(little > 1.0)
 
 
+def test_its_own_damping_and_the_speed_do_not_move_it():
+    found = closing_damping(SYSTEM, EDGES)
+    for name in ("damping", "speed"):
+        with pytest.raises(el.BadInput, match=f"leave the {name} out"):
+            sensitivities(SYSTEM, found, [name])
+
+
 test_refusals = refused(
     closing_damping,
     [

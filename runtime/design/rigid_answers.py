@@ -33,13 +33,13 @@ def rigid_slopes(
     own = answer.values if isinstance(answer, RigidForces) else vars(answer)
     rows = tuple(own) if isinstance(answer, RigidForces) else (*answer.places, *answer.rates)
     shape = np.broadcast_shapes(*(np.shape(own[row]) for row in rows))
+    found = _rows_of(scene, answer)
+    same = set(rows) <= set(found)
 
-    def compute(one: Scene) -> Array:
-        values = _rows_of(one, answer)
+    def stacked(values: Mapping[str, Array]) -> Array:
         return np.array([np.broadcast_to(values[row], shape) for row in rows])
 
-    same = set(rows) <= set(_rows_of(scene, answer))
-    value = compute(scene) if same else np.zeros(0)
+    value = stacked(found) if same else np.zeros(0)
     top = np.max(np.abs(value), axis=tuple(range(1, value.ndim)), keepdims=True, initial=0.0)
     if not same or any(
         np.any(np.abs(own[row] - value[i]) > 1e-9 * top[i]) for i, row in enumerate(rows)
@@ -47,12 +47,12 @@ def rigid_slopes(
         fix = "compute it anew from this scene"
         raise bad("answer", "one of another machine", "one of the scene", fix)
     slope, error = np.empty((2, *value.shape, len(names)))
+    longest = max(map(abs, scene.mechanism().lengths.values()))
     for i, name in enumerate(names):
-        longest = max(map(abs, scene.mechanism().lengths.values()))
         size = longest if name.startswith("links.") else 1.0
         places, step, (fine, coarse) = differences(scene.get(name), size=size)
         moved = [with_numbers(scene, {name: scene.get(name) + step * place}) for place in places]
-        changes = np.array([compute(one) - value for one in moved])
+        changes = np.array([stacked(_rows_of(one, answer)) - value for one in moved])
         slope[..., i] = np.tensordot(fine, changes, axes=1)
         rough = np.abs(np.tensordot(coarse, changes, axes=1) - slope[..., i])
         error[..., i] = rough + _ROUNDING * np.sum(np.abs(fine)) * top

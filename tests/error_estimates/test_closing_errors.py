@@ -2,8 +2,8 @@
 
 With y = exp(-K theta) z the damped equation is an undamped one in lam2 - K^2: at each speed the
 damping that just holds a motion follows from its exponent, and the one that closes the region is
-the largest of these.  The half trace exceeds 1 by x^2/2 where the exponent is x/2 pi: a few units
-of its last place are so much over x^2 of the damping.
+the largest of these.  The half trace exceeds 1 by x^2/2 where the exponent is x/2 pi: its error is
+as much over x^2 of the damping.
 """
 
 import elastolink as el
@@ -67,8 +67,9 @@ def test_closing_damping(rng):
     # By its dimension the damping goes with the root of both stiffnesses.
     total = np.sum(slopes.relative[row])
     relative = slopes.error[row] * slopes.number / found.damping[row]
-    growth = np.pi * truth / found.speed[row]
-    known = 4e-15 / growth**2
+    speed, k = found.speed[row], 0.5 * truth / found.speed[row]
+    half = el.discriminant(COSINE, stiffness / speed**2 - k * k, share * stiffness / speed**2)
+    known = float(half.error) / (2.0 * np.pi * k) ** 2
     return {
         "damping": (found.error[row] / truth + known, found.damping[row] / truth - 1.0),
         "derivatives": (np.sum(relative), total - 0.5),

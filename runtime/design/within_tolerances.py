@@ -24,8 +24,9 @@ from ..scenes import Scene, with_numbers
 from ..stability import stability_edges
 
 # Reserve over the largest remainder measured; corners and points inside that it is measured at;
-# what round-off leaves, and no number; standard deviations to the worst case without a bound.
-_SAFETY, _CORNERS, _INSIDE, _ROUND_OFF, _TINY, _REACH = 2.0, 16, 8, 1e-12, 1e-300, 3.0
+# what round-off leaves, and no number; standard deviations to the worst case without a bound; the
+# part of the range of values that a band is seen at.
+_SAFETY, _CORNERS, _INSIDE, _ROUND_OFF, _TINY, _REACH, _SEEN = 2.0, 16, 8, 1e-12, 1e-300, 3.0, 0.02
 _SPREAD = ("standard_deviation", "likely_lower", "likely_upper")
 
 
@@ -84,26 +85,32 @@ class ToleranceBands(Result):
     }
 
     def plot(self, ax: Axes | None = None, row: str | None = None) -> Axes:
-        """Draw one row, or those with its unit: worst case light, 95 of 100 samples darker."""
+        """Draw one row, or those with its unit: worst case light, 95 of 100 samples darker.
+
+        Bands too narrow to be seen beside the values are drawn as deviations from them.
+        """
         ax = axes_or_new(ax)
         name = row or self.rows[0]
         if name not in self.rows:
             raise bad("row", repr(name), f"one of {', '.join(self.rows)}", "choose one")
         unit = self.units[self.rows.index(name)]
         chosen = [k for k, one in enumerate(self.rows) if row == one or not row]
-        for k in (k for k in chosen if self.units[k] == unit):
+        drawn = [k for k in chosen if self.units[k] == unit]
+        hidden = np.max((self.upper - self.lower)[drawn]) < _SEEN * np.ptp(self.value[drawn])
+        for k in drawn:
             colour, x = f"C{k % 10}", self.place
             x = np.degrees(x) if self.across.endswith("[rad]") else x
             ends = (self.lower, self.upper, self.likely_lower, self.likely_upper, self.value)
-            low, high, likely_low, likely_high, value = (np.atleast_1d(end[k]) for end in ends)
+            low, high, likely_low, likely_high, value = (
+                np.atleast_1d(end[k] - hidden * self.value[k]) for end in ends
+            )
             if len(x) == 1:  # a bar of some width
                 x = np.array([k - 0.3, k + 0.3])
             ax.fill_between(x, low, high, color=colour, alpha=0.25, lw=0)
             ax.fill_between(x, likely_low, likely_high, color=colour, alpha=0.5, lw=0)
             ax.plot(x, value + 0.0 * x, color=colour, lw=0.8, label=self.rows[k].replace("_", " "))
-        ax.set(
-            xlabel=self.across.replace("[rad]", "[deg]"), ylabel=f"{row or self.quantity} [{unit}]"
-        )
+        told = f"{'deviation of ' * bool(hidden)}{row or self.quantity} [{unit}]"
+        ax.set(xlabel=self.across.replace("[rad]", "[deg]"), ylabel=told)
         if len(self.place) == 1:
             ax.set(xlabel="", xticks=[])
         # Beside the bands, which may fill the axes.

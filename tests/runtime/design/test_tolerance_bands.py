@@ -296,6 +296,17 @@ def test_picture(tmp_path):
     assert bands.save(tmp_path / "bands.csv").stat().st_size > 1000
 
 
+def test_bands_that_would_not_be_seen_are_drawn_as_deviations():
+    scene = el.load_scene("smith_1972_10_8_10_10", {"links.crank": "8 in +- 0.05 mm"})
+    bands = tolerance_bands(scene, "motion", trials=1)
+    ax = bands.plot(row="theta4")
+    assert ax.get_ylabel() == "deviation of theta4 [rad]"
+    row = bands.rows.index("theta4")
+    top = np.max((bands.upper - bands.value)[row])
+    assert top == pytest.approx(max(c.get_paths()[0].get_extents().y1 for c in ax.collections))
+    assert np.all(ax.get_lines()[0].get_ydata() == 0.0)
+
+
 @pytest.mark.parametrize(
     ("scene", "answer", "more", "words"),
     [

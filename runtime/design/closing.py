@@ -84,7 +84,7 @@ def closing_damping(
     Returns
     -------
     ClosingDamping
-        Its check: ``closed``, the largest modulus at the speeds, its error taken away.
+        Its check: ``closed``, the growth that is left at the speeds, its error taken away.
 
     Raises
     ------

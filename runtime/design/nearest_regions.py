@@ -160,8 +160,8 @@ def margins(
     >>> import elastolink as el
     >>> scene = el.load_scene("smith_1972_5152_sixteenth_inch")
     >>> near = el.design.margins(scene, 82.0, ["links.coupler"])
-    >>> print(near.region[0], near.end[0], near.distance[0].round(3))
-    region 4 of mode 1 80.5370455305024 0.018
+    >>> print(near.region[0], near.end[0].round(3), near.distance[0].round(3))
+    region 4 of mode 1 80.537 0.018
     """
     system = machine.linear_system() if isinstance(machine, Scene) else machine
     require_between("speed", speed, 1e-100, 1e100, "give a crank speed [rad/s]")

@@ -18,14 +18,14 @@ Array: TypeAlias = NDArray[np.float64]
 _QUARTER = (1.5707963267948966, 6.123233995736766e-17, -1.4973849048591833e-33)
 
 
-def _sum(a: Any, b: Any) -> tuple[Any, Any]:
+def sum_and_rest(a: Any, b: Any) -> tuple[Any, Any]:
     """Return the float next to a sum, and what it leaves out."""
     total = a + b
     part = total - a
     return total, (a - (total - part)) + (b - part)
 
 
-def _product(a: Any, b: Any) -> tuple[Any, Any]:
+def product_and_rest(a: Any, b: Any) -> tuple[Any, Any]:
     """Return the float next to a product, and what it leaves out."""
     total = a * b
     (a1, a2), (b1, b2) = _halves(a), _halves(b)
@@ -58,17 +58,20 @@ class Twofold:
 
     def __add__(self, other: Any) -> Twofold:
         other = _twofold(other)
-        (high, rest), (low, least) = _sum(self.high, other.high), _sum(self.low, other.low)
-        high, rest = _sum(high, rest + low)
-        return Twofold(*_sum(high, rest + least))
+        (high, rest), (low, least) = (
+            sum_and_rest(self.high, other.high),
+            sum_and_rest(self.low, other.low),
+        )
+        high, rest = sum_and_rest(high, rest + low)
+        return Twofold(*sum_and_rest(high, rest + least))
 
     def __sub__(self, other: Any) -> Twofold:
         return self + (-_twofold(other))
 
     def __mul__(self, other: Any) -> Twofold:
         other = _twofold(other)
-        high, low = _product(self.high, other.high)
-        return Twofold(*_sum(high, low + (self.high * other.low + self.low * other.high)))
+        high, low = product_and_rest(self.high, other.high)
+        return Twofold(*sum_and_rest(high, low + (self.high * other.low + self.low * other.high)))
 
     def __truediv__(self, other: Any) -> Twofold:
         other = _twofold(other)
@@ -76,7 +79,7 @@ class Twofold:
         rest = self - other * first
         second = rest.high / other.high
         third = (rest - other * second).high / other.high
-        return Twofold(*_sum(first, second)).__add__(third)
+        return Twofold(*sum_and_rest(first, second)).__add__(third)
 
     def __pow__(self, power: int) -> Twofold:
         value = self
@@ -118,7 +121,7 @@ class _Functions:
         root = np.sqrt(square.high)
         # Newton's step doubles the digits; the root of zero has all of them.
         rest = (square - Twofold(root) * root).high
-        return Twofold(*_sum(root, rest / (2.0 * np.where(root == 0.0, 1.0, root))))
+        return Twofold(*sum_and_rest(root, rest / (2.0 * np.where(root == 0.0, 1.0, root))))
 
     @staticmethod
     def atan2(y: Any, x: Any) -> Twofold:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, ClassVar
@@ -16,17 +16,23 @@ from ..core.families import Array, LinearPeriodic
 from ..core.inputs import numbers_in_a_row, require_kind, require_whole, speed_span
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
+from ..core.taylor_models import TaylorModel, UndecidedError, features
 from ..frequencies.held import held_frequencies
+from ..linkages.linkage import Linkage
+from ..linkages.parametric import ANGLE, Parametric
 from ..recovery.stress_over_speed import stress_curve
 from ..rigid import rigid_forces
-from ..rigid.evaluation import COUPLES
+from ..rigid.evaluation import COUPLES, ParametricMachine
 from ..scenes import Scene, with_numbers
+from ..scenes.rigid import rigid_numbers
 from ..stability import stability_edges
 
 # Reserve over the largest remainder measured; corners and points inside that it is measured at;
 # what round-off leaves, and no number; standard deviations to the worst case without a bound; the
 # part of the range of values that a band is seen at.
 _SAFETY, _CORNERS, _INSIDE, _ROUND_OFF, _TINY, _REACH, _SEEN = 2.0, 16, 8, 1e-12, 1e-300, 3.0, 0.02
+_PROVED = "second order by Taylor models; remainder proved"
+_MEASURED = "second order by differences of a half-width; remainder measured, doubled"
 _SPREAD = ("standard_deviation", "likely_lower", "likely_upper")
 
 
@@ -35,9 +41,9 @@ class ToleranceBands(Result):
     """An answer with bands; its arrays are over rows and places, ``(nr, np)``.
 
     ``lower`` and ``upper`` are bounds, proved, of a model of second order over all tolerances,
-    widened by ``reserve`` for what the model leaves out: twice the largest remainder measured at
-    corners and inside, an estimate.  ``error`` is how far they lie beyond values that were
-    computed: so much too wide the bands may be.
+    widened by ``reserve`` for what the model leaves out: a proved bound of it where ``proved``,
+    else twice the largest remainder measured at corners and inside, an estimate.  ``error`` is how
+    far they lie beyond values that were computed: so much too wide the bands may be.
 
     Attributes
     ----------
@@ -52,6 +58,8 @@ class ToleranceBands(Result):
         Places, for example crank angles [rad], what they are, and what the answer is.
     value, lower, upper, reserve : ndarray
         Answer of the scene itself, worst cases, and the part of either that is reserve.
+    proved : bool
+        Whether no machine within the tolerances leaves the bands: of motion and forces.
     standard_deviation, likely_lower, likely_upper : ndarray
         Of the samples of the model; 95 of 100 lie between the two.
     slope, share : ndarray, shape (nr, np, n)
@@ -70,6 +78,7 @@ class ToleranceBands(Result):
     lower: Array
     upper: Array
     reserve: Array
+    proved: bool
     standard_deviation: Array
     likely_lower: Array
     likely_upper: Array
@@ -131,9 +140,11 @@ def tolerance_bands(
 ) -> ToleranceBands:
     """Return worst case and sampled spread of an answer within the tolerances of a scene.
 
-    The scene is computed anew with n numbers moved, all that follows from them too: ``1 + 2 n +
-    n (n - 1) / 2`` times for a model of second order whose steps are the half-widths, some 32 times
-    for the reserve, ``trials`` times at random to check it.
+    Motion and forces without loads and springs are evaluated once on Taylor models of second order
+    in the n numbers, whose remainder is enclosed.  Of all others the scene is computed anew with
+    numbers moved, all that follows from them too: ``1 + 2 n + n (n - 1) / 2`` times for a model
+    whose steps are the half-widths, some 32 times for the reserve.  ``trials`` machines at random
+    check either.
 
     Parameters
     ----------
@@ -185,32 +196,37 @@ def tolerance_bands(
     box, asked = _Box.of(scene), answer_of(scene, answer, at, over)
     shape = len(asked.rows), len(asked.place)
     evaluate = partial(_values, scene, asked, box)
-    design = box.design()
-    first = evaluate(design)
-    model: Array = np.linalg.solve(_features(design), first).astype(float)
-    slope = model[1 : box.n + 1]
-    corners = box.corners(slope, random)
+    model = _enclosed(scene, asked, box)
+    proved = model is not None
+    points = np.zeros((1, box.n)) if model else box.design()
+    first = evaluate(points)
+    if model is None:
+        model = TaylorModel(np.linalg.solve(features(points), first).T.astype(float), 0.0, box.n)
+    corners = box.corners(model.slope, random)
     # What is cubic in one number is nought at the corners, and largest at 0.577 of the way.
     inside = [corners[:_INSIDE] / np.sqrt(3.0), random.uniform(-1.0, 1.0, (_INSIDE, box.n))]
     checked = np.concatenate([corners, *inside])
     found = np.concatenate([first, evaluate(checked)])
-    remainder = np.abs(found[len(first) :] - _features(checked) @ model)
+    coefficients = model.coefficients.T
+    if not proved:
+        remainder = np.abs(found[len(first) :] - features(checked) @ coefficients)
+        model = TaylorModel(model.coefficients, _SAFETY * np.max(remainder, axis=0), box.n)
     size = np.max(np.abs(first[0].reshape(shape)), axis=1)
-    left_out = _SAFETY * np.max(remainder, axis=0)
-    reserve = left_out + np.repeat(_ROUND_OFF * size, shape[1]) + _TINY
-    low, high = _bounds(model, box.n)
-    low, high = low - reserve, high + reserve
+    spare = np.repeat(_ROUND_OFF * size, shape[1]) + _TINY
+    reserve, (low, high) = model.rest + spare, model.bounds()
+    low, high = low - spare, high + spare
     drawn = box.draw(trials, random)
-    used = np.abs(evaluate(drawn) - _features(drawn) @ model) / reserve
+    used = np.abs(evaluate(drawn) - features(drawn) @ coefficients) / reserve
+    left_out = np.maximum(model.rest - _ROUND_OFF * np.max(size), 0.0)  # of what is to be zero
     widest = [np.max(row.reshape(shape), axis=1) for row in (left_out, (high - low) / 2.0)]
     points = box.draw(samples, random)
-    share = np.square(slope * np.std(points, axis=0)[:, None])
-    share /= np.maximum(np.sum(share, axis=0), _TINY)
+    share = np.square(model.slope * np.std(points, axis=0))
+    share /= np.maximum(np.sum(share, axis=1, keepdims=True), _TINY)
     too_wide = np.maximum(high - np.max(found, axis=0), np.min(found, axis=0) - low)
     names = ("value", "lower", "upper", "reserve", "error", *_SPREAD)
-    rows = (first[0], low, high, reserve, too_wide, *_spread(points, model))
+    rows = (first[0], low, high, reserve, too_wide, *_spread(points, coefficients))
     return ToleranceBands(
-        method="second order by differences of a half-width; remainder measured, doubled",
+        method=_PROVED if proved else _MEASURED,
         error_norm="how far too wide a band may be at either side, absolute",
         checks={
             "held": Check(float(np.max(used)), 1.0),
@@ -220,9 +236,10 @@ def tolerance_bands(
         numbers=box.names,
         half_width=box.half,
         deviation=box.deviation,
-        **{name: part for name, part in vars(asked).items() if name != "compute"},
-        slope=slope.T.reshape(*shape, box.n),
-        share=share.T.reshape(*shape, box.n),
+        **{name: part for name, part in vars(asked).items() if name not in ("compute", "modelled")},
+        proved=proved,
+        slope=model.slope.reshape(*shape, box.n),
+        share=share.reshape(*shape, box.n),
         **{name: row.reshape(shape) for name, row in zip(names, rows, strict=True)},
     )
 
@@ -261,7 +278,7 @@ class _Box:
         """Return all corners where they are few, else those worst for most, and random ones."""
         if 2**self.n <= _CORNERS:
             return np.array(list(itertools.product((-1.0, 1.0), repeat=self.n)))
-        signs = np.where(slope.T >= 0.0, 1.0, -1.0)
+        signs = np.where(slope >= 0.0, 1.0, -1.0)
         worst, counts = np.unique(np.concatenate([signs, -signs]), axis=0, return_counts=True)
         most = worst[np.argsort(-counts, kind="stable")[: 2 * _CORNERS]]
         return np.concatenate([most, random.choice([-1.0, 1.0], (_CORNERS, self.n))])
@@ -296,38 +313,37 @@ def _values(scene: Scene, asked: Answer, box: _Box, points: Array) -> Array:
     return np.array(rows)
 
 
-def _features(points: Array) -> Array:
-    """Return 1, coordinates, and their squares and products at points."""
-    n = points.shape[1]
-    pairs = [points[:, i] * points[:, j] for i, j in itertools.combinations(range(n), 2)]
-    return np.column_stack([np.ones(len(points)), points, points**2, *pairs])
-
-
-def _bounds(model: Array, n: int) -> tuple[Array, Array]:
-    """Return bounds of the model over the box: exact in each number, products at their worst."""
-    slope, curve = np.abs(model[1 : n + 1]), model[n + 1 : 2 * n + 1]
-
-    def top(curve: Array) -> Array:
-        inside = 2.0 * np.abs(curve) > slope
-        peak = np.square(slope) / (4.0 * np.where(inside, np.abs(curve), 1.0))
-        return np.asarray(np.sum(np.where(inside & (curve < 0.0), peak, slope + curve), axis=0))
-
-    products = np.sum(np.abs(model[2 * n + 1 :]), axis=0)
-    return model[0] - top(-curve) - products, model[0] + top(curve) + products
+def _enclosed(scene: Scene, asked: Answer, box: _Box) -> TaylorModel | None:
+    """Return the entries of an answer on Taylor models; None where these cannot be had."""
+    if asked.modelled is None:
+        return None
+    numbers = TaylorModel.numbers(box.middle, box.half)
+    try:
+        one = with_numbers(scene, dict(zip(box.names, numbers, strict=True)), checked=False)
+        rows = asked.modelled(one, numbers[0].lifted)
+    except UndecidedError:
+        return None
+    shape = len(rows), len(asked.place)
+    rests = np.stack([np.broadcast_to(row.rest, shape[1]) for row in rows])
+    wide = (shape[1], rows[0].coefficients.shape[-1])
+    values = np.stack([np.broadcast_to(row.coefficients, wide) for row in rows])
+    found = TaylorModel(values.reshape(-1, wide[1]), rests.ravel(), box.n)
+    return found if np.all(np.isfinite(rests)) and np.all(np.isfinite(values)) else None
 
 
 def _spread(points: Array, model: Array) -> list[Array]:
     """Return standard deviation and the ends of the middle 95 of 100 of the model at points."""
-    features, parts = _features(points), []
+    known, parts = features(points), []
     # Numbers in one array at a time.
     for columns in np.array_split(model, 1 + len(points) * model.shape[1] // 2_000_000, axis=1):
-        values = features @ columns
+        values = known @ columns
         parts.append([np.std(values, axis=0), *np.quantile(values, [0.025, 0.975], axis=0)])
     return list(np.concatenate(parts, axis=1))
 
 
 KINDS = ("frequencies", "edges", "boundaries", "stress", "motion", "forces")
 Over = tuple[str, ArrayLike]
+Lift = Callable[[Any], TaylorModel]
 _ANGLE = "crank angle [rad]"
 # By default; and the part of a range of angles left out at its ends, where the linkage folds.
 _MODES, _ANGLES, _SPEEDS, _VALUES, _INSET = 6, 73, 21, 5, 0.05
@@ -343,6 +359,8 @@ class Answer:
     place: Array
     across: str
     quantity: str
+    # Rows of a scene whose numbers are Taylor models, which lifts others to models.
+    modelled: Callable[[Scene, Lift], Sequence[TaylorModel]] | None = None
 
 
 def answer_of(
@@ -389,15 +407,27 @@ def _angles(scene: Scene, kind: str) -> Array:
 
 def _motion(scene: Scene, theta: Array) -> Answer:
     driven = "operation" in scene and scene.get("operation.speed", None) is not None
-    moves = scene.mechanism().moves
+    linkage = scene.mechanism()
+    moves = linkage.moves
     rows = (*moves.places, *moves.rates)
 
     def compute(one: Scene) -> Array:
         found = one.mechanism().motion(theta, *(_drive(one) if driven else ()))
         return np.array([np.broadcast_to(getattr(found, name), theta.shape) for name in rows])
 
+    def modelled(one: Scene, lift: Lift) -> list[TaylorModel]:
+        drive: Any = map(lift, _drive(one) if driven else (1.0, 0.0))
+        found = Parametric(linkage, theta, *drive).evaluate(_numbers(one, linkage, lift))
+        return [lift(found[name]) for name in rows]
+
     units = tuple(moves.unit_of(name, relative=not driven) for name in rows)
-    return Answer(compute, rows, units, theta, _ANGLE, "motion")
+    return Answer(compute, rows, units, theta, _ANGLE, "motion", modelled)
+
+
+def _numbers(scene: Scene, linkage: Linkage, lift: Lift) -> dict[str, TaylorModel]:
+    return {name: lift(number) for name, number in rigid_numbers(scene, linkage).items()} | {
+        ANGLE: lift(0.0)
+    }
 
 
 def _drive(scene: Scene) -> tuple[float, float]:
@@ -405,15 +435,24 @@ def _drive(scene: Scene) -> tuple[float, float]:
 
 
 def _forces(scene: Scene, theta: Array) -> Answer:
-    first = rigid_forces(scene.machine(), theta, *_drive(scene))
+    machine = scene.machine()
+    first = rigid_forces(machine, theta, *_drive(scene))
     rows = tuple(sorted(first.values))
 
     def compute(one: Scene) -> Array:
         found = rigid_forces(one.machine(), theta, *_drive(one)).values
         return np.array([np.broadcast_to(found[name], theta.shape) for name in rows])
 
+    def modelled(one: Scene, lift: Lift) -> list[TaylorModel]:
+        linkage = machine.linkage
+        drive: Any = [lift(number) for number in _drive(one)]
+        made = ParametricMachine(linkage, theta, drive[0], drive[1], machine)
+        found = made.evaluate(_numbers(one, linkage, lift))
+        return [lift(found[name]) for name in rows]
+
     units = tuple("N m" if name.startswith(COUPLES) else "N" for name in rows)
-    return Answer(compute, rows, units, theta, _ANGLE, "force or moment")
+    known = None if machine.loaded else modelled
+    return Answer(compute, rows, units, theta, _ANGLE, "force or moment", known)
 
 
 _OVER_ANGLES: Mapping[str, Callable[[Scene, Array], Answer]] = {

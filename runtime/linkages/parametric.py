@@ -23,7 +23,7 @@ ANGLE = "theta2"
 class Parametric:
     """The motion of a linkage at given crank angles as a function of its lengths.
 
-    The numbers may be arrays (of samples), or complex ones (of derivatives).
+    The numbers may be arrays (of samples), complex ones (of derivatives), or Taylor models.
     """
 
     linkage: Linkage  # lengths and assembly
@@ -67,9 +67,9 @@ class Parametric:
 
     def _angle(self, numbers: Mapping[str, Any]) -> Any:
         """Return the crank angle; complex beside complex numbers, for its functions."""
-        theta = np.asarray(self.theta + numbers[ANGLE])
+        theta = self.theta + numbers[ANGLE]
         stepped = any(np.iscomplexobj(number) for number in numbers.values())
-        return theta.astype(complex).view(_Stepped) if stepped else theta
+        return np.asarray(theta).astype(complex).view(_Stepped) if stepped else theta
 
     def _moved(self, theta: Any, numbers: Mapping[str, Any]) -> dict[str, Any]:
         scale = 2.0**self.linkage.scale

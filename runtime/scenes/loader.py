@@ -114,18 +114,20 @@ def scene_from_document(
     return replace(with_numbers(bare, {}), tolerances=bounds[0], deviations=bounds[1])
 
 
-def with_numbers(scene: Scene, numbers: Mapping[str, float]) -> Scene:
+def with_numbers(scene: Scene, numbers: Mapping[str, Any], *, checked: bool = True) -> Scene:
     """Return a scene with other numbers, exact ones, by dotted key [SI].
 
-    The keys are some of ``scene.given``; what follows from them is filled in anew.
+    The keys are some of ``scene.given``; what follows from them is filled in anew.  Numbers that
+    are no floats, such as Taylor models, are not ``checked`` for lengths that close.
     """
     given = _copied(scene.given)
     for where, number in numbers.items():
         table, _, name = where.rpartition(".")
         reduce(getitem, table.split("."), given)[name] = number
     values = _copied(given)
-    check_geometry(values, scene.layout)
-    complete(values, scene.layout)
+    if checked:
+        check_geometry(values, scene.layout)
+    complete(values, scene.layout, checked=checked)
     tables = ReadOnlyTable(scene.name, {k: _read_only(k, table) for k, table in values.items()})
     document = _copied(scene.document)
     _override(document, numbers)
@@ -225,7 +227,7 @@ def parse(content: bytes, name: str) -> dict[str, Any]:
 Values = dict[str, dict[str, Any]]
 
 
-def complete(values: Values, layout: Layout) -> None:
+def complete(values: Values, layout: Layout, *, checked: bool = True) -> None:
     """Fill in what the given quantities determine; refuse those that contradict each other."""
     if layout.mechanism == "hill":
         _pad_series(values["function"])
@@ -255,7 +257,8 @@ def complete(values: Values, layout: Layout) -> None:
             length = values["links"].get(link, 0.0)
             with collecting(problems):
                 _complete_bar(link, values[link], length, gravity, balanced=link in balanced)
-                check_body(link, values[link])
+                if checked:
+                    check_body(link, values[link])
     refuse(problems)
 
 
@@ -274,7 +277,7 @@ def _flexible_bar(bar: dict[str, Any], length: float) -> None:
     wave = math.pi / length
     stiffness = bar["bending_stiffness"]
     if "mass_per_length" in bar:
-        bar["natural_frequency"] = wave**2 * math.sqrt(stiffness / bar["mass_per_length"])
+        bar["natural_frequency"] = wave**2 * (stiffness / bar["mass_per_length"]) ** 0.5
     else:
         bar["mass_per_length"] = stiffness * wave**4 / bar["natural_frequency"] ** 2
     critical = 2.0 * bar["mass_per_length"] * bar["natural_frequency"]

@@ -10,9 +10,27 @@ from ..core.errors import bad
 from ..rigid import Load, Machine, MassDistribution, Spring, TorsionSpring
 
 if TYPE_CHECKING:
+    from ..linkages.linkage import Linkage
     from .scene import Scene
 
-_MASS = ("mass", "first_moment", "transverse_moment", "inertia")
+_MASS = {
+    "mass": "mass",
+    "along": "first_moment",
+    "across": "transverse_moment",
+    "inertia": "inertia",
+}
+
+
+def rigid_numbers(scene: Scene, linkage: Linkage) -> dict[str, Any]:
+    """Return lengths, and masses by ``crank.mass`` and so on, as a parametric machine names them.
+
+    They may be other numbers than floats; the linkage tells their names.
+    """
+    numbers = {name: scene["links"][name] for name in linkage.names}
+    for link in linkage.links:
+        table = scene.get(link, {})
+        numbers |= {f"{link}.{name}": table.get(key, 0.0) for name, key in _MASS.items()}
+    return numbers
 
 
 def machine(scene: Scene) -> Machine:
@@ -20,9 +38,9 @@ def machine(scene: Scene) -> Machine:
     linkage = scene.mechanism()
     tables = {link: scene[link] for link in linkage.links if link in scene}
     masses = {
-        link: MassDistribution(*(table.get(key, 0.0) for key in _MASS))
+        link: MassDistribution(**{name: table.get(key, 0.0) for name, key in _MASS.items()})
         for link, table in tables.items()
-        if any(key in table for key in _MASS)
+        if any(key in table for key in _MASS.values())
     }
     if not masses:
         expected = f"a mass, weight or inertia of one of {list(linkage.links)}"

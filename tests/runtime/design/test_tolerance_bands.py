@@ -108,6 +108,7 @@ def forces(name, count):
     scene = toleranced(name)
     bands = tolerance_bands(scene, "forces", ANGLES)
     drive = scene.get("operation.speed"), scene.get("operation.acceleration", 0.0)
+    assert bands.proved is not scene.machine().loaded
     model = model_of(scene.machine(), ANGLES, *(np.full(8, one) for one in drive))
     return held(bands, *closed_form(scene, count, model, bands.rows))
 
@@ -118,6 +119,7 @@ def motion(name, count):
     low, high = (0.0, 2 * np.pi) if linkage.crank_turns else linkage.crank_ranges()[0]
     theta = low + (high - low) * np.linspace(0.15, 0.85, 8)
     bands = tolerance_bands(scene, "motion", theta)
+    assert bands.proved
     drive = (np.full(8, one) for one in (scene.get("operation.speed", 1.0), 0.0))
     return held(bands, *closed_form(scene, count, Parametric(linkage, theta, *drive), bands.rows))
 
@@ -181,6 +183,32 @@ def test_a_rocking_crank_is_moved_within_what_it_reaches():
     ends = scene.mechanism().crank_ranges()[0]
     assert ends[0] < bands.place[0] and bands.place[-1] < ends[1] and bands.passed
     assert dict(zip(bands.rows, bands.units, strict=True))["omega4"] == "rad/s"
+
+
+def test_nothing_is_proved_of_a_machine_that_may_fold():
+    scene = el.load_scene("smith_1972_12_6_12_12", {"links.crank": "14 in +- 0.1 mm"})
+    end = scene.mechanism().crank_ranges()[0][1]
+    for back, proved in ((4e-3, True), (1e-3, False)):
+        bands = tolerance_bands(scene, "motion", [end - back], trials=1)
+        assert bands.proved is proved
+        assert bands.method.endswith("proved" if proved else "doubled")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("answer", ["motion", "forces"])
+def test_default_angles_of_scenes_are_proved_and_as_narrow_as_what_is_measured(answer, monkeypatch):
+    names = (*RIGID, *(f"smith_1972_{name}" for name in MOTION))
+    scenes = [toleranced(name) for name in names if answer == "motion" or name in RIGID]
+    for scene in scenes:
+        loaded = answer == "forces" and scene.machine().loaded
+        with monkeypatch.context() as patch:
+            proved = tolerance_bands(scene, answer, trials=3)
+            patch.setattr("elastolink.runtime.design.within_tolerances._enclosed", lambda *_: None)
+            measured = tolerance_bands(scene, answer, trials=1)
+        assert proved.proved is not loaded and proved.passed and not measured.proved
+        width = measured.upper - measured.lower
+        kept = width > 1e-6 * np.maximum(np.max(width, axis=1, keepdims=True), 1e-6)
+        assert np.all((proved.upper - proved.lower)[kept] < 1.2 * width[kept])
 
 
 def test_a_quadratic_answer_is_bounded_exactly_and_its_parts_are_known():

@@ -8,7 +8,7 @@ from functools import cache, cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ..core.errors import Problem, bad, refuse
 from ..core.families import Array, LinearPeriodic
@@ -74,37 +74,47 @@ class Changes:
         total, by_speed = np.zeros(shape, dtype=complex), np.zeros(weights.shape, dtype=complex)
         error, bulk = np.zeros(shape), np.zeros(shape)
         table = self.table(weights.angles)
-        for part, series in self.parts.items():
+        sizes = {field: weights.sizes(field) for field in weights.pairs}
+        for part, (series, moving, change, off) in self._moving.items():
             field, sign = FIELD[part[0]]
+            if field not in sizes:
+                continue
             power = SPEED_POWER[part[0]] + part[1]
             pace = sign * speed[:, None] ** power
-            whole = series_at(table, series)
+            waved = table[: 1 if series.shape[1] == 1 else None, : series.shape[1]]
+            values = np.tensordot(series, waved, axes=(1, 1))
+            values = np.moveaxis(values, -1, 1)
+            found = weights.effect(field, values)
             if power:
-                by_speed += power * pace / speed[:, None] * weights.effect(field, whole[None])[0]
+                by_speed += power * pace / speed[:, None] * found[0]
+            total[..., moving] += pace[..., None] * np.moveaxis(found[1:], 0, -1)
             # What is told of a sum's terms by their largest coefficient.
-            change, off = self._sizes[part]
-            size = np.abs(pace) * weights.size(field, whole)
-            bulk += size[..., None] * change
-            error += size[..., None] * off
-            slopes, moving = self.slopes[part], np.flatnonzero(change)
-            if moving.size:
-                moved = np.moveaxis(np.tensordot(table, slopes[moving], axes=(1, 1)), 1, 0)
-                found = weights.effect(field, moved)
-                total[..., moving] += pace[..., None] * np.moveaxis(found, 0, -1)
+            largest = np.max(np.abs(values[0]), axis=0).ravel()
+            size = (np.abs(pace) * (sizes[field] @ largest))[..., None]
+            bulk += size * change
+            error += size * off
         fast = [i for i, name in enumerate(self.by) if name == SPEED]
         total[..., fast] = by_speed[..., None]
         bulk[..., fast] = np.abs(by_speed)[..., None]
         return Effect(total, error, bulk, by_speed)
 
     @cached_property
-    def _sizes(self) -> Mapping[Part, tuple[Array, Array]]:
-        """By part the largest derivatives of a coefficient and their errors, over its size."""
+    def _moving(self) -> Mapping[Part, tuple[Array, NDArray[np.intp], Array, Array]]:
+        """What moves with the numbers, by part.
+
+        The coefficients, one of what is constant, then their derivatives that are not zero; by
+        which numbers these are; by all numbers the largest derivative of a coefficient over the
+        largest one, and its error.
+        """
         found = {}
         for part, series in self.parts.items():
             top = float(_largest(series[None])[0]) or 1.0
             change = _largest(self.slopes[part]) / top
             gap = _largest(self.slopes[part] - self.rough[part]) / top
-            found[part] = change, gap + np.finfo(float).eps / self.step * (change > 0.0)
+            off = gap + np.finfo(float).eps / self.step * (change > 0.0)
+            moving = np.flatnonzero(change)
+            both = np.concatenate([series[None], self.slopes[part][moving]])
+            found[part] = both if np.any(both[:, 1:]) else both[:, :1], moving, change, off
         return found
 
     def table(self, angles: Array) -> Array:
@@ -138,7 +148,8 @@ def coefficient_changes(
     names = checked_names(machine, [SPEED, *system.parameters, *system.geometry], by)
     theta = _even_angles(system)
     terms = _terms(system, theta)
-    parts = _parts(terms, system.scales(system.parameters))
+    scales = system.scales(system.parameters)
+    parts = _parts(terms, scales)
     slopes = {part: np.zeros((len(names), *series.shape)) for part, series in parts.items()}
     rough = {part: zeros.copy() for part, zeros in slopes.items()}
     number, steps = np.ones(len(names)), np.ones(len(names))
@@ -151,16 +162,21 @@ def coefficient_changes(
         values = value + steps[i] * places
         if inner:
             # Not within its limits: a damping that is 0 goes below.
-            moved = _parts(terms, system.scales({**system.parameters, name: values}))
-        else:
-            made = [with_number(machine, system, name, float(one)) for one in values]
-            made = [one.with_parameters(**(held or {})) for one in made]
-            each = [_parts(_terms(one, theta), one.scales(one.parameters)) for one in made]
-            moved = {part: np.stack([other[part] for other in each]) for part in parts}
-        for weights, target in zip(both, (slopes, rough), strict=True):
-            for part, series in parts.items():
-                if moved[part].ndim > series.ndim:
-                    target[part][i] = np.tensordot(weights, moved[part] - series, axes=1)
+            others = system.scales({**system.parameters, name: values})
+            mixed = {key: value for key, value in others.items() if np.ndim(value)}
+            changed = [row for row in terms if row[1] in mixed]
+            for weights, target in zip(both, (slopes, rough), strict=True):
+                change = {key: weights @ (value - scales[key]) for key, value in mixed.items()}
+                for part, series in _parts(changed, change).items():
+                    target[part][i] = series
+            continue
+        made = [with_number(machine, system, name, float(one)) for one in values]
+        made = [one.with_parameters(**(held or {})) for one in made]
+        each = [_parts(_terms(one, theta), one.scales(one.parameters)) for one in made]
+        for part, series in parts.items():
+            moved = np.stack([other[part] for other in each]) - series
+            for weights, target in zip(both, (slopes, rough), strict=True):
+                target[part][i] = np.tensordot(weights, moved, axes=1)
     return Changes(names, number, steps, parts, slopes, rough, len(theta) // 2 - 1, system.period)
 
 
@@ -267,14 +283,11 @@ def _terms(system: LinearPeriodic, theta: Array) -> _Terms:
     return terms
 
 
-def _parts(terms: _Terms, scales: Mapping[str, ArrayLike]) -> Parts:
-    """Return the Fourier coefficients of the parts of the equation, for values of the monomials.
-
-    Monomials at several values, ``(k,)``, make the parts that they enter ``(k, 2 H + 1, ...)``.
-    """
+def _parts(terms: _Terms, scales: Mapping[str, Array]) -> Parts:
+    """Return the Fourier coefficients of the parts of the equation, for values of the monomials."""
     parts: Parts = {}
     for part, scale, series in terms:
-        value = series if scale is None else np.multiply.outer(scales[scale], series)
+        value = series if scale is None else scales[scale] * series
         parts[part] = parts[part] + value if part in parts else value
     return parts
 

@@ -371,13 +371,13 @@ def _eigenvectors(equation: Equation, matrix: ComplexArray, count: int) -> _Rows
     # One of two conjugate multipliers tells of both.
     kept = np.flatnonzero(np.any(values.imag >= 0.0, axis=0))
     gaps = np.abs(values[:, :, None] - values[:, None, kept].conj())
-    place, other = np.arange(values.shape[1]), kept[np.argmin(gaps, axis=-1)]
-    source = np.searchsorted(kept, np.where(np.isin(place, kept), place, other))[..., None]
+    source, own = np.argmin(gaps, axis=-1)[..., None], np.zeros(values.shape[1], dtype=bool)
+    source[:, kept, 0], own[kept] = np.arange(len(kept)), True
 
     def finished(found: Effect) -> tuple[NDArray[Any], Array, Array, Array]:
         slope = np.take_along_axis(found.slope, source, 1)
         error, bulk = (np.take_along_axis(one, source, 1) for one in (found.error, found.bulk))
-        slope = np.where(np.isin(place, kept)[:, None], slope, slope.conj())
+        slope = np.where(own[:, None], slope, slope.conj())
         return slope, error, bulk, shake[..., None]
 
     return _Rows(rows[:, kept], vectors.mT[:, kept], finished)

@@ -13,7 +13,7 @@ That is the derivative of the matrix X as it is computed, so that it converges a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .equation import Equation
-from .transition import Method, Segments, blocks, stages_of
+from .transition import Method, Segments, Stages, blocks, stages_of
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -39,44 +39,45 @@ class FieldWeights:
         Crank angles [rad] of all nodes of the period, shape ``(nt,)``.
     pairs : mapping
         By field, pairs of vectors in unscaled coordinates between which its change stands, summed
-        over the nodes, ``(nt, n, nb k)`` each; the second of the force is None.
+        over the nodes, ``(nb k, nt, n)`` each; the second of the force is 1, ``(nb k, nt, 1)``.
     shape : tuple of int
         ``(nb, k)``.
     """
 
     angles: Array
-    pairs: Mapping[str, tuple[tuple[ComplexArray, ComplexArray | None], ...]]
+    pairs: Mapping[str, tuple[tuple[ComplexArray, ComplexArray], ...]]
     shape: tuple[int, int]
 
     def effect(self, field: str, changes: Array) -> ComplexArray:
         """Return what changes do, ``(c, nb, k)``.
 
-        They are ``(c, nt, n, n)``, or ``(c, nt, n)`` of the force.
+        They are ``(c, nt, n, n)``, or ``(c, nt, n)`` of the force; what is constant has one angle.
         """
-        return self._summed(field, changes, lambda values: values).reshape(-1, *self.shape)
-
-    def size(self, field: str, change: Array) -> Array:
-        """Return what all terms of the sums add up to without signs, ``(nb, k)``."""
-        return self._summed(field, np.abs(change)[None], np.abs).real.reshape(self.shape)
-
-    def _summed(
-        self, field: str, changes: Array, of: Callable[[ComplexArray], NDArray[Any]]
-    ) -> ComplexArray:
-        """Return sums over the nodes of changes between vectors, or their sizes, ``(c, nb k)``."""
         count, nodes = changes.shape[:2]
-        total = np.zeros((count, self.shape[0] * self.shape[1]), dtype=complex)
-        together = max(1, _BLOCK // (changes[0, 0].size * total.shape[1]))
+        flat = np.ascontiguousarray(changes.reshape(count, nodes, -1).mT)
+        lines = self.shape[0] * self.shape[1]
+        total = np.zeros((lines, count, 2))
+        together = max(1, _BLOCK // (flat.shape[1] * lines))
         for left, right in self.pairs.get(field, ()):
+            if nodes == 1:
+                table = (left.mT @ right).reshape(lines, -1).view(float).reshape(lines, -1, 2)
+                total += flat[..., 0] @ table
+                continue
             for begin in range(0, nodes, together):
                 some = slice(begin, begin + together)
-                entries = of(left[some])
-                if right is not None:
-                    entries = entries[:, :, None] * of(right[some])[:, None]
-                flat = changes[:, some].reshape(count, -1)
+                one, other = (np.ascontiguousarray(part[:, some].mT) for part in (left, right))
+                entries = one[:, :, None] * other[:, None]
                 # Real times complex in one product of real arrays.
-                table = entries.reshape(flat.shape[1], -1).astype(complex, copy=False)
-                total += (flat @ table.view(float)).view(complex)
-        return total
+                table = entries.reshape(lines, -1).view(float).reshape(lines, -1, 2)
+                total += flat[..., some].reshape(count, -1) @ table
+        found = np.ascontiguousarray(total.swapaxes(0, 1)).view(complex)
+        return found.reshape(count, *self.shape)
+
+    def sizes(self, field: str) -> Array:
+        """Return what each entry of a change enters with, without signs, ``(nb, k, n n)``."""
+        pairs = self.pairs.get(field, ())
+        total: Any = sum(np.abs(left).mT @ np.abs(right) for left, right in pairs)
+        return np.reshape(total, (*self.shape, -1)) if pairs else np.zeros((*self.shape, 1))
 
 
 def field_weights(
@@ -97,51 +98,58 @@ def field_weights(
     maps, slopes = segments.maps, segments.slopes
     if slopes is None:
         raise ValueError("segments without slopes")
-    n, count, shape = equation.size, maps.shape[1], rows.shape[:2]
+    n, count, (nb, k) = equation.size, maps.shape[1], rows.shape[:2]
     h = equation.period / count
     left = begin + h * np.arange(float(count))
-    before = np.empty((count, *states.shape), dtype=complex)
-    after = np.empty((count, *rows.shape), dtype=complex)
+    # Real parts, then imaginary ones.
+    before = np.empty((count, nb, 2 * k, states.shape[2]))
+    after = np.empty((count, nb, 2 * k, rows.shape[2]))
+    state, row = (np.concatenate([one.real, one.imag], axis=1) for one in (states, rows))
     for i in range(count):
-        before[i] = states
-        states = states @ maps[:, i].mT
+        before[i] = state
+        state = state @ maps[:, i].mT
     for i in range(count)[::-1]:
-        after[i] = rows
-        rows = rows @ maps[:, i]
-    # Indices: segment, member, functional, node, coordinate.
-    flat = np.moveaxis(slopes, 1, 0).reshape(count, shape[0], way.stages * n, -1)
-    slope = (before @ flat.mT).reshape(count, *shape, way.stages, n)
+        after[i] = row
+        row = row @ maps[:, i]
+    # Indices: segment, member, part, node, coordinate.
+    flat = np.moveaxis(slopes, 1, 0).reshape(count, nb, way.stages * n, -1)
+    slope = (before @ flat.mT).reshape(count, nb, 2 * k, way.stages, n)
     place = before[..., None, :n] + h * (way.a @ slope)
-    solved = [_adjoint(equation, way, left[i], h, after[i]) for i in blocks(equation, way, count)]
+    parts, kept = blocks(equation, way, count), segments.stages
+    made = kept or (stages_of(equation, left[part], h, way) for part in parts)
+    solved = [
+        _adjoint(stages, way, h, after[part]) for part, stages in zip(parts, made, strict=True)
+    ]
     load, momentum = map(np.concatenate, zip(*solved, strict=True))
 
-    def by_node(values: ComplexArray) -> ComplexArray:
-        """Return vectors in unscaled coordinates by node, ``(nt, n, nb k)``."""
-        unscaled = values * equation.scale[:, None, None, :]
-        turned = unscaled.transpose(0, 3, 4, 1, 2)
-        return np.ascontiguousarray(turned.reshape(count * way.stages, n, -1))
+    unit = np.tile(equation.scale, (1, way.stages))[:, None, None]
+
+    def by_node(values: Array) -> ComplexArray:
+        """Return complex vectors in unscaled coordinates, ``(nb k, nt, n)``."""
+        turned = values.reshape(count, nb, 2, k, -1).transpose(2, 1, 3, 0, 4)
+        whole = np.empty(turned.shape[1:], dtype=complex)
+        for part, target in zip(turned, (whole.real, whole.imag), strict=True):
+            np.multiply(part, unit, out=target)
+        return whole.reshape(nb * k, count * way.stages, n)
 
     moved, placed, loaded, pushed = map(by_node, (slope, place, h * load, momentum))
-    pairs: dict[str, tuple[tuple[ComplexArray, ComplexArray | None], ...]] = {
+    pairs: dict[str, tuple[tuple[ComplexArray, ComplexArray], ...]] = {
         "mass": ((pushed, moved),),
         "gyroscopic": ((pushed, placed), (moved, loaded)),
         "damping": ((-loaded, moved),),
         "stiffness": ((loaded, placed),),
     }
     if equation.forced:
-        pairs["force"] = ((loaded, None),)
-    return FieldWeights((left[:, None] + way.c * h).ravel(), pairs, (shape[0], shape[1]))
+        pairs["force"] = ((loaded, np.ones_like(loaded[..., :1])),)
+    return FieldWeights((left[:, None] + way.c * h).ravel(), pairs, (nb, k))
 
 
-def _adjoint(
-    equation: Equation, way: Method, left: Array, h: float, after: ComplexArray
-) -> tuple[ComplexArray, ComplexArray]:
+def _adjoint(stages: Stages, way: Method, h: float, after: Array) -> tuple[Array, Array]:
     """Return lambda and mu of rows at the right ends, ``(segments, nb, k, s, n)`` each."""
-    n, s, k = equation.size, way.stages, after.shape[2]
-    stages = stages_of(equation, left, h, way)
+    s, n = way.stages, stages.columns.shape[-1] // way.stages
     end = way.b @ way.inverse
-    # Indices: member, segment, functional (real parts, then imaginary), coordinate, node.
-    parts = np.concatenate([after.real, after.imag], axis=2).swapaxes(0, 1)
+    # Indices: member, segment, functional, coordinate, node.
+    parts = after.swapaxes(0, 1)
     row_p = np.ascontiguousarray(parts[..., n : 2 * n])
     shape = (*row_p.shape, s)
 
@@ -155,6 +163,6 @@ def _adjoint(
     # Equations are (node, coordinate).
     flat = right.reshape(*shape[:3], n * s)
     solved = np.linalg.solve(stages.columns, flat.mT).mT.reshape(*shape[:3], s, n)
-    load = (solved[:, :, :k] + 1j * solved[:, :, k:]).swapaxes(0, 1)
+    load: Array = solved.swapaxes(0, 1).astype(float, copy=False)
     momentum = end[:, None] * after[..., None, n : 2 * n] - way.inverse.T @ load
     return load, momentum

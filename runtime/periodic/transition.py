@@ -18,7 +18,7 @@ each step is compared with the one before (:func:`refined`).
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from math import lgamma
 from typing import Any
@@ -49,6 +49,8 @@ _STIFF = 3.0
 # Floats of the collocation matrices that are solved in one batch: they stay in the cache.  With
 # eight times as many, nine and 27 freedoms take a fifth longer.
 _BLOCK = 500_000
+# Entries of the equations of all segments up to which they are kept beside their solutions.
+_KEPT = 2_000_000
 # Power of the length of a segment that a field carries in the equations.
 _POWER = {"mass": 0, "gyroscopic": 1, "feedback": 1, "stiffness": 2}
 
@@ -126,10 +128,13 @@ class Segments:
     slopes : ndarray or None
         From the state at the left end to the scaled slopes at the nodes, ``(nb, segments, s, n,
         m)``, where they were wanted.
+    stages : list of Stages
+        The equations of the slopes by :func:`blocks`, where they were wanted and are small.
     """
 
     maps: Array
     slopes: Array | None
+    stages: list[Stages] = field(default_factory=list)
 
 
 def segments_of(equation: Equation, count: int, way: Method, *, slopes: bool = False) -> Segments:
@@ -149,9 +154,13 @@ def segments_from(
     nb, n, ns = len(equation.speed), equation.size, len(left)
     m = 2 * n + equation.forced
     whole = Segments(np.empty((nb, ns, m, m)), np.empty((nb, ns, s, n, m)) if slopes else None)
+    small = slopes and nb * ns * (s * n) ** 2 <= _KEPT
     for part in blocks(equation, way, ns):
-        ends, unknown = _solved(equation, left[part], h, way)
+        stages = stages_of(equation, left[part], h, way)
+        ends, unknown = _solved(equation, stages, h, way)
         whole.maps[:, part] = ends
+        if small:
+            whole.stages.append(stages)
         if whole.slopes is not None:
             whole.slopes[:, part] = unknown
     return whole
@@ -208,9 +217,9 @@ def stages_of(equation: Equation, left: Array, h: float, way: Method) -> Stages:
     # Indices: member, segment, column of a field, field, node, row.
     stack = np.empty((nb, ns, n, len(fields), s, n))
     at_nodes = {}
-    for place, (name, field) in enumerate(fields.items()):
+    for place, (name, one) in enumerate(fields.items()):
         # A constant field has one angle.
-        values = field.reshape(nb, ns, s, n, n) if field.shape[1] > 1 else field[:, :, None]
+        values = one.reshape(nb, ns, s, n, n) if one.shape[1] > 1 else one[:, :, None]
         turned = values.transpose(0, 1, 4, 2, 3)
         np.multiply(turned, h ** _POWER[name], out=stack[:, :, :, place])
         at_nodes[name] = stack[:, :, :, place]
@@ -218,14 +227,13 @@ def stages_of(equation: Equation, left: Array, h: float, way: Method) -> Stages:
     return Stages(columns.reshape(nb, ns, s * n, s * n), at_nodes, angles, table)
 
 
-def _solved(equation: Equation, left: Array, h: float, way: Method) -> tuple[Array, Array]:
+def _solved(equation: Equation, stages: Stages, h: float, way: Method) -> tuple[Array, Array]:
     """Return maps and slopes of segments that are solved in one batch of linear equations.
 
     Matrices are made by columns, as LAPACK wants them, and so are right sides and solutions.
     """
     n, s = equation.size, way.stages
-    nb, ns, m = len(equation.speed), len(left), 2 * n + equation.forced
-    stages = stages_of(equation, left, h, way)
+    (nb, ns), m = stages.columns.shape[:2], 2 * n + equation.forced
     at_nodes = stages.at_nodes
     # Indices: member, segment, column, node, row.
     right = np.zeros((nb, ns, m, s, n))

@@ -16,6 +16,7 @@ from ..core.inputs import names_in_a_row
 from ..periodic.adjoint import FieldWeights
 from ..periodic.equation import FIELD, SPEED_POWER, sampled, waves
 from ..scenes import Scene, with_numbers
+from ..systems.closed_form import ClosedForm, closed_form
 
 ComplexArray = NDArray[np.complex128]
 # An array of the equation, and the extra power of the speed that a part of it carries.
@@ -28,6 +29,9 @@ PLACES = np.arange(-4.0, 5.0)
 # polynomials, and of others, which may be close to lengths that do not assemble.  Of a number that
 # is 0 they are steps in its SI unit.
 STEP, SMALL_STEP = 1e-2, 2e-3
+# Steps off the real axis over the number, and what a step of differences would be to tell of
+# their round-off.
+_IMAGINARY, _OF_ROUNDING = 1e-40, 0.1
 
 
 class Effect(NamedTuple):
@@ -142,14 +146,15 @@ def coefficient_changes(
 
     The system may differ from the machine's in parameters that are ``held``.  The numbers are
     ``speed``, names of parameters and of geometry of the system, and dotted keys where the machine
-    is a scene.  Coefficients are known in closed form: their derivatives are differences of eighth
-    order, good to some 1e-13.
+    is a scene.  Coefficients of couplers and of Hill's equation are differentiated by a step off
+    the real axis, others by differences of eighth order, good to some 1e-13.
     """
     names = checked_names(machine, [SPEED, *system.parameters, *system.geometry], by)
     theta = _even_angles(system)
     terms = _terms(system, theta)
     scales = system.scales(system.parameters)
     parts = _parts(terms, scales)
+    closed = closed_form(machine) if isinstance(machine, Scene) else None
     slopes = {part: np.zeros((len(names), *series.shape)) for part, series in parts.items()}
     rough = {part: zeros.copy() for part, zeros in slopes.items()}
     number, steps = np.ones(len(names)), np.ones(len(names))
@@ -158,6 +163,12 @@ def coefficient_changes(
             continue
         inner = name in system.parameters
         number[i] = value = number_of(machine, system, name)
+        if closed is not None and not inner:
+            assert isinstance(machine, Scene)
+            steps[i] = _OF_ROUNDING * (abs(value) or 1.0)
+            for part, series in _complex_step(closed, machine, name, held or {}, theta).items():
+                slopes[part][i] = rough[part][i] = series
+            continue
         places, steps[i], both = differences(value, STEP if inner else SMALL_STEP, below=inner)
         values = value + steps[i] * places
         if inner:
@@ -178,6 +189,24 @@ def coefficient_changes(
             for weights, target in zip(both, (slopes, rough), strict=True):
                 target[part][i] = np.tensordot(weights, moved, axes=1)
     return Changes(names, number, steps, parts, slopes, rough, len(theta) // 2 - 1, system.period)
+
+
+def _complex_step(
+    closed: ClosedForm, scene: Scene, name: str, held: Mapping[str, float], theta: Array
+) -> Parts:
+    """Return derivatives of the parts that change with a number of a scene.
+
+    By a step off the real axis (Squire and Trapp 1998): nothing is subtracted.
+    """
+    value = scene.get(name)
+    step = _IMAGINARY * (abs(value) or 1.0)
+    moved = with_numbers(scene, {name: complex(value, step)}, checked=False)
+    arrays = closed.arrays({**closed.numbers(moved), **held}, theta, SPEED_POWER)
+    return {
+        part: _series(np.broadcast_to(found.imag / step, (len(theta), *found.shape[1:])))
+        for part, found in arrays.items()
+        if np.iscomplexobj(found)
+    }
 
 
 def varying_parts(system: LinearPeriodic) -> Changes:
@@ -274,13 +303,17 @@ def _terms(system: LinearPeriodic, theta: Array) -> _Terms:
         found: _Terms = []
         for term in system.terms:
             if term.array in SPEED_POWER:
-                table = np.fft.rfft(term(theta), axis=0)[: len(theta) // 2] / len(theta)
-                waved = 2.0 * table[1:]
-                series = np.concatenate([table[:1].real, waved.real, -waved.imag])
-                found.append(((term.array, term.power), term.scale, series))
+                found.append(((term.array, term.power), term.scale, _series(term(theta))))
         system.kept[key] = found
     terms: _Terms = system.kept[key]
     return terms
+
+
+def _series(values: Array) -> Array:
+    """Return the Fourier coefficients of values at even angles, which come first."""
+    table = np.fft.rfft(values, axis=0)[: len(values) // 2] / len(values)
+    waved = 2.0 * table[1:]
+    return np.concatenate([table[:1].real, waved.real, -waved.imag])
 
 
 def _parts(terms: _Terms, scales: Mapping[str, Array]) -> Parts:

@@ -26,6 +26,7 @@ from ..rigid.evaluation import COUPLES, ParametricMachine
 from ..scenes import Scene, with_numbers
 from ..scenes.rigid import rigid_numbers
 from ..stability import stability_edges
+from ..systems.closed_form import closed_form
 
 # Reserve over the largest remainder measured; corners and points inside that it is measured at;
 # what round-off leaves, and no number; standard deviations to the worst case without a bound; the
@@ -59,7 +60,7 @@ class ToleranceBands(Result):
     value, lower, upper, reserve : ndarray
         Answer of the scene itself, worst cases, and the part of either that is reserve.
     proved : bool
-        Whether no machine within the tolerances leaves the bands: of motion and forces.
+        Whether no machine within the tolerances leaves the bands.
     standard_deviation, likely_lower, likely_upper : ndarray
         Of the samples of the model; 95 of 100 lie between the two.
     slope, share : ndarray, shape (nr, np, n)
@@ -140,11 +141,11 @@ def tolerance_bands(
 ) -> ToleranceBands:
     """Return worst case and sampled spread of an answer within the tolerances of a scene.
 
-    Motion and forces without loads and springs are evaluated once on Taylor models of second order
-    in the n numbers, whose remainder is enclosed.  Of all others the scene is computed anew with
-    numbers moved, all that follows from them too: ``1 + 2 n + n (n - 1) / 2`` times for a model
-    whose steps are the half-widths, some 32 times for the reserve.  ``trials`` machines at random
-    check either.
+    Motion, forces without loads and springs, and frequencies of couplers and of Hill's equation are
+    evaluated once on Taylor models of second order in the n numbers, whose remainder is enclosed.
+    Of all others the scene is computed anew with numbers moved, all that follows from them too: ``1
+    + 2 n + n (n - 1) / 2`` times for a model whose steps are the half-widths, some 32 times for the
+    reserve.  ``trials`` machines at random check either.
 
     Parameters
     ----------
@@ -392,8 +393,25 @@ def _frequencies(scene: Scene, theta: Array) -> Answer:
     def compute(one: Scene) -> Array:
         return held_frequencies(one.linear_system(), theta, {})[0][:, :count].T
 
+    closed = closed_form(scene)
+
+    def modelled(one: Scene, lift: Lift) -> list[TaylorModel]:
+        assert closed is not None
+        numbers = {name: lift(number) for name, number in closed.numbers(one).items()}
+        held = closed.arrays(numbers, theta, ("M", "K", "Kg"))
+        stiffness, mass = held["K", 0] + held.get(("Kg", 0), 0.0), lift(held["M", 0])
+        if any(
+            np.any(part.coefficients[:, ~np.eye(count, dtype=bool)]) for part in (stiffness, mass)
+        ):
+            raise UndecidedError("modes that are not those of the equation's coordinates")
+        found = [np.sqrt(stiffness[:, k, k] / mass[:, k, k]) for k in range(count)]
+        if not all(np.all(above > below) for below, above in itertools.pairwise(found)):
+            raise UndecidedError("modes whose order changes")
+        return found
+
     rows = tuple(f"mode {k + 1}" for k in range(count))
-    return Answer(compute, rows, ("rad/s",) * count, theta, _ANGLE, "natural frequency")
+    known = None if closed is None or scene.linear_system().size != count else modelled
+    return Answer(compute, rows, ("rad/s",) * count, theta, _ANGLE, "natural frequency", known)
 
 
 def _angles(scene: Scene, kind: str) -> Array:

@@ -99,7 +99,7 @@ def assemble(
         gone, come = dropped_names(module, drop)
         rows = (*(row for row in rows if row not in gone), *come)
     integrals = _integrals(module, geometry, basis, rows)
-    modal = _modal_arrays(module, modes, integrals, rows)
+    modal = modal_arrays(module, modes, integrals, rows)
     shared = _angle_kernels(module, geometry, external)
     terms = []
     for array, power, scale, angle, mode in rows:
@@ -136,12 +136,13 @@ def _scales(
     values: Mapping[str, ArrayLike],
 ) -> Mapping[str, Array]:
     given = {name: np.asarray(values[name], dtype=float) for name in names}
-    return _by_name(returned, function(**given, **fixed))
+    return _arrays_by_name(returned, function(**given, **fixed))
 
 
-def _modal_arrays(
+def modal_arrays(
     module: ModuleType, modes: int | None, integrals: _Integrals | None, rows: Iterable[_Row]
 ) -> dict[str, Array | Callable[[Array], Array]]:
+    """Return the modal arrays, or integrals, of the rows of a module's terms."""
     arrays: dict[str, Array | Callable[[Array], Array]] = {}
     if integrals is not None:
         arrays |= {name: partial(integrals, name) for name in integrals.names}
@@ -151,7 +152,7 @@ def _modal_arrays(
         if modes is None or modes < 1:
             raise bad("modes", modes, "a number of modes, from 1", "set model.modes")
         numbers = np.ix_(*[np.arange(1.0, modes + 1.0)] * dimension)
-        values = _by_name(module.RETURNS[kernel], getattr(module, kernel)(*numbers))
+        values = _arrays_by_name(module.RETURNS[kernel], getattr(module, kernel)(*numbers))
         shape = (modes,) * dimension
         arrays |= {
             name: np.array(np.broadcast_to(value, shape), dtype=float)
@@ -218,7 +219,7 @@ class _Integrals:
             vector, _, end = argument.rpartition("_")
             value = self(vector, theta)
             given[argument] = value[..., None] if end == "row" else value[..., None, :]
-        return _by_name(self._products, self._multiply(**given))
+        return _arrays_by_name(self._products, self._multiply(**given))
 
 
 def _at_place(
@@ -233,10 +234,13 @@ def _at_place(
     return {"place": np.where(place <= 1.0 + round_off, np.minimum(place, 1.0), place)}
 
 
-def _by_name(names: tuple[str, ...], values: Any) -> dict[str, Array]:
+def _arrays_by_name(names: tuple[str, ...], values: Any) -> dict[str, Array]:
+    return {name: np.asarray(value) for name, value in by_name(names, values).items()}
+
+
+def by_name(names: tuple[str, ...], values: Any) -> dict[str, Any]:
     """Return what an emitted function gave by name; a single value stands alone."""
-    values = (values,) if len(names) == 1 else values
-    return {name: np.asarray(value) for name, value in zip(names, values, strict=True)}
+    return dict(zip(names, (values,) if len(names) == 1 else values, strict=True))
 
 
 def _kernel_values(
@@ -247,7 +251,7 @@ def _kernel_values(
     theta: Array,
 ) -> dict[str, Array]:
     passed = {name: given(theta) for name, given in external.items()}
-    return _by_name(names, function(theta, **_beside(theta, fixed), **passed))
+    return _arrays_by_name(names, function(theta, **_beside(theta, fixed), **passed))
 
 
 def _beside(theta: Array, numbers: Mapping[str, float]) -> Mapping[str, Any]:

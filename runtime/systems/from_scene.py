@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -33,20 +33,11 @@ def coupler_system(scene: Scene) -> LinearPeriodic:
     linkage = scene.mechanism()
     linkage.require_full_turn()
     emitted = find_module(scene.model_spec())
-    coupler = scene["coupler"]
-    parameters = {
-        "bending_stiffness": coupler["bending_stiffness"],
-        "mass_per_length": coupler["mass_per_length"],
-        "damping": coupler["damping"],
-        "coupler_inertia": coupler["inertia"],
-        "coupler_first_moment": coupler["first_moment"],
-        "follower_inertia": scene["follower"]["inertia"],
-    }
     modes = int(scene.model["modes"])
     return assemble(
         emitted.module,
         geometry={**linkage.lengths, "assembly": linkage.branch},
-        parameters=parameters,
+        parameters=coupler_parameters(scene),
         modes=modes,
         labels=tuple(f"Y{m}/l3" for m in range(1, modes + 1)),
         limits=_COUPLER_LIMITS,
@@ -54,6 +45,19 @@ def coupler_system(scene: Scene) -> LinearPeriodic:
         shape=partial(_pinned_modes, modes),
         provenance={**_origin(scene), **emitted.provenance, "nonlinear": "inextensible"},
     )
+
+
+def coupler_parameters(scene: Scene) -> dict[str, Any]:
+    """Return the inertial and elastic parameters of a coupler, those of the emitted module."""
+    coupler = scene["coupler"]
+    return {
+        "bending_stiffness": coupler["bending_stiffness"],
+        "mass_per_length": coupler["mass_per_length"],
+        "damping": coupler["damping"],
+        "coupler_inertia": coupler["inertia"],
+        "coupler_first_moment": coupler["first_moment"],
+        "follower_inertia": scene["follower"]["inertia"],
+    }
 
 
 def _pinned_modes(modes: int, x: Array) -> Array:
@@ -64,16 +68,21 @@ def _pinned_modes(modes: int, x: Array) -> Array:
 
 def hill_system(scene: Scene) -> LinearPeriodic:
     """Return ``y'' + 2 K y' + (lam2 + mu f) y = 0`` (Smith 7.38); the speed that suits it is 1."""
-    table, emitted = scene["function"], find_module(scene.model_spec())
+    emitted = find_module(scene.model_spec())
     return assemble(
         emitted.module,
         geometry={},
         parameters=dict(scene["parameters"]),
-        external={"f": PeriodicFunction(a=table["a"], b=table["b"])},
+        external={"f": fourier_series(scene)},
         limits={"damping": "non-negative"},
         labels=("y",),
         provenance={**_origin(scene), **emitted.provenance},
     )
+
+
+def fourier_series(scene: Scene) -> PeriodicFunction:
+    """Return the function f of a scene of Hill's equation."""
+    return PeriodicFunction(a=scene["function"]["a"], b=scene["function"]["b"])
 
 
 def rod_of_scene(scene: Scene) -> LinearPeriodic | Constrained:

@@ -131,6 +131,7 @@ def hill(name, count):
     waves = np.outer(np.arange(len(a)), ANGLES)
     squares = rows[:, :1] + rows[:, 1:] * (a @ np.cos(waves) + b @ np.sin(waves))
     bands = tolerance_bands(scene, "frequencies", ANGLES)
+    assert bands.proved
     return held(bands, *(np.sqrt(end)[None] for end in (squares.min(axis=0), squares.max(axis=0))))
 
 

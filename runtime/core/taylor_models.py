@@ -13,7 +13,7 @@ functions to four units, as NumPy states.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache, reduce
 from operator import add, gt, lt, mul, neg, sub, truediv
 from typing import Any
@@ -50,6 +50,14 @@ def _squares(a: Array, b: Array) -> Array:
     """Return ``a_i b_i``, then ``a_i b_j`` where i < j."""
     first, second = _pairs(a.shape[-1])
     return np.concatenate([a * b, a[..., first] * b[..., second]], axis=-1)
+
+
+def stacked(models: Sequence[TaylorModel], shape: tuple[int, ...] = ()) -> TaylorModel:
+    """Return models, each broadcast to a shape, along a first axis."""
+    features = models[0].coefficients.shape[-1]
+    values = [np.broadcast_to(one.coefficients, (*shape, features)) for one in models]
+    rests = [np.broadcast_to(one.rest, shape) for one in models]
+    return TaylorModel(np.stack(values), np.stack(rests), models[0].n)
 
 
 class TaylorModel:
@@ -108,6 +116,21 @@ class TaylorModel:
         size, n = np.abs(self.coefficients), self.n
         return size[..., 0], size[..., 1 : n + 1].sum(axis=-1), size[..., n + 1 :].sum(axis=-1)
 
+    def reach(self) -> Array:
+        """Return bounds of how far values are from those in the middle."""
+        _, linear, second = self._sizes()
+        return np.asarray((linear + second + self.rest) * (1.0 + _ROUNDING))
+
+    def largest(self) -> Array:
+        """Return bounds of absolute values."""
+        return np.asarray((np.abs(self.middle) + self.reach()) * (1.0 + _ROUNDING))
+
+    def sum(self, axis: int) -> TaylorModel:
+        """Return sums along an axis, counted from the first."""
+        off = self.rest.shape[axis] * _ROUNDING * np.sum(np.abs(self.coefficients), axis=(axis, -1))
+        total = np.sum(self.rest, axis=axis) * (1.0 + 1e-12) + off
+        return TaylorModel(np.sum(self.coefficients, axis=axis), total, self.n)
+
     def bounds(self) -> tuple[Array, Array]:
         """Return bounds for all numbers: exact in each, the products of two at their worst."""
         n, slope = self.n, np.abs(self.slope)
@@ -126,7 +149,7 @@ class TaylorModel:
 
     def __getitem__(self, place: Any) -> TaylorModel:
         place = place if isinstance(place, tuple) else (place,)
-        inner = place if Ellipsis in place else (*place, Ellipsis)
+        inner = place if any(one is ... for one in place) else (*place, ...)
         return TaylorModel(self.coefficients[(*inner, slice(None))], self.rest[place], self.n)
 
     def __neg__(self) -> TaylorModel:
@@ -218,16 +241,10 @@ def _composed(x: TaylorModel, value: Any, first: Any, second: Any, third: Any) -
     return TaylorModel(coefficients, rest * (1.0 + _OF_FUNCTIONS) + off, n)
 
 
-def _reach(x: TaylorModel) -> Array:
-    """Return a bound of how far the values are from those in the middle."""
-    _, linear, second = x._sizes()
-    return np.asarray((linear + second + x.rest) * (1.0 + _ROUNDING))
-
-
 def _least(x: TaylorModel) -> Array:
     """Return a bound below the values of a model over all numbers; no number unless positive."""
     size = np.abs(x.middle)
-    least = size - _reach(x) - _ROUNDING * size
+    least = size - x.reach() - _ROUNDING * size
     return np.where(least > 0.0, least, np.nan)
 
 
@@ -254,7 +271,7 @@ def _cosine(x: TaylorModel) -> TaylorModel:
 
 def _tangent(x: TaylorModel) -> TaylorModel:
     tangent = np.tan(x.middle)
-    slope, reach = 1.0 + tangent**2, _reach(x)
+    slope, reach = 1.0 + tangent**2, x.reach()
     beside = np.tan(np.minimum(reach, 0.7))
     left = np.where(reach < 0.7, 1.0 - np.abs(tangent) * beside, -1.0)
     largest = ((np.abs(tangent) + beside) / np.where(left > 0.0, left, np.nan)) ** 2

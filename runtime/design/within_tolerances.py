@@ -12,11 +12,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, bad, shown
-from ..core.families import Array, LinearPeriodic
+from ..core.families import MATRICES, Array, LinearPeriodic
 from ..core.inputs import numbers_in_a_row, require_kind, require_whole, speed_span
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
-from ..core.taylor_models import TaylorModel, UndecidedError, features
+from ..core.taylor_models import TaylorModel, UndecidedError, features, stacked
+from ..core.trigonometric import BETWEEN
 from ..frequencies.held import held_frequencies
 from ..linkages.linkage import Linkage
 from ..linkages.parametric import ANGLE, Parametric
@@ -27,10 +28,13 @@ from ..scenes import Scene, with_numbers
 from ..scenes.rigid import rigid_numbers
 from ..stability import stability_edges
 from ..systems.closed_form import closed_form
+from .enclosed_edges import angles_for, enclosed_ends, harmonics_for
 
-# Reserve over the largest remainder measured; corners and points inside that it is measured at;
+# Machines that check a proved bound, and a measured one; reserve over the largest remainder
+# measured; corners and points inside that it is measured at;
 # what round-off leaves, and no number; standard deviations to the worst case without a bound; the
 # part of the range of values that a band is seen at.
+_FEW, _MANY = 8, 32
 _SAFETY, _CORNERS, _INSIDE, _ROUND_OFF, _TINY, _REACH, _SEEN = 2.0, 16, 8, 1e-12, 1e-300, 3.0, 0.02
 _PROVED = "second order by Taylor models; remainder proved"
 _MEASURED = "second order by differences of a half-width; remainder measured, doubled"
@@ -135,17 +139,18 @@ def tolerance_bands(
     at: ArrayLike | None = None,
     *,
     over: Over | None = None,
-    trials: int = 32,
+    trials: int | None = None,
     samples: int = 10_000,
     seed: int = 0,
 ) -> ToleranceBands:
     """Return worst case and sampled spread of an answer within the tolerances of a scene.
 
-    Motion, forces without loads and springs, and frequencies of couplers and of Hill's equation are
-    evaluated once on Taylor models of second order in the n numbers, whose remainder is enclosed.
-    Of all others the scene is computed anew with numbers moved, all that follows from them too: ``1
-    + 2 n + n (n - 1) / 2`` times for a model whose steps are the half-widths, some 32 times for the
-    reserve.  ``trials`` machines at random check either.
+    Motion, forces without loads and springs, and of couplers and Hill's equation frequencies and,
+    without damping, ends of principal regions are evaluated once on Taylor models of second order
+    in the n numbers, whose remainder is enclosed.  Of all others the scene is computed anew with
+    numbers moved, all that follows from them too: ``1 + 2 n + n (n - 1) / 2`` times for a model
+    whose steps are the half-widths, some 32 times for the reserve.  ``trials`` machines at random
+    check either.
 
     Parameters
     ----------
@@ -161,8 +166,8 @@ def tolerance_bands(
         default 73 over a turn or what the crank reaches, or 21 over ``operation.speed_range``.
     over : tuple of str and array_like, optional
         The second parameter and its values [SI]; by default five of the chart's y.
-    trials : int
-        Machines at random that check the reserve.
+    trials : int, optional
+        Machines at random that check the reserve; by default 32, or 8 where it is proved.
     samples : int
         Numbers at random for the spread, of which the model of second order makes the answers:
         uniform within the bounds, or normal where a deviation is given, cut off at the bounds.
@@ -191,7 +196,8 @@ def tolerance_bands(
     [-2.192  0.712] [-2.188  0.713] [-2.184  0.713]
     """
     require_kind("scene", scene, Scene, "use load_scene")
-    require_whole("trials", trials, 1, 10_000_000)
+    if trials is not None:
+        require_whole("trials", trials, 1, 10_000_000)
     require_whole("samples", samples, 2, 10_000_000)
     random = np.random.default_rng(require_whole("seed", seed, 0, 2**63))
     box, asked = _Box.of(scene), answer_of(scene, answer, at, over)
@@ -204,11 +210,12 @@ def tolerance_bands(
     if model is None:
         model = TaylorModel(np.linalg.solve(features(points), first).T.astype(float), 0.0, box.n)
     corners = box.corners(model.slope, random)
-    # What is cubic in one number is nought at the corners, and largest at 0.577 of the way.
-    inside = [corners[:_INSIDE] / np.sqrt(3.0), random.uniform(-1.0, 1.0, (_INSIDE, box.n))]
-    checked = np.concatenate([corners, *inside])
+    checked, coefficients = corners, model.coefficients.T
+    if not proved:
+        # What is cubic in one number is nought at the corners, and largest at 0.577 of the way.
+        inside = corners[:_INSIDE] / np.sqrt(3.0), random.uniform(-1.0, 1.0, (_INSIDE, box.n))
+        checked = np.concatenate([corners, *inside])
     found = np.concatenate([first, evaluate(checked)])
-    coefficients = model.coefficients.T
     if not proved:
         remainder = np.abs(found[len(first) :] - features(checked) @ coefficients)
         model = TaylorModel(model.coefficients, _SAFETY * np.max(remainder, axis=0), box.n)
@@ -216,7 +223,7 @@ def tolerance_bands(
     spare = np.repeat(_ROUND_OFF * size, shape[1]) + _TINY
     reserve, (low, high) = model.rest + spare, model.bounds()
     low, high = low - spare, high + spare
-    drawn = box.draw(trials, random)
+    drawn = box.draw(trials or (_FEW if proved else _MANY), random)
     used = np.abs(evaluate(drawn) - features(drawn) @ coefficients) / reserve
     left_out = np.maximum(model.rest - _ROUND_OFF * np.max(size), 0.0)  # of what is to be zero
     widest = [np.max(row.reshape(shape), axis=1) for row in (left_out, (high - low) / 2.0)]
@@ -324,12 +331,10 @@ def _enclosed(scene: Scene, asked: Answer, box: _Box) -> TaylorModel | None:
         rows = asked.modelled(one, numbers[0].lifted)
     except UndecidedError:
         return None
-    shape = len(rows), len(asked.place)
-    rests = np.stack([np.broadcast_to(row.rest, shape[1]) for row in rows])
-    wide = (shape[1], rows[0].coefficients.shape[-1])
-    values = np.stack([np.broadcast_to(row.coefficients, wide) for row in rows])
-    found = TaylorModel(values.reshape(-1, wide[1]), rests.ravel(), box.n)
-    return found if np.all(np.isfinite(rests)) and np.all(np.isfinite(values)) else None
+    found = stacked(rows, (len(asked.place),))
+    entries = found.coefficients.reshape(-1, found.coefficients.shape[-1])
+    finite = np.all(np.isfinite(entries)) and np.all(np.isfinite(found.rest))
+    return TaylorModel(entries, found.rest.ravel(), box.n) if finite else None
 
 
 def _spread(points: Array, model: Array) -> list[Array]:
@@ -526,8 +531,28 @@ def _ends(scene: Scene, at: ArrayLike | None, over: Over | None, *, with_second:
         found = [regions(one.linear_system(), place, 1.2) for place in places.tolist()]
         return np.array([[ends.get(label, np.nan) for ends in found] for label in rows])
 
-    across = f"{name or 'edges'} [SI]"
-    return Answer(compute, rows, ("rad/s",) * len(rows), places, across, "crank speed")
+    closed = closed_form(scene)
+
+    def modelled(one: Scene, lift: Lift) -> list[TaylorModel]:
+        assert closed is not None
+        numbers = {key: lift(number) for key, number in closed.numbers(one).items()}
+        columns = []
+        for place, ends in zip(places.tolist(), first, strict=True):
+            system = scene.linear_system().with_parameters(**({name: place} if name else {}))
+            speeds, period = np.array([ends[label] for label in rows]), system.period
+            fastest = np.max(held_frequencies(system, period * BETWEEN, {})[0])
+            harmonics = harmonics_for(speeds, float(fastest), period)
+            held = {**numbers, name: lift(place)} if name else numbers
+            parts = closed.arrays(held, angles_for(harmonics, period), MATRICES)
+            if any(power for _, power in parts):
+                raise UndecidedError("powers of the speed")
+            models = {array: lift(value) for (array, _), value in parts.items()}
+            columns.append(enclosed_ends(models, speeds, harmonics, period))
+        return [stacked(row) for row in zip(*columns, strict=True)]
+
+    across, units = f"{name or 'edges'} [SI]", ("rad/s",) * len(rows)
+    known = None if closed is None else modelled
+    return Answer(compute, rows, units, places, across, "crank speed", known)
 
 
 def _range(scene: Scene) -> tuple[float, float]:

@@ -29,9 +29,8 @@ PLACES = np.arange(-4.0, 5.0)
 # polynomials, and of others, which may be close to lengths that do not assemble.  Of a number that
 # is 0 they are steps in its SI unit.
 STEP, SMALL_STEP = 1e-2, 2e-3
-# Steps off the real axis over the number, and what a step of differences would be to tell of
-# their round-off.
-_IMAGINARY, _OF_ROUNDING = 1e-40, 0.1
+# Steps off the real axis over the number, and round-off of a derivative by them, over itself.
+_IMAGINARY, _ROUNDED, _EPS = 1e-40, 64.0 * float(np.finfo(float).eps), float(np.finfo(float).eps)
 
 
 class Effect(NamedTuple):
@@ -51,8 +50,9 @@ class Changes:
     ----------
     by : tuple of str
         Names of the numbers.
-    number, step : ndarray
-        Their values, and the steps of the differences, shape ``(k,)``; 1 for the speed.
+    number, step, doubt : ndarray
+        Their values, shape ``(k,)``; steps by which coefficients are subtracted from each other,
+        infinite where they are not; round-off over the derivatives there.
     parts : mapping
         By part, coefficients in the order of :func:`~.periodic.equation.waves`, ``(2 H + 1, ...)``.
     slopes, rough : mapping
@@ -66,6 +66,7 @@ class Changes:
     by: tuple[str, ...]
     number: Array
     step: Array
+    doubt: Array
     parts: Mapping[Part, Array]
     slopes: Mapping[Part, Array]
     rough: Mapping[Part, Array]
@@ -114,12 +115,19 @@ class Changes:
         for part, series in self.parts.items():
             top = float(_largest(series[None])[0]) or 1.0
             change = _largest(self.slopes[part]) / top
-            gap = _largest(self.slopes[part] - self.rough[part]) / top
-            off = gap + np.finfo(float).eps / self.step * (change > 0.0)
+            gap = _largest(self.slopes[part] - self.rough[part])
+            each = [self.round_off(part, i) for i in range(len(self.by))]
+            off = (gap + _largest(np.array(each))) / top
             moving = np.flatnonzero(change)
             both = np.concatenate([series[None], self.slopes[part][moving]])
             found[part] = both if np.any(both[:, 1:]) else both[:, :1], moving, change, off
         return found
+
+    def round_off(self, part: Part, place: int) -> Array:
+        """Return bounds of the round-off of a part's derivatives by one number."""
+        slope, series = self.slopes[part][place], self.parts[part]
+        subtracted = np.abs(np.where(slope, series, 0.0)) * (_EPS / self.step[place])
+        return np.asarray(subtracted + self.doubt[place] * np.abs(slope))
 
     def table(self, angles: Array) -> Array:
         """Return the waves of the coefficients at angles [rad]."""
@@ -157,7 +165,8 @@ def coefficient_changes(
     closed = closed_form(machine) if isinstance(machine, Scene) else None
     slopes = {part: np.zeros((len(names), *series.shape)) for part, series in parts.items()}
     rough = {part: zeros.copy() for part, zeros in slopes.items()}
-    number, steps = np.ones(len(names)), np.ones(len(names))
+    number, steps = np.ones(len(names)), np.full(len(names), np.inf)
+    doubt = np.full(len(names), _ROUNDED)
     for i, name in enumerate(names):
         if name == SPEED:
             continue
@@ -165,12 +174,11 @@ def coefficient_changes(
         number[i] = value = number_of(machine, system, name)
         if closed is not None and not inner:
             assert isinstance(machine, Scene)
-            steps[i] = _OF_ROUNDING * (abs(value) or 1.0)
             for part, series in _complex_step(closed, machine, name, held or {}, theta).items():
                 slopes[part][i] = rough[part][i] = series
             continue
-        places, steps[i], both = differences(value, STEP if inner else SMALL_STEP, below=inner)
-        values = value + steps[i] * places
+        places, step, both = differences(value, STEP if inner else SMALL_STEP, below=inner)
+        values = value + step * places
         if inner:
             # Not within its limits: a damping that is 0 goes below.
             others = system.scales({**system.parameters, name: values})
@@ -178,9 +186,13 @@ def coefficient_changes(
             changed = [row for row in terms if row[1] in mixed]
             for weights, target in zip(both, (slopes, rough), strict=True):
                 change = {key: weights @ (value - scales[key]) for key, value in mixed.items()}
+                most = [abs(scales[k] / one) for k, one in change.items() if one]
+                # Monomials err by a few round-offs.
+                doubt[i] = 4.0 * _EPS / step * max(most, default=0.0)
                 for part, series in _parts(changed, change).items():
                     target[part][i] = series
             continue
+        steps[i], doubt[i] = step, 0.0
         made = [with_number(machine, system, name, float(one)) for one in values]
         made = [one.with_parameters(**(held or {})) for one in made]
         each = [_parts(_terms(one, theta), one.scales(one.parameters)) for one in made]
@@ -188,7 +200,8 @@ def coefficient_changes(
             moved = np.stack([other[part] for other in each]) - series
             for weights, target in zip(both, (slopes, rough), strict=True):
                 target[part][i] = np.tensordot(weights, moved, axes=1)
-    return Changes(names, number, steps, parts, slopes, rough, len(theta) // 2 - 1, system.period)
+    harmonics = len(theta) // 2 - 1
+    return Changes(names, number, steps, doubt, parts, slopes, rough, harmonics, system.period)
 
 
 def _complex_step(
@@ -218,8 +231,8 @@ def varying_parts(system: LinearPeriodic) -> Changes:
     for (array, power), series in parts.items():
         own = (np.array(names) == array).reshape(-1, *(1,) * series.ndim)
         slopes[array, power] = own * np.concatenate([0.0 * series[:1], series[1:]])
-    ones = np.ones(len(names))
-    return Changes(names, ones, ones, parts, slopes, slopes, len(theta) // 2 - 1, system.period)
+    ones, harmonics = np.ones(len(names)), len(theta) // 2 - 1
+    return Changes(names, ones, ones, 0.0 * ones, parts, slopes, slopes, harmonics, system.period)
 
 
 def _even_angles(system: LinearPeriodic) -> Array:

@@ -470,10 +470,10 @@ def _of_edges(
         adjoint = _Adjoint(changes, _null_vectors, rtol)
         slope, own, _ = adjoint.solved(equation_of(system, ends[known]))
         derivative[known], error[known] = slope[:, 0], own[:, 0]
-        # An end that is off by a part of the width has as much of the other end's derivative.
+        # An end that is off by a part of half the width has as much of the other end's derivative.
         apart = np.abs(np.diff(derivative, axis=1))
         off = np.divide(answer.error, answer.width, out=np.zeros(len(ends)), where=known[:, 0])
-        error += off[:, None, None] * np.where(np.isfinite(apart), apart, 0.0)
+        error += 2.0 * off[:, None, None] * np.where(np.isfinite(apart), apart, 0.0)
     return ends, derivative, error, np.isfinite(ends) & ~known
 
 
@@ -658,8 +658,8 @@ def _of_frequencies(
     """Return the derivatives along the curves, ``u^T (dK + dKg - w^2 dM) u / 2 w``."""
     shapes, values = answer.shape, answer.tracked
     table, speed = changes.table(answer.theta), answer.speed
-    slope, rough, size = (np.zeros((*values.shape, len(changes.by))) for _ in range(3))
-    for (array, power), series in changes.parts.items():
+    slope, rough, size, off = (np.zeros((*values.shape, len(changes.by))) for _ in range(4))
+    for array, power in changes.parts:
         if array not in ("M", "K", "Kg") or (array == "Kg" and speed == 0.0 and power > 0):
             continue
         pace = speed**power if array == "Kg" else 1.0
@@ -674,16 +674,15 @@ def _of_frequencies(
             slope[..., i] += of(moved)
             rough[..., i] += of(series_at(table, changes.rough[array, power][i]))
             size[..., i] += np.abs(of(np.abs(moved), np.abs(shapes)))
-            # Differences err by the round-off of the coefficients that move.
-            whole = series_at(np.abs(table), np.abs(np.where(change, series, 0.0)))
-            size[..., i] += np.abs(of(whole, np.abs(shapes)) / changes.step[i])
+            rounded = series_at(np.abs(table), changes.round_off((array, power), i))
+            off[..., i] += np.abs(of(rounded, np.abs(shapes)))
     distance = np.abs(values[:, :, None] - values[:, None, :]) / values[:, :, None]
     distance = np.maximum(distance, np.finfo(float).eps)
     own = answer.error / values
     alike = _together(own[:, :, None] / distance > _COLLIDED)
     distance[alike] = np.inf
     shake = own * (1.0 + 1.0 / np.min(distance, axis=-1))
-    error = np.abs(slope - rough) + (np.finfo(float).eps + shake[..., None]) * size
+    error = np.abs(slope - rough) + off + (np.finfo(float).eps + shake[..., None]) * size
     # Of those that coincide the mean is smooth.
     mean = alike / np.sum(alike, axis=-1, keepdims=True)
     return values, mean @ slope, mean @ error, np.sum(alike, axis=-1) > 1

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 __all__ = on_first_use(
     globals(),
     {
-        "motion": ("consistent_state", "constrained_motion"),
-        "multipliers": ("orbit_multipliers",),
-        "orbits": ("periodic_orbit",),
+        "motion": "consistent_state constrained_motion",
+        "multipliers": "orbit_multipliers",
+        "orbits": "periodic_orbit",
     },
 )

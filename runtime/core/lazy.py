@@ -31,15 +31,16 @@ def unknown_name(package: str, name: str, names: Iterable[str]) -> AttributeErro
     return AttributeError(message, name=name)
 
 
-def on_first_use(namespace: dict[str, Any], public: Mapping[str, tuple[str, ...]]) -> list[str]:
+def on_first_use(namespace: dict[str, Any], public: Mapping[str, str]) -> list[str]:
     """Return ``__all__`` of a package whose names load when they are used.
 
     ``namespace`` is ``globals()`` of the package: it is given ``__getattr__``, which keeps there
     what it loads, and ``__dir__``, the public names.  Type checkers see neither, and refuse a
-    misspelt name.  ``public`` takes each module, as it is imported from the package, to its names.
+    misspelt name.  ``public`` takes each module, as it is imported from the package, to its names,
+    spaces between them.
     """
     package = namespace["__name__"]
-    modules = {name: module for module, names in public.items() for name in names}
+    modules = {name: module for module, names in public.items() for name in names.split()}
 
     def load(name: str) -> Any:
         if name not in modules:

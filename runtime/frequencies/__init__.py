@@ -31,17 +31,13 @@ if TYPE_CHECKING:
 __all__ = on_first_use(
     globals(),
     {
-        "campbell_diagram": ("campbell",),
-        "counting": ("wittrick_williams",),
-        "critical": ("critical_speeds",),
-        "frames": ("dynamic_stiffness", "element_matrices", "log_determinant", "member_matrices"),
-        "held": ("buckling_speed",),
-        "link_study": (
-            "LinkFrequencies",
-            "link_frequencies",
-            "pinned_frequency",
-        ),
-        "natural": ("NaturalFrequencies", "draw_mode", "draw_modes", "natural_frequencies"),
-        "resonance_curves": ("ResonanceCurve", "resonance_curve"),
+        "campbell_diagram": "campbell",
+        "counting": "wittrick_williams",
+        "critical": "critical_speeds",
+        "frames": "dynamic_stiffness element_matrices log_determinant member_matrices",
+        "held": "buckling_speed",
+        "link_study": "LinkFrequencies link_frequencies pinned_frequency",
+        "natural": "NaturalFrequencies draw_mode draw_modes natural_frequencies",
+        "resonance_curves": "ResonanceCurve resonance_curve",
     },
 )

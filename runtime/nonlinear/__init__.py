@@ -30,10 +30,10 @@ if TYPE_CHECKING:
 __all__ = on_first_use(
     globals(),
     {
-        "amplitude": ("AmplitudeLaw", "amplitude_law"),
-        "loci": ("SpecialCurve", "special_curve"),
-        "response": ("ResponseCurve", "response_curve"),
-        "search": ("CoexistingMotions", "coexisting_motions"),
-        "swept": ("Basins", "SweepResponse", "basins", "sweep_response"),
+        "amplitude": "AmplitudeLaw amplitude_law",
+        "loci": "SpecialCurve special_curve",
+        "response": "ResponseCurve response_curve",
+        "search": "CoexistingMotions coexisting_motions",
+        "swept": "Basins SweepResponse basins sweep_response",
     },
 )

@@ -37,16 +37,12 @@ if TYPE_CHECKING:
 __all__ = on_first_use(
     globals(),
     {
-        "motion": ("Trajectory", "simulate"),
+        "motion": "Trajectory simulate",
         "multipliers": (
-            "FloquetMultipliers",
-            "Monodromy",
-            "cycles_to_settle",
-            "floquet_multipliers",
-            "monodromy",
+            "FloquetMultipliers Monodromy cycles_to_settle floquet_multipliers monodromy"
         ),
-        "periodic_motion": ("SteadyState", "steady_state"),
-        "prepared": ("Prepared", "prepare"),
-        "reduced": ("reduced_system",),
+        "periodic_motion": "SteadyState steady_state",
+        "prepared": "Prepared prepare",
+        "reduced": "reduced_system",
     },
 )

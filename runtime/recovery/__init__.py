@@ -30,12 +30,12 @@ if TYPE_CHECKING:
 __all__ = on_first_use(
     globals(),
     {
-        "beam_forces": ("recover",),
-        "beam_motion": ("BeamMotion",),
-        "elastic_curve": ("ElasticCurve", "elastic_coupler_curve"),
-        "pin_forces": ("pin_reactions",),
-        "strain_energy": ("beam_energies",),
-        "stress_over_speed": ("stress_curve",),
-        "stresses": ("stress", "stress_operator"),
+        "beam_forces": "recover",
+        "beam_motion": "BeamMotion",
+        "elastic_curve": "ElasticCurve elastic_coupler_curve",
+        "pin_forces": "pin_reactions",
+        "strain_energy": "beam_energies",
+        "stress_over_speed": "stress_curve",
+        "stresses": "stress stress_operator",
     },
 )

@@ -18,13 +18,7 @@ if TYPE_CHECKING:
 __all__ = on_first_use(
     globals(),
     {
-        "loader": (
-            "list_scenes",
-            "load_scene",
-            "scene_from_document",
-            "scene_titles",
-            "with_numbers",
-        ),
-        "scene": ("ReadOnlyTable", "Scene"),
+        "loader": "list_scenes load_scene scene_from_document scene_titles with_numbers",
+        "scene": "ReadOnlyTable Scene",
     },
 )

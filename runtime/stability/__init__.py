@@ -33,11 +33,11 @@ if TYPE_CHECKING:
 __all__ = on_first_use(
     globals(),
     {
-        "boundary_speeds": ("speed_boundaries",),
-        "chart": ("StabilityChart", "stability_chart"),
-        "edges": ("StabilityEdges", "stability_edges"),
-        "from_feet": ("tongue_curves",),
-        "meetings": ("resonances",),
-        "tongues": ("tongue",),
+        "boundary_speeds": "speed_boundaries",
+        "chart": "StabilityChart stability_chart",
+        "edges": "StabilityEdges stability_edges",
+        "from_feet": "tongue_curves",
+        "meetings": "resonances",
+        "tongues": "tongue",
     },
 )

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = on_first_use(
     globals(),
     {
-        ".core.workers": ("WorkersLost", "process_pool"),
-        "sweeping": ("Sweep", "estimate_sweep", "sweep"),
+        ".core.workers": "WorkersLost process_pool",
+        "sweeping": "Sweep estimate_sweep sweep",
     },
 )

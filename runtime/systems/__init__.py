@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 __all__ = on_first_use(
     globals(),
     {
-        ".core.families.modal_damping": ("with_modal_damping",),
-        ".core.modules": ("find_module",),
-        "assembly": ("assemble",),
-        "rod.floating": ("free_free_rod",),
-        "rod.linear": ("rod_system",),
+        ".core.families.modal_damping": "with_modal_damping",
+        ".core.modules": "find_module",
+        "assembly": "assemble",
+        "rod.floating": "free_free_rod",
+        "rod.linear": "rod_system",
     },
 )

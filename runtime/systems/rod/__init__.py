@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 __all__ = on_first_use(
     globals(),
     {
-        "basis": ("MovingBasis",),
-        "floating": ("FreeFreeRod", "free_free_rod"),
-        "free_free": ("FreeFreeBasis", "FreeFreeModes"),
-        "linear": ("rod_system",),
-        "overhang": ("OverhangBasis", "overhang_roots"),
-        "polynomials": ("PolynomialBasis", "TwoSegmentBasis"),
+        "basis": "MovingBasis",
+        "floating": "FreeFreeRod free_free_rod",
+        "free_free": "FreeFreeBasis FreeFreeModes",
+        "linear": "rod_system",
+        "overhang": "OverhangBasis overhang_roots",
+        "polynomials": "PolynomialBasis TwoSegmentBasis",
     },
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from numbers import Real
@@ -22,7 +22,7 @@ from ..core.families import Constrained, Guard
 from ..core.families.multipliers import check_rank, scaling
 from ..core.inputs import numbers, require_between, require_kind
 from ..core.plotting import Axes, axes_or_new, coordinates_label
-from ..core.results import BROADCAST, FAIR, Check, Result, provenance
+from ..core.results import FAIR, Check, Result, provenance
 from .collocation import collocation
 from .equations import (
     EPS,
@@ -73,10 +73,10 @@ class ConsistentState(Result):
     iterations: int
     labels: tuple[str, ...]
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("q", "qd", "qdd", "moved"), ("...", "coordinate")),
-        **dict.fromkeys(("t", *(f"{level}_norm" for level in LEVELS)), BROADCAST),
-        "multipliers": ("...", "constraint"),
+    arrays_along: ClassVar = {
+        "... coordinate": "q qd qdd moved",
+        "...": "t position_norm velocity_norm acceleration_norm",
+        "... constraint": "multipliers",
     }
 
 
@@ -288,11 +288,11 @@ class ConstrainedMotion(Result):
     message: str
     labels: tuple[str, ...]
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("q", "qd", "qdd"), ("sample", "coordinate")),
-        "multipliers": ("sample", "constraint"),
-        **dict.fromkeys(("time", *(f"{level}_norm" for level in LEVELS)), ("sample",)),
-        "error": ("coordinate",),
+    arrays_along: ClassVar = {
+        "sample coordinate": "q qd qdd",
+        "sample constraint": "multipliers",
+        "sample": "time position_norm velocity_norm acceleration_norm",
+        "coordinate": "error",
     }
 
     @property

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -60,13 +59,12 @@ class ConstrainedMultipliers(Result):
     basis: Array
     period: float
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "physical": ("multiplier",),
-        "error": ("multiplier",),
-        "others": ("other",),
-        "monodromy": ("state", "state_1"),
-        "reduced": ("tangent", "tangent_1"),
-        "basis": ("state", "tangent"),
+    arrays_along: ClassVar = {
+        "multiplier": "physical error",
+        "other": "others",
+        "state state_1": "monodromy",
+        "tangent tangent_1": "reduced",
+        "state tangent": "basis",
     }
     exported: ClassVar[tuple[str, ...]] = ("stable", "largest", "growth")
     column_units: ClassVar = {"s": "period"}

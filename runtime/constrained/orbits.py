@@ -376,11 +376,11 @@ class PeriodicOrbit(Result):
     labels: tuple[str, ...]
     source: OrbitSource = field(repr=False, metadata=NOT_SAVED)
 
-    dimensions: ClassVar = {
-        "t": ("t",),
-        **dict.fromkeys(("q", "qd", "qdd"), ("t", "coordinate")),
-        "multipliers": ("t", "constraint"),
-        "advance": ("coordinate",),
+    arrays_along: ClassVar = {
+        "t": "t",
+        "t coordinate": "q qd qdd",
+        "t constraint": "multipliers",
+        "coordinate": "advance",
     }
     column_units: ClassVar = {"s": "period"}
 

@@ -172,9 +172,10 @@ class Result:
     Notes
     -----
     A class names the dimensions of its arrays in ``dimensions`` (extra axes count up: ``mu``,
-    ``mu_1``; :data:`BROADCAST` for arrays that broadcast with each other), and in ``exported`` the
-    properties that leave with the fields: to JSON, CSV, NPZ.  ``column_units`` holds names of
-    its arrays by their unit, where they are not among :data:`.tables.UNITS`.
+    ``mu_1``; :data:`BROADCAST` for arrays that broadcast with each other), or the arrays by their
+    dimensions in ``arrays_along``, beside those of its base; and in ``exported`` the properties
+    that leave with the fields: to JSON, CSV, NPZ.  ``column_units`` holds names of its arrays by
+    their unit, where they are not among :data:`.tables.UNITS`.
     """
 
     method: str
@@ -185,6 +186,7 @@ class Result:
     provenance: Mapping[str, str] = field(default_factory=dict)
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {}
+    arrays_along: ClassVar[Mapping[str, str]] = {}
     exported: ClassVar[tuple[str, ...]] = ()
     column_units: ClassVar[Mapping[str, str]] = {}
 
@@ -200,6 +202,9 @@ class Result:
         """Keep :meth:`__repr__` for every result, before a dataclass makes one of all digits."""
         super().__init_subclass__(**given)
         _CLASSES[class_name(cls)] = cls
+        if "arrays_along" in vars(cls):
+            own = by_name(cls.arrays_along)
+            cls.dimensions = {**cls.dimensions, **{name: tuple(own[name].split()) for name in own}}
         if "__repr__" not in vars(cls):
             cls.__repr__ = Result.__repr__  # type: ignore[method-assign]
 

@@ -50,8 +50,8 @@ LABELS: Mapping[str, tuple[str, ...]] = {
 
 
 def by_name(names: Mapping[str, str]) -> dict[str, str]:
-    """Return units by name, of names by their unit."""
-    return {name: unit for unit, some in names.items() for name in some.split()}
+    """Return by name what names stand under: their unit, or their axes."""
+    return {name: what for what, some in names.items() for name in some.split()}
 
 
 def with_unit(name: str, unit: str) -> str:

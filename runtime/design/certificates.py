@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
@@ -50,11 +50,11 @@ class Certificate(Result):
     open: Array
     unstable: Array
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "proved": ("proved", "end"),
-        **dict.fromkeys(("bound", "error"), ("proved",)),
-        "open": ("open", "end"),
-        "unstable": ("unstable", "end"),
+    arrays_along: ClassVar = {
+        "proved end": "proved",
+        "proved": "bound error",
+        "open end": "open",
+        "unstable end": "unstable",
     }
     column_units: ClassVar = {"rad/s": "proved open unstable"}
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
@@ -50,9 +49,7 @@ class ClosingDamping(Result):
     speed: Array
     speed_error: Array
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
-        ("damping", "speed", "speed_error", "error"), ("region",)
-    )
+    arrays_along: ClassVar = {"region": "damping speed speed_error error"}
     column_units: ClassVar = {"rad/s": "speed speed_error"}
 
     def plot(self, ax: Axes | None = None) -> Axes:

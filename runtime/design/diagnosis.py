@@ -6,7 +6,7 @@ import math
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -60,8 +60,6 @@ class Diagnosis(Result):
     largest_stress: float
     nearest: Margins | None
     lines: tuple[str, ...]
-
-    dimensions: ClassVar[dict[str, tuple[str, ...]]] = {}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the regions next to the speed as bars, and the speed as a line."""

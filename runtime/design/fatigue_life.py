@@ -87,9 +87,9 @@ class Fatigue(Result):
     safety: Array
     damage: Array
 
-    dimensions: ClassVar[dict[str, tuple[str, ...]]] = {
-        "places": ("station",),
-        **dict.fromkeys(("amplitude", "safety", "damage"), ("fibre", "station")),
+    arrays_along: ClassVar = {
+        "station": "places",
+        "fibre station": "amplitude safety damage",
     }
     exported: ClassVar[tuple[str, ...]] = ("revolutions", "hours")
     column_units: ClassVar = {"Pa": "amplitude", "h": "hours"}

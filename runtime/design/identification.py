@@ -84,10 +84,10 @@ class Identification(Result):
     without: Array
     scatter: float
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("error", "value", "start", "deviation", "decided"), ("unknown",)),
-        **dict.fromkeys(("speed", "measured", "computed", "residual"), ("point",)),
-        "without": ("point", "unknown"),
+    arrays_along: ClassVar = {
+        "unknown": "error value start deviation decided",
+        "point": "speed measured computed residual",
+        "point unknown": "without",
     }
 
     def plot(self, ax: Axes | None = None) -> Axes:

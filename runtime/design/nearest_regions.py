@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -95,10 +95,10 @@ class Margins(Result):
     narrow: int
     window: tuple[float, float]
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("end", "width", "distance", "error"), ("region",)),
-        **dict.fromkeys(("shift", "change", "change_error"), ("region", "by")),
-        "number": ("by",),
+    arrays_along: ClassVar = {
+        "region": "end width distance error",
+        "region by": "shift change change_error",
+        "by": "number",
     }
     column_units: ClassVar = {"rad/s": "end width error"}
 

@@ -49,10 +49,10 @@ class StressEffect(Result):
     links: tuple[str, ...]
     maximum: Array
 
-    dimensions: ClassVar[dict[str, tuple[str, ...]]] = {
-        "values": ("value",),
-        "speed": ("speed",),
-        **dict.fromkeys(("maximum", "error", "change"), ("value", "speed", "link")),
+    arrays_along: ClassVar = {
+        "value": "values",
+        "speed": "speed",
+        "value speed link": "maximum error change",
     }
     exported: ClassVar[tuple[str, ...]] = ("change",)
     column_units: ClassVar = {"Pa": "maximum"}
@@ -108,7 +108,6 @@ class RunningSpeed(Result):
     run_up_length: float | None
     links: tuple[str, ...] = field(default=())
 
-    dimensions: ClassVar[dict[str, tuple[str, ...]]] = {}
     column_units: ClassVar = {"m": "run_up_length"}
 
     def plot(self, ax: Axes | None = None) -> Axes:

@@ -77,12 +77,11 @@ class QuietSpeeds(Result):
     bands: tuple[Band, ...]
     curve: StressCurve = field(repr=False)
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "speed": ("speed",),
-        "ratio": ("speed", "link"),
-        "error": ("speed",),
-        "critical": ("critical",),
-        "limiting": ("limiting",),
+    arrays_along: ClassVar = {
+        "speed": "speed error",
+        "speed link": "ratio",
+        "critical": "critical",
+        "limiting": "limiting",
     }
     column_units: ClassVar = {"rad/s": "critical limiting"}
 

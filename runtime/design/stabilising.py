@@ -73,9 +73,7 @@ class Stabilisation(Result):
     size: Array
     distance: Array
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("size", "distance", "error"), ("change",))
-    }
+    arrays_along: ClassVar = {"change": "size distance error"}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the sizes of the changes as bars, the least above."""

@@ -242,12 +242,11 @@ class Transient(Result):
     stress: Array
     profile: SpeedProfile = field(repr=False)
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("time", "angle", "speed"), ("sample",)),
-        "q": ("sample", "coordinate"),
-        "qd": ("sample", "coordinate"),
-        "stress": ("sample", "link"),
-        "error": ("link",),
+    arrays_along: ClassVar = {
+        "sample": "time angle speed",
+        "sample coordinate": "q qd",
+        "sample link": "stress",
+        "link": "error",
     }
     column_units: ClassVar = {"1/s": "qd", "Pa": "stress"}
 

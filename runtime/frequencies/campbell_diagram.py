@@ -7,7 +7,6 @@ speed each motion is resolved, along the whole turn, into the modes of the mecha
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, ClassVar
@@ -145,12 +144,10 @@ class Campbell(Result):
     crossing_order: Indices
     crossing_error: Array
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "speed": ("speed",),
-        **dict.fromkeys(("held", "running", "growth", "share", "error"), ("speed", "mode")),
-        **dict.fromkeys(
-            ("crossing_speed", "crossing_mode", "crossing_order", "crossing_error"), ("crossing",)
-        ),
+    arrays_along: ClassVar = {
+        "speed": "speed",
+        "speed mode": "held running growth share error",
+        "crossing": "crossing_speed crossing_mode crossing_order crossing_error",
     }
     column_units: ClassVar = {"rad/s": "error", "1/s": "growth"}
 

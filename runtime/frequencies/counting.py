@@ -8,7 +8,7 @@ for rounding.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from typing import ClassVar
@@ -384,9 +384,7 @@ class FrameFrequencies(Result):
     modes: tuple[Mode, ...]
     problem: Transcendental
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("frequencies", "multiplicity", "error", "hertz"), ("mode",))
-    }
+    arrays_along: ClassVar = {"mode": "frequencies multiplicity error hertz"}
     exported: ClassVar[tuple[str, ...]] = ("hertz",)
     column_units: ClassVar = {"rad/s": "error"}
 

@@ -62,10 +62,10 @@ class CriticalSpeeds(Result):
     scan: Array
     quantity: str
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("speed", "mode", "order", "ratio", "height", "error"), ("speed",)),
-        "mean_frequency": ("frequency",),
-        **dict.fromkeys(("scan_speed", "scan"), ("scan",)),
+    arrays_along: ClassVar = {
+        "speed": "speed mode order ratio height error",
+        "frequency": "mean_frequency",
+        "scan": "scan_speed scan",
     }
     column_units: ClassVar = {"rad/s": "error"}
 

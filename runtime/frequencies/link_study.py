@@ -43,10 +43,10 @@ class LinkFrequencies(Result):
     pinned: Array
     links: tuple[str, ...]
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "value": ("value",),
-        **dict.fromkeys(("mean", "least", "largest", "error"), ("value", "mode")),
-        "pinned": ("value", "link"),
+    arrays_along: ClassVar = {
+        "value": "value",
+        "value mode": "mean least largest error",
+        "value link": "pinned",
     }
     column_units: ClassVar = {"rad/s": "least largest pinned error"}
 

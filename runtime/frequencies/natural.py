@@ -85,14 +85,14 @@ class NaturalFrequencies(Result):
     speed: float
     labels: tuple[str, ...]
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "theta": ("angle",),
-        "shape": ("angle", "coordinate", "curve"),
-        **dict.fromkeys(("frequency", "error", "branch"), ("angle", "rank")),
-        **dict.fromkeys(("tracked", "mac"), ("angle", "curve")),
-        **dict.fromkeys(("mean", "mean_error"), ("rank",)),
-        **dict.fromkeys(("closure", "sign", "branch_mean", "branch_mean_error"), ("curve",)),
-        **dict.fromkeys(_ENCOUNTERS, ("encounter",)),
+    arrays_along: ClassVar = {
+        "angle": "theta",
+        "angle coordinate curve": "shape",
+        "angle rank": "frequency error branch",
+        "angle curve": "tracked mac",
+        "rank": "mean mean_error",
+        "curve": "closure sign branch_mean branch_mean_error",
+        "encounter": " ".join(_ENCOUNTERS),
     }
     exported: ClassVar[tuple[str, ...]] = _ENCOUNTERS
     column_units: ClassVar = {

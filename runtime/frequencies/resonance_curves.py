@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from numbers import Real
 from typing import ClassVar
@@ -67,12 +66,10 @@ class ResonanceCurve(Result):
     mean_frequency: Array
     x: float
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("speed", "peak", "stable", "error"), ("speed",)),
-        **dict.fromkeys(
-            ("maxima", "maxima_peak", "maxima_error", "order", "mode", "ratio"), ("maximum",)
-        ),
-        "mean_frequency": ("frequency",),
+    arrays_along: ClassVar = {
+        "speed": "speed peak stable error",
+        "maximum": "maxima maxima_peak maxima_error order mode ratio",
+        "frequency": "mean_frequency",
     }
     column_units: ClassVar = {"m": "peak maxima_peak", "rad/s": "maxima maxima_error"}
 

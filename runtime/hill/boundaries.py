@@ -99,10 +99,10 @@ class Boundaries(Result):
     mu: Array
     damping: Array
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("lower", "upper", "error"), ("region", "mu")),
-        "regions": ("region",),
-        **dict.fromkeys(("mu", "damping"), ("mu",)),
+    arrays_along: ClassVar = {
+        "region mu": "lower upper error",
+        "mu": "mu damping",
+        "region": "regions",
     }
 
     @property

@@ -17,7 +17,6 @@ one for the low harmonics, checked by multiplication, and a Neumann series for t
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from math import inf, isqrt, nextafter, sqrt
@@ -88,13 +87,9 @@ class CertifiedBoundaries(Boundaries):
     closed: Mask
     function_error: Array
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **Boundaries.dimensions,
-        **dict.fromkeys(
-            ("lower_rest", "upper_rest", "lower_radius", "upper_radius", "pair", "closed"),
-            ("region", "mu"),
-        ),
-        "function_error": ("mu",),
+    arrays_along: ClassVar = {
+        "region mu": "lower_rest upper_rest lower_radius upper_radius pair closed",
+        "mu": "function_error",
     }
 
     def enclosure(self, end: str, *index: int) -> tuple[Fraction, Fraction]:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from ..core.errors import bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.plotting import Axes
-from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
+from ..core.results import Check, DeferredChecks, Result, provenance
 from .boundaries import half_trace_check, sample_of
 from .checks import EPS, LARGEST, Array, Mask, axes_over, check_function, check_regions, points
 from .fourier_matrix import chunks, couplings, truncation
@@ -49,9 +49,9 @@ class CharacteristicExponents(Result):
     damping: Array
     bands: tuple[int, ...] = ()
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("growth", "nu", "error", "lam2", "mu", "damping", "stable"), BROADCAST),
-        "bands": ("band",),
+    arrays_along: ClassVar = {
+        "...": "growth nu error lam2 mu damping stable",
+        "band": "bands",
     }
     exported: ClassVar[tuple[str, ...]] = ("stable",)
 

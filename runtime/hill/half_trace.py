@@ -8,7 +8,6 @@ is sampled at few Chebyshev nodes and interpolated, the tail of the coefficients
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from math import ceil, log, pi, sqrt
 from typing import ClassVar, NamedTuple
@@ -20,7 +19,7 @@ from ..core import chebyshev
 from ..core.errors import bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.plotting import Axes, axes_or_new
-from ..core.results import BROADCAST, Check, Result, provenance
+from ..core.results import Check, Result, provenance
 from .checks import EPS, Array, Index, Mask, arguments, check_function
 from .meissner import Meissner
 from .transfer import Transfer, transfer
@@ -56,9 +55,7 @@ class HalfTrace(Result):
     lam2: Array
     mu: Array
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
-        ("value", "error", "damping", "lam2", "mu", "level", "stable"), BROADCAST
-    )
+    arrays_along: ClassVar = {"...": "value error damping lam2 mu level stable"}
     exported: ClassVar[tuple[str, ...]] = ("level", "stable")
 
     @property

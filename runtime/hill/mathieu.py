@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
@@ -13,7 +12,7 @@ from ..core.errors import bad
 from ..core.inputs import require_whole
 from ..core.periodic_function import PeriodicFunction
 from ..core.plotting import Axes
-from ..core.results import BROADCAST, Result, provenance
+from ..core.results import Result, provenance
 from .boundaries import hill_boundaries
 from .checks import Array, axes_over, finite
 
@@ -141,9 +140,7 @@ class MathieuCharacteristic(Result):
     m: int
     kind: str
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
-        ("value", "error", "q"), BROADCAST
-    )
+    arrays_along: ClassVar = {"...": "value error q"}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the value over q.

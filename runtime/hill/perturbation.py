@@ -8,7 +8,7 @@ ratio at which the components fall, show what is left out.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import comb
 from typing import ClassVar, Literal, NamedTuple
@@ -59,10 +59,9 @@ class PerturbationBoundaries(Boundaries):
     closed: Mask
     undecided: Mask
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **Boundaries.dimensions,
-        "parameters": ("parameter", "mu"),
-        **dict.fromkeys(("outside", "closed", "undecided"), ("region", "mu")),
+    arrays_along: ClassVar = {
+        "parameter mu": "parameters",
+        "region mu": "outside closed undecided",
     }
 
 

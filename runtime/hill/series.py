@@ -12,7 +12,7 @@ damping, which brings ``-2 i K (m - n/2)``.  The formulas say so: in their sums
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import ClassVar
@@ -67,9 +67,9 @@ class BoundarySeries(Result):
     splitting: int
     function: PeriodicFunction
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("lower", "upper"), ("power",)),
-        "error": ("end", "power"),
+    arrays_along: ClassVar = {
+        "power": "lower upper",
+        "end power": "error",
     }
 
     def __call__(self, mu: ArrayLike, order: int | None = None) -> tuple[Array, Array]:

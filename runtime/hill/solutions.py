@@ -11,7 +11,7 @@ which is known to round-off: its own relative error is small.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal, NamedTuple
 
@@ -77,9 +77,9 @@ class BoundarySolution(Result):
     residual: float
     degenerate: bool
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("wave_numbers", "a", "b"), ("wave_number",)),
-        "mu": ("parameter",),
+    arrays_along: ClassVar = {
+        "wave_number": "wave_numbers a b",
+        "parameter": "mu",
     }
 
     @property

@@ -19,7 +19,7 @@ from ..core.errors import BadInput, bad
 from ..core.maxima import bracketed_roots, local_maxima, narrowed
 from ..core.periodic_function import PeriodicFunction
 from ..core.plotting import Axes
-from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
+from ..core.results import Check, DeferredChecks, Result, provenance
 from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
 from .boundaries import ends_at, hill_boundaries, largest_exponent, sample_of
 from .checks import EPS, Array, Index, Mask, axes_over, check_function, check_regions, points
@@ -63,9 +63,9 @@ class Thresholds(Result):
     regions: tuple[int, ...]
     searched: Array
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("damping", "mu", "lam2", "error", "absent"), BROADCAST),
-        **dict.fromkeys(("regions", "searched"), ("region",)),
+    arrays_along: ClassVar = {
+        "...": "damping mu lam2 error absent",
+        "region": "regions searched",
     }
 
     def plot(self, ax: Axes | None = None) -> Axes:

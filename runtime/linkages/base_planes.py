@@ -51,9 +51,11 @@ class BasePlane(Result):
     regions: Mapping[str, Array]
     outline: Array
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **{"x": ("x",), "y": ("y",), "numbers": ("y", "x")},
-        "outline": ("corner", "ratio"),
+    arrays_along: ClassVar = {
+        "x": "x",
+        "y": "y",
+        "y x": "numbers",
+        "corner ratio": "outline",
     }
 
     @property

@@ -23,7 +23,6 @@ from ..core.errors import Problem, bad, refuse, shown
 from ..core.inputs import is_finite, require_kind, require_one_of
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import (
-    BROADCAST,
     Check,
     DeferredChecks,
     DeferredField,
@@ -428,13 +427,9 @@ class ClearanceRange(Result):
     greatest: WidthExtreme
     least: WidthExtreme
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
-        (
-            *("theta2", "nominal", "lower", "upper", "below", "above", "width", "small"),
-            *("folds", "free", "nominal_error", "error"),
-        ),
-        BROADCAST,
-    )
+    arrays_along: ClassVar = {
+        "...": "theta2 nominal lower upper below above width small folds free nominal_error error"
+    }
 
     @property
     def unit(self) -> str:

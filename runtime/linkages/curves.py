@@ -103,16 +103,14 @@ class CouplerCurve(Result):
     double_position: Array
     crossing_angle: Array
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("parameter", "theta2", "branch", "curvature", "error"), ("point",)),
-        **dict.fromkeys(("position", "velocity", "acceleration", "centre"), ("point", "axis")),
-        **dict.fromkeys(("cusp_parameter", "cusp_theta2", "cusp_branch"), ("cusp",)),
-        "cusp_position": ("cusp", "axis"),
-        **dict.fromkeys(
-            ("double_parameter", "double_theta2", "double_branch"), ("double_point", "passage")
-        ),
-        "double_position": ("double_point", "axis"),
-        "crossing_angle": ("double_point",),
+    arrays_along: ClassVar = {
+        "point": "parameter theta2 branch curvature error",
+        "point axis": "position velocity acceleration centre",
+        "cusp": "cusp_parameter cusp_theta2 cusp_branch",
+        "cusp axis": "cusp_position",
+        "double_point passage": "double_parameter double_theta2 double_branch",
+        "double_point axis": "double_position",
+        "double_point": "crossing_angle",
     }
     column_units: ClassVar = {
         "m": "position centre length length_error along across cusp_position double_position error",

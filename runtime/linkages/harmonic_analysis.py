@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, TypeAlias
 
@@ -62,9 +62,7 @@ class Harmonics(Result):
     remainder: float
     evaluations: int
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
-        ("a", "b", "amplitude", "phase"), ("harmonic",)
-    )
+    arrays_along: ClassVar = {"harmonic": "a b amplitude phase"}
     exported: ClassVar[tuple[str, ...]] = ("amplitude", "phase")
     column_units: ClassVar = {"rad": "phase"}
 

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from ..core.errors import bad, shown
 from ..core.inputs import are_finite
 from ..core.plotting import Axes, axes_or_new
-from ..core.results import BROADCAST, Check, Result, provenance
+from ..core.results import Check, Result, provenance
 from .four_bar import FourBar, LoopSums
 from .linkage import EPS, Array, require_linkage
 from .quick_return import QuickReturn
@@ -90,8 +90,10 @@ class TransmissionAngle(Result):
     time_ratio: float | None
     lengths: Mapping[str, float]
     linkage: FourBar | SliderCrank | QuickReturn = field(repr=False)
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **{"at_least": ("place",), "at_greatest": ("place_1",), "crank_ranges": ("range", "end")}
+    arrays_along: ClassVar = {
+        "place": "at_least",
+        "place_1": "at_greatest",
+        "range end": "crank_ranges",
     }
     column_units: ClassVar = {"rad": "least greatest error output_range"}
 
@@ -183,9 +185,9 @@ class MechanicalAdvantage(Result):
     advantage: Array
     speed_ratio: Array
     poles: Array
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("theta2", "advantage", "speed_ratio", "error"), BROADCAST),
-        "poles": ("pole",),
+    arrays_along: ClassVar = {
+        "...": "theta2 advantage speed_ratio error",
+        "pole": "poles",
     }
     column_units: ClassVar = {"rad": "poles"}
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from types import ModuleType
 from typing import TYPE_CHECKING, ClassVar, cast
@@ -53,9 +52,7 @@ class AmplitudeLaw(Result):
     mode: int
     modes: int
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
-        ("theta", "transmission_angle", "coefficient", "error"), ("angle",)
-    )
+    arrays_along: ClassVar = {"angle": "theta transmission_angle coefficient error"}
     column_units: ClassVar = {"m": "length"}
 
     def at(self, amplitude: ArrayLike) -> Array:

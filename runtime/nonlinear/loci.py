@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -51,9 +51,7 @@ class SpecialCurve(Result):
     turns: int
     ended: tuple[str, str]
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
-        ("first", "second", "error"), ("point",)
-    )
+    arrays_along: ClassVar = {"point": "first second error"}
 
     def _own_units(self) -> dict[str, str]:
         names = zip(("first", "second"), self.parameters, strict=True)

@@ -110,18 +110,13 @@ class ResponseCurve(Result):
     linear_highest: Any = _LINEARISED["linear_highest"]
     source: Solver = field(repr=False, metadata=NOT_SAVED)
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(
-            ("value", "branch", "turns", "lowest", "highest", "error", "peak_error", "stable"),
-            ("point",),
+    arrays_along: ClassVar = {
+        "point": "value branch turns lowest highest error peak_error stable peak_to_peak",
+        "point multiplier": "multipliers multiplier_error",
+        "special_point": (
+            "special_value special_error special_branch special_lowest special_highest special"
         ),
-        "peak_to_peak": ("point",),
-        "multipliers": ("point", "multiplier"),
-        "multiplier_error": ("point", "multiplier"),
-        **dict.fromkeys(("special_value", "special_error", "special_branch"), ("special_point",)),
-        **dict.fromkeys(("special_lowest", "special_highest"), ("special_point",)),
-        **dict.fromkeys(_LINEARISED, ("linear_point",)),
-        "special": ("special_point",),
+        "linear_point": " ".join(_LINEARISED),
     }
     exported: ClassVar[tuple[str, ...]] = ("stable", "peak_to_peak")
 

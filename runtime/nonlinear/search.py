@@ -61,9 +61,7 @@ class CoexistingMotions(Result):
     searched: Mapping[str, int]
     unit: str = ""
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
-        ("turns", "lowest", "highest", "multiplier", "error", "stable"), ("motion",)
-    )
+    arrays_along: ClassVar = {"motion": "turns lowest highest multiplier error stable"}
     exported: ClassVar[tuple[str, ...]] = ("stable",)
 
     def _own_units(self) -> dict[str, str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
@@ -74,11 +74,9 @@ class SweepResponse(Result):
     stopped: str = ""
     unit: str = ""
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(
-            ("speed", "rising", "lowest", "highest", "peak_to_peak", "error"), ("revolution",)
-        ),
-        **dict.fromkeys(("jump_speed", "jump_rising", "jump_ratio"), ("jump",)),
+    arrays_along: ClassVar = {
+        "revolution": "speed rising lowest highest peak_to_peak error",
+        "jump": "jump_speed jump_rising jump_ratio",
     }
     exported: ClassVar[tuple[str, ...]] = ("peak_to_peak",)
     column_units: ClassVar = {"rad/s^2": "rate"}
@@ -361,11 +359,11 @@ class Basins(Result):
     speed: float
     unit: str = ""
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "q": ("q",),
-        "rate": ("rate",),
-        "motion": ("rate", "q"),
-        **dict.fromkeys(("peak_to_peak", "turns"), ("attractor",)),
+    arrays_along: ClassVar = {
+        "q": "q",
+        "rate": "rate",
+        "rate q": "motion",
+        "attractor": "peak_to_peak turns",
     }
 
     def _own_units(self) -> dict[str, str]:

@@ -90,12 +90,10 @@ class Trajectory(Result):
     message: str
     labels: tuple[str, ...]
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "theta": ("sample",),
-        "time": ("sample",),
-        "q": ("sample", "coordinate"),
-        "qd": ("sample", "coordinate"),
-        "error": ("coordinate",),
+    arrays_along: ClassVar = {
+        "sample": "theta time",
+        "sample coordinate": "q qd",
+        "coordinate": "error",
     }
     column_units: ClassVar = {"1/s": "qd"}
 

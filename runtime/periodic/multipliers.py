@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic
 from ..core.inputs import require_between
-from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
+from ..core.results import Check, DeferredChecks, Result, provenance
 from .equation import Equation, equation_of
 from .signatures import signatures_of
 from .transition import Method, choose, product, refined, segments_of
@@ -67,10 +67,10 @@ class Monodromy(Result):
     scale: Array
     segments: NDArray[np.int64]
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("speed", "exponent", "error", "segments"), BROADCAST),
-        "matrix": ("...", "state", "state_1"),
-        "scale": ("...", "state"),
+    arrays_along: ClassVar = {
+        "...": "speed exponent error segments",
+        "... state state_1": "matrix",
+        "... state": "scale",
     }
 
     @property
@@ -189,9 +189,9 @@ class FloquetMultipliers(Result):
     signatures: NDArray[np.int8]
     period: float
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("speed", "stable", "growth"), BROADCAST),
-        **dict.fromkeys(("multipliers", "exponents", "error", "signatures"), ("...", "multiplier")),
+    arrays_along: ClassVar = {
+        "...": "speed stable growth",
+        "... multiplier": "multipliers exponents error signatures",
     }
     exported: ClassVar[tuple[str, ...]] = ("stable", "growth")
     column_units: ClassVar = {"rad": "period"}

@@ -29,7 +29,6 @@ from ..core.inputs import is_one_of, numbers, require_between
 from ..core.maxima import largest_size
 from ..core.progress import bar
 from ..core.results import (
-    BROADCAST,
     Check,
     DeferredChecks,
     DeferredField,
@@ -130,12 +129,12 @@ class SteadyState(Result):
         default=None, repr=False, metadata=NOT_SAVED
     )
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("speed", "stable", "distance", "sensitivity"), BROADCAST),
-        **dict.fromkeys(("multipliers", "multiplier_error"), ("...", "multiplier")),
-        **dict.fromkeys(("q", "qd"), ("...", "sample", "coordinate")),
-        "theta": ("sample",),
-        "error": ("...", "coordinate"),
+    arrays_along: ClassVar = {
+        "...": "speed stable distance sensitivity",
+        "... multiplier": "multipliers multiplier_error",
+        "... sample coordinate": "q qd",
+        "sample": "theta",
+        "... coordinate": "error",
     }
     column_units: ClassVar = {"1/s": "qd", "rad": "period", "m": "reference_length"}
 

@@ -236,10 +236,9 @@ class BeamForces(StationResult):
     shear: Array
     moment: Array
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **StationResult.dimensions,
-        "error": ("force",),
-        **dict.fromkeys(QUANTITIES, ("sample", "station")),
+    arrays_along: ClassVar = {
+        "force": "error",
+        "sample station": " ".join(QUANTITIES),
     }
     column_units: ClassVar = {"m": "along across", "rad": "slope", "N": "axial shear"}
 

@@ -34,7 +34,7 @@ class BeamResult(Result):
     error: Any = _LATER["error"]
     error_norm: Any = _LATER["error_norm"]  # str
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {"theta": ("sample",)}
+    arrays_along: ClassVar = {"sample": "theta"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,10 +44,7 @@ class StationResult(BeamResult):
     links: tuple[str, ...]  # beam of each station
     places: Array  # x over the beam's length of each station, (stations,)
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **BeamResult.dimensions,
-        "places": ("station",),
-    }
+    arrays_along: ClassVar = {"station": "places"}
 
 
 def stations_on(links: tuple[str, ...], link: str) -> NDArray[np.int64]:

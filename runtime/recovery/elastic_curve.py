@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar
@@ -41,10 +40,7 @@ class ElasticCurve(BeamResult):
     rigid: Array
     elastic: Array
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **BeamResult.dimensions,
-        **dict.fromkeys(("rigid", "elastic"), ("sample", "direction")),
-    }
+    arrays_along: ClassVar = {"sample direction": "rigid elastic"}
     column_units: ClassVar = {"m": "rigid elastic along across error"}
 
     @property

@@ -52,10 +52,7 @@ class PinReactions(BeamResult):
     of_ground: Mapping[str, Array]
     drag: Array
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **BeamResult.dimensions,
-        "drag": ("sample", "direction"),
-    }
+    arrays_along: ClassVar = {"sample direction": "drag"}
 
     def arrays(self) -> dict[str, Array]:
         """Return the numeric fields, and the forces by node and beam."""

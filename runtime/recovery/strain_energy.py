@@ -208,13 +208,9 @@ class BeamEnergies(BeamResult):
     loads: Array  # power of weight and constant loads [W]
     drive: Array  # power of the drive [W]: generalised force of the crank angle times the speed
 
-    dimensions: ClassVar[dict[str, tuple[str, ...]]] = {
-        **BeamResult.dimensions,
-        "strain": ("sample", "link"),
-        **dict.fromkeys(
-            ("springs", "stiffening", "kinetic", "dissipated", "loads", "drive", "total"),
-            ("sample",),
-        ),
+    arrays_along: ClassVar = {
+        "sample link": "strain",
+        "sample": "springs stiffening kinetic dissipated loads drive total",
     }
     exported: ClassVar[tuple[str, ...]] = ("total",)
     column_units: ClassVar = {"J": "error total", "W": "dissipated loads drive"}

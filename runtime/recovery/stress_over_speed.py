@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -80,10 +80,9 @@ class StressCurve(Result):
     multiplier_error: Array | None = None
 
     exported: ClassVar[tuple[str, ...]] = ("stable",)
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("speed", "modes", "deflection", "stable"), ("speed",)),
-        **dict.fromkeys(("multiplier", "multiplier_error"), ("speed",)),
-        **dict.fromkeys(("maximum", "theta", "place", "fibre", "error"), ("speed", "link")),
+    arrays_along: ClassVar = {
+        "speed": "speed modes deflection stable multiplier multiplier_error",
+        "speed link": "maximum theta place fibre error",
     }
     column_units: ClassVar = {"Pa": "maximum"}
 

@@ -230,12 +230,7 @@ class StressResult(StationResult):
     mesh_error: Any = _LATER["mesh_error"]  # float
     period: float | None = None
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **StationResult.dimensions,
-        **dict.fromkeys(
-            ("axial", "bending", "static_axial", "static_bending", "stress"), ("sample", "station")
-        ),
-    }
+    arrays_along: ClassVar = {"sample station": "axial bending static_axial static_bending stress"}
     exported: ClassVar[tuple[str, ...]] = ("stress",)
     column_units: ClassVar = {
         "Pa": "axial bending static_axial static_bending stress error motion_error mesh_error",

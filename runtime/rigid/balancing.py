@@ -483,9 +483,7 @@ class TradeOff(Result):
     points: tuple[Balancing, ...]
     cases: Mapping[str, tuple[float, float]]
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
-        ("first_values", "second_values", "error"), ("point",)
-    )
+    arrays_along: ClassVar = {"point": "first_values second_values error"}
 
     def to_dict(self) -> dict[str, Any]:
         """Return the curve, and for each point its counterweights and all relative peaks."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import ClassVar
@@ -59,9 +58,7 @@ class TorqueFluctuation(Result):
     slowest: float
     fastest: float
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
-        ("theta", "torque", "energy"), ("theta",)
-    )
+    arrays_along: ClassVar = {"theta": "theta torque energy"}
     column_units: ClassVar = {"rad": "slowest fastest", "J": "error"}
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -147,9 +144,7 @@ class Flywheel(Result):
     speeds: Array
     torque: TorqueFluctuation
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
-        ("theta", "speeds"), ("theta",)
-    )
+    arrays_along: ClassVar = {"theta": "theta speeds"}
     column_units: ClassVar = {"kg m^2": "error first_order"}
 
     def plot(self, ax: Axes | None = None) -> Axes:

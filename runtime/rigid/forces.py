@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ..core.errors import bad
 from ..core.inputs import names_in_a_row, require_one_of
 from ..core.plotting import Axes, axes_or_new
-from ..core.results import BROADCAST, Deferred, DeferredChecks, DeferredField, Result, provenance
+from ..core.results import Deferred, DeferredChecks, DeferredField, Result, provenance
 from ..linkages.linkage import JOINTS, TURN, Array, checked_drive
 from .evaluation import COUPLES, FRAME_FORCE, Evaluation, Output
 from .machine import Machine, require_machine
@@ -55,15 +55,12 @@ class RigidForces(Result):
     values: Mapping[str, Array]
     error: Any = _LATER
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
-        (
-            *("theta2", "speed", "acceleration", "torque", "error", "couple34", "couple41"),
-            *(axis + joint for axis in "xy" for joint in JOINTS),
-            *FRAME_FORCE,
-            "shaking_moment",
+    arrays_along: ClassVar = {
+        "...": (
+            "theta2 speed acceleration torque error couple34 couple41 "
+            "x12 x23 x34 x41 y12 y23 y34 y41 shaking_x shaking_y shaking_moment"
         ),
-        BROADCAST,
-    )
+    }
 
     def __getitem__(self, name: str) -> Array:
         """Return one array of ``values``; refuse one that was not requested."""

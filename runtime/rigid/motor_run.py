@@ -334,9 +334,7 @@ class RunUp(Result):
     fluctuation: Any = _LATER  # float | None
     run: Run = field(repr=False, compare=False, metadata=NOT_SAVED)
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
-        ("time", "angle", "speed", "acceleration", "torque", "energy"), ("time",)
-    )
+    arrays_along: ClassVar = {"time": "time angle speed acceleration torque energy"}
 
     exported: ClassVar[tuple[str, ...]] = ("revolutions",)
     column_units: ClassVar = {"rad": "error"}

@@ -191,9 +191,9 @@ class SpeedBoundaries(Result):
     harmonics: int
     period: float
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("speed", "multiplier", "error"), ("boundary",)),
-        **dict.fromkeys(("cosine", "sine"), ("boundary", "harmonic", "coordinate")),
+    arrays_along: ClassVar = {
+        "boundary": "speed multiplier error",
+        "boundary harmonic coordinate": "cosine sine",
     }
     column_units: ClassVar = {"rad/s": "error", "rad": "period"}
 

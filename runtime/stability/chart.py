@@ -137,11 +137,11 @@ class StabilityChart(Result):
     nodes: tuple[int, int] = (0, 0)
     speed: float = float("nan")
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "x": ("x",),
-        "y": ("y",),
-        **dict.fromkeys(("stable", "largest", "slack", "undecided", "kind"), ("y", "x")),
-        "invariants": ("y", "x", "invariant"),
+    arrays_along: ClassVar = {
+        "x": "x",
+        "y": "y",
+        "y x": "stable largest slack undecided kind",
+        "y x invariant": "invariants",
     }
 
     def _own_units(self) -> dict[str, str]:

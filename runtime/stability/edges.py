@@ -94,13 +94,9 @@ class StabilityEdges(Result):
     least_width: float
     speed_range: tuple[float, float]
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(
-            ("lower", "upper", "multiplier", "harmonic", "detuning", "shift", "error", "width"),
-            ("region",),
-        ),
-        "modes": ("region", "mode"),
-        "kind": ("region",),
+    arrays_along: ClassVar = {
+        "region": "lower upper multiplier harmonic detuning shift error width kind",
+        "region mode": "modes",
     }
     exported: ClassVar[tuple[str, ...]] = ("width",)
     column_units: ClassVar = {"rad/s": "lower upper shift error width least_width"}

@@ -63,11 +63,11 @@ class TongueCurves(Result):
     harmonic: Whole
     labels: tuple[str, ...]
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "at": ("value",),
-        **dict.fromkeys(("foot", "harmonic", "labels"), ("tongue",)),
-        **dict.fromkeys(("lower", "upper", "error", "growth", "width"), ("tongue", "value")),
-        "modes": ("tongue", "mode"),
+    arrays_along: ClassVar = {
+        "value": "at",
+        "tongue": "foot harmonic labels",
+        "tongue value": "lower upper error growth width",
+        "tongue mode": "modes",
     }
     exported: ClassVar[tuple[str, ...]] = ("width",)
     column_units: ClassVar = {"rad/s": "foot lower upper error width", "1/s": "growth"}

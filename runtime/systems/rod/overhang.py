@@ -7,7 +7,7 @@ over the modes is closed: Green's identity leaves values at pin, block and tip.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, ClassVar
@@ -144,9 +144,9 @@ class OverhangFrequencies(Result):
     roots: Array  # beta of each mode, (nt, modes)
     frequencies: Array  # [rad/s], (nt, modes)
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "place": ("place",),
-        **dict.fromkeys(("roots", "frequencies", "error"), ("place", "mode")),
+    arrays_along: ClassVar = {
+        "place": "place",
+        "place mode": "roots frequencies error",
     }
     column_units: ClassVar = {"rad/s": "error"}
 

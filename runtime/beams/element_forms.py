@@ -176,12 +176,10 @@ class ElementForms:
             if self._is_own(term):
                 continue
             if term.array not in _OUTSIDE:
-                raise bad(
-                    f"term {term.array} ({term.scale})",
-                    "inertia that is not the structure's own",
-                    "masses on nodes and beams",
-                    "give it to Node or Section",
-                )
+                found = "inertia that is not the structure's own"
+                expected = "masses on nodes and beams"
+                fix = "give it to Node or Section"
+                raise bad(f"term {term.array} ({term.scale})", found, expected, fix)
             name, power, sign = _OUTSIDE[term.array]
             scale = 1.0 if term.scale is None else float(scales[term.scale])
             if not sign or not scale:
@@ -336,12 +334,9 @@ class ElementForms:
             size = max(float(np.max(np.abs(value))), np.finfo(float).tiny)
             # Difference of two ways to the same matrix, over its largest entry.
             if not np.max(np.abs(found - value)) <= 1e-9 * size:
-                raise bad(
-                    "system",
-                    f"a {'stiffness' if key[0] == 'q' else 'force'} that is not its structure's",
-                    "a system as linear_system makes it",
-                    "change the structure instead of the terms",
-                )
+                given = f"a {'stiffness' if key[0] == 'q' else 'force'} that is not its structure's"
+                fix = "change the structure instead of the terms"
+                raise bad("system", given, "a system as linear_system makes it", fix)
 
 
 def _inverse(matrices: Array) -> Array:
@@ -353,9 +348,6 @@ def required_structure(system: object) -> Structure:
     found = system.structure if isinstance(system, LinearPeriodic) else None
     if isinstance(found, Structure) and found.size == getattr(system, "size", None):
         return found
-    raise bad(
-        "system",
-        f"{type(system).__name__} without beams, or with a sliding pin",
-        "a LinearPeriodic that keeps its structure",
-        "make it by linear_system or a scene of beams",
-    )
+    given = f"{type(system).__name__} without beams, or with a sliding pin"
+    fix = "make it by linear_system or a scene of beams"
+    raise bad("system", given, "a LinearPeriodic that keeps its structure", fix)

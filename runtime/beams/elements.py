@@ -180,12 +180,9 @@ def _in_range(
     with np.errstate(all="ignore"):
         found = function(*places, **{name: np.float64(value) for name, value in numbers.items()})
     if not all(np.all(np.isfinite(value)) for value in found.values()):
-        raise bad(
-            "element",
-            f"entries beyond the range of doubles for {numbers}",
-            "lengths and stiffnesses of ordinary size",
-            "choose other units",
-        )
+        given = f"entries beyond the range of doubles for {numbers}"
+        fix = "choose other units"
+        raise bad("element", given, "lengths and stiffnesses of ordinary size", fix)
     return found
 
 

@@ -176,12 +176,9 @@ def without_stretching(system: LinearPeriodic) -> LinearPeriodic:
     """
     structure = system.structure if isinstance(system, LinearPeriodic) else None
     if structure is None or structure.moving:
-        raise bad(
-            "without_stretching",
-            "a system that is not of a frame standing still",
-            "one from linear_system(frame(...))",
-            "a moving linkage keeps its axial motion: it is stiff, but cheap to keep",
-        )
+        found = "a system that is not of a frame standing still"
+        fix = "a moving linkage keeps its axial motion: it is stiff, but cheap to keep"
+        raise bad("without_stretching", found, "one from linear_system(frame(...))", fix)
     kept, spread = eliminated(_axial_rows(structure))
     if not kept.size:
         raise bad("frame", "no motion without stretching", "members that bend", "add elements")

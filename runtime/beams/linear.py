@@ -184,12 +184,9 @@ def require_held(arrays: AngleArrays, springs: Array, slide: Slide | None) -> No
             # The coordinates that have a tenth of the motion or more are named.
             loose = np.flatnonzero(motion > 0.1 * np.max(motion))
         names = ", ".join([structure.labels[i] for i in loose][:6])
-        raise bad(
-            "structure",
-            f"a motion of {names} that nothing resists at crank angle {angle:.4g}",
-            "a structure whose every motion is held or sprung",
-            "hold a node, join beams, or add a spring",
-        )
+        found = f"a motion of {names} that nothing resists at crank angle {angle:.4g}"
+        fix = "hold a node, join beams, or add a spring"
+        raise bad("structure", found, "a structure whose every motion is held or sprung", fix)
 
 
 def _strains(arrays: AngleArrays, springs: Array, theta: Array) -> Array:
@@ -412,12 +409,9 @@ def lumped_values(
         turning = node.carried_by or (node.joined or tuple(meeting))[0]
         needs = node.inertia or node.stiffness.get("rotation") or node.damping.get("rotation")
         if needs and not (node.carried_by or node.joined or len(meeting) == 1):
-            raise bad(
-                f"node {node.name}",
-                "an inertia, spring or damper on the rotation where several beams are pinned",
-                "the beam that it turns with",
-                f"set carried_by to one of {', '.join(meeting)}",
-            )
+            found = "an inertia, spring or damper on the rotation where several beams are pinned"
+            fix = f"set carried_by to one of {', '.join(meeting)}"
+            raise bad(f"node {node.name}", found, "the beam that it turns with", fix)
         inertias = (
             ("x", "x", node.mass),
             ("y", "y", node.mass),

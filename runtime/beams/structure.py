@@ -449,12 +449,9 @@ class Structure:
             reached |= new
         apart = sorted({node.name for node in self.nodes} - reached)
         if apart:
-            raise bad(
-                "structure",
-                f"nodes {', '.join(apart)} that nothing connects with {self.beams[0].start}",
-                "one connected structure",
-                "add the missing beam, or make two structures",
-            )
+            found = f"nodes {', '.join(apart)} that nothing connects with {self.beams[0].start}"
+            fix = "add the missing beam, or make two structures"
+            raise bad("structure", found, "one connected structure", fix)
 
     def _require_closed(self) -> None:
         """Refuse beams whose ends do not meet at their nodes, at a few crank angles."""
@@ -472,12 +469,9 @@ class Structure:
                 gap = motion[beam.name].point(along).position - places[node]
                 widest = float(np.max(np.abs(gap)))
                 if not widest <= _CLOSURE * longest:
-                    raise bad(
-                        f"beam {beam.name}",
-                        f"its end {widest:.3g} m away from node {node}",
-                        "ends that meet",
-                        "let length, places and configuration agree",
-                    )
+                    found = f"its end {widest:.3g} m away from node {node}"
+                    fix = "let length, places and configuration agree"
+                    raise bad(f"beam {beam.name}", found, "ends that meet", fix)
 
     def _require_on_beam(
         self, motion: Mapping[str, LinkMotion], places: Mapping[str, Array], allowed: float

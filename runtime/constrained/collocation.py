@@ -463,10 +463,7 @@ def _first(equations: Equations, start: State, end: float, rtol: float, s: int) 
     # Term k of the Legendre series of exp(i z x) is about (e z / 2 k)^k.
     reach = 1.5 * 4.0 * s / np.e * rtol ** (1.0 / s)
     if span * rate > _MOST_WINDOWS * reach:
-        raise bad(
-            "span",
-            f"{span:g} s, which hold {span * rate:.2g} rad of the fastest vibration",
-            f"at most {_MOST_WINDOWS * reach:.2g} rad, {_MOST_WINDOWS} steps",
-            "shorten it, or take fewer or softer modes",
-        )
+        found = f"{span:g} s, which hold {span * rate:.2g} rad of the fastest vibration"
+        expected = f"at most {_MOST_WINDOWS * reach:.2g} rad, {_MOST_WINDOWS} steps"
+        raise bad("span", found, expected, "shorten it, or take fewer or softer modes")
     return min(reach / rate, span) if rate > 0.0 else span

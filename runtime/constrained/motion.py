@@ -141,12 +141,9 @@ def consistent_state(
         try:
             x, count = equations.positions(time, q0 / columns, mass, free)
         except NoConvergence as reason:
-            raise bad(
-                "q",
-                "no state nearby that meets the constraints",
-                "a position that the linkage can take",
-                "start nearer to one, hold other coordinates, or check the dimensions",
-            ) from reason
+            found = "no state nearby that meets the constraints"
+            fix = "start nearer to one, hold other coordinates, or check the dimensions"
+            raise bad("q", found, "a position that the linkage can take", fix) from reason
         place = x * columns
         at = system.dynamics(place, qd0, time)
         check_rank(at["jacobian"] * free, *scaling(at["mass"], at["jacobian"]))
@@ -596,12 +593,8 @@ def _start(
     for name, now, given in (("q", state.q, q), ("qd", state.qd, qd)):
         off = float(np.max(np.abs(now - np.asarray(given, dtype=float))))
         if off > 1e-6 * (float(np.max(np.abs(now))) or 1.0):
-            raise bad(
-                name,
-                f"a start {off:.3g} off the constraints",
-                "one that meets them",
-                "take q and qd of consistent_state(system, q, qd, t)",
-            )
+            fix = "take q and qd of consistent_state(system, q, qd, t)"
+            raise bad(name, f"a start {off:.3g} off the constraints", "one that meets them", fix)
     return state.q, state.qd
 
 

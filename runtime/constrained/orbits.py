@@ -606,12 +606,8 @@ def _checked(
 def _states(name: str, values: ArrayLike, n: int) -> Array:
     given = numbers(name, values)
     if given.shape not in ((n,), (len(given) if given.ndim else 0, n)) or not given.size:
-        raise bad(
-            name,
-            f"shape {given.shape}",
-            f"({n},), or (samples, {n}) over a period",
-            "give one state or several",
-        )
+        fix = "give one state or several"
+        raise bad(name, f"shape {given.shape}", f"({n},), or (samples, {n}) over a period", fix)
     if not np.all(np.isfinite(given)):
         raise bad(name, "a value that is not finite", "finite numbers", "correct it")
     return given.reshape(-1, n)
@@ -639,12 +635,9 @@ def _check_period(system: Constrained, guess: _Guess) -> None:
         gap = float(np.max(np.abs(later[name] - values), initial=0.0))
         # A system that differs by more after a period has another period.
         if not gap <= 1e-9 * size:
-            raise bad(
-                "period",
-                f"{guess.period:.9g} s, after which {name} differs by {gap:.3g}",
-                "a system that repeats after the period",
-                "give the period of the drive, and in advance what angles gain over it",
-            )
+            found = f"{guess.period:.9g} s, after which {name} differs by {gap:.3g}"
+            fix = "give the period of the drive, and in advance what angles gain over it"
+            raise bad("period", found, "a system that repeats after the period", fix)
 
 
 def _first(system: Constrained, guess: _Guess) -> tuple[Shooting, Ring]:
@@ -711,10 +704,7 @@ def _steps(rates: Array, period: float) -> int:
     fastest = float(np.max(rates, initial=0.0))
     wanted = np.ceil(fastest * period / _PHASE)
     if not wanted <= _MOST_STEPS:
-        raise bad(
-            "system",
-            f"motions of {fastest:.3g} rad/s",
-            f"at most {_MOST_STEPS * _PHASE / period:.3g} rad/s at this period",
-            "use fewer or softer modes",
-        )
+        found = f"motions of {fastest:.3g} rad/s"
+        expected = f"at most {_MOST_STEPS * _PHASE / period:.3g} rad/s at this period"
+        raise bad("system", found, expected, "use fewer or softer modes")
     return max(int(wanted), _FEWEST)

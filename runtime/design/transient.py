@@ -416,12 +416,9 @@ class _Run:
         periods = fastest * self.profile.duration / (2.0 * np.pi)
         steps = int(np.ceil(max(48.0 * self.turns, 2.0 * periods, 16)))
         if 4 * steps > _MOST_STEPS:
-            raise bad(
-                "profile",
-                f"{self.profile.duration:g} s, {periods:.0f} periods of the modes followed",
-                f"at most {_MOST_STEPS // 4} steps",
-                "shorten it, or follow fewer modes",
-            )
+            found = f"{self.profile.duration:g} s, {periods:.0f} periods of the modes followed"
+            fix = "shorten it, or follow fewer modes"
+            raise bad("profile", found, f"at most {_MOST_STEPS // 4} steps", fix)
         return steps
 
     def arrays(self, drive: Drive, time: Array) -> Mapping[str, Array]:

@@ -504,12 +504,9 @@ def at_geometry(
     for name in values.keys() - rest.keys():
         value = numbers(name, values[name])
         if value.ndim:
-            raise bad(
-                name,
-                f"shape {value.shape}",
-                "one number: the system is made anew for each geometry",
-                "call once for each value, or take it as an axis of stability_chart",
-            )
+            found = f"shape {value.shape}"
+            fix = "call once for each value, or take it as an axis of stability_chart"
+            raise bad(name, found, "one number: the system is made anew for each geometry", fix)
         changes[name] = float(value)
     return (system.with_geometry(**changes) if changes else system), rest
 
@@ -630,20 +627,13 @@ def _checked(system: LinearPeriodic, term: Term, angles: Array) -> Array:
     expected = (len(angles),) + (system.size,) * (1 if term.array in "fhp" else 2)
     where = f"term {term.array} ({term.scale})"
     if values.shape != expected:
-        raise bad(
-            where,
-            f"shape {values.shape} for {len(angles)} angles",
-            f"{expected}",
-            "make the function return one array per angle",
-        )
+        fix = "make the function return one array per angle"
+        raise bad(where, f"shape {values.shape} for {len(angles)} angles", f"{expected}", fix)
     if not np.all(np.isfinite(values)):
         finite = np.all(np.isfinite(values.reshape(len(values), -1)), axis=1)
-        raise bad(
-            where,
-            f"a value that is not finite at crank angle {angles[int(np.argmin(finite))]:.6g}",
-            "finite numbers at every angle",
-            "check the function, its domain and the geometry",
-        )
+        found = f"a value that is not finite at crank angle {angles[int(np.argmin(finite))]:.6g}"
+        fix = "check the function, its domain and the geometry"
+        raise bad(where, found, "finite numbers at every angle", fix)
     return values
 
 
@@ -741,9 +731,5 @@ def _modes(cholesky: Array, stiffness: Array) -> tuple[Array, Array]:
 
 
 def _bad_mass(found: str) -> BadInput:
-    return bad(
-        "mass matrix M",
-        found,
-        "a symmetric positive definite matrix at every angle and parameter value",
-        "check masses, inertias and parameter values",
-    )
+    expected = "a symmetric positive definite matrix at every angle and parameter value"
+    return bad("mass matrix M", found, expected, "check masses, inertias and parameter values")

@@ -211,12 +211,8 @@ class LowestModes:
             error = self.error(modes, speed)
         made = self.at(modes, _BESIDE[-1] * speed)
         if made is None:
-            raise bad(
-                "modes",
-                modes,
-                "a number of modes that stay smooth over the period",
-                "choose one mode more or less",
-            )
+            fix = "choose one mode more or less"
+            raise bad("modes", modes, "a number of modes that stay smooth over the period", fix)
         if not error <= _MOST:
             raise bad(
                 "modes",

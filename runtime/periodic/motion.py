@@ -623,12 +623,9 @@ def _check_arguments(
         expected = f"a whole number from 1 to {_MOST_SAMPLES}"
         raise bad("samples", samples, expected, "correct it")
     if float(revolutions) * samples > _MOST_INTERVALS:
-        raise bad(
-            "revolutions",
-            f"{revolutions:.6g} of {samples} samples each",
-            f"at most {_MOST_INTERVALS} given angles in all",
-            "go on from at_end in parts, or lower samples",
-        )
+        found = f"{revolutions:.6g} of {samples} samples each"
+        fix = "go on from at_end in parts, or lower samples"
+        raise bad("revolutions", found, f"at most {_MOST_INTERVALS} given angles in all", fix)
     if not 1e-14 <= _number("rtol", rtol) < 1:
         raise bad("rtol", rtol, "a number from 1e-14 to 1", "choose 1e-8")
 

@@ -208,12 +208,9 @@ def _lowest(system: LinearPeriodic, theta: Array) -> tuple[Array, Array, Array]:
     try:
         return (*natural_modes(mass, stiffness), mass)
     except np.linalg.LinAlgError as indefinite:
-        raise bad(
-            "system",
-            "a mass or stiffness that is not positive definite at some angle",
-            "both positive definite",
-            "check the parameters; hold the structure",
-        ) from indefinite
+        found = "a mass or stiffness that is not positive definite at some angle"
+        fix = "check the parameters; hold the structure"
+        raise bad("system", found, "both positive definite", fix) from indefinite
 
 
 def natural_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
@@ -282,9 +279,6 @@ def _turn_in(rotations: Array, first: int, second: int, angles: Array) -> None:
 
 
 def _rough(modes: int, found: str) -> Exception:
-    return bad(
-        f"modes = {modes}",
-        found,
-        "a subspace that is smooth and periodic in the crank angle",
-        "keep one mode more or less, so that the next frequency keeps its distance at all angles",
-    )
+    expected = "a subspace that is smooth and periodic in the crank angle"
+    fix = "keep one mode more or less, so that the next frequency keeps its distance at all angles"
+    return bad(f"modes = {modes}", found, expected, fix)

@@ -177,12 +177,8 @@ class SteadyState(Result):
             raise bad("x", str(places), "places x/length from 0 to 1", "divide by the length")
         values = None if self.shapes is None else self.shapes(places, self.theta)
         if values is None:
-            raise bad(
-                "deflection",
-                "a system without mode shapes",
-                "LinearPeriodic.shape or moving_shape",
-                "use q",
-            )
+            found = "a system without mode shapes"
+            raise bad("deflection", found, "LinearPeriodic.shape or moving_shape", "use q")
         return values
 
     def peak(self, x: ArrayLike | None = None) -> Array:
@@ -545,12 +541,9 @@ def _check_forcing(equation: Equation) -> None:
 def _check_memory(equation: Equation, angles: int) -> None:
     each = angles * 2 * equation.size
     if len(equation.speed) * each > _MOST_FLOATS:
-        raise bad(
-            "steady_state",
-            f"{len(equation.speed)} motions at {angles} angles",
-            f"at most {_MOST_FLOATS // each} of them at a time",
-            "take the speeds in parts, by sweep",
-        )
+        found = f"{len(equation.speed)} motions at {angles} angles"
+        fix = "take the speeds in parts, by sweep"
+        raise bad("steady_state", found, f"at most {_MOST_FLOATS // each} of them at a time", fix)
 
 
 def quiet_state(

@@ -134,12 +134,9 @@ def table_of(
     while True:
         m = 2 * equation.size + equation.forced
         if nodes * (count + samples) * m**2 > _MOST_FLOATS:
-            raise bad(
-                "prepare",
-                f"tables of {8e-6 * nodes * (count + samples) * m**2:.3g} MB",
-                f"at most {8e-6 * _MOST_FLOATS:.3g} MB",
-                "raise the lowest speed or lower samples",
-            )
+            found = f"tables of {8e-6 * nodes * (count + samples) * m**2:.3g} MB"
+            fix = "raise the lowest speed or lower samples"
+            raise bad("prepare", found, f"at most {8e-6 * _MOST_FLOATS:.3g} MB", fix)
         if half:
             h = equation.period / count
             maps = segments_from(equation, h * np.arange(0.5 * count), h, way).maps

@@ -123,12 +123,9 @@ def standing(system: LinearPeriodic, motion: object) -> BeamMotion:
     """Return the equilibrium of a structure that stands still under constant loads."""
     structure = required_structure(system)
     if structure.moving or motion is not None:
-        raise bad(
-            "motion",
-            "none of a linkage" if structure.moving else "one of a structure that stands still",
-            "a motion of a linkage; None for a frame",
-            "give a speed" if structure.moving else "leave it out",
-        )
+        found = "none of a linkage" if structure.moving else "one of a structure that stands still"
+        fix = "give a speed" if structure.moving else "leave it out"
+        raise bad("motion", found, "a motion of a linkage; None for a frame", fix)
     theta = np.zeros(1)
     stiffness = system.array("K", theta)[0] + system.array("Kg", theta)[0]
     q = np.linalg.solve(stiffness, system.array("p", theta)[0])

@@ -495,12 +495,9 @@ class Summary:
             for name, (rest, kind) in found.items()
         )
         if not alike:
-            raise bad(
-                "outputs",
-                f"{sorted(found.items())} in one piece, {sorted(held.items())} in another",
-                "arrays of the same names, shapes and types",
-                "name the outputs that have them, as outputs=(...)",
-            )
+            given = f"{sorted(found.items())} in one piece, {sorted(held.items())} in another"
+            fix = "name the outputs that have them, as outputs=(...)"
+            raise bad("outputs", given, "arrays of the same names, shapes and types", fix)
         self._kinds = {
             name: (rest, np.result_type(kind, held[name][1]))
             for name, (rest, kind) in found.items()

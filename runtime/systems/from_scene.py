@@ -144,12 +144,9 @@ def _floating_rod(scene: Scene, numbers: dict[str, float]) -> Constrained:
     rod = scene["rod"]
     damped = [key for key in ("damping", "relaxation_time", "damping_ratio") if rod[key]]
     if damped:
-        raise bad(
-            f"rod.{damped[0]}",
-            f"{rod[damped[0]]:g}",
-            "0 with formulation 'free_free', which has no damping",
-            "leave it out, or use formulation 'free_free_linear'",
-        )
+        expected = "0 with formulation 'free_free', which has no damping"
+        fix = "leave it out, or use formulation 'free_free_linear'"
+        raise bad(f"rod.{damped[0]}", f"{rod[damped[0]]:g}", expected, fix)
     speed = scene.get("operation.speed", None)
     if speed is None:
         fix = "add it: the constrained equations hold at one crank speed"

@@ -218,19 +218,12 @@ def _point(
 
 @dataclass
 class Computed:
-    """What is computed at k points, as it is filled in.
+    """What is computed at k points, as it is filled in."""
 
-    Attributes
-    ----------
-    values, errors : ndarray, shape (k,)
-        Speeds [rad/s] and deflections [m], NaN where there is none; and their errors.
-    checks : mapping
-        The worst check of each name.
-    """
-
+    # Speeds [rad/s] and deflections [m], NaN where there is none; and their errors, (k,).
     values: Array
     errors: Array
-    checks: dict[str, Check] = field(default_factory=dict)
+    checks: dict[str, Check] = field(default_factory=dict)  # the worst check of each name
 
     def add(self, checks: Mapping[str, Check]) -> None:
         """Keep the worse of the checks of each name."""

@@ -39,24 +39,13 @@ class Slope(NamedTuple):
 
 @dataclass(frozen=True)
 class Number:
-    """A number of the machine, or the parameter of the curve: what its changes make.
+    """A number of the machine, or the parameter of the curve: what its changes make."""
 
-    Attributes
-    ----------
-    value : float
-        What it is.
-    at : callable
-        Change of the number to a problem, and to the change of the curve's parameter.
-    step : float
-        Step of differences by it.
-    one_sided : bool
-        Whether it can only grow.
-    """
-
-    value: float
+    value: float  # what it is
+    # Change of the number to a problem, and to the change of the curve's parameter.
     at: Callable[[float], tuple[Problem, float]]
-    step: float
-    one_sided: bool = False
+    step: float  # step of differences by it
+    one_sided: bool = False  # whether it can only grow
 
     def slope(self, of: Callable[[Problem, float, float], Array], step: float) -> _Differences:
         """Return the derivative of a function of problem, change of the parameter and of itself.

@@ -17,20 +17,11 @@ _ITERATIONS, _PATIENCE, _LEFT = 12, 5, 0.03
 
 @dataclass(frozen=True)
 class Marcher:
-    """What marches a system revolution by revolution.
-
-    Attributes
-    ----------
-    problem : Problem
-    rtol : float
-        Wanted error of a revolution, relative to its size.
-    most : int
-        Steps of a revolution at the most.
-    """
+    """What marches a system revolution by revolution."""
 
     problem: Problem
-    rtol: float = 1e-8
-    most: int = 768
+    rtol: float = 1e-8  # wanted error of a revolution, relative to its size
+    most: int = 768  # steps of a revolution at the most
 
     def revolution(
         self, value: float, states: Array, guess: Motion | None = None, ramp: Ramp | None = None

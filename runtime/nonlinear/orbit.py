@@ -209,20 +209,11 @@ def share(difference: Any, level: float) -> Any:
 
 @dataclass(frozen=True)
 class Solver:
-    """Newton's iteration for the periodic motions of a problem.
-
-    Attributes
-    ----------
-    problem : Problem
-    span : float
-        Range of the parameter, by which its changes are measured.
-    rtol : float
-        Wanted error of the motions, relative.
-    """
+    """Newton's iteration for the periodic motions of a problem."""
 
     problem: Problem
-    span: float
-    rtol: float = 1e-8
+    span: float  # range of the parameter, by which its changes are measured
+    rtol: float = 1e-8  # wanted error of the motions, relative
 
     def scale(self, motion: Motion) -> Array:
         """Return the sizes of coordinates and rates, ``(2n,)``: the largest of each kind."""

@@ -15,23 +15,15 @@ from .tables import Array, Table
 
 @dataclass(frozen=True)
 class CompiledTable:
-    """A table in the order in which compiled loops read it.
+    """A table in the order in which compiled loops read it."""
 
-    Attributes
-    ----------
-    low, high : float
-        Ends of the inverse speed [s/rad].
-    groups, inner : ndarray
-        Chebyshev coefficients, ``(groups, nodes, m, m)`` and ``(nt, nodes, m, m)``.
-    within : ndarray of int
-        The group of each angle.
-    """
-
+    # Ends of the inverse speed [s/rad].
     low: float
     high: float
+    # Chebyshev coefficients, (groups, nodes, m, m) and (nt, nodes, m, m).
     groups: Array
     inner: Array
-    within: np.ndarray[Any, np.dtype[np.intp]]
+    within: np.ndarray[Any, np.dtype[np.intp]]  # the group of each angle
 
     @classmethod
     def of(cls, table: Table) -> CompiledTable:

@@ -52,25 +52,13 @@ _PLACES, _EACH, _KEPT = 8, 2_000_000, 1024
 
 @dataclass(frozen=True)
 class Field:
-    """One array of the equation for all members: constant part, and varying terms by factor.
+    """One array of the equation for all members: constant part, and varying terms by factor."""
 
-    Attributes
-    ----------
-    constant : ndarray or None
-        Shape ``(nb, n, n)``, or ``(nb, n)`` for the force.
-    factors : ndarray
-        Of the varying terms, shape ``(nb, k)``.
-    series : ndarray
-        Fourier coefficients of the varying terms, as :func:`waves` multiplies them, shape
-        ``(k, 2 H + 1, n, n)``.
-    terms : tuple of Term
-        The varying terms themselves.
-    """
-
-    constant: Array | None
-    factors: Array
+    constant: Array | None  # shape (nb, n, n), or (nb, n) for the force
+    factors: Array  # of the varying terms, shape (nb, k)
+    # Fourier coefficients of the varying terms, as waves multiplies them, shape (k, 2 H + 1, n, n).
     series: Array
-    terms: tuple[Term, ...]
+    terms: tuple[Term, ...]  # the varying terms themselves
 
     def take(self, members: slice | NDArray[np.intp]) -> Field:
         """Return the field of some members."""
@@ -118,45 +106,26 @@ class Equation:
     """The equation of a batch of members: one system at speeds and parameter values.
 
     Make it with :func:`equation_of`.  Inside it the batch is flat.
-
-    Attributes
-    ----------
-    system : LinearPeriodic
-        The system.
-    speed : ndarray
-        Crank speeds [rad/s], shape ``(nb,)``.
-    batch : tuple of int
-        Shape of the batch seen from outside.
-    fields : mapping
-        ``mass``, ``gyroscopic``, ``damping``, ``stiffness``, ``force``: those that are not zero.
-    harmonics : int
-        Harmonics H that the Fourier series of the terms have; -1 where these are not smooth.
-    reach : int
-        Highest harmonic that the nodes of a method have to see.
-    scale : ndarray
-        Unit of each coordinate, powers of two, ``(nb, n)``: q and p of an oscillator of the mean
-        mass and stiffness get like sizes in (q/scale, p scale), and no rounding is added.
-    frequency, decay : ndarray
-        Of frozen modes, ``(nb, n)``: the largest frequency [1/rad] over the period, of the
-        symmetric part of the stiffness field beside the mass, and the mean decay of the amplitude
-        in a period.  They choose the number of segments; whether it was enough is seen afterwards.
-    fastest : ndarray
-        The largest of their :attr:`rates`, ``(nb,)``.
-    damped : bool
-        Whether something takes energy out or puts it in: damping, or forces that turn.
     """
 
     system: LinearPeriodic
-    speed: Array
-    batch: tuple[int, ...]
+    speed: Array  # crank speeds [rad/s], shape (nb,)
+    batch: tuple[int, ...]  # shape of the batch seen from outside
+    # mass, gyroscopic, damping, stiffness, force: those that are not zero.
     fields: Mapping[str, Field]
+    # Harmonics H that the Fourier series of the terms have; -1 where these are not smooth.
     harmonics: int
-    reach: int
+    reach: int  # highest harmonic that the nodes of a method have to see
+    # Unit of each coordinate, powers of two, (nb, n): q and p of an oscillator of the mean mass and
+    # stiffness get like sizes in (q/scale, p scale), and no rounding is added.
     scale: Array
+    # Of frozen modes, (nb, n): the largest frequency [1/rad] over the period, of the symmetric part
+    # of the stiffness field beside the mass, and the mean decay of the amplitude in a period.  They
+    # choose the number of segments; whether it was enough is seen afterwards.
     frequency: Array
     decay: Array
-    fastest: Array
-    damped: bool
+    fastest: Array  # the largest of their rates, (nb,)
+    damped: bool  # whether something takes energy out or puts it in: damping, or forces that turn
 
     @property
     def size(self) -> int:
@@ -361,26 +330,13 @@ class SampledSystem:
     """A system with the Fourier series of its terms, for equations at any speeds and parameters.
 
     Make it with :func:`sampled`.
-
-    Attributes
-    ----------
-    system : LinearPeriodic
-        The system.
-    forcing : bool
-        Whether the force is taken along.
-    series : mapping
-        Series of the terms that vary, by place among the terms.
-    harmonics : int
-        Harmonics that they have; -1 where they are not smooth.
-    reach : int
-        Highest harmonic that has a millionth of the largest amplitude of its term.
     """
 
     system: LinearPeriodic
-    forcing: bool
-    series: Mapping[int, Array]
-    harmonics: int
-    reach: int
+    forcing: bool  # whether the force is taken along
+    series: Mapping[int, Array]  # series of the terms that vary, by place among the terms
+    harmonics: int  # harmonics that they have; -1 where they are not smooth
+    reach: int  # highest harmonic that has a millionth of the largest amplitude of its term
 
 
 def sampled(system: LinearPeriodic, *, forcing: bool = False) -> SampledSystem:

@@ -50,18 +50,11 @@ _DEAD = 1e-9
 
 @dataclass(frozen=True)
 class FreeMotions:
-    """The free motions of the lowest modes at one speed, one to a multiplier.
+    """The free motions of the lowest modes at one speed, one to a multiplier."""
 
-    Attributes
-    ----------
-    multipliers : ndarray of complex, shape (2m,)
-        What each motion is multiplied by in a period.
-    q, slope : ndarray of complex, shape (nt, n, 2m)
-        All coordinates and their derivatives by the angle, at even angles, without what the modes
-        left out add.
-    """
-
-    multipliers: ComplexArray
+    multipliers: ComplexArray  # what each motion is multiplied by in a period, (2m,)
+    # All coordinates and their derivatives by the angle, at even angles, without what the modes
+    # left out add, (nt, n, 2m).
     q: ComplexArray
     slope: ComplexArray
 

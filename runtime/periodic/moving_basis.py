@@ -93,24 +93,12 @@ def _deflections(full: Callable[[Array], Array], basis: MovingBasis, theta: Arra
 
 @dataclass(frozen=True)
 class StillModes:
-    """All natural modes with the mechanism held still at even angles.
+    """All natural modes with the mechanism held still at even angles."""
 
-    Attributes
-    ----------
-    theta : ndarray
-        The angles [rad], shape ``(nt,)``.
-    squares : ndarray
-        Squared natural frequencies, rising, shape ``(nt, n)``.
-    shapes : ndarray
-        M-orthonormal modes, shape ``(nt, n, n)``.
-    mass : ndarray
-        M, shape ``(nt, n, n)``.
-    """
-
-    theta: Array
-    squares: Array
-    shapes: Array
-    mass: Array
+    theta: Array  # the angles [rad], shape (nt,)
+    squares: Array  # squared natural frequencies, rising, shape (nt, n)
+    shapes: Array  # M-orthonormal modes, shape (nt, n, n)
+    mass: Array  # M, shape (nt, n, n)
 
 
 def moving_basis(system: LinearPeriodic, modes: int) -> MovingBasis:

@@ -442,27 +442,13 @@ def prepare(
 
 @dataclass(frozen=True)
 class TableErrors:
-    """Errors of tables at a few speeds, by rising speed; the ends of each table are among them.
+    """Errors of tables at a few speeds, by rising speed; the ends of each table are among them."""
 
-    Attributes
-    ----------
-    speed : ndarray
-        The speeds [rad/s], ``(k,)``.
-    matrix : ndarray
-        Error of the monodromy matrix in scaled variables, over its largest entry, ``(k,)``.
-    size : ndarray
-        Its largest entry, ``(k,)``.
-    flow : ndarray
-        Error of the entries of the transition matrices that give coordinates, ``(k, n, m)``.
-    rounding : float
-        What round-off adds to a matrix, over its largest entry.
-    """
-
-    speed: Array
-    matrix: Array
-    size: Array
-    flow: Array
-    rounding: float
+    speed: Array  # the speeds [rad/s], (k,)
+    matrix: Array  # error of the monodromy matrix in scaled variables, over its largest entry, (k,)
+    size: Array  # its largest entry, (k,)
+    flow: Array  # error of the entries of the transition matrices that give coordinates, (k, n, m)
+    rounding: float  # what round-off adds to a matrix, over its largest entry
 
     @classmethod
     def joined(cls, parts: list[TableErrors]) -> TableErrors:

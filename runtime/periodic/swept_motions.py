@@ -42,27 +42,13 @@ class Growth:
 
 @dataclass(frozen=True)
 class SweptMotions:
-    """The forced periodic motions of a truncated system over a range of speeds.
+    """The forced periodic motions of a truncated system over a range of speeds."""
 
-    Attributes
-    ----------
-    truncated : TruncatedSystem
-        The system on its lowest modes.
-    table : Table
-        Its transition matrices over the inverse speed, the force as last column.
-    scale : ndarray
-        Units of the state.
-    matrix_error : float
-        Error of a monodromy matrix over its largest entry.
-    motion_error : float
-        Error of a motion over the size of its start and over what the closing of the ring
-        magnifies.
-    """
-
-    truncated: TruncatedSystem
-    table: Table
-    scale: Array
-    matrix_error: float
+    truncated: TruncatedSystem  # the system on its lowest modes
+    table: Table  # its transition matrices over the inverse speed, the force as last column
+    scale: Array  # units of the state
+    matrix_error: float  # error of a monodromy matrix over its largest entry
+    # Error of a motion over the size of its start and over what the closing of the ring magnifies.
     motion_error: float
 
     def blocks(self, speeds: Array) -> Iterator[tuple[slice, Array, Array, Array]]:

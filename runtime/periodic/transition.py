@@ -65,29 +65,17 @@ _LADDER = np.array([rung(level) for level in range(_RUNGS)])
 
 @dataclass(frozen=True, eq=False)
 class Method:
-    """Collocation in the slopes.
+    """Collocation in the slopes."""
 
-    Attributes
-    ----------
-    stages : int
-        Number s of nodes.
-    order : int
-        Order of the transition matrices in the length of a segment.
-    c, b : ndarray
-        Nodes and weights, shape ``(s,)``.
-    a, inverse : ndarray
-        Stage weights and their inverse, shape ``(s, s)``.
-    ends : bool
-        Whether the last node is the end of the step.
-    """
-
-    stages: int
-    order: int
+    stages: int  # number s of nodes
+    order: int  # order of the transition matrices in the length of a segment
+    # Nodes and weights, shape (s,).
     c: Array
     b: Array
+    # Stage weights and their inverse, shape (s, s).
     a: Array
     inverse: Array
-    ends: bool
+    ends: bool  # whether the last node is the end of the step
 
     @cache  # noqa: B019
     def weights(self, fields: tuple[str, ...]) -> Array:
@@ -118,22 +106,15 @@ def method(kind: str, stages: int) -> Method:
 
 @dataclass(frozen=True)
 class Segments:
-    """Transition matrices of the segments of a period, of all members of an equation.
+    """Transition matrices of the segments of a period, of all members of an equation."""
 
-    Attributes
-    ----------
-    maps : ndarray
-        From the scaled state at the left end of a segment to that at its right end, shape
-        ``(nb, segments, m, m)``, m = 2n, or 2n + 1 with a last component 1 that the force acts on.
-    slopes : ndarray or None
-        From the state at the left end to the scaled slopes at the nodes, ``(nb, segments, s, n,
-        m)``, where they were wanted.
-    stages : list of Stages
-        The equations of the slopes by :func:`blocks`, where they were wanted and are small.
-    """
-
+    # From the scaled state at the left end of a segment to that at its right end, shape
+    # (nb, segments, m, m), m = 2n, or 2n + 1 with a last component 1 that the force acts on.
     maps: Array
+    # From the state at the left end to the scaled slopes at the nodes, (nb, segments, s, n, m),
+    # where they were wanted.
     slopes: Array | None
+    # The equations of the slopes by blocks, where these are wanted and the equations small.
     stages: list[Stages] = field(default_factory=list)
 
 
@@ -174,25 +155,15 @@ def blocks(equation: Equation, way: Method, segments: int) -> list[slice]:
 
 @dataclass(frozen=True)
 class Stages:
-    """The equations of the slopes at the nodes of segments, and what they are made of.
+    """The equations of the slopes at the nodes of segments, and what they are made of."""
 
-    Attributes
-    ----------
-    columns : ndarray
-        Their matrix by columns: unknown slope (coordinate, node), equation (node, coordinate),
-        shape ``(nb, ns, s n, s n)``.
-    at_nodes : mapping
-        Fields times ``h`` to the power of :data:`_POWER` by columns, ``(nb, ns, n, s, n)``.
-    angles : ndarray
-        The nodes [rad], ``(ns s,)``.
-    table : ndarray or None
-        :func:`~.equation.waves` there, where the equation has Fourier series.
-    """
-
+    # Their matrix by columns: unknown slope (coordinate, node), equation (node, coordinate), shape
+    # (nb, ns, s n, s n).
     columns: Array
+    # Fields times h to the power of _POWER by columns, (nb, ns, n, s, n).
     at_nodes: Mapping[str, Array]
-    angles: Array
-    table: Array | None
+    angles: Array  # the nodes [rad], (ns s,)
+    table: Array | None  # what waves gives there, where the equation has Fourier series
 
 
 def stages_of(equation: Equation, left: Array, h: float, way: Method) -> Stages:

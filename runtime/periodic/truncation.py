@@ -34,29 +34,17 @@ _CORRECTIONS = 2
 
 @dataclass(frozen=True)
 class TruncatedSystem(LinearPeriodic):
-    """A linear periodic system on its lowest modes; make it with :func:`truncated_on`.
+    """A linear periodic system on its lowest modes; make it with :func:`truncated_on`."""
 
-    Attributes
-    ----------
-    full : LinearPeriodic
-        The system that was truncated, with its present parameters: they are fixed.
-    theta : ndarray
-        Even angles of a period [rad], shape ``(nt,)``.
-    modes : ndarray
-        The modes Phi there, shape ``(nt, n, m)``.
-    flexibility : ndarray
-        F there, shape ``(nt, n, n)``.
-    compliance : ndarray
-        K^-1 there, shape ``(nt, n, n)``.
-    arrays : mapping of (str, int) to ndarray
-        The arrays of the full system there, by name and power of the speed in its force.
-    """
-
+    # The system that was truncated, with its present parameters: they are fixed.
     full: LinearPeriodic | None = None
+    # Even angles of a period [rad], shape (nt,).
     theta: Array = field(default_factory=partial(np.zeros, 0))
+    # The modes Phi there, shape (nt, n, m).
     modes: Array = field(default_factory=partial(np.zeros, 0))
-    flexibility: Array = field(default_factory=partial(np.zeros, 0))
-    compliance: Array = field(default_factory=partial(np.zeros, 0))
+    flexibility: Array = field(default_factory=partial(np.zeros, 0))  # F there, shape (nt, n, n)
+    compliance: Array = field(default_factory=partial(np.zeros, 0))  # K^-1 there, shape (nt, n, n)
+    # The arrays of the full system there, by name and power of the speed in its force.
     arrays: Mapping[tuple[str, int], Array] = field(default_factory=dict)
 
     def lift(self, z: Array, speeds: Array) -> tuple[Array, Array]:

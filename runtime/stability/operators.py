@@ -154,32 +154,17 @@ def _binomial(power: int, order: int) -> list[float]:
 
 @dataclass(frozen=True)
 class ResonantOperator:
-    """Series of the effective operator, ``s = centre + eigenvalues of the sum of the terms``.
+    """Series of the effective operator, ``s = centre + eigenvalues of the sum of the terms``."""
 
-    Attributes
-    ----------
-    speed : float
-        Speed w0 [rad/s] about which it is expanded.
-    centre : complex
-        Exponent (per radian) about which the others lie.
-    modes : tuple of int
-        Mode, from 1, of each basis function, those of the resonance first.
-    gaps : ndarray
-        What each exponent lacks of ``centre`` at the expansion point, imaginary, ``(r,)``.
-    terms, undamped : tuple of ndarray
-        Coefficients of the powers of sigma, ``(k + 1, r, r)``, of degree k = 1, 2, ...; the same
-        without damping.
-    conservative : bool
-        Whether the undamped part has the symmetric form.
-    """
-
-    speed: float
-    centre: complex
-    modes: tuple[int, ...]
-    gaps: Complex
+    speed: float  # speed w0 [rad/s] about which it is expanded
+    centre: complex  # exponent (per radian) about which the others lie
+    modes: tuple[int, ...]  # mode, from 1, of each basis function, those of the resonance first
+    gaps: Complex  # what each exponent lacks of centre at the expansion point, imaginary, (r,)
+    # Coefficients of the powers of sigma, (k + 1, r, r), of degree k = 1, 2, ...; the same without
+    # damping.
     terms: tuple[Complex, ...]
     undamped: tuple[Complex, ...]
-    conservative: bool
+    conservative: bool  # whether the undamped part has the symmetric form
 
     @property
     def damped(self) -> bool:

@@ -70,18 +70,10 @@ def coupler_stations(modes: int) -> Stations:
 
 @dataclass(frozen=True)
 class InextensibleCoupler:
-    """What the geometrically exact equations are made of, beside the emitted module.
+    """What the geometrically exact equations are made of, beside the emitted module."""
 
-    Attributes
-    ----------
-    modes : int
-        How many amplitudes ``q_k`` of ``cos(k pi s)`` the tangent's angle has, beside its mean.
-    assembly : float
-        Which closure the linkage takes: 1 or -1.
-    """
-
-    modes: int
-    assembly: float
+    modes: int  # how many amplitudes q_k of cos(k pi s) the tangent's angle has, beside its mean
+    assembly: float  # which closure the linkage takes: 1 or -1
 
     def stations(self, parameters: Mapping[str, float]) -> Stations:
         """Return the stations of a coupler with its initial bow."""

@@ -149,23 +149,14 @@ class Reduced:
 
         r = G^T (M x'' + c - Q),     dr/dq'' = G^T M G,
         dr/dq' = G^T (2 M G' + D G),     dr/dq = G^T (M G'' + D G' + K G).
-
-    Attributes
-    ----------
-    make : callable
-        ``(parameters, drive)`` to the constrained system, with variations, at these; its time is
-        the drive's angle over the speed.
-    free : tuple of int
-        Places of the n free coordinates.
-    held : tuple of int
-        Places of the others, as many as there are constraints.
-    guess : callable
-        ``(q, drive, parameters)`` to the others near a state, ``(*batch, k)``.
     """
 
+    # (parameters, drive) to the constrained system, with variations, at these; its time is the
+    # drive's angle over the speed.
     make: Callable[[Mapping[str, float], Drive], Constrained]
-    free: tuple[int, ...]
-    held: tuple[int, ...]
+    free: tuple[int, ...]  # places of the n free coordinates
+    held: tuple[int, ...]  # places of the others, as many as there are constraints
+    # (q, drive, parameters) to the others near a state, (*batch, k).
     guess: Callable[[Array, Drive, Mapping[str, float]], Array]
 
     def __call__(

@@ -27,17 +27,10 @@ _PARTS = slice(0, 1), slice(1, None)
 
 @dataclass(frozen=True)
 class Stations:
-    """Places along a link, and the shapes by which the angle of its tangent changes there.
+    """Places along a link, and the shapes by which the angle of its tangent changes there."""
 
-    Attributes
-    ----------
-    shapes : ndarray, shape (n, Q)
-        Angles at the Q stations per amplitude, beside their mean.
-    numbers : mapping
-        What the module wants of each station, ``(Q,)``, and of pairs of them, symmetric ``(Q, Q)``.
-    """
-
-    shapes: Array
+    shapes: Array  # angles at the Q stations per amplitude, beside their mean, (n, Q)
+    # What the module wants of each station, (Q,), and of pairs of them, symmetric (Q, Q).
     numbers: Mapping[str, Array]
 
 
@@ -53,20 +46,12 @@ class AtStations:
         dr/dq' = E (2 M E'^T + D E^T),     dr/dq = E (M E''^T + D E'^T + K E^T).
 
     Arrays have the N states on their last axis: z is ``(1 + Q, N)``, E ``(n, 1 + Q, N)``.
-
-    Attributes
-    ----------
-    module : module
-        Emitted, with variations.
-    stations : callable
-        Parameters to the stations.
-    guess : callable
-        ``(chord, drive, parameters)`` to the first coordinate and the mean angle near states,
-        ``(2, N)``, from the link's chord over its length, ``x + i y`` at no mean angle, ``(N,)``.
     """
 
-    module: ModuleType
-    stations: Callable[[Mapping[str, float]], Stations]
+    module: ModuleType  # emitted, with variations
+    stations: Callable[[Mapping[str, float]], Stations]  # parameters to the stations
+    # (chord, drive, parameters) to the first coordinate and the mean angle near states, (2, N),
+    # from the link's chord over its length, x + i y at no mean angle, (N,).
     guess: Callable[[Array, Drive, Mapping[str, float]], Array]
 
     def __call__(

@@ -404,20 +404,14 @@ class Structure:
     def beam(self, name: str) -> Beam:
         """Return a beam by name.
 
-        Raises
-        ------
-        BadInput
-            If there is none of that name.
+        Raises ``BadInput`` if there is none of that name.
         """
         return _named("beam", self.beams, name)
 
     def node(self, name: str) -> Node:
         """Return a node by name.
 
-        Raises
-        ------
-        BadInput
-            If there is none of that name.
+        Raises ``BadInput`` if there is none of that name.
         """
         return _named("node", self.nodes, name)
 

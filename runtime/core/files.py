@@ -97,10 +97,8 @@ def pack(value: object, keep: Keep, path: str = "") -> Any:
 def unpack(tree: Any, find: Find, known: Mapping[str, type]) -> Any:
     """Return the value of a record; ``known``: classes that need not be elastolink's, by name.
 
-    Raises
-    ------
-    ValueError, KeyError, TypeError
-        If it is not such a record, or a class is not there or has other fields.
+    Raises ``ValueError``, ``KeyError`` or ``TypeError`` if it is not such a record, or a class is
+    not there or has other fields.
     """
     if not isinstance(tree, dict):
         return tree

@@ -314,10 +314,7 @@ class Result:
         it, ``edges.region_mode.csv`` beside ``edges.csv``.  In CSV and NetCDF a complex array
         stands as two, ``name_real`` and ``name_imag``.
 
-        Raises
-        ------
-        BadInput
-            If the ending is unknown or the folder cannot be written.
+        Raises ``BadInput`` if the ending is unknown or the folder cannot be written.
         """
         target = Path(path)
         if target.suffix == ".csv":

@@ -399,10 +399,7 @@ class FrameFrequencies(Result):
         In the order of ``problem.labels`` [m, rad], of unit generalised mass; all zero where the
         nodes stand still.
 
-        Raises
-        ------
-        BadInput
-            If there are no shapes.
+        Raises ``BadInput`` if there are no shapes.
         """
         problem = self._members()
         places = {label: i for i, label in enumerate(problem.labels)}

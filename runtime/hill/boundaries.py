@@ -113,10 +113,7 @@ class Boundaries(Result):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Shade the regions over (lam2, mu), mu upwards.
 
-        Raises
-        ------
-        BadInput
-            If mu is not one-dimensional.
+        Raises ``BadInput`` if mu is not one-dimensional.
         """
         ax = axes_over(ax, "Boundaries.plot", "mu", self.mu)
         for low, high in zip(self.lower, self.upper, strict=True):

@@ -63,10 +63,7 @@ class CharacteristicExponents(Result):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the bands over nu, or growth and nu over a line of lam2.
 
-        Raises
-        ------
-        BadInput
-            If nu, or lam2, is not a line.
+        Raises ``BadInput`` if nu, or lam2, is not a line.
         """
         across = self.nu if self.bands else np.squeeze(self.lam2)
         name = "nu" if self.bands else "lam2"

@@ -74,10 +74,7 @@ class HalfTrace(Result):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Shade the unstable part of a grid, or draw the half trace along a line.
 
-        Raises
-        ------
-        BadInput
-            If the values are neither a grid of lam2 by mu nor a line.
+        Raises ``BadInput`` if the values are neither a grid of lam2 by mu nor a line.
         """
         ax = axes_or_new(ax)
         lam2, mu = np.squeeze(self.lam2), np.squeeze(self.mu)

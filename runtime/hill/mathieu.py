@@ -145,10 +145,7 @@ class MathieuCharacteristic(Result):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the value over q.
 
-        Raises
-        ------
-        BadInput
-            If q is not one-dimensional.
+        Raises ``BadInput`` if q is not one-dimensional.
         """
         ax = axes_over(ax, "MathieuCharacteristic.plot", "q", self.q)
         ax.plot(self.q, self.value)

@@ -102,10 +102,7 @@ class BoundarySeries(Result):
     def latex(self) -> str:
         """Return both boundaries as a formula, to the order; see :func:`boundary_latex`.
 
-        Raises
-        ------
-        BadInput
-            If the order is above 6.
+        Raises ``BadInput`` if the order is above 6.
         """
         return boundary_latex(self.order, self.region, self.damping_ratio > 0.0)
 

@@ -71,10 +71,7 @@ class Thresholds(Result):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw what was solved for over what was given, a line for each region.
 
-        Raises
-        ------
-        BadInput
-            If what was given is not one-dimensional.
+        Raises ``BadInput`` if what was given is not one-dimensional.
         """
         across, up = (self.damping, self.mu) if self.searched.size else (self.mu, self.damping)
         labels = ("$K$", r"least $\mu$") if self.searched.size else (r"$\mu$", "critical $K$")

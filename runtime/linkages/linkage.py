@@ -490,10 +490,7 @@ class Linkage(ABC):
     def course(self, name: str) -> Callable[[Array], Array]:
         """Return a place or rate of the motion as a function of the crank angle.
 
-        Raises
-        ------
-        BadInput
-            If the crank cannot turn fully, or the motion has no such field.
+        Raises ``BadInput`` if the crank cannot turn fully, or the motion has no such field.
         """
         self.require_full_turn()
         known = (*self.moves.places, *self.moves.rates)

@@ -191,11 +191,8 @@ class LowestModes:
     def required(self, speed: float, modes: int | None = None) -> tuple[TruncatedSystem, float]:
         """Return the truncation for speeds up to one [rad/s], and the error of exponents.
 
-        Raises
-        ------
-        BadInput
-            If the number of modes is none of 1 to n, they do not stay smooth over the period, or
-            the error is above 1e-3.
+        Raises ``BadInput`` if the number of modes is none of 1 to n, they do not stay smooth over
+        the period, or the error is above 1e-3.
         """
         if modes is None:
             modes, error = self.chosen(speed)

@@ -162,10 +162,8 @@ class SteadyState(Result):
 
         The axis of places is left out where ``x`` is one number, :attr:`place` by default.
 
-        Raises
-        ------
-        BadInput
-            If the system has no mode shapes, or a place is not a number from 0 to 1.
+        Raises ``BadInput`` if the system has no mode shapes, or a place is not a number from 0 to
+        1.
         """
         places = numbers("x", self.place if x is None else x)
         shapes = self._shapes_at(np.atleast_1d(places))

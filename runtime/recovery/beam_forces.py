@@ -245,10 +245,7 @@ class BeamForces(StationResult):
     def of(self, link: str, quantity: str) -> Array:
         """Return one quantity along one beam, ``(nt, its stations)``.
 
-        Raises
-        ------
-        BadInput
-            If either is unknown.
+        Raises ``BadInput`` if either is unknown.
         """
         require_one_of("quantity", quantity, QUANTITIES)
         return np.asarray(getattr(self, quantity)[:, stations_on(self.links, link)])

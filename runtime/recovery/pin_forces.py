@@ -74,10 +74,7 @@ class PinReactions(BeamResult):
     def force(self, node: str, beam: str) -> Array:
         """Return the force of a node on a beam [N], ``(nt, 2)``.
 
-        Raises
-        ------
-        BadInput
-            If no beam of that name ends at that node.
+        Raises ``BadInput`` if no beam of that name ends at that node.
         """
         if (node, beam) not in self.on_beams:
             known = ", ".join(" on ".join(pair) for pair in self.on_beams)
@@ -87,10 +84,7 @@ class PinReactions(BeamResult):
     def torque(self, node: str = "A") -> Array:
         """Return the moment of the ground on a node [N m], ``(nt,)``: of a crank's shaft the drive.
 
-        Raises
-        ------
-        BadInput
-            If the ground does not hold the node.
+        Raises ``BadInput`` if the ground does not hold the node.
         """
         if node not in self.of_ground:
             known = ", ".join(self.of_ground)

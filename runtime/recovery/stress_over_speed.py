@@ -117,10 +117,7 @@ class StressCurve(Result):
     def of(self, link: str) -> Array:
         """Return the largest stress of one link at each speed [Pa], ``(ns,)``.
 
-        Raises
-        ------
-        BadInput
-            If the link has no station.
+        Raises ``BadInput`` if the link has no station.
         """
         require_one_of("link", link, self.links, "choose one with stations")
         return np.asarray(self.maximum[:, self.links.index(link)])

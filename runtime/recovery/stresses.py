@@ -269,10 +269,7 @@ class StressResult(StationResult):
     def at(self, link: str, place: float, fibre: str = "positive", part: str = "all") -> Array:
         """Return the stress of a fibre over the angles ``(nt,)`` at the station nearest a place.
 
-        Raises
-        ------
-        BadInput
-            If the link has no station, or a name is unknown.
+        Raises ``BadInput`` if the link has no station, or a name is unknown.
         """
         own = stations_on(self.links, link)
         nearest = own[int(np.argmin(np.abs(self.places[own] - place)))]

@@ -86,10 +86,7 @@ class Report:
     def save(self, path: str | Path) -> Path:
         """Write the page, whole or not at all.
 
-        Raises
-        ------
-        BadInput
-            If the ending is not .html or .htm, or the place cannot be written.
+        Raises ``BadInput`` if the ending is not .html or .htm, or the place cannot be written.
         """
         return write_whole(check_report_path(path), self.html().encode())
 

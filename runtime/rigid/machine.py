@@ -91,10 +91,7 @@ class Machine:
     def course(self, name: str, speed: float) -> Callable[[Array], Array]:
         """Return a force as a function of the crank angle at constant crank speed [rad/s].
 
-        Raises
-        ------
-        BadInput
-            If the crank cannot turn fully, or there is no such force.
+        Raises ``BadInput`` if the crank cannot turn fully, or there is no such force.
         """
         from .forces import OUTPUTS, rigid_forces
 
@@ -144,10 +141,7 @@ class Machine:
 
         That of a weight is zero where its centre is at the height of A.
 
-        Raises
-        ------
-        BadInput
-            If the linkage cannot reach an angle.
+        Raises ``BadInput`` if the linkage cannot reach an angle.
         """
         motion = self.linkage.motion(theta)
         parts = [spring.potential(motion) for spring in self.springs]

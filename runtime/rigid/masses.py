@@ -85,10 +85,7 @@ class MassDistribution:
     def uniform_bar(cls, mass: float, length: float) -> MassDistribution:
         """Return a thin uniform bar [kg, m] from the first joint along the link.
 
-        Raises
-        ------
-        BadInput
-            If a value is not finite or is negative.
+        Raises ``BadInput`` if a value is not finite or is negative.
         """
         _require({"mass": mass, "length": length})
         return cls(mass, mass * length / 2.0, 0.0, mass * length * length / 3.0)
@@ -97,10 +94,7 @@ class MassDistribution:
     def point(cls, mass: float, along: float, across: float = 0.0) -> MassDistribution:
         """Return a point mass [kg] at a point [m] of the link's frame.
 
-        Raises
-        ------
-        BadInput
-            If a value is not finite, or the mass is negative.
+        Raises ``BadInput`` if a value is not finite, or the mass is negative.
         """
         return cls.about_centre(mass, along, across, 0.0)
 
@@ -110,10 +104,7 @@ class MassDistribution:
     ) -> MassDistribution:
         """Return a uniform disc [kg, m] whose centre lies at a point [m] of the link's frame.
 
-        Raises
-        ------
-        BadInput
-            If a value is not finite, or mass or radius is negative.
+        Raises ``BadInput`` if a value is not finite, or mass or radius is negative.
         """
         _require({"mass": mass, "radius": radius})
         return cls.about_centre(mass, along, across, mass * radius * radius / 2.0)

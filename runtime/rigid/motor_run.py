@@ -347,10 +347,7 @@ class RunUp(Result):
     def at(self, time: Any) -> tuple[Array, Array]:
         """Return crank angle [rad] and speed [rad/s] at times [s] within the run.
 
-        Raises
-        ------
-        BadInput
-            If a time is outside.
+        Raises ``BadInput`` if a time is outside.
         """
         times = np.asarray(time, dtype=float)
         if not np.all((times >= self.time[0]) & (times <= self.time[-1])):

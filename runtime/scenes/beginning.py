@@ -30,10 +30,7 @@ def new_kinds() -> dict[str, str]:
 def new_scene(kind: str) -> str:
     """Return a commented scene file of a kind to begin with.
 
-    Raises
-    ------
-    BadInput
-        If there is no such kind.
+    Raises ``BadInput`` if there is no such kind.
     """
     known = new_kinds()
     if kind not in known:

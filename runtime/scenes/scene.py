@@ -294,10 +294,7 @@ class Scene:
     def mechanism(self) -> Linkage:
         """Return the linkage of the scene: lengths and assembly.
 
-        Raises
-        ------
-        BadInput
-            If the scene has no linkage.
+        Raises ``BadInput`` if the scene has no linkage.
         """
         kind = LINKAGES.get(self.model["mechanism"])
         if kind is None or self._declared:
@@ -314,10 +311,7 @@ class Scene:
     def machine(self) -> Machine:
         """Return the linkage with its masses, loads, springs and weight.
 
-        Raises
-        ------
-        BadInput
-            If the scene has no linkage, a link bends, or no link has a mass.
+        Raises ``BadInput`` if the scene has no linkage, a link bends, or no link has a mass.
         """
         from .rigid import machine
 

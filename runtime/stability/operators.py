@@ -189,10 +189,7 @@ def resonant_operator(
 ) -> ResonantOperator:
     """Return the effective operator of a resonance at a speed, to a total degree.
 
-    Raises
-    ------
-    BadInput
-        If the mean system has a defective or no such exponent, or no mass.
+    Raises ``BadInput`` if the mean system has a defective or no such exponent, or no mass.
     """
     series = _generator(system.without(*DAMPING), parameters, speed, order)
     start = series.pop(_ZERO)

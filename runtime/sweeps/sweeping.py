@@ -96,10 +96,7 @@ class Sweep(Result):
     def __getitem__(self, name: str) -> AnyArray:
         """Return one array by name.
 
-        Raises
-        ------
-        BadInput
-            If there is none of that name.
+        Raises ``BadInput`` if there is none of that name.
         """
         if name not in self.outputs:
             fix = "choose one of these"
@@ -109,10 +106,7 @@ class Sweep(Result):
     def point(self, place: int) -> dict[str, float]:
         """Return the values along each axis at a place in the flattened grid, as of a failure.
 
-        Raises
-        ------
-        BadInput
-            If the grid has no such place.
+        Raises ``BadInput`` if the grid has no such place.
         """
         shape = tuple(map(len, self.axes.values()))
         at = require_whole("place", place, 0, prod(shape) - 1, "give one of the failures")

@@ -11,13 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.errors import (
-    LINEAR_RANGE,
-    Problem,
-    RedundantConstraints,
-    bad,
-    warn_of_large_deflection,
-)
+from ..core.errors import LINEAR_RANGE, Problem, RedundantConstraints, bad, warn_of_large_deflection
 from ..core.families import Constrained, Guard
 from ..core.families.multipliers import check_rank, scaling
 from ..core.inputs import numbers, require_between, require_kind

@@ -87,10 +87,7 @@ class Fatigue(Result):
     safety: Array
     damage: Array
 
-    arrays_along: ClassVar = {
-        "station": "places",
-        "fibre station": "amplitude safety damage",
-    }
+    arrays_along: ClassVar = {"station": "places", "fibre station": "amplitude safety damage"}
     exported: ClassVar[tuple[str, ...]] = ("revolutions", "hours")
     column_units: ClassVar = {"Pa": "amplitude", "h": "hours"}
 

@@ -18,14 +18,7 @@ from ..core.plotting import RPM, Axes
 from ..core.results import Check
 from ..core.units import DIMENSIONS, to_si
 
-KINDS = (
-    "resonance",
-    "unstable from",
-    "unstable to",
-    "deflection",
-    "jump rising",
-    "jump falling",
-)
+KINDS = ("resonance", "unstable from", "unstable to", "deflection", "jump rising", "jump falling")
 # Columns of a file by their dimension; None for the one that holds words.
 _COLUMNS: Mapping[str, str | None] = {
     "kind": None,

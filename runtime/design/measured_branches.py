@@ -72,12 +72,7 @@ class BranchRun:
     where such a motion doubles.
     """
 
-    def __init__(
-        self,
-        system: Nonlinear,
-        points: list[tuple[int, Point]],
-        window: float,
-    ) -> None:
+    def __init__(self, system: Nonlinear, points: list[tuple[int, Point]], window: float) -> None:
         self.system, self.points, self.window = system, points, window
         self._followed: dict[int, _Followed] = {}
         for i, point in points:

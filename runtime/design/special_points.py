@@ -15,13 +15,7 @@ from ..nonlinear.orbit import EPS, FAILURES, Orbit
 from ..nonlinear.response import ResponseCurve
 from ..nonlinear.segments import Motion, Problem, chained, sweep
 from ..scenes import Scene, with_numbers
-from .coefficient_changes import (
-    PLACES,
-    SMALL_STEP,
-    SPEED,
-    checked_names,
-    difference_weights,
-)
+from .coefficient_changes import PLACES, SMALL_STEP, SPEED, checked_names, difference_weights
 
 _Differences: TypeAlias = tuple[Array, Array]
 

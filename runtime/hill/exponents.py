@@ -49,10 +49,7 @@ class CharacteristicExponents(Result):
     damping: Array
     bands: tuple[int, ...] = ()
 
-    arrays_along: ClassVar = {
-        "...": "growth nu error lam2 mu damping stable",
-        "band": "bands",
-    }
+    arrays_along: ClassVar = {"...": "growth nu error lam2 mu damping stable", "band": "bands"}
     exported: ClassVar[tuple[str, ...]] = ("stable",)
 
     @property

@@ -59,10 +59,7 @@ class PerturbationBoundaries(Boundaries):
     closed: Mask
     undecided: Mask
 
-    arrays_along: ClassVar = {
-        "parameter mu": "parameters",
-        "region mu": "outside closed undecided",
-    }
+    arrays_along: ClassVar = {"parameter mu": "parameters", "region mu": "outside closed undecided"}
 
 
 def perturbation_boundaries(

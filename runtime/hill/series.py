@@ -67,10 +67,7 @@ class BoundarySeries(Result):
     splitting: int
     function: PeriodicFunction
 
-    arrays_along: ClassVar = {
-        "power": "lower upper",
-        "end power": "error",
-    }
+    arrays_along: ClassVar = {"power": "lower upper", "end power": "error"}
 
     def __call__(self, mu: ArrayLike, order: int | None = None) -> tuple[Array, Array]:
         """Return ``n^2/4 + alpha_1 mu + ...`` of both boundaries.

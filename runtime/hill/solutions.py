@@ -77,10 +77,7 @@ class BoundarySolution(Result):
     residual: float
     degenerate: bool
 
-    arrays_along: ClassVar = {
-        "wave_number": "wave_numbers a b",
-        "parameter": "mu",
-    }
+    arrays_along: ClassVar = {"wave_number": "wave_numbers a b", "parameter": "mu"}
 
     @property
     def period(self) -> float:

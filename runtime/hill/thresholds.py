@@ -63,10 +63,7 @@ class Thresholds(Result):
     regions: tuple[int, ...]
     searched: Array
 
-    arrays_along: ClassVar = {
-        "...": "damping mu lam2 error absent",
-        "region": "regions searched",
-    }
+    arrays_along: ClassVar = {"...": "damping mu lam2 error absent", "region": "regions searched"}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw what was solved for over what was given, a line for each region.

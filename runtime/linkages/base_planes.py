@@ -51,12 +51,7 @@ class BasePlane(Result):
     regions: Mapping[str, Array]
     outline: Array
 
-    arrays_along: ClassVar = {
-        "x": "x",
-        "y": "y",
-        "y x": "numbers",
-        "corner ratio": "outline",
-    }
+    arrays_along: ClassVar = {"x": "x", "y": "y", "y x": "numbers", "corner ratio": "outline"}
 
     @property
     def shares(self) -> dict[str, float]:

@@ -22,14 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import Problem, bad, refuse, shown
 from ..core.inputs import is_finite, require_kind, require_one_of
 from ..core.plotting import Axes, axes_or_new
-from ..core.results import (
-    Check,
-    DeferredChecks,
-    DeferredField,
-    DeferredGroup,
-    Result,
-    provenance,
-)
+from ..core.results import Check, DeferredChecks, DeferredField, DeferredGroup, Result, provenance
 from .four_bar import FourBar
 from .linkage import EPS, JOINTS, Array, finite_array, over, require_linkage
 from .quick_return import QuickReturn

@@ -185,10 +185,7 @@ class MechanicalAdvantage(Result):
     advantage: Array
     speed_ratio: Array
     poles: Array
-    arrays_along: ClassVar = {
-        "...": "theta2 advantage speed_ratio error",
-        "pole": "poles",
-    }
+    arrays_along: ClassVar = {"...": "theta2 advantage speed_ratio error", "pole": "poles"}
     column_units: ClassVar = {"rad": "poles"}
 
     def plot(self, ax: Axes | None = None) -> Axes:

@@ -28,14 +28,7 @@ from ..core.files import NOT_SAVED, NotSaved
 from ..core.inputs import is_one_of, numbers, require_between
 from ..core.maxima import largest_size
 from ..core.progress import bar
-from ..core.results import (
-    Check,
-    DeferredChecks,
-    DeferredField,
-    DeferredGroup,
-    Result,
-    provenance,
-)
+from ..core.results import Check, DeferredChecks, DeferredField, DeferredGroup, Result, provenance
 from .equation import Equation, equation_of
 from .multipliers import floquet_multipliers
 from .ring import solve_ring

@@ -236,10 +236,7 @@ class BeamForces(StationResult):
     shear: Array
     moment: Array
 
-    arrays_along: ClassVar = {
-        "force": "error",
-        "sample station": " ".join(QUANTITIES),
-    }
+    arrays_along: ClassVar = {"force": "error", "sample station": " ".join(QUANTITIES)}
     column_units: ClassVar = {"m": "along across", "rad": "slope", "N": "axial shear"}
 
     def of(self, link: str, quantity: str) -> Array:

@@ -15,8 +15,5 @@ if TYPE_CHECKING:
 
 __all__ = on_first_use(
     globals(),
-    {
-        ".core.workers": "WorkersLost process_pool",
-        "sweeping": "Sweep estimate_sweep sweep",
-    },
+    {".core.workers": "WorkersLost process_pool", "sweeping": "Sweep estimate_sweep sweep"},
 )

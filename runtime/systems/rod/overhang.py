@@ -144,10 +144,7 @@ class OverhangFrequencies(Result):
     roots: Array  # beta of each mode, (nt, modes)
     frequencies: Array  # [rad/s], (nt, modes)
 
-    arrays_along: ClassVar = {
-        "place": "place",
-        "place mode": "roots frequencies error",
-    }
+    arrays_along: ClassVar = {"place": "place", "place mode": "roots frequencies error"}
     column_units: ClassVar = {"rad/s": "error"}
 
     def plot(self, ax: Axes | None = None) -> Axes:

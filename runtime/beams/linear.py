@@ -190,12 +190,10 @@ def require_held(arrays: AngleArrays, springs: Array, slide: Slide | None) -> No
 
 
 def _strains(arrays: AngleArrays, springs: Array, theta: Array) -> Array:
-    """Return what each element and spring feels of the free coordinates, ``(nt, rows, n)``.
-
-    Of an element: its stretch, the difference of its ends' rotations, and the rotation of its chord
-    against their mean, all times lengths.  Stiffnesses are not in it, so that a short element
-    is as good as a long one.
-    """
+    """Return what each element and spring feels of the free coordinates, ``(nt, rows, n)``."""
+    # Of an element: its stretch, the difference of its ends' rotations, and the rotation of its
+    # chord against their mean, all times lengths.  Stiffnesses are not in it, so that a short
+    # element is as good as a long one.
     elements = arrays.structure.elements
     longest = max(placed.length for placed in elements)
     motion = arrays.motion(theta)
@@ -216,10 +214,8 @@ def _strains(arrays: AngleArrays, springs: Array, theta: Array) -> Array:
 
 
 def _rigid_motion(strain: Array) -> Array | None:
-    """Return sizes of the coordinates in a motion that strains nothing; None where all do.
-
-    What an element holds beside its ends moves with them or strains it: it is left out.
-    """
+    """Return sizes of the coordinates in a motion that strains nothing; None where all do."""
+    # What an element holds beside its ends moves with them or strains it: it is left out.
     felt = np.flatnonzero(np.any(strain != 0.0, axis=0))
     sizes = np.linalg.norm(strain[:, felt], axis=0)
     _, values, across = np.linalg.svd(strain[:, felt] / sizes)

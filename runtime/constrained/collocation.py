@@ -131,10 +131,8 @@ def at_places(part: Array, count: int) -> Array:
 
 @lru_cache(maxsize=64)
 def _by_chebyshev(count: int) -> Array:
-    """Return twofold integrals, integrals and values of Legendre terms, side by side.
-
-    By Chebyshev polynomials, ``(count + 2, 3 count)``.
-    """
+    """Return twofold integrals, integrals and values of Legendre terms, side by side."""
+    # By Chebyshev polynomials, (count + 2, 3 count).
     once, twice = _integrals(count)
     terms = np.concatenate(
         [twice, np.pad(once, ((0, 1), (0, 0))), np.eye(count + 2, count)], axis=1
@@ -285,11 +283,9 @@ def _solved(
     tolerance: Tolerance,
     near: float,
 ) -> _Window:
-    """Return a window of collocation, its accelerations at the nodes by Newton's iteration.
-
-    Within ``near`` of the solution the derivatives are kept.  The last correction goes with an
-    evaluation between the nodes.
-    """
+    """Return a window of collocation, its accelerations at the nodes by Newton's iteration."""
+    # Within `near` of the solution the derivatives are kept.  The last correction goes with an
+    # evaluation between the nodes.
     t, rtol = before.t + h * points.c, tolerance.rtol
     a, last = guess, np.inf
     slopes: Linearised | None = None
@@ -356,10 +352,8 @@ def _between(
 
 
 def _tail(terms: Array, h: float, units: _Units) -> tuple[float, float]:
-    """Return the size of the last terms, as errors, and over that of the ones before.
-
-    P_k integrated once is below 1/k, twice below 1/k^2, over an interval of length 2.
-    """
+    """Return the size of the last terms, as errors, and over that of the ones before."""
+    # P_k integrated once is below 1/k, twice below 1/k^2, over an interval of length 2.
     once = h / (2.0 * len(terms))
     before, last = (
         units.of(once * once * part, once * part)
@@ -369,10 +363,8 @@ def _tail(terms: Array, h: float, units: _Units) -> tuple[float, float]:
 
 
 def _unwinding(slopes: Linearised, h: float, points: Nodes) -> Callable[[Array], Array]:
-    """Return the solver of ``change - (its effect on the accelerations) = defect``.
-
-    The defects are of shape ``(s, n)``, or ``(s, n, m)`` for several at once.
-    """
+    """Return the solver of ``change - (its effect on the accelerations) = defect``."""
+    # The defects are of shape (s, n), or (s, n, m) for several at once.
     from scipy.linalg.lapack import dgetrf, dgetrs
 
     # The transpose is in the order of columns, so that nothing is copied.

@@ -223,11 +223,9 @@ class _Turn:
 
 
 def _symplectic_form(source: OrbitSource) -> Array:
-    """Return the form ``dq . dp' - dq' . dp`` at the start.
-
-    With ``p = dL/dqd``, D = M' + P - P^T where P = dp/dq: the antisymmetric part of the damping
-    matrix is all of P that the form needs.
-    """
+    """Return the form ``dq . dp' - dq' . dp`` at the start."""
+    # With p = dL/dqd, D = M' + P - P^T where P = dp/dq: the antisymmetric part of the damping
+    # matrix is all of P that the form needs.
     equations, ring = source.shooting.equations, source.fine.ring
     slopes = equations.linearised(ring.start[:1], ring.x[:1], ring.v[:1])
     columns, n = equations.columns, equations.n
@@ -273,10 +271,8 @@ def _of_violations(turn: _Turn, period: float, rate: float) -> tuple[ComplexArra
 
 
 def _liouville(turn: _Turn, shot: Shot, shift: float) -> Check:
-    """Compare the determinant with the divergence of the index-reduced flow.
-
-    The violations have determinant 1, so that of the whole is that of the physical part.
-    """
+    """Compare the determinant with the divergence of the index-reduced flow."""
+    # The violations have determinant 1, so that of the whole is that of the physical part.
     trace = np.trace(shot.sweep.slopes.by_v, axis1=-2, axis2=-1)
     total = float(shot.ring.step * np.sum(trace @ shot.ring.points.b))
     gap = abs(turn.logarithm - total) if turn.sign > 0 else np.inf

@@ -279,10 +279,8 @@ class Shooting:
         return reason
 
     def _closed(self, shot: Shot, wrong: Array) -> tuple[Array, Array] | None:
-        """Return the tangent spaces, and the changes in them ``(m, p, k)`` that close the ring.
-
-        The ends of the steps are off by ``wrong (m, 2n, k)``; None where nothing closes it.
-        """
+        """Return the tangent spaces, and the changes in them ``(m, p, k)`` that close the ring."""
+        # The ends of the steps are off by wrong (m, 2n, k); None where nothing closes it.
         along = self.junctions(shot.ring).along
         back = np.swapaxes(shot.ring.following(along), -1, -2)
         maps, loads = back @ shot.sweep.maps @ along, np.moveaxis(back @ wrong, -1, 0)
@@ -641,12 +639,10 @@ def _check_period(system: Constrained, guess: _Guess) -> None:
 
 
 def _first(system: Constrained, guess: _Guess) -> tuple[Shooting, Ring]:
-    """Return the guess on even collocation steps, moved onto the constraints, and its units.
-
-    The rate that makes velocities comparable is the geometric mean of the frozen vibrations:
-    between the slowest and the fastest mode no other unit of time leaves the eigenvectors of the
-    flow better conditioned.
-    """
+    """Return the guess on even collocation steps, moved onto the constraints, and its units."""
+    # The rate that makes velocities comparable is the geometric mean of the frozen vibrations:
+    # between the slowest and the fastest mode no other unit of time leaves the eigenvectors of the
+    # flow better conditioned.
     from scipy.interpolate import CubicHermiteSpline
 
     equations = Equations(system, guess.q, guess.qd, guess.times)

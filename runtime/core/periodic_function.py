@@ -309,10 +309,8 @@ def _analyse(samples: Array) -> tuple[Array, Array]:
 def _chopped(
     cls: type[PeriodicFunction], a: Array, b: Array, level: float, values: Array, coherent: bool
 ) -> PeriodicFunction:
-    """Drop what lies beyond the last coefficient above ``level`` and state the error.
-
-    ``coherent`` says that what is dropped is the function's own, not the noise of its evaluation.
-    """
+    """Drop what lies beyond the last coefficient above ``level`` and state the error."""
+    # `coherent` says that what is dropped is the function's own, not the noise of its evaluation.
     size = np.hypot(a, b)
     keep = length(size, level)
     largest = float(np.max(np.abs(values)))
@@ -330,11 +328,9 @@ def _chopped(
 
 
 def _unseen(size: Array, largest: float) -> float:
-    """Extrapolate the sum of the harmonics beyond the samples from the decay of two octaves.
-
-    The last octave is left out: what is folded down has raised it.  A series that falls no faster
-    than those of functions that jump may be off by as much as the function is large.
-    """
+    """Extrapolate the sum of the harmonics beyond the samples from the decay of two octaves."""
+    # The last octave is left out: what is folded down has raised it.  A series that falls no faster
+    # than those of functions that jump may be off by as much as the function is large.
     n = len(size) - 1
     before, last = (float(np.sum(size[n // k : 2 * n // k])) for k in (8, 4))
     if last >= 0.9 * before:

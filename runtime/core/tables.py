@@ -113,10 +113,8 @@ def labels_of(
 def _axes(
     arrays: Mapping[str, AnyArray], dimensions: Mapping[str, tuple[str, ...]]
 ) -> dict[str, Axes]:
-    """Return label and length of the axes of each array, less those of length 1.
-
-    Arrays without declared dimensions belong together where their shapes are the same.
-    """
+    """Return label and length of the axes of each array, less those of length 1."""
+    # Arrays without declared dimensions belong together where their shapes are the same.
     known, found = labels_of(arrays, dimensions), dict[str, Axes]()
     for name, array in arrays.items():
         shape = "x".join(map(str, array.shape))

@@ -198,10 +198,8 @@ def _require_flint() -> None:
 def _pieces(
     revolution: Revolution, low: float, high: float, least: float, coarse: float
 ) -> Iterator[_Piece]:
-    """Yield intervals that cover a range, rising.
-
-    What is not enclosed over ``coarse`` is left open; ``least``: of an interval not halved again.
-    """
+    """Yield intervals that cover a range, rising."""
+    # What is not enclosed over `coarse` is left open; `least`: of an interval not halved again.
     band = revolution.band(low, high)
     if band is not None:
         yield from _pieces_of_band(band, low, high, least, coarse)

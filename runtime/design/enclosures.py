@@ -486,10 +486,8 @@ def _lebesgue(count: int) -> float:
 
 
 def _points(bounds: Sequence[float], goal: float) -> tuple[int, float]:
-    """Return how many points to interpolate at, and a bound of the error.
-
-    From bounds of the logarithm of the function in Bernstein's ellipses.
-    """
+    """Return how many points to interpolate at, and a bound of the error."""
+    # From bounds of the logarithm of the function in Bernstein's ellipses.
     sizes = [bound + log(4.0 / (rho - 1.0)) for bound, rho in zip(bounds, _ELLIPSES, strict=True)]
     counts = [
         1 + max(2, ceil((size - log(goal)) / log(rho)))

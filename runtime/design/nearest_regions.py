@@ -244,11 +244,9 @@ def _nearest(edges: StabilityEdges, speed: float) -> list[tuple[int, int]]:
 
 
 def _gap(system: LinearPeriodic, like: complex, speed: float) -> Callable[[LinearPeriodic], float]:
-    """Return what vanishes for systems whose multipliers leave the unit circle at the speed.
-
-    As they do at ``like``: with damping the largest modulus passes 1; else two multipliers meet,
-    and the square of the distance of their sums with their inverses, r + 1/r, is smooth.
-    """
+    """Return what vanishes for systems whose multipliers leave the unit circle at the speed."""
+    # As they do at `like`: with damping the largest modulus passes 1; else two multipliers meet,
+    # and the square of the distance of their sums with their inverses, r + 1/r, is smooth.
     damped = system.is_damped()
 
     def gap(other: LinearPeriodic) -> float:
@@ -277,10 +275,8 @@ def _solved(
     first: float,
     breadth: float,
 ) -> tuple[float, float]:
-    """Return the relative change of a number with which a gap closes, and its error; else NaN.
-
-    ``first`` is what the derivative says, ``breadth`` that change from one end to the other.
-    """
+    """Return the relative change of a number with which a gap closes, and its error; else NaN."""
+    # `first` is what the derivative says, `breadth` that change from one end to the other.
     if not abs(first) < _FAR:
         return np.nan, np.nan
     number = number_of(machine, system, name)

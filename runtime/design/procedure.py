@@ -282,10 +282,8 @@ def _place(quiet: QuietSpeeds, band: Band) -> int:
 
 
 def _checks(quiet: QuietSpeeds, band: Band) -> dict[str, Check]:
-    """Return the checks of the running speed.
-
-    The linear range is that of this speed alone: at the critical speeds it is left in any case.
-    """
+    """Return the checks of the running speed."""
+    # The linear range is that of this speed alone: at the critical speeds it is left in any case.
     curve, place = quiet.curve, _place(quiet, band)
     checks = dict(quiet.checks)
     if curve.deflection is not None:

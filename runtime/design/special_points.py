@@ -139,10 +139,8 @@ def _moves(kind: str, orbit: Orbit, numbers: list[Number]) -> list[Slope]:
 
 
 def _gaps(orbit: Orbit, number: Number) -> tuple[Array, Array, Array]:
-    """Return what a number adds to the states at all ends, and to the accelerations.
-
-    And the error of the states at the last end.
-    """
+    """Return what a number adds to the states at all ends, and to the accelerations."""
+    # And the error of the states at the last end.
     motion = orbit.motion
 
     def lacking(problem: Problem, change: float, _along: float) -> Array:

@@ -239,10 +239,8 @@ class _Search:
 
 
 def _outwards(over: Callable[[float], dict[str, float]], end: float) -> tuple[float, bool]:
-    """Return the first shift on the way to an end that keeps all limits, and True.
-
-    Else the shift that passes them least, and False.
-    """
+    """Return the first shift on the way to an end that keeps all limits, and True."""
+    # Else the shift that passes them least, and False.
     from scipy.optimize import brentq, minimize_scalar
 
     def worst(shift: float) -> float:
@@ -328,10 +326,8 @@ def _regions(system: LinearPeriodic, aim: _Aim) -> _Rows:
 
 
 def _of_one_mode(system: LinearPeriodic, aim: _Aim) -> _Rows | None:
-    """Return the same for one undamped mode, quickly; None for others, or too few to tell.
-
-    The motions at both ends of the n-th region have n zeros in a turn.
-    """
+    """Return the same for one undamped mode, quickly; None for others, or too few to tell."""
+    # The motions at both ends of the n-th region have n zeros in a turn.
     if system.size > 1 or system.is_damped():
         return None
     bounds = speed_boundaries(system, (1, -1), speed_range=aim.window)
@@ -543,10 +539,8 @@ def _verified(drawing: Drawing, shifts: Array, aim: _Aim, turns: int) -> Change:
 
 
 def _placed(rows: _Rows, aim: _Aim) -> tuple[str, float, float, list[int], list[str]]:
-    """Return the nearest region, its distance and the error of that; what is in the range.
-
-    That is the regions too narrow to count, by their places, and the others in words.
-    """
+    """Return the nearest region, its distance and the error of that; what is in the range."""
+    # That is the regions too narrow to count, by their places, and the others in words.
     names, lower, upper, errors = rows
     inside = (upper > aim.begin) & (lower < aim.end)
     wide = upper - lower > aim.narrow * lower

@@ -354,11 +354,9 @@ def run_through(
 
 
 def _stepping(change: Array, before: Array | None) -> tuple[Array, Array]:
-    """Return the error left by a number of steps, from the change that halving them made.
-
-    It shrinks on as it has been seen to, at most as the order promises; unseen, as one halving of
-    an order of two does.
-    """
+    """Return the error left by a number of steps, from the change that halving them made."""
+    # It shrinks on as it has been seen to, at most as the order promises; unseen, as one halving of
+    # an order of two does.
     shrunk = 4.0 * np.ones_like(change)
     if before is not None:
         seen = float(np.max(before)) / max(float(np.max(change)), np.finfo(float).tiny)
@@ -552,10 +550,8 @@ def largest_by_shape(
 
 
 def _between(stress: Array) -> Array:
-    """Return what lies above the largest of the steps by parabolas, over it, by links.
-
-    Next to the ends too, beyond which the stress goes on as a quartic through five steps.
-    """
+    """Return what lies above the largest of the steps by parabolas, over it, by links."""
+    # Next to the ends too, beyond which the stress goes on as a quartic through five steps.
     wide = stress
     for _ in range(2):
         # The next value from five, if their fourth difference stays.

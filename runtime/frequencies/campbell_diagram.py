@@ -74,11 +74,9 @@ def _named(
 
 
 def _shares(found: FreeMotions, held: HeldModes, speed: float) -> Array:
-    """Return the share of each motion in each held mode, turning forward, ``(2m, n)``.
-
-    A motion ``x e^(i w t)`` of a mode with unit mass has the action ``|w x - i v|^2 / (4 w)``; what
-    turns backward, its conjugate, has none.  Shares are means over the turn.
-    """
+    """Return the share of each motion in each held mode, turning forward, ``(2m, n)``."""
+    # A motion x e^(i w t) of a mode with unit mass has the action |w x - i v|^2 / (4 w); what turns
+    # backward, its conjugate, has none.  Shares are means over the turn.
     across = np.swapaxes(held.shape, -1, -2) @ held.mass
     place, rate = across @ found.q, speed * (across @ found.slope)
     omega = held.frequency[:, :, None]
@@ -295,10 +293,8 @@ def _crossings(speeds: Array, values: Array, mode: int) -> list[tuple[float, int
 
 
 def _unevenness(speeds: Array, values: Array, first: int) -> float:
-    """Return how far the two rows to either side of an interval lie off the chord of its ends.
-
-    What they do beside it, meeting other frequencies, a frequency may do inside it unseen.
-    """
+    """Return how far the two rows to either side of an interval lie off the chord of its ends."""
+    # What they do beside it, meeting other frequencies, a frequency may do inside it unseen.
     w, f = speeds[first : first + 2], values[first : first + 2]
     near = slice(max(0, first - 2), first + 4)
     chord = f[0] + (f[1] - f[0]) / (w[1] - w[0]) * (speeds[near] - w[0])

@@ -230,11 +230,9 @@ def solve(problem: DynamicStiffness, item: Interval) -> list[Mode]:
 
 
 def _newton(finer: DynamicStiffness, item: Interval, number: int) -> float:
-    """Return a frequency by its number, counted from 1.
-
-    The eigenvalue of that number of ``D x = mu M x`` falls steadily through zero, and mu is
-    Newton's step of the squared frequency.
-    """
+    """Return a frequency by its number, counted from 1."""
+    # The eigenvalue of that number of D x = mu M x falls steadily through zero, and mu is Newton's
+    # step of the squared frequency.
     low, high = item.low, item.high
     omega = (low + high) / 2.0
     for _ in range(100):

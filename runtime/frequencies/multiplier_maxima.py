@@ -106,10 +106,8 @@ def multiplier_maxima(
 
 
 def _blur(values: tuple[Array, Array, Array], across: Array, noise: float) -> Array:
-    """Return how far the place of a maximum is open: rounding leaves it so by its root.
-
-    From the values before, at and after the highest sample, and how far the outer two are apart.
-    """
+    """Return how far the place of a maximum is open: rounding leaves it so by its root."""
+    # From the values before, at and after the highest sample, and how far the outer two are apart.
     curve = np.abs(values[0] - 2 * values[1] + values[2])
     return np.asarray(np.sqrt(2 * noise * (across**2 / 4) / np.maximum(curve, 1e-300)))
 
@@ -131,11 +129,9 @@ def _peaks(values: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
 def _quartic(
     call: Callable[[Array, Whole], Array], at: Array, step: Array, which: Whole, best: Array
 ) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """Return how far the maximum is off places ``(k,)`` by the quartic through five values.
-
-    With it the second difference there, and whether it is smooth: at a corner, where a mode's
-    multipliers become real, second differences grow with the step, not with its square.
-    """
+    """Return how far the maximum is off places ``(k,)`` by the quartic through five values."""
+    # With it the second difference there, and whether it is smooth: at a corner, where a mode's
+    # multipliers become real, second differences grow with the step, not with its square.
     first, low, high, last = (call(at + k * step, which) for k in (-2, -1, 1, 2))
     slope = (first - 8.0 * low + 8.0 * high - last) / 12.0
     bend = (-first + 16.0 * low - 30.0 * best + 16.0 * high - last) / 12.0

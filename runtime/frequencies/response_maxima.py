@@ -44,10 +44,8 @@ def scanned_deflections(system: LinearPeriodic, speeds: Array, progress: bool) -
 
 
 def _on_lowest_modes(system: LinearPeriodic, speeds: Array) -> Array | None:
-    """Return how far a structure of beams bends over rising speeds, on its lowest modes.
-
-    None where the system has no slow modes apart from fast ones.
-    """
+    """Return how far a structure of beams bends over rising speeds, on its lowest modes."""
+    # None where the system has no slow modes apart from fast ones.
     from ..periodic.swept_motions import Truncations, speed_ranges
 
     if system.structure is None or system.relative_deflection is None:
@@ -77,10 +75,8 @@ def _rtol(system: LinearPeriodic) -> float:
 def _mean_squares(
     system: LinearPeriodic, speeds: Array, progress: bool = False
 ) -> tuple[Array, Array]:
-    """Return mean squares of the deflection over the length, ``(ns, places)``.
-
-    With them the motions' relative error, and what of it is round-off, ``(2, ns)``.
-    """
+    """Return mean squares of the deflection over the length, ``(ns, places)``."""
+    # With them the motions' relative error, and what of it is round-off, (2, ns).
     from ..periodic.periodic_motion import quiet_state
 
     out, error = [], np.empty((2, len(speeds)))
@@ -148,12 +144,10 @@ def response_maxima(system: LinearPeriodic, low: Array, high: Array) -> tuple[Ar
 def _closer(
     peak: _Peak, speeds: Array, squares: Array, error: Array, wanted: float, enough: float
 ) -> _Peak:
-    """Return what is known of a maximum after a look at speeds ``(9,)`` of its bracket.
-
-    ``squares`` of the deflection are ``(9, places)``; ``error`` is that of the motions and their
-    round-off, ``(2,)``.  Of the place an error ``wanted`` is asked for, and that two looks agree to
-    ``enough``.
-    """
+    """Return what is known of a maximum after a look at speeds ``(9,)`` of its bracket."""
+    # `squares` of the deflection are (9, places); `error` is that of the motions and their
+    # round-off, (2,).  Of the place an error `wanted` is asked for, and that two looks agree to
+    # `enough`.
     best, place = (int(k) for k in np.unravel_index(np.argmax(squares), squares.shape))
     values = 1.0 / np.maximum(squares, np.finfo(float).tiny)
     middle, half = speeds.mean(), 0.5 * float(speeds[-1] - speeds[0])
@@ -182,11 +176,9 @@ def _closer(
 
 
 def _least(values: Array, error: Array, best: int) -> tuple[float, float, float, float]:
-    """Return place in [-1, 1] and value of the least of a polynomial through nine values.
-
-    With them their errors, from the terms left out, of which round-off keeps the last ones, and
-    from the relative ``error`` of the motions.
-    """
+    """Return place in [-1, 1] and value of the least of a polynomial through nine values."""
+    # With them their errors, from the terms left out, of which round-off keeps the last ones, and
+    # from the relative `error` of the motions.
     whole, noise = error.tolist()
     series = _TO_SERIES @ values
     roots = chebyshev.chebroots(chebyshev.chebder(series))

@@ -206,10 +206,8 @@ def _with(modes: Modes, theta: Array, held: HeldModes, new: Array) -> tuple[Arra
 def _status(
     held: HeldModes, count: int, tight: NDArray[np.bool_]
 ) -> tuple[NDArray[np.bool_], Swaps, float]:
-    """Return which intervals are unclear, the swaps of the clear ones, and the least assurance.
-
-    Where three and more meet, only a tight interval is taken for clear.
-    """
+    """Return which intervals are unclear, the swaps of the clear ones, and the least assurance."""
+    # Where three and more meet, only a tight interval is taken for clear.
     from scipy.optimize import linear_sum_assignment
 
     mac = assurance(held.shape[:-1], held.shape[1:], 0.5 * (held.mass[:-1] + held.mass[1:]))
@@ -239,10 +237,8 @@ def _status(
 
 
 def _neighbour_swaps(matched: Indices, low: Indices) -> tuple[int, ...]:
-    """Return the swaps of neighbours, by lower rank and in order, that make an assignment.
-
-    Ranks above those of concern are taken in the order in which they stand.
-    """
+    """Return the swaps of neighbours, by lower rank and in order, that make an assignment."""
+    # Ranks above those of concern are taken in the order in which they stand.
     rows = np.union1d(low, matched[low])
     target = np.argsort(np.argsort(matched[rows], kind="stable"), kind="stable")
     order, swaps = list(target), []

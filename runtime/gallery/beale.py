@@ -129,10 +129,8 @@ def _linkage() -> QuickReturn:
 
 @lru_cache(maxsize=4)
 def _stiff_shapes(scene: str) -> tuple[Array, Array]:
-    """Return crank angles and the whole rod's deflection [m], converged, tension kept.
-
-    At evenly spaced places from pin to tip, shape ``(nt, places)``, for the first turn.
-    """
+    """Return crank angles and the whole rod's deflection [m], converged, tension kept."""
+    # At evenly spaced places from pin to tip, shape (nt, places), for the first turn.
     system = rod(scene, "overhang", ENOUGH, _COMPLETE)
     return tip_from_rest(system, SPEED, places=np.linspace(0.0, 1.0, _STATIONS))
 

@@ -234,11 +234,9 @@ def regions(chart: str, inertia: float) -> tuple[list[_Region], int]:
 
 
 def _left_by_damping(chart: str, inertia: float, lower: Array, width: Array) -> Array:
-    """Return the share of each region in which its own multiplier grows despite the damping.
-
-    A region may lie within another one: what counts is that more multipliers are outside the unit
-    circle within it than on either side of it.
-    """
+    """Return the share of each region in which its own multiplier grows despite the damping."""
+    # A region may lie within another one: what counts is that more multipliers are outside the unit
+    # circle within it than on either side of it.
     places = np.concatenate([[-0.03, 1.03], np.linspace(0.0, 1.0, 27)[1:-1]])
     speeds = lower[:, None] + width[:, None] * places
     motion = _damped(chart, inertia, 2, speeds.ravel())

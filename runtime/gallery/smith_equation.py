@@ -59,10 +59,8 @@ def _equation() -> PeriodicArray:
 
 @lru_cache(maxsize=32)
 def _march(step: float, turns: int, start: tuple[float, float] | None = None) -> _Run:
-    """March with de Vogelaere's method and a half step in degrees, against Smith's rule or not.
-
-    From rest, or without forcing from q and its derivative by the angle.
-    """
+    """March with de Vogelaere's method and a half step in degrees, against Smith's rule or not."""
+    # From rest, or without forcing from q and its derivative by the angle.
     h, count = np.radians(step), round(180.0 / step)
     maps = de_vogelaere_maps(_equation(), 2.0 * h * np.arange(float(count)), h)
     q, slope, forced = (0.0, 0.0, 1.0) if start is None else (*start, 0.0)

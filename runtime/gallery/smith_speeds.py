@@ -254,10 +254,8 @@ def _ratio(linkage: str) -> float:
 
 
 def _shifts() -> tuple[list[Sequence[Any]], Array, Array]:
-    """Return the ends of the unstable regions and how far they move, as a table and in rpm.
-
-    In rpm: by the complete equation, and further by the second mode.
-    """
+    """Return the ends of the unstable regions and how far they move, as a table and in rpm."""
+    # In rpm: by the complete equation, and further by the second mode.
 
     def pair(values: Array) -> str:
         # Zero without a sign.

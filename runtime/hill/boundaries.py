@@ -409,10 +409,8 @@ def near_tip(local: Array | float, half: Array | float, sharp_half: Array | floa
 def _end(
     f: PeriodicFunction | Meissner, n: int, mu: Array, k: Array, outer: Array, inner: Array
 ) -> tuple[Array, Array]:
-    """Return where half traces cross the level of region n, and the error, at points ``(m,)``.
-
-    Between a place ``outer`` below the level and one ``inner`` above it.
-    """
+    """Return where half traces cross the level of region n, and the error, at points ``(m,)``."""
+    # Between a place `outer` below the level and one `inner` above it.
     sign, turned = 1.0 if n % 2 == 0 else -1.0, np.where(inner < outer, -1.0, 1.0)
 
     def share(which: Index, lam2: Array) -> tuple[Array, float]:
@@ -503,11 +501,9 @@ def _excess(
 
 
 def _exponent(excess: Array, drag: Array | float = 0.0) -> tuple[Array, Array]:
-    """Return ``arccosh(1 + x) / (2 pi)`` from ``excess = x exp(-2 pi drag)``, and its steepness.
-
-    Without cancellation, and without overflow; its derivative to the excess is 1 over 2 pi times
-    the steepness.
-    """
+    """Return ``arccosh(1 + x) / (2 pi)`` from ``excess = x exp(-2 pi drag)``, and its steepness."""
+    # Without cancellation, and without overflow; its derivative to the excess is 1 over 2 pi times
+    # the steepness.
     unit = np.exp(-2.0 * np.pi * np.asarray(drag))
     root = np.sqrt(excess) * np.sqrt(2.0 * unit + excess)
     rest = np.maximum(unit + excess + root, np.finfo(float).tiny)
@@ -516,11 +512,9 @@ def _exponent(excess: Array, drag: Array | float = 0.0) -> tuple[Array, Array]:
 
 
 def _narrow(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: Ends) -> Array:
-    """Return K, the lam2 of the largest half trace and the error of K for narrow regions.
-
-    ``|D| - 1 = (lam2 - low)(high - lam2) g`` with g smooth across the region: g comes from points
-    well outside, where nothing cancels, and the width from the two ends.
-    """
+    """Return K, the lam2 of the largest half trace and the error of K for narrow regions."""
+    # |D| - 1 = (lam2 - low)(high - lam2) g with g smooth across the region: g comes from points
+    # well outside, where nothing cancels, and the width from the two ends.
     low, high = sharp.lower, sharp.upper
     centre, half = 0.5 * (low + high), 0.5 * (high - low)
     lam2 = centre + _RESOLVED * nodes(_NODES)[:, None]

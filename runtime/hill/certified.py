@@ -174,12 +174,9 @@ def _in_doubles(ball: Ball | None, mean: Fraction) -> tuple[float, float, float]
 def _slice(
     f: PeriodicFunction, mu: float, k: float, regions: tuple[int, ...]
 ) -> list[Ends | bool | None]:
-    """Return the balls of both ends of each region at one mu, without the mean of f.
-
-    There is no lower one for region 0.
-
-    With damping: True where the region is proved closed, None where nothing is proved.
-    """
+    """Return the balls of both ends of each region at one mu, without the mean of f."""
+    # There is no lower one for region 0.
+    # With damping: True where the region is proved closed, None where nothing is proved.
     out: dict[int, Ends | bool | None] = {}
     for odd, rows in by_parity(regions):
         numbers = sorted({regions[i] for i in rows})
@@ -496,10 +493,8 @@ class DampedProblem:
         return True if closed else None
 
     def _inverse_norm(self, lam2: float, border: Array | None = None) -> float:
-        """Bound the norm of the inverse of the whole operator less lam2; infinite if that fails.
-
-        ``border`` joins one row and one column, ``(H - lam2) u - s border`` and ``border . u``.
-        """
+        """Bound the norm of the inverse of the whole operator less lam2; infinite if that fails."""
+        # `border` joins one row and one column, (H - lam2) u - s border and border . u.
         size = len(self._low)
         matrix, across = self._low - lam2 * np.eye(size), self._across
         if border is not None:

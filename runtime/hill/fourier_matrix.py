@@ -126,11 +126,9 @@ def _truncation(
 def _majorant(
     taps: Array, ceiling: float, start: int, bound: float, goal: float
 ) -> tuple[Array, Array] | None:
-    """Return sums over all k >= start, start + 1, ... of ``2 M_k^2`` and of the energy in them.
-
-    ``taps`` runs from the highest harmonic down to the first.  None where the sums do not come
-    below the goal within a few times the largest matrix.
-    """
+    """Return sums over all k >= start, start + 1, ... of ``2 M_k^2`` and of the energy in them."""
+    # `taps` runs from the highest harmonic down to the first.  None where the sums do not come
+    # below the goal within a few times the largest matrix.
     width = len(taps)
     # Component k stands at index width + k; all that lies below the start is bounded by 1.
     size = np.ones(width + 4 * LARGEST + 1)
@@ -153,10 +151,8 @@ def _majorant(
 
 
 def _remainder(taps: Array, last: Array, gap: float, k: int, bound: float) -> float:
-    """Bound the energy in all harmonics beyond k by a geometric series.
-
-    As many as there are taps are each at most ``sum(taps) / gap`` times the largest before them.
-    """
+    """Bound the energy in all harmonics beyond k by a geometric series."""
+    # As many as there are taps are each at most sum(taps) / gap times the largest before them.
     first, width = float(last.max(initial=0.0)), len(taps)
     ratio = (float(taps.sum()) / gap) ** 2 * math.exp(2.0 * width / (k + 1))
     if ratio >= 1.0:

@@ -199,10 +199,8 @@ def _turned(f: PeriodicFunction, origin: float, power: int = 1) -> PeriodicFunct
 
 
 def _uncertain(f: PeriodicFunction, n: int, k: int, size: float) -> float:
-    """Return below which size the coupling ``B_k`` of region n may be zero; ``size`` is its own.
-
-    Whether its terms cancel is seen with other phases of the harmonics.
-    """
+    """Return below which size the coupling ``B_k`` of region n may be zero; ``size`` is its own."""
+    # Whether its terms cancel is seen with other phases of the harmonics.
     reach = float(f.amplitudes[1:].sum())
     given = k * f.error * (reach / level_distance(n)) ** (k - 1)
     if size > _CLEAR * reach**k:
@@ -217,10 +215,9 @@ def _uncertain(f: PeriodicFunction, n: int, k: int, size: float) -> float:
 
 
 def _alphas(f: PeriodicFunction, n: int, order: int, ratio: float) -> tuple[Array, int, Array]:
-    """Return the coefficients of middle and half, shape (2, order), and the order of splitting.
-
-    Also what the coefficients may be off by for a leading one that is zero or uncertain, (order,).
-    """
+    """Return the coefficients of middle and half, shape (2, order), and the order of splitting."""
+    # Also what the coefficients may be off by for a leading one that is zero or uncertain,
+    # (order,).
     point = np.array([[1.0], [ratio]])
     a, b = effective_operator([f], n, order, True).components(point)
     middle, drag = a[:, 0].real, a.imag

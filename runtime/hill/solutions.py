@@ -283,11 +283,9 @@ def _closed(n: int) -> BadInput:
 def _direction(
     a: float, b: complex, lost: tuple[float, float], end: str
 ) -> tuple[float, float, bool]:
-    """Return the phase of the eigenvector, its error, and whether it is arbitrary.
-
-    ``A u + B conj(u) = (Re A -+ sqrt(|B|^2 - (Im A)^2)) u`` with ``u = exp(i phase)``, from Im A
-    and B and their errors.
-    """
+    """Return the phase of the eigenvector, its error, and whether it is arbitrary."""
+    # A u + B conj(u) = (Re A -+ sqrt(|B|^2 - (Im A)^2)) u with u = exp(i phase), from Im A and B
+    # and their errors.
     size, (lost_a, lost_b) = abs(b), lost
     if size <= lost_b:
         return (0.0 if end == "upper" else 0.5 * np.pi), 0.0, True

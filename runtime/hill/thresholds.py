@@ -190,10 +190,8 @@ def _to_order(f: PeriodicFunction, n: int, mu: Array) -> tuple[Closing, Mask]:
 
 
 def _sums(operator: EffectiveOperator, f: PeriodicFunction, mu: Array, damping: Array) -> Sums:
-    """Return the sums of A and B with the round-off that a coupling without detours has.
-
-    The level n^2/4 takes no part in B and Im A, and neither does its round-off.
-    """
+    """Return the sums of A and B with the round-off that a coupling without detours has."""
+    # The level n^2/4 takes no part in B and Im A, and neither does its round-off.
     n, order = operator.n, operator.order - BEYOND
     a, b = operator.components(np.stack([mu, damping]))
     strength = np.abs(mu) * float(f.amplitudes[1:].sum())
@@ -281,11 +279,9 @@ Solver = Callable[[Array], Closing]
 
 
 def _opening(closing: Solver, n: int, damping: Array, top: float) -> tuple[Array, float]:
-    """Return where region n opens at values of K, and the largest mu that was looked at.
-
-    The least mu, lam2, the error and what is left of K over its error, ``(4, n)``; infinite, NaN, 0
-    and NaN where there is no crossing of the critical damping up to ``top``.
-    """
+    """Return where region n opens at values of K, and the largest mu that was looked at."""
+    # The least mu, lam2, the error and what is left of K over its error, (4, n); infinite, NaN, 0
+    # and NaN where there is no crossing of the critical damping up to `top`.
     out = np.tile([[np.inf], [np.nan], [0.0], [np.nan]], damping.size)
     if not (damping.size and top):
         return out, 0.0
@@ -312,11 +308,9 @@ def _sure(closing: Solver, mu: Array) -> Array:
 
 
 def _climb(closing: Solver, grid: Array, most: float) -> tuple[Array, Array]:
-    """Return the grid with the running maximum of the critical damping, as far as needed.
-
-    With the peaks between the values of the grid.  A decade at a time: small values of mu need
-    small matrices.
-    """
+    """Return the grid with the running maximum of the critical damping, as far as needed."""
+    # With the peaks between the values of the grid.  A decade at a time: small values of mu need
+    # small matrices.
     value = np.zeros(0)
     for part in np.array_split(grid, -(-grid.size // _PER_DECADE)):
         try:

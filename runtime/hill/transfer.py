@@ -187,10 +187,8 @@ def _halved(m: Array, blocks: int) -> Array:
 
 
 def _all_cuts(m: Array, cuts: int, scaled: bool) -> tuple[Array, Exponents]:
-    """Return the products once round the circle from every cut, and powers of two taken out.
-
-    Where ``scaled``, a power is taken out at every step; one exponent for all cuts.
-    """
+    """Return the products once round the circle from every cut, and powers of two taken out."""
+    # Where `scaled`, a power is taken out at every step; one exponent for all cuts.
     exponent: Exponents = np.zeros(m.shape[2:], dtype=np.int64)
     if not scaled:
         m, exponent = _halved(m, cuts), exponent[0]
@@ -316,11 +314,9 @@ def _expand(
 def _resolvents(
     rule: Gauss, g: float, lam2: float, mu: float, values: Array
 ) -> tuple[Array, Array, Array]:
-    """Return the maps from a source to the solution at the nodes and at the end, and the base.
-
-    The base potential at the point of expansion, ``(segments, q)``, is on the left-hand side: the
-    maps are one matrix each where it is constant, else one per segment.
-    """
+    """Return the maps from a source to the solution at the nodes and at the end, and the base."""
+    # The base potential at the point of expansion, (segments, q), is on the left-hand side: the
+    # maps are one matrix each where it is constant, else one per segment.
     q = rule.x.size
     base = np.full(values.shape, lam2) if mu == 0.0 else lam2 + mu * values
     if mu == 0.0:

@@ -138,10 +138,8 @@ def base_plane(lam: float, points: int = 201) -> BasePlane:
 
 
 def _regions(outline: Array, total: float, error: float) -> dict[str, Array]:
-    """Return the region of each class: on either side of (total - 1)/2 for each ratio.
-
-    One whose middle is no farther from its borders than rounding moves them is left out.
-    """
+    """Return the region of each class: on either side of (total - 1)/2 for each ratio."""
+    # One whose middle is no farther from its borders than rounding moves them is left out.
     half = (total - 1.0) / 2.0
     regions = {}
     for code in range(8):

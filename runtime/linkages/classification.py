@@ -353,10 +353,8 @@ def classify(
 
 
 def _many(lengths: NDArray[Any]) -> NDArray[np.int64]:
-    """Return the rows of Barker's table of lengths (..., 4), 0 where they cannot close.
-
-    Exact for any doubles: a sum whose sign rounding may have changed is taken in fractions.
-    """
+    """Return the rows of Barker's table of lengths (..., 4), 0 where they cannot close."""
+    # Exact for any doubles: a sum whose sign rounding may have changed is taken in fractions.
     array = finite_array("lengths", lengths, "positive lengths")
     if array.shape[-1] != 4:
         raise bad("lengths", f"shape {array.shape}", "shape (..., 4)", "put the four links last")
@@ -434,10 +432,8 @@ def _four_bar(linkage: FourBar, driven: Input, tolerance: Fraction) -> Classific
 def _signs(
     exact: Sequence[Fraction], sums: Sequence[Fraction], tolerance: Fraction
 ) -> tuple[list[int], int]:
-    """Return the signs of the three sums, zero where the tolerance lets them be, and the least.
-
-    The least in magnitude is the one with the shortest and the longest link on one side.
-    """
+    """Return the signs of the three sums, zero where the tolerance lets them be, and the least."""
+    # The least in magnitude is the one with the shortest and the longest link on one side.
     shortest, longest = exact.index(min(exact)), exact.index(max(exact))
     beside = shortest + longest if 0 in (shortest, longest) else 6 - shortest - longest
     least = beside - 1 if shortest != longest else 0

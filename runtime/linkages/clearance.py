@@ -127,10 +127,8 @@ class _Half:
 
 
 def _apart(low: _Half, high: _Half, rise: Array) -> Array:
-    """Return the difference of two angles; ``rise`` is that of sin^2 of the halves.
-
-    sin^2 x - sin^2 y = sin(x - y) sin(x + y): small differences keep all their digits.
-    """
+    """Return the difference of two angles; ``rise`` is that of sin^2 of the halves."""
+    # sin^2 x - sin^2 y = sin(x - y) sin(x + y): small differences keep all their digits.
     total = high.sine * low.cosine + high.cosine * low.sine
     cosine = high.cosine * low.cosine + high.sine * low.sine
     return np.asarray(2.0 * np.arctan2(over(rise, total), cosine))
@@ -139,11 +137,9 @@ def _apart(low: _Half, high: _Half, rise: Array) -> Array:
 def _of_angles(
     halves: tuple[_Half, _Half, _Half], rises: tuple[Array, Array], small: Array, margin: Array
 ) -> Play:
-    """Return the play of an angle from its least, nominal and greatest half.
-
-    An angle that reaches 0 goes on to minus the greatest one, one that reaches pi to 2 pi less the
-    least one.
-    """
+    """Return the play of an angle from its least, nominal and greatest half."""
+    # An angle that reaches 0 goes on to minus the greatest one, one that reaches pi to 2 pi less
+    # the least one.
     least, nominal, greatest = halves
     inner, outer = least.least, greatest.greatest
     through = nominal.angle() + greatest.angle()
@@ -279,10 +275,8 @@ def _across_slider(gap: ArrayLike, radius: ArrayLike, guide: ArrayLike, *, coupl
 def _across_coupler(
     gap: ArrayLike, radius: ArrayLike, guide: ArrayLike, *, coupler: float | Array
 ) -> Play:
-    """Return the play of the angle between the normal of the guide and the coupler.
-
-    Along the guide the slider follows; across it, pins and guide add up.
-    """
+    """Return the play of the angle between the normal of the guide and the coupler."""
+    # Along the guide the slider follows; across it, pins and guide add up.
     g, r, w = _together(gap, radius, guide)
     play, scale = r + w, 2.0 * coupler
     least, nominal, greatest = (
@@ -316,10 +310,8 @@ def _quick_return(linkage: QuickReturn, link: str) -> Route:
 
 
 def _beside(slide: ArrayLike, radius: ArrayLike, guide: ArrayLike) -> Play:
-    """Return the play of a line about D that passes B at most so far beside it.
-
-    As of a coupler as long as the slide, whose end is free as far across a guide through D.
-    """
+    """Return the play of a line about D that passes B at most so far beside it."""
+    # As of a coupler as long as the slide, whose end is free as far across a guide through D.
     x, r, w = _together(slide, radius, guide)
     none = np.zeros_like(x)
     return replace(_across_coupler(none, r, w, coupler=np.maximum(x, _TINY)), nominal=none)
@@ -639,11 +631,9 @@ def _checked(
 
 
 def _extremes(task: _Task) -> tuple[WidthExtreme, WidthExtreme]:
-    """Return least and greatest width over the crank's range.
-
-    The width depends on one variable, the diagonal, the gap or the slide, and can be extreme where
-    its derivative vanishes, where the play begins to fold, and at the ends.
-    """
+    """Return least and greatest width over the crank's range."""
+    # The width depends on one variable, the diagonal, the gap or the slide, and can be extreme
+    # where its derivative vanishes, where the play begins to fold, and at the ends.
     route = task.route
     low, high = route.interval
     if isinstance(task.linkage, FourBar):
@@ -718,11 +708,9 @@ def _nearest(one: Any, other: Any) -> Array:
 
 
 def _first_order(task: _Task) -> float:
-    """Return how far small clearances leave the first order, over what the next order may do.
-
-    The series in the radius of play converges up to the first fold; its next term but one is of
-    the second power of that ratio.
-    """
+    """Return how far small clearances leave the first order, over what the next order may do."""
+    # The series in the radius of play converges up to the first fold; its next term but one is of
+    # the second power of that ratio.
     radius, guide = task.slack
     if radius + guide == 0.0 or task.theta.size == 0:
         return 0.0

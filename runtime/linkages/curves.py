@@ -459,11 +459,9 @@ def _checks(trace: _Trace, s: Array, crossings: int) -> dict[str, Check]:
 
 
 def _integrate_turn(f: Callable[[Array], Array], breaks: Array) -> tuple[Array, Array]:
-    """Integrate over 0 to 2 pi, halving the panels on which two Gauss rules differ.
-
-    Panels end at the breaks, where an integrand has a kink.  The error is the sum of the
-    differences of the panels, generous, and round-off.
-    """
+    """Integrate over 0 to 2 pi, halving the panels on which two Gauss rules differ."""
+    # Panels end at the breaks, where an integrand has a kink.  The error is the sum of the
+    # differences of the panels, generous, and round-off.
     ends = np.unique(np.concatenate([np.linspace(0, 2 * pi, _PANELS + 1), breaks % (2 * pi)]))
     low, high = ends[:-1], ends[1:]
     for level in range(_HALVINGS):

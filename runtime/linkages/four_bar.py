@@ -221,12 +221,10 @@ class FourBar(Linkage):
         return f"a diagonal BD between {shortest:g} and {longest:g}, {super().reachable}"
 
     def _error(self, m: Mapping[str, Array]) -> Array:
-        """Return what a unit round-off of the angle and of each length does, three times.
-
-        A change of a length moves the closure along that link; seen along coupler or follower it
-        turns the other one, the more the closer the two are to one line.  The triangle BCD comes
-        from the square of BD: its round-off moves C, seen from a short link most.
-        """
+        """Return what a unit round-off of the angle and of each length does, three times."""
+        # A change of a length moves the closure along that link; seen along coupler or follower it
+        # turns the other one, the more the closer the two are to one line.  The triangle BCD comes
+        # from the square of BD: its round-off moves C, seen from a short link most.
         frame, crank, coupler, follower = self.unit_lengths.values()
         theta2 = m["theta2"]
         aligned = np.abs(np.cos(m["theta4"] - m["theta3"]))

@@ -226,11 +226,9 @@ def _series(coefficients: np.ndarray[Any, Any]) -> PeriodicFunction:
 
 
 def _last_change(changes: list[float], settled: bool) -> float:
-    """Return the last change of a coefficient, or what slow convergence leads one to expect.
-
-    Where the changes fall by less than a thousand a time, or have not settled in the end - a
-    function that jumps, or noise - the last one may be small by chance.
-    """
+    """Return the last change of a coefficient, or what slow convergence leads one to expect."""
+    # Where the changes fall by less than a thousand a time, or have not settled in the end - a
+    # function that jumps, or noise - the last one may be small by chance.
     worst = changes[-1]
     if not settled:
         # A pulse that few samples meet: the changes it makes halve with the spacing.

@@ -149,10 +149,8 @@ class QuickReturn(Linkage):
 
     @property
     def _ends(self) -> tuple[float, float]:
-        """By how much the rod is longer than the least, and shorter than the greatest DB.
-
-        Correctly rounded, so that no round-off can change their signs.
-        """
+        """By how much the rod is longer than the least, and shorter than the greatest DB."""
+        # Correctly rounded, so that no round-off can change their signs.
         frame, crank, rod = self.unit_lengths.values()
         far, near = max(frame, crank), min(frame, crank)
         return math.fsum((rod, near, -far)), math.fsum((far, near, -rod))

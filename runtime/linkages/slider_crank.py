@@ -175,10 +175,8 @@ class SliderCrank(Linkage):
         return np.asarray(ROUND_OFFS * moved / (coupler * across))
 
     def _error(self, m: Mapping[str, Array]) -> Array:
-        """Return what a unit round-off of the angle and of each length does, three times.
-
-        A change of a length across the guide moves the slider by its product with the tangent.
-        """
+        """Return what a unit round-off of the angle and of each length does, three times."""
+        # A change of a length across the guide moves the slider by its product with the tangent.
         crank, coupler, offset = self.unit_lengths.values()
         theta2, blur = m["theta2"], self._blur(m)
         turned = ROUND_OFFS * (np.abs(theta2 * m["omega3"]) + np.abs(m["theta3"])) + blur

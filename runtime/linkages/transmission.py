@@ -316,11 +316,9 @@ def _four_bar(linkage: FourBar, band: tuple[float, float]) -> TransmissionAngle:
 def _four_bar_centres(
     s: LoopSums, crank: float, coupler: float, branch: float
 ) -> tuple[dict[str, float], dict[str, float]]:
-    """Return crank and follower angles where crank and coupler lie in one line.
-
-    Open, C lies to the left of the line from B to D: above the frame when extended, and when folded
-    above it if the coupler is the longer one.
-    """
+    """Return crank and follower angles where crank and coupler lie in one line."""
+    # Open, C lies to the left of the line from B to D: above the frame when extended, and when
+    # folded above it if the coupler is the longer one.
     centres, outputs = {}, {}
     if s.four >= 0:
         centres["extended"] = branch * _angle((s.less_frame, s.four), (s.less_follower, s.total))
@@ -346,10 +344,8 @@ def _follower_range(
 
 
 def _slider_crank(linkage: SliderCrank, band: tuple[float, float]) -> TransmissionAngle:
-    """Return the positions of a slider-crank linkage.
-
-    The cosine of the transmission angle is (offset - crank sin(theta2))/coupler.
-    """
+    """Return the positions of a slider-crank linkage."""
+    # The cosine of the transmission angle is (offset - crank sin(theta2))/coupler.
     crank, coupler, offset = linkage.unit_lengths.values()
     over, under = fsum((coupler, offset, -crank)), fsum((coupler, -offset, -crank))
     reach = fsum((coupler, crank, -offset)), fsum((coupler, crank, offset))

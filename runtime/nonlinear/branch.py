@@ -193,11 +193,9 @@ def _steps(
 def _ahead(
     solver: Solver, orbit: Orbit, step: float, past: list[Orbit]
 ) -> tuple[list[tuple[Orbit, Measure]], float]:
-    """Return the motions of a step, as dense as a curve through them wants, with their errors.
-
-    And the largest first correction.  They are corrected side by side, as arrays of more states
-    cost less a state.
-    """
+    """Return the motions of a step, as dense as a curve through them wants, with their errors."""
+    # And the largest first correction.  They are corrected side by side, as arrays of more states
+    # cost less a state.
     past = [other.resampled(len(orbit.motion.x)) for other in past]
     value, guess = orbit.ahead(step, past)
     # Before a fold, where the parameter slows down, as many as its present rate wants.
@@ -261,10 +259,8 @@ def special_points(solver: Solver, before: Orbit, after: Orbit) -> Iterator[Spec
 
 
 def _leaves(solver: Solver, *orbits: Orbit) -> bool:
-    """Return False where pairs become real, or lie on the unit circle by their errors.
-
-    So they do along the whole branch of a system without damping.
-    """
+    """Return False where pairs become real, or lie on the unit circle by their errors."""
+    # So they do along the whole branch of a system without damping.
     pairs = {int(np.sum(orbit.multipliers.imag > 0)) for orbit in orbits}
     return len(pairs) == 1 and any(
         abs(torus(orbit)) > np.max(solver.measure(orbit).multiplier_errors) for orbit in orbits

@@ -344,11 +344,9 @@ class Solver:
         )
 
     def _shown(self, orbit: Orbit, other: Array) -> tuple[float, float]:
-        """Return how far the deflection moves if all coordinates move by their size, and does.
-
-        ``other``: the coordinates at the Gauss points of another motion; the deflections of both
-        are compared near the extremes.
-        """
+        """Return how far the deflection moves if all coordinates move by their size, and does."""
+        # `other`: the coordinates at the Gauss points of another motion; the deflections of both
+        # are compared near the extremes.
         shown, (_, parameters) = self.problem.system.shown, self.problem.at(orbit.value)
         q = orbit.motion.stages()[0]
         step = 1e-4 * float(orbit.tangent.scale[0]) * np.eye(self.problem.system.size)[:, None]
@@ -362,10 +360,8 @@ class Solver:
         return most, float(np.max(off[near]))
 
     def _rounding(self, orbit: Orbit) -> tuple[float, float]:
-        """Return the error of a sum over the steps, and of coordinates by rounded accelerations.
-
-        A link's angle is of the order of 1 while it bends by less.
-        """
+        """Return the error of a sum over the steps, and of coordinates by rounded accelerations."""
+        # A link's angle is of the order of 1 while it bends by less.
         n = self.problem.system.size
         stiffness = float(np.max(np.abs(orbit.swept.response[:, :, :, :n])))
         scale = float(orbit.tangent.scale[0])
@@ -401,11 +397,9 @@ class Solver:
 
 
 def _differences(orbit: Orbit, rough: Array) -> Array:
-    """Return by how much multipliers differ from those of another matrix, ``(2n,)``.
-
-    At least a part of what the difference of the matrices may amount to: that of a multiplier
-    passes zero where its signs change.
-    """
+    """Return by how much multipliers differ from those of another matrix, ``(2n,)``."""
+    # At least a part of what the difference of the matrices may amount to: that of a multiplier
+    # passes zero where its signs change.
     multipliers, vectors = orbit.eigen
     rows, columns = np.abs(np.linalg.pinv(vectors)), np.abs(vectors)
     gaps = np.abs(rough - orbit.matrix)
@@ -464,10 +458,8 @@ def _bordered_matrix(whole: Array, added: Array, direction: Direction) -> Array:
 def _bordered(
     whole: Array, added: Array, direction: Direction, along: float = 0.0
 ) -> tuple[Array, float]:
-    """Return changes of states and parameter that close the period, by so much along.
-
-    With ``along`` what is wrong with the motion is left aside.
-    """
+    """Return changes of states and parameter that close the period, by so much along."""
+    # With `along` what is wrong with the motion is left aside.
     wrong = 0.0 if along else 1.0
     row, _ = direction.weights
     right = np.append(-wrong * added[-1, :, 0], along - wrong * np.sum(row * added[:-1, :, 0]))

@@ -324,10 +324,8 @@ def _all_branches(
     starts: list[tuple[float, Motion]],
     tick: Callable[[int], None],
 ) -> tuple[list[Branch], tuple[float, ...]]:
-    """Return the branch from either end of the range, and those that begin on it.
-
-    And the ends at which none was found.
-    """
+    """Return the branch from either end of the range, and those that begin on it."""
+    # And the ends at which none was found.
     branches: list[Branch] = []
     queue: list[tuple[Orbit, Measure]] = []
     missed: dict[float, str] = {}
@@ -373,10 +371,8 @@ def _follow(
     tick: Callable[[int], None],
     back: tuple[Orbit, Measure] | None = None,
 ) -> None:
-    """Follow a branch unless it is known, and add the beginnings of those that start on it.
-
-    ``back``: the same motion with its tangent the other way, to follow it that way, too.
-    """
+    """Follow a branch unless it is known, and add the beginnings of those that start on it."""
+    # `back`: the same motion with its tangent the other way, to follow it that way, too.
     first, _ = begun
     if any(_on(solver, first.value, first.motion, branch) for branch in branches):
         return

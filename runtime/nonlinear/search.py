@@ -293,10 +293,8 @@ def _wave(problem: Problem, harmonics: Array, turns: int) -> Motion:
 
 
 def _marched(marcher: Marcher, speed: float, state: Array, turns: int) -> Motion | None:
-    """Return the last revolutions of a motion from a state, or None where it is lost.
-
-    It ends where a state all but comes back after some turns.
-    """
+    """Return the last revolutions of a motion from a state, or None where it is lost."""
+    # It ends where a state all but comes back after some turns.
     last: list[Motion] = []
     states = [state]
     try:
@@ -327,11 +325,9 @@ def _back(states: Sequence[Array], turns: int, size: Array) -> bool:
 def _deflated(
     solver: Solver, value: float, start: Motion, known: Sequence[Motion], bound: float
 ) -> Motion:
-    """Return a periodic motion near a start and away from the known ones.
-
-    Newton's step of the deflated equations is that of the equations, times a number: with m the
-    product of ``1 + 1 / |y - y_i|^2`` over the known motions it is ``1 / (1 - m' . step / m)``.
-    """
+    """Return a periodic motion near a start and away from the known ones."""
+    # Newton's step of the deflated equations is that of the equations, times a number: with m the
+    # product of 1 + 1 / |y - y_i|^2 over the known motions it is 1 / (1 - m' . step / m).
     motion = start
     for _ in range(_ITERATIONS):
         swept = sweep(solver.problem, value, motion)

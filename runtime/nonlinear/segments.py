@@ -163,10 +163,8 @@ class Motion:
 
 @lru_cache(maxsize=16)
 def _at_stages(stages: int, others: int) -> tuple[Array, Array]:
-    """Return what accelerations at the points of stages are at those of others, ``(others, s)``.
-
-    Integrated twice from the beginning of a step of length 1, and themselves.
-    """
+    """Return what accelerations at the points of stages are at those of others, ``(others, s)``."""
+    # Integrated twice from the beginning of a step of length 1, and themselves.
     terms = at_places(nodes(others).c, stages) @ nodes(stages).series
     return terms[:, 0], terms[:, 2]
 

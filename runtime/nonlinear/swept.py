@@ -277,12 +277,10 @@ def _extremes(system: Nonlinear, motion: Motion, angles: Array) -> tuple[float, 
 
 
 def _jumps(speed: Array, size: Array, maps: Array, least: float) -> list[tuple[float, float]]:
-    """Return speed and ratio of each jump of a deflection, revolution by revolution.
-
-    A motion that jumps is repelled from where it was: some of its multipliers over the revolutions
-    behind it are beyond the unit circle, however few it takes, by more than ``least`` for each, of
-    logarithms.  From there it comes to rest on another motion, of another size.
-    """
+    """Return speed and ratio of each jump of a deflection, revolution by revolution."""
+    # A motion that jumps is repelled from where it was: some of its multipliers over the
+    # revolutions behind it are beyond the unit circle, however few it takes, by more than `least`
+    # for each, of logarithms.  From there it comes to rest on another motion, of another size.
     count = len(size)
     largest = float(np.max(size, initial=0.0))
     if count < 8 or not largest:
@@ -317,10 +315,9 @@ def _jumps(speed: Array, size: Array, maps: Array, least: float) -> list[tuple[f
 
 
 def _growth(maps: Sequence[Array] | Array) -> Array:
-    """Return the logarithm of the largest multiplier of revolutions ``(k, ..., 2n, 2n)``.
-
-    One comes behind the other; what is multiplied is scaled, so that no number of them is too many.
-    """
+    """Return the logarithm of the largest multiplier of revolutions ``(k, ..., 2n, 2n)``."""
+    # One comes behind the other; what is multiplied is scaled, so that no number of them is too
+    # many.
     behind, scale = maps[0], np.zeros(maps[0].shape[:-2])
     for one in maps[1:]:
         behind = one @ behind

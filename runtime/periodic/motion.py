@@ -333,11 +333,9 @@ def _likely(
 
 
 def _missed(equation: Equation, grid: _Grid, level: _Level) -> float:
-    """Return what the nodes of a step miss of the coefficients' waves, at most 1.
-
-    The polynomial through s nodes misses ``2 (R h/4)^s / s!`` of a wave R; of amplitudes that fall
-    to a millionth at the reach the worst is that of about s/14 of it.
-    """
+    """Return what the nodes of a step miss of the coefficients' waves, at most 1."""
+    # The polynomial through s nodes misses 2 (R h/4)^s / s! of a wave R; of amplitudes that fall to
+    # a millionth at the reach the worst is that of about s/14 of it.
     stages, fineness = level
     wave = equation.reach * min(1.0, stages / 14.0) * grid.step / ceil(fineness)
     return min(1.0, 2.0 * (0.25 * wave) ** stages / factorial(stages))

@@ -231,10 +231,8 @@ def _border(squares: Array, modes: int) -> tuple[Array, Array]:
 
 
 def _evenly(turn: Array, count: int) -> Array | None:
-    """Return rotations ``(count, m, m)`` that undo ``turn`` little by little; None if mirrored.
-
-    ``turn^(-k/count)`` with the smallest angles; a pair of eigenvalues -1 is half a turn.
-    """
+    """Return rotations ``(count, m, m)`` that undo ``turn`` little by little; None if mirrored."""
+    # turn^(-k/count) with the smallest angles; a pair of eigenvalues -1 is half a turn.
     from scipy.linalg import schur
 
     form, vectors = schur(turn, output="real")

@@ -412,11 +412,9 @@ def conditions(vectors: ComplexArray) -> Array:
 
 
 def _shifts(way: Method, coarse: tuple[Array, ...], fine: tuple[Array, ...]) -> tuple[Array, Array]:
-    """Return how far multipliers differ, and round-off, over the larger of 1 and their sizes.
-
-    Of shape ``(nb, m)`` each.  Each multiplier is compared with the nearest of the other rung; one
-    of the coarser rung that is left over counts for the finer one that is nearest to it.
-    """
+    """Return how far multipliers differ, and round-off, over the larger of 1 and their sizes."""
+    # Of shape (nb, m) each.  Each multiplier is compared with the nearest of the other rung; one of
+    # the coarser rung that is left over counts for the finer one that is nearest to it.
     other = coarse[2] * np.ldexp(1.0, _shift(coarse[1], fine[1]))[:, None]
     gaps = np.abs(fine[2][:, :, None] - other[:, None, :])
     error = np.min(gaps, axis=2)
@@ -431,13 +429,11 @@ def _shifts(way: Method, coarse: tuple[Array, ...], fine: tuple[Array, ...]) -> 
 
 
 def _exchanged(coarse: tuple[Array, ...], fine: tuple[Array, ...]) -> Array:
-    """Return what the difference of two rungs exchanges between each eigenvector and the others.
-
-    Of the difference in coordinates of the eigenvectors the diagonal moves the eigenvalues to first
-    order; on the unit circle it is small by chance, or by symmetry, on one rung and not on the
-    next.  Returned are the geometric means of the norms of its rows and columns, ``(nb, m)``, in
-    which vectors of another modulus count by the ratio of both.
-    """
+    """Return what the difference of two rungs exchanges between each eigenvector and the others."""
+    # Of the difference in coordinates of the eigenvectors the diagonal moves the eigenvalues to
+    # first order; on the unit circle it is small by chance, or by symmetry, on one rung and not on
+    # the next.  Returned are the geometric means of the norms of its rows and columns, (nb, m), in
+    # which vectors of another modulus count by the ratio of both.
     gap = np.ldexp(coarse[0], _shift(coarse[1], fine[1])[:, None, None]) - fine[0]
     exchanged = np.zeros(fine[2].shape)
     # Eigenvectors that coincide are known from their condition.

@@ -486,11 +486,9 @@ def _checks(
 
 
 def _residual(equation: Equation, theta: Array, q: Array, slope: Array, error: float) -> Check:
-    """Put the motion's Fourier series into the equation half-way between the angles.
-
-    The derivative of the series has nothing to do with the method.  Limit: an error of the highest
-    harmonic kept, over the largest rate.
-    """
+    """Put the motion's Fourier series into the equation half-way between the angles."""
+    # The derivative of the series has nothing to do with the method.  Limit: an error of the
+    # highest harmonic kept, over the largest rate.
     count = len(theta)
     unit = equation.scale[0]
     momentum = (equation.at("mass", theta)[0] @ (slope / unit)[..., None])[..., 0]
@@ -582,10 +580,8 @@ def balanced_motion(
 
 
 def _left(waves: ComplexArray) -> Array:
-    """Return what share of an error the last third of the harmonics leaves, at most 1.
-
-    Twice the root of the fall from the third before it: harmonics beyond may fall half as fast.
-    """
+    """Return what share of an error the last third of the harmonics leaves, at most 1."""
+    # Twice the root of the fall from the third before it: harmonics beyond may fall half as fast.
     third = len(waves) // 3
     middle, last = (
         np.max(np.abs(part), axis=0) for part in (waves[-2 * third : -third], waves[-third:])

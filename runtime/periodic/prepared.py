@@ -476,10 +476,8 @@ class TableErrors:
         return found
 
     def _at(self, speeds: Array, errors: Array) -> Array:
-        """Return errors ``(k, ...)`` at speeds ``(ns,)``, ``(ns, ...)``.
-
-        Between two speeds they fall with a power of the speed, as the segments' phases do.
-        """
+        """Return errors ``(k, ...)`` at speeds ``(ns,)``, ``(ns, ...)``."""
+        # Between two speeds they fall with a power of the speed, as the segments' phases do.
         if len(self.speed) == 1:
             return np.broadcast_to(errors, (len(speeds), *errors.shape[1:]))
         after = np.searchsorted(self.speed[1:-1], speeds) + 1

@@ -49,10 +49,8 @@ def solve_ring(maps: Array, loads: Array) -> tuple[Array, Array]:
 def _joined(
     left: Array, right: Array, loads: Array
 ) -> tuple[Array, Array, Array, tuple[Array, Array, Array, Array]]:
-    """Eliminate every other node from ``left[k] y[k] + right[k] y[k+1] = loads[k]``.
-
-    The last of an odd number stays as it is.
-    """
+    """Eliminate every other node from ``left[k] y[k] + right[k] y[k+1] = loads[k]``."""
+    # The last of an odd number stays as it is.
     m = left.shape[-1]
     even = left.shape[1] - left.shape[1] % 2
     rest = (left[:, even:], right[:, even:], loads[:, even:])

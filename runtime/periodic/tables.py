@@ -166,11 +166,9 @@ def places(ends: tuple[float, float], nodes: int) -> Array:
 
 
 def _nodes_for(equation: Equation, count: int, way: Method, tolerance: float) -> int:
-    """Return the number of nodes whose last two Chebyshev coefficients are below a tolerance.
-
-    The equation is that at a trial number of nodes, the tolerance relative to the largest
-    coefficient.  Coefficients beyond the trial's fall as those of its second half do.
-    """
+    """Return the number of nodes whose last two Chebyshev coefficients are below a tolerance."""
+    # The equation is that at a trial number of nodes, the tolerance relative to the largest
+    # coefficient.  Coefficients beyond the trial's fall as those of its second half do.
     if 2 * equation.size < _SMALL:
         return _NODES
     h = equation.period / count
@@ -223,10 +221,8 @@ def _tail(maps: Array) -> float:
 
 
 def _grouped(maps: Array, ends: tuple[float, float], samples: int, tail: float) -> Table:
-    """Multiply neighbouring segments while the products remain polynomials of the same degree.
-
-    Entries may not grow too far either: what is small in a group keeps its digits.
-    """
+    """Multiply neighbouring segments while the products remain polynomials of the same degree."""
+    # Entries may not grow too far either: what is small in a group keeps its digits.
     count, size = maps.shape[1], 1
     merged = maps
     while merged.shape[1] % 2 == 0 and size < 8:

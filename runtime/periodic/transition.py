@@ -199,10 +199,8 @@ def stages_of(equation: Equation, left: Array, h: float, way: Method) -> Stages:
 
 
 def _solved(equation: Equation, stages: Stages, h: float, way: Method) -> tuple[Array, Array]:
-    """Return maps and slopes of segments that are solved in one batch of linear equations.
-
-    Matrices are made by columns, as LAPACK wants them, and so are right sides and solutions.
-    """
+    """Return maps and slopes of segments that are solved in one batch of linear equations."""
+    # Matrices are made by columns, as LAPACK wants them, and so are right sides and solutions.
     n, s = equation.size, way.stages
     (nb, ns), m = stages.columns.shape[:2], 2 * n + equation.forced
     at_nodes = stages.at_nodes
@@ -249,10 +247,8 @@ def _solved(equation: Equation, stages: Stages, h: float, way: Method) -> tuple[
 
 
 def _solution(columns: Array, right: Array) -> Array:
-    """Return solutions ``(..., m, k)`` of systems given by columns, both stacked alike.
-
-    LAPACK itself saves large systems the copies that NumPy makes.
-    """
+    """Return solutions ``(..., m, k)`` of systems given by columns, both stacked alike."""
+    # LAPACK itself saves large systems the copies that NumPy makes.
     # From so many unknowns on system by system: a quarter quicker at 270 of them.
     if columns.shape[-1] < 100:
         return np.ascontiguousarray(np.linalg.solve(columns.mT, right.mT).mT)
@@ -308,11 +304,9 @@ def predicted_error(equation: Equation, way: Method, segments: NDArray[Any]) -> 
 
 
 def _mode_error(way: Method, turned: Array, segments: NDArray[Any], period: float) -> Array:
-    """Return the logarithm of the relative error of a mode that turns so far in a period [rad].
-
-    Over S segments of phase ``x = turned/S`` it is ``S k x^(order + 1)``, at most 1; ``k =
-    (s!)^2/((2s)! (2s+1)!)`` is the constant of Pade's approximation of the exponential.
-    """
+    """Return the logarithm of the relative error of a mode that turns so far in a period [rad]."""
+    # Over S segments of phase x = turned/S it is S k x^(order + 1), at most 1; k = (s!)^2/((2s)!
+    # (2s+1)!) is the constant of Pade's approximation of the exponential.
     s, power = way.stages, way.order + 1
     constant = 2 * lgamma(s + 1) - lgamma(2 * s + 1) - lgamma(2 * s + 2)
     # The coefficients' waves turn the state too: about one radian per radian.

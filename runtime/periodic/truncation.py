@@ -252,12 +252,10 @@ def _followed(
     flexibility: Array,
     period: float,
 ) -> Iterator[tuple[str, int, Array]]:
-    """Yield what the modes left out add to those kept: array, extra power of the speed, values.
-
-    For powers k and l of the speed, ``back_k F (rate_l z' + place_l z + load_l)`` less the
-    derivative of ``forth_k F (...)``.  Where both are conservative the parts go to M, A and B,
-    so that the truncated system stays conservative; else to C and D.
-    """
+    """Yield what the modes left out add to those kept: array, extra power of the speed, values."""
+    # For powers k and l of the speed, back_k F (rate_l z' + place_l z + load_l) less the derivative
+    # of forth_k F (...).  Where both are conservative the parts go to M, A and B, so that the
+    # truncated system stays conservative; else to C and D.
     couplings = _couplings(arrays, phi, slope, period)
     for k, one in couplings.items():
         forth, back = one.forth @ flexibility, one.back @ flexibility

@@ -178,11 +178,9 @@ def _by_equilibrium(forms: ElementForms, e: int, xi: Array) -> dict[str, LinearF
 
 
 def _integrals(placed: PlacedElement, xi: Array) -> dict[str, Array]:
-    """Return integrals of shape functions from the element's start to each place.
-
-    ``u``, ``v``, ``rotation``; ``u lever``, ``v lever`` times the distance to the place; ``slope``
-    of v' times 1, s and s^2, s the place over the element's length: ``(3, nx, n)``.
-    """
+    """Return integrals of shape functions from the element's start to each place."""
+    # `u`, `v`, `rotation`; u lever, v lever times the distance to the place; `slope` of v' times 1,
+    # s and s^2, s the place over the element's length: (3, nx, n).
     places = 0.5 * xi[:, None] * (1.0 + _GAUSS_PLACES)
     weights = 0.5 * placed.length * xi[:, None] * _GAUSS_WEIGHTS
     lever = placed.length * (xi[:, None] - places)

@@ -357,10 +357,8 @@ class _Work:
         )
 
     def _changed(self, speeds: Array, size: Array) -> Array:
-        """Return the largest relative change of stresses by solving the whole equation, by link.
-
-        At the highest speed, in the middle, and where the modes answer most.
-        """
+        """Return the largest relative change of stresses by solving the whole equation, by link."""
+        # At the highest speed, in the middle, and where the modes answer most.
         most = int(np.argmax(np.max(size, axis=0) / speeds**2))
         theta = even_angles(self.system.period, max(self.angles, 4 * _ANGLES))
         changes = []
@@ -372,10 +370,8 @@ class _Work:
         return np.asarray(np.max(changes, axis=0))
 
     def _trials(self, speeds: Array) -> tuple[Trial, Trial, Array]:
-        """Return two numbers of modes that agree at some speeds, and what stresses change by.
-
-        That is relative, the largest of the speeds, of each link.
-        """
+        """Return two numbers of modes that agree at some speeds, and what stresses change by."""
+        # That is relative, the largest of the speeds, of each link.
         while True:
             offered = self.truncations.usable(self.least, self.angles)
             if not offered:

@@ -305,11 +305,9 @@ def _described(search: Search, best: Candidate) -> Balancing:
 
 
 def _rounding(search: Search, p: Array) -> float:
-    """Return what round-off does to the weighted sum of the relative peaks.
-
-    Some last digits; and near a change point, where forces hang on the last digits of the lengths,
-    what some of these change.
-    """
+    """Return what round-off does to the weighted sum of the relative peaks."""
+    # Some last digits; and near a change point, where forces hang on the last digits of the
+    # lengths, what some of these change.
     values = []
     for linkage in _all_but_equal(search.basis.machine.linkage):
         machine = replace(search.basis.machine, linkage=linkage)

@@ -232,13 +232,11 @@ class _Motion:
 
 
 def _motion(machine: Machine, steady: TorqueFluctuation, fluctuation: float) -> _Motion:
-    """Return the least flywheel that keeps within a coefficient of fluctuation, and the motion.
-
-    With S the work stored in the loads, E a constant and I the flywheel, ``omega^2 = 2 (E + S)/(J +
-    I)``.  Its greatest value is ``high^2`` where the greatest of ``2 (E + S) - (J + I) high^2`` is
-    zero, its least ``low^2`` where the least of the same with low is: two linear equations for E
-    and I.  Loads that depend on the speed are taken at the last speeds.
-    """
+    """Return the least flywheel that keeps within a coefficient of fluctuation, and the motion."""
+    # With S the work stored in the loads, E a constant and I the flywheel, omega^2 = 2 (E + S)/(J +
+    # I).  Its greatest value is high^2 where the greatest of 2 (E + S) - (J + I) high^2 is zero,
+    # its least low^2 where the least of the same with low is: two linear equations for E and
+    # I.  Loads that depend on the speed are taken at the last speeds.
     theta, speed = steady.theta, abs(steady.speed)
     system, sign = OneFreedom(machine), np.sign(steady.speed)
     reduced = system.coefficients(theta)[0]
@@ -303,10 +301,8 @@ def _integral(values: Array) -> Array:
 
 
 def _extreme(values: Array) -> tuple[float, float]:
-    """Return the greatest value of a periodic function between its samples, and its angle.
-
-    By Newton's method on the trigonometric interpolant, from every sample that may be beside it.
-    """
+    """Return the greatest value of a periodic function between its samples, and its angle."""
+    # By Newton's method on the trigonometric interpolant, from every sample that may be beside it.
     tops = summits(values)
     series = interpolated(values, TURN).coefficients
     waves, step = 1j * np.arange(series.size), TURN / values.size

@@ -150,11 +150,9 @@ def _pulls(
 
 
 def _shortest_arm(lengths: Mapping[str, float], motion: Any) -> Array:
-    """Return the shortest arm by which a force in a joint balances a moment.
-
-    The coupler's length seen across the follower or across the guide, the follower's across the
-    coupler, or the slide of a block along its rod.
-    """
+    """Return the shortest arm by which a force in a joint balances a moment."""
+    # The coupler's length seen across the follower or across the guide, the follower's across the
+    # coupler, or the slide of a block along its rod.
     if hasattr(motion, "slide"):
         return np.asarray(motion.slide)
     sine = np.abs(np.sin(motion.transmission_angle))

@@ -157,10 +157,8 @@ class OneFreedom:
 
 
 def _series(function: Callable[[Array], Array]) -> Callable[[float], float] | None:
-    """Return a function of the crank angle as its harmonics down to round-off.
-
-    None where there are too many.
-    """
+    """Return a function of the crank angle as its harmonics down to round-off."""
+    # None where there are too many.
 
     def series(theta: float) -> float:
         return float((terms @ np.exp(orders * theta)).real)

@@ -128,11 +128,9 @@ def _entry(array: str, block: ComplexArray, left: Array, right: Array) -> Comple
 
 
 def _in_real_basis(total: ComplexArray) -> Array:
-    """Carry a matrix ``(K, n, K, n)``, kappa rising, to cosines and sines; ``(K n, K n)``.
-
-    The entries at -kappa, -lambda are conjugate to those at kappa, lambda, so the rows of positive
-    kappa say everything.
-    """
+    """Carry a matrix ``(K, n, K, n)``, kappa rising, to cosines and sines; ``(K n, K n)``."""
+    # The entries at -kappa, -lambda are conjugate to those at kappa, lambda, so the rows of
+    # positive kappa say everything.
     count, n = total.shape[:2]
     middle, odd = divmod(count, 2)
     rows = total[middle + odd :]
@@ -427,10 +425,8 @@ def _refined(
 
 
 def _apart(matrices: Matrices, speed: Array, vectors: Array) -> Array:
-    """Turn the vectors of roots that nearly coincide so that each belongs to a root of its own.
-
-    The decomposition of the whole problem mixes them; within their span it is a small one.
-    """
+    """Turn the vectors of roots that nearly coincide so that each belongs to a root of its own."""
+    # The decomposition of the whole problem mixes them; within their span it is a small one.
     import scipy.linalg
 
     turned = np.array(vectors)

@@ -429,10 +429,8 @@ def _level(sampler: Sampler, half: Array) -> Array:
 
 
 def _larger_root(half: Array, level: Array) -> Array:
-    """Return the largest modulus of the roots of ``rho^2 - 2 X rho + W`` at X >= 0.
-
-    W is the determinant.
-    """
+    """Return the largest modulus of the roots of ``rho^2 - 2 X rho + W`` at X >= 0."""
+    # W is the determinant.
     with np.errstate(over="ignore"):
         square = half**2
         real = square >= level
@@ -537,10 +535,8 @@ def _shade(ax: Axes, chart: StabilityChart, x: Array, y: Array) -> None:
 def _fill(
     ax: Axes, chart: StabilityChart, x: Array, y: Array, kinds: NDArray[np.int8]
 ) -> Iterator[int]:
-    """Fill the regions between exact boundaries, take them out of kinds, and yield theirs.
-
-    A region with one end alone reaches to the end of the axis.
-    """
+    """Fill the regions between exact boundaries, take them out of kinds, and yield theirs."""
+    # A region with one end alone reaches to the end of the axis.
     curves = chart.exact
     if curves is None:
         return

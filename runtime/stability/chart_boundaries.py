@@ -139,16 +139,13 @@ def _regions(ends: Array, along: str, points: list[_Point]) -> tuple[tuple[int, 
 def _damped_speeds(
     f: PeriodicFunction, stiffness: float, damping: float, regions: tuple[int, ...]
 ) -> Array:
-    """Return speeds at the ends of damped regions in lam2, and their error, (3, regions).
-
-    NaN where damping has closed the region, and at the lower end of one that reaches on to infinite
-    speed.  The function f is the same at every speed, stiffness k [1/s^2] and damping c [1/s] are
-    positive.
-
-    With lam2 = s^2 and K = r s, r = c / (2 sqrt(k)), Hill's matrix gives
-    ``(k^2 - f) v - 2 r s D v = s^2 v``, D = d/d theta.  A region lies within the undamped one
-    moved by K^2 (see :mod:`..hill.boundaries`), which is how real s get its number.
-    """
+    """Return speeds at the ends of damped regions in lam2, and their error, (3, regions)."""
+    # NaN where damping has closed the region, and at the lower end of one that reaches on to
+    # infinite speed.  The function f is the same at every speed, stiffness k [1/s^2] and damping c
+    # [1/s] are positive.
+    # With lam2 = s^2 and K = r s, r = c / (2 sqrt(k)), Hill's matrix gives (k^2 - f) v - 2 r s D v
+    # = s^2 v, D = d/d theta.  A region lies within the undamped one moved by K^2 (see boundaries),
+    # which is how real s get its number.
     ratio = damping / (2.0 * np.sqrt(stiffness))
     sharp = hill_boundaries(f, 1.0, regions)
     highest = float(np.sqrt(max(float(np.max(sharp.upper)), 0.25)))
@@ -209,11 +206,9 @@ def _overlay(
 
 
 def _along_speed(solve: Solve, n: int, stiffness: Array, damping: Array) -> Array:
-    """Return the ends of one region in speed, where lam2 and K both depend on it.
-
-    At crank speed w, lam2 = k / w^2 and K = c / (2 w) = r sqrt(lam2): an end is where the lam2
-    that belongs to K gives that K again.
-    """
+    """Return the ends of one region in speed, where lam2 and K both depend on it."""
+    # At crank speed w, lam2 = k / w^2 and K = c / (2 w) = r sqrt(lam2): an end is where the lam2
+    # that belongs to K gives that K again.
     out = np.full((3, len(stiffness)), np.nan)
     usable = stiffness > 0.0
     ratio = np.where(usable, damping / (2 * np.sqrt(np.where(usable, stiffness, 1.0))), 0.0)
@@ -276,10 +271,8 @@ def _solver(form: HillForm, other: str, rows: Array, points: Sequence[_Point], o
 def _functions(
     form: HillForm, other: str, rows: Array
 ) -> tuple[list[PeriodicFunction], list[Array]]:
-    """Return functions and factors, one for each row, whose sum is the periodic part.
-
-    Parts that change in proportion are one function.
-    """
+    """Return functions and factors, one for each row, whose sum is the periodic part."""
+    # Parts that change in proportion are one function.
     scales = form.system.scale_values(**({} if other == "speed" else {other: rows}))
     points = [{} if other == "speed" else {other: float(v)} for v in rows]
     mass = np.array([form.system.array("M", 0.0, **p)[0, 0, 0] for p in points])

@@ -180,10 +180,8 @@ class Crossings:
         return sorted(found, key=lambda c: c.speed)
 
     def _crossed(self, row: int, rising: bool, turn: complex) -> complex:
-        """Return the multiplier that crosses, of the kind that a crossing adds to those outside.
-
-        Where two nearly meet at the crossing, rounding decides whether they are complex there.
-        """
+        """Return the multiplier that crosses, of the kind that a crossing adds to those outside."""
+        # Where two nearly meet at the crossing, rounding decides whether they are complex there.
         more, fewer = (row + 1, row) if rising else (row, row + 1)
         added = Counter(_kind(t) for t in _kinds(self._levels, more))
         added.subtract(_kind(t) for t in _kinds(self._levels, fewer))
@@ -486,11 +484,9 @@ def _counts(
     span: tuple[float, float],
     parameters: Mapping[str, float],
 ) -> int:
-    """Return at how many places between ends not as many multipliers grow as regions cover.
-
-    The places are beside each end and in the middle between each two.  A principal region stands
-    for one multiplier, any other for two, which holds too where four meet off the circle.
-    """
+    """Return at how many places between ends not as many multipliers grow as regions cover."""
+    # The places are beside each end and in the middle between each two.  A principal region stands
+    # for one multiplier, any other for two, which holds too where four meet off the circle.
     wide = np.flatnonzero(regions.end - regions.begin > 4 * regions.error)
     begin, end, error = regions.begin[wide], regions.end[wide], regions.error[wide]
     ends = np.concatenate([span, begin, end])

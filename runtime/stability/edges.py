@@ -323,11 +323,9 @@ def _check_damping(system: LinearPeriodic, parameters: Mapping[str, float]) -> N
 def _undamped(
     matrices: MatricesOverSpeed, bounded: Regions | None, span: tuple[float, float], *, whole: bool
 ) -> tuple[Regions, float]:
-    """Return the regions of a conservative system and the width they were searched down to.
-
-    ``bounded`` are the principal regions; without them they too are found from pairs that meet.
-    Where not ``whole``, as places and labels of damped ones, those of single pairs are enough.
-    """
+    """Return the regions of a conservative system and the width they were searched down to."""
+    # `bounded` are the principal regions; without them they too are found from pairs that meet.
+    # Where not `whole`, as places and labels of damped ones, those of single pairs are enough.
     least = np.zeros(0)
     if bounded is None:
         samples = sampled_phases(matrices, span, np.zeros(0))
@@ -377,11 +375,9 @@ def _reached(edges: Edges, reach: Array) -> tuple[Array, Array, Array]:
 
 
 def _combined(matrices: MatricesOverSpeed, events: Events, edges: Edges, *, held: bool) -> Regions:
-    """Return the combination regions in which pairs meet, with labels.
-
-    With ``held`` from modes with the crank held and how much of the motion each has; else from
-    frequencies and phases of the averaged equation alone.
-    """
+    """Return the combination regions in which pairs meet, with labels."""
+    # With `held` from modes with the crank held and how much of the motion each has; else from
+    # frequencies and phases of the averaged equation alone.
     middle, begin, end = _reached(edges, events.reach)
     phase = edges.phase
     shares: Array | None = None

@@ -205,10 +205,8 @@ def tongue_curves(
 def _carried_on(
     feet: list[Resonance], before: Array, edges: StabilityEdges, places: list[int | None]
 ) -> list[int | None]:
-    """Return the feet of regions, those without modes by what they overlap at the value before.
-
-    Where much is periodic the averaged equation may have no modes to name a region after.
-    """
+    """Return the feet of regions, those without modes by what they overlap at the value before."""
+    # Where much is periodic the averaged equation may have no modes to name a region after.
     begin, end = np.nan_to_num(edges.lower, nan=0.0), np.nan_to_num(edges.upper, nan=np.inf)
     last = np.nan_to_num(before[1], nan=np.inf)
     carried = list(places)
@@ -231,10 +229,8 @@ def _carried_on(
 
 
 def _growth(system: LinearPeriodic, at: Mapping[str, float], edges: StabilityEdges) -> Array:
-    """Return the largest growth rate of nine places inside each region [1/s]; 0 where closed.
-
-    NaN of one without two ends.
-    """
+    """Return the largest growth rate of nine places inside each region [1/s]; 0 where closed."""
+    # NaN of one without two ends.
     growth = np.where(np.isfinite(edges.width), 0.0, np.nan)
     wide = np.flatnonzero(edges.width > 2 * edges.error)
     if len(wide):

@@ -75,11 +75,9 @@ def averaged_modes(matrices: MatricesOverSpeed, speed: Array) -> Modes:
 
 
 def _own_turns(equation: Equation, vectors: ComplexArray, duals: ComplexArray) -> Array:
-    """Return the turns of each mode in a period, all others at rest, ``(k, n)``.
-
-    With the motion v of a mode, and its row of the inverse as dual, ``y = c v + conj(c v)`` leaves
-    ``c' = i a c + b conj c`` of ``y' = L y``.  In region n of this equation c makes n/2 turns.
-    """
+    """Return the turns of each mode in a period, all others at rest, ``(k, n)``."""
+    # With the motion v of a mode, and its row of the inverse as dual, y = c v + conj(c v) leaves c'
+    # = i a c + b conj c of y' = L y.  In region n of this equation c makes n/2 turns.
     turned = np.zeros(vectors.shape[::2])
     if not len(turned):
         return turned
@@ -203,12 +201,10 @@ def _beyond(matrices: MatricesOverSpeed, speed: Array, sign: int) -> list[int]:
 def _paired(
     found: SpeedBoundaries, own: NDArray[np.intp], owner: NDArray[np.intp], count: list[int]
 ) -> list[Unit]:
-    """Pair boundaries so that as many regions cover each interval as multipliers are off there.
-
-    A boundary behind which one more is off begins a region, another ends the last one begun, rather
-    one whose motion is mostly of the same mode.  Two that nearly coincide and change nothing are a
-    region of their own, or the end of one and the beginning of the next.
-    """
+    """Pair boundaries so that as many regions cover each interval as multipliers are off there."""
+    # A boundary behind which one more is off begins a region, another ends the last one begun,
+    # rather one whose motion is mostly of the same mode.  Two that nearly coincide and change
+    # nothing are a region of their own, or the end of one and the beginning of the next.
     begun, units = [-1] * count[0], list[Unit]()
 
     def same(row: int) -> list[int]:

@@ -113,10 +113,8 @@ def _signed(scaled: Array, error: Array) -> tuple[NDArray[np.complex128], NDArra
 
 
 def _positive(angle: Array, signs: NDArray[np.int8]) -> tuple[Array, Flags]:
-    """Return the n arguments of positive signature, rising, and which of them are open.
-
-    Multipliers whose signature is open come in groups of like argument, half of them positive.
-    """
+    """Return the n arguments of positive signature, rising, and which of them are open."""
+    # Multipliers whose signature is open come in groups of like argument, half of them positive.
     decided = angle[signs == 1]
     rest = np.sort(np.mod(angle[signs == 0], _TURN_ROUND))[::2]
     both = np.mod(np.concatenate([decided, rest]), _TURN_ROUND)

@@ -248,12 +248,10 @@ class Several:
         return np.asarray(np.diff(turning, axis=-1)[:, column])
 
     def _belongs(self, sigma: float) -> bool:
-        """Return True where the growing motion is that of the resonance's modes.
-
-        Looked at is the power that each mode takes up, its action times the growth and what damping
-        takes: two modes of one tongue share it alike, whereas of the actions the lightly damped
-        mode has nearly all.
-        """
+        """Return True where the growing motion is that of the resonance's modes."""
+        # Looked at is the power that each mode takes up, its action times the growth and what
+        # damping takes: two modes of one tongue share it alike, whereas of the actions the lightly
+        # damped mode has nearly all.
         if self.modes is None:
             return True
         matrix = self._at(np.array([sigma]))[0]

@@ -156,10 +156,8 @@ class Sweep(Result):
         return found
 
     def _tables(self) -> dict[str, str]:
-        """Return the table of all points, one row each, and those of outputs of several numbers.
-
-        Where points have failed it has a column of errors.
-        """
+        """Return the table of all points, one row each, and those of outputs of several numbers."""
+        # Where points have failed it has a column of errors.
         shape = tuple(map(len, self.axes.values()))
         outputs = {name: np.asarray(array) for name, array in self.outputs.items()}
         if self.failures:

@@ -205,10 +205,8 @@ def _by_geometry(
     options: Mapping[str, Any],
     outputs: Outputs,
 ) -> Piece:
-    """Call a solver of :mod:`..periodic` with all points of a piece, or once for each geometry.
-
-    Of a scene its numbers are the geometry.
-    """
+    """Call a solver of :mod:`..periodic` with all points of a piece, or once for each geometry."""
+    # Of a scene its numbers are the geometry.
     from .. import periodic
 
     values = _points(axes)

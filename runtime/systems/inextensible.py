@@ -125,10 +125,8 @@ class InextensibleCoupler:
 
 @lru_cache(maxsize=64)
 def _integrals(count: int, places: tuple[float, ...]) -> Array:
-    """Return the integrals from 0 to places s of a function by its values at stations.
-
-    Of as many cosines as there are stations in the middles of equal intervals, ``(count, ns)``.
-    """
+    """Return the integrals from 0 to places s of a function by its values at stations."""
+    # Of as many cosines as there are stations in the middles of equal intervals, (count, ns).
     n, middles = np.arange(1.0, count), (np.arange(count) + 0.5) / count
     harmonics = 2.0 / count * np.cos(np.pi * np.multiply.outer(middles, n))
     rise = np.sin(np.pi * np.multiply.outer(n, places)) / (n * np.pi)[:, None]

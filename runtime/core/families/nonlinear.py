@@ -227,10 +227,8 @@ class Reduced:
         parameters: Mapping[str, float],
         time: Array,
     ) -> tuple[Array, Mapping[str, Array], Array]:
-        """Return coordinates on the constraints, and the arrays of the constraints there.
-
-        And the inverse of the Jacobian by the coordinates held, ``(*batch, k, k)``.
-        """
+        """Return coordinates on the constraints, and the arrays of the constraints there."""
+        # And the inverse of the Jacobian by the coordinates held, (*batch, k, k).
         held, free = self._places
         x = np.empty((*q.shape[:-1], len(self.free) + len(self.held)))
         x[..., free] = q

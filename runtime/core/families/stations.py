@@ -105,10 +105,8 @@ class AtStations:
     def _closed(
         self, at: _Evaluated, q: Array, drive: Drive, parameters: Mapping[str, float]
     ) -> tuple[Array, Mapping[str, Any], Array]:
-        """Return the module's coordinates on the constraints, and the arrays of these there.
-
-        With the inverse of their derivatives by what they give, ``(2, 2, N)``.
-        """
+        """Return the module's coordinates on the constraints, and the arrays of these there."""
+        # With the inverse of their derivatives by what they give, (2, 2, N).
         angles = at.stations.shapes.T @ q
         x, y = np.cos(angles), np.sin(angles)
         chord = (np.add.reduce(x, axis=0) + 1j * np.add.reduce(y, axis=0)) / len(angles)
@@ -191,10 +189,8 @@ def _rows(
     vectors: Array,
     across: dict[tuple[int, str], Array],
 ) -> Array:
-    """Return vectors ``(k, 1 + Q, N)`` times a square array of the module's coordinates.
-
-    ``across`` keeps the vectors times left factors and kernels, which arrays of a function share.
-    """
+    """Return vectors ``(k, 1 + Q, N)`` times a square array of the module's coordinates."""
+    # `across` keeps the vectors times left factors and kernels, which arrays of a function share.
     rows = np.zeros_like(vectors)
     for i, j, at, *product in entries:
         part = vectors[:, _PARTS[i]]

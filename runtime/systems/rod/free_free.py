@@ -31,10 +31,8 @@ _PI = Fraction(pi) + Fraction(1.2246467991473532e-16)
 
 @lru_cache(maxsize=32)
 def _solved(count: int) -> tuple[Array, Array]:
-    """Return the first roots of cos b cosh b = 1, and the parity of their modes.
-
-    A root is its start plus an offset: the sum is rounded correctly, or nearly so.
-    """
+    """Return the first roots of cos b cosh b = 1, and the parity of their modes."""
+    # A root is its start plus an offset: the sum is rounded correctly, or nearly so.
     exact = [_PI * (2 * i + 1) / 2 for i in range(1, count + 1)]
     start = np.array([float(value) for value in exact])
     rest = np.array([float(value - Fraction(float(value))) for value in exact])
@@ -76,10 +74,8 @@ class FreeFreeModes:
 
     @cached_property
     def _constants(self) -> tuple[Array, Array, Array, Array]:
-        """Phase, amplitude and weight of the modes, and their slope at the right end.
-
-        At the left it is ``-parity`` times that.
-        """
+        """Phase, amplitude and weight of the modes, and their slope at the right end."""
+        # At the left it is -parity times that.
         number = np.arange(1, self.size + 1)
         phase = np.asarray((number + 1) % 4 * (pi / 2), dtype=np.float64)
         amplitude, weight, slope = _mode_constants(self.roots, self.parity)

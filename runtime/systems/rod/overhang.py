@@ -45,10 +45,8 @@ _PAIRS = {"drift": -1, "drift_drift": 1, "bending_drift": -1, "tension": 1, "dri
 
 @lru_cache(maxsize=8)
 def _held_bays(count: int) -> tuple[Array, Array]:
-    """Return the first roots of either bay where the rod is held without slope at the block.
-
-    The bay at the pin: ``tan a = tanh a``; the free one: ``1 + cos b cosh b = 0``.
-    """
+    """Return the first roots of either bay where the rod is held without slope at the block."""
+    # The bay at the pin: tan a = tanh a; the free one: 1 + cos b cosh b = 0.
     k = np.arange(1, count + 1)
     turns, halves = np.asarray(k * np.pi), np.asarray((k - 0.5) * np.pi)
     side = np.where(k % 2 == 1, 1.0, -1.0)
@@ -62,12 +60,10 @@ def _held_bays(count: int) -> tuple[Array, Array]:
 
 
 def _brackets(place: Array, modes: int) -> tuple[Array, Array]:
-    """Return what lies below and above each root, shape ``(nt, modes)``.
-
-    The stiffness against a slope at the block falls from one root of a held bay to the next
-    from plus to minus infinity: exactly one root of the rod lies between two neighbours, and on
-    them where both coincide.  Below the first one there is one more.
-    """
+    """Return what lies below and above each root, shape ``(nt, modes)``."""
+    # The stiffness against a slope at the block falls from one root of a held bay to the next from
+    # plus to minus infinity: exactly one root of the rod lies between two neighbours, and on them
+    # where both coincide.  Below the first one there is one more.
     pinned, free = _held_bays(modes)
     xi = place[:, None]
     with np.errstate(divide="ignore"):
@@ -170,10 +166,8 @@ def _counted(place: Array, roots: Array) -> dict[str, Check]:
 
 @lru_cache(maxsize=_KEPT)
 def _modes(size: int, places: bytes) -> dict[str, Array]:
-    """Return what the emitted ``end_values`` gives, with places, a column, and roots ``beta``.
-
-    All arrays are read-only.
-    """
+    """Return what the emitted ``end_values`` gives, with places, a column, and roots ``beta``."""
+    # All arrays are read-only.
     place = np.frombuffer(places)
     column, roots = place[:, None], overhang_roots(place, size)
     values = _end_values(roots, column)

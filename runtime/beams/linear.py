@@ -323,7 +323,8 @@ def linear_system(
     if slide is not None:
         terms = slid_terms(terms, slide, form=form)
     if not structure.moving:
-        terms = [_frozen(term) for term in terms if term.array not in ("A", "B", "f", "g", "D")]
+        still = (term for term in terms if term.array not in ("A", "B", "f", "g", "D"))
+        terms = [replace(term, function=term(np.zeros(1))[0]) for term in still]
     parameters = dict.fromkeys(FACTORS, 1.0)
     if any(rayleigh):
         parameters |= {"rayleigh_mass": rayleigh[0], "rayleigh_stiffness": rayleigh[1]}
@@ -408,12 +409,8 @@ def lumped_values(
             found = "an inertia, spring or damper on the rotation where several beams are pinned"
             fix = f"set carried_by to one of {', '.join(meeting)}"
             raise bad(f"node {node.name}", found, "the beam that it turns with", fix)
-        inertias = (
-            ("x", "x", node.mass),
-            ("y", "y", node.mass),
-            ("rotation", turning, node.inertia),
-        )
-        for part, name, inertia in inertias:
+        masses = (("x", "x", node.mass), ("y", "y", node.mass), ("rotation", turning, node.inertia))
+        for part, name, inertia in masses:
             place = freedoms.places[node.name, name]
             mass[place] += inertia
             springs[place] += node.stiffness.get(part, 0.0)
@@ -473,11 +470,6 @@ def _loading_terms(axial: AxialForces, stiffening: bool) -> list[Term]:
 def _lumped_impulse(axial: AxialForces, theta: Array) -> Array:
     arrays = axial.arrays
     return np.asarray(-(arrays.motion(theta).first * axial.lumped)[:, arrays.free])
-
-
-def _frozen(term: Term) -> Term:
-    """Return the term of a structure that does not move as a constant one."""
-    return replace(term, function=term(np.zeros(1))[0])
 
 
 # What a term becomes: its new array, and whether Z or Z' stands to its left and right, or whether

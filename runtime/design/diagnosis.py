@@ -175,7 +175,8 @@ def _steady(system: LinearPeriodic, speed: float) -> tuple[float, float, dict[st
         # Told in words, not as a failure.
         range_check = checks.pop("steady state: linear range", None)
         deflection = math.nan if range_check is None else range_check.value
-        if system.structure is None or any(b.section.thickness is None for b in _beams(system)):
+        structure = system.structure
+        if structure is None or any(b.section.thickness is None for b in structure.beams):
             return deflection, math.nan, checks
         found = stress(system, motion)
     told = {name: check for name, check in found.checks.items() if name != "linear range"}
@@ -289,8 +290,3 @@ def _stable(scene: Scene, name: str, change: float, speed: float) -> bool:
         return bool(floquet_multipliers(changed, speed).stable)
     except BadInput:  # it does not turn
         return False
-
-
-def _beams(system: LinearPeriodic) -> tuple[Any, ...]:
-    assert system.structure is not None
-    return tuple(system.structure.beams)

@@ -15,7 +15,7 @@ from ..core.errors import BadInput, Problem, bad, refuse
 from ..core.families import Array
 from ..core.inputs import is_finite
 from ..core.plotting import RPM, Axes
-from ..core.results import Check
+from ..core.results import Check, worst_checks
 from ..core.units import DIMENSIONS, to_si
 
 KINDS = ("resonance", "unstable from", "unstable to", "deflection", "jump rising", "jump falling")
@@ -138,7 +138,7 @@ def read_points(path: str | os.PathLike[str]) -> tuple[Point, ...]:
         fix = "give the path of a CSV file"
         raise bad("points", f"{path!r}: {reason}", "a text file", fix) from problem
     name = os.fspath(path)
-    lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if _holds(line)]
+    lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.split("#")[0].strip()]
     if len(lines) < 2:
         raise bad(name, "no rows", "a first line of names and points below", f"write {_FORM}")
     (number, header), *rows = [(i, _fields(line, f"{name}, line {i}")) for i, line in lines]
@@ -147,10 +147,6 @@ def read_points(path: str | os.PathLike[str]) -> tuple[Point, ...]:
     if len(set(known)) < len(known) or not {"kind", "speed"} <= set(known):
         raise bad(f"{name}, line {number}", ", ".join(header), "kind, speed and more, once", _FORM)
     return tuple(_point(fields, columns, f"{name}, line {i}") for i, fields in rows)
-
-
-def _holds(line: str) -> bool:
-    return bool(line.strip()) and not line.lstrip().startswith("#")
 
 
 def _fields(line: str, where: str) -> list[str]:
@@ -220,10 +216,7 @@ class Computed:
 
     def add(self, checks: Mapping[str, Check]) -> None:
         """Keep the worse of the checks of each name."""
-        for name, check in checks.items():
-            known = self.checks.get(name)
-            if known is None or check.value * known.limit > known.value * check.limit:
-                self.checks[name] = check
+        self.checks = worst_checks([self.checks, checks])
 
 
 def nearest(i: int, point: Point, speeds: Sequence[float], window: float) -> int:

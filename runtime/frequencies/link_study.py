@@ -135,7 +135,10 @@ def link_frequencies(
         changed = _changed(system, link, quantity, float(number))
         beams = required_structure(changed).beams
         pinned.append([pinned_frequency(beam.section, beam.length) for beam in beams])
-        rows.append(_means(changed, count))
+        # Means, their errors, and least and largest values over the period.
+        mean, error = mean_frequencies(changed, count, 1e-8)
+        seen = held_frequencies(changed, even_angles(changed.period, 64), {})[0][:, :count]
+        rows.append((mean, error, seen.min(axis=0), seen.max(axis=0)))
     mean, error, least, largest = (np.stack([row[i] for row in rows]) for i in range(4))
     return LinkFrequencies(
         method="means over the period of the frequencies with the crank held",
@@ -152,13 +155,6 @@ def link_frequencies(
         pinned=factor * np.array(pinned),
         links=names,
     )
-
-
-def _means(system: LinearPeriodic, count: int) -> tuple[Array, Array, Array, Array]:
-    """Return means, their errors, and least and largest values over the period."""
-    mean, error = mean_frequencies(system, count, 1e-8)
-    seen = held_frequencies(system, even_angles(system.period, 64), {})[0][:, :count]
-    return mean, error, seen.min(axis=0), seen.max(axis=0)
 
 
 def _changed(system: LinearPeriodic, link: str, quantity: str, value: float) -> LinearPeriodic:

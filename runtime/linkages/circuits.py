@@ -247,7 +247,7 @@ class Circuit:
             c, m, e = size["crank"], size["coupler"], size["offset"]
             raised = e - c * (sine * sine - cosine * cosine)
             along = 2.0 * c * root
-            level = _real(pin) + along
+            level = Taylor(pin.c.real.astype(complex)) + along
             placed["coupler"] = Placed(pin, (along + 1j * raised) / m)
             placed["slider"] = Placed(level + 1j * e, zero + 1.0)
             return placed
@@ -285,10 +285,6 @@ class Circuit:
             if len(letters) == 2:
                 places[letters[1]] = (at.origin + self.sizes[link] * at.direction).c[0]
         return {name: self.scale * place for name, place in sorted(places.items())}
-
-
-def _real(series: Taylor) -> Taylor:
-    return Taylor(series.c.real.astype(complex))
 
 
 def _imag(series: Taylor) -> Taylor:

@@ -73,7 +73,8 @@ class Marcher:
             whole, added = chained(maps, loads)
             first = (states - motion.states.reshape(runs, m, size)[:, 0])[..., None]
             change = (whole[:-1] @ first + added[:-1])[..., 0].swapaxes(0, 1).reshape(-1, size)
-            scale = np.maximum(_sizes(motion, self.problem.system.small), _sizes_of(states))
+            own = _sizes(motion.x, motion.v, self.problem.system.small)
+            scale = np.maximum(own, _sizes(states[:, : size // 2], states[:, size // 2 :]))
             large = float(np.max(np.abs(change) / scale))
             if not np.isfinite(large) or (count > _PATIENCE and large > 1.0):
                 return None
@@ -108,17 +109,10 @@ def end(motion: Motion) -> Array:
     return motion.ends().reshape(motion.runs, -1, 2 * n)[:, -1]
 
 
-def _sizes(motion: Motion, small: float) -> Array:
-    """Return the sizes of coordinates and rates, ``(2n,)``."""
-    n = motion.x.shape[1]
-    largest = (float(np.max(np.abs(part))) for part in (motion.x, motion.v))
-    return np.repeat([max(part, small) for part in largest], n)
-
-
-def _sizes_of(states: Array) -> Array:
-    n = states.shape[1] // 2
-    largest = (float(np.max(np.abs(part))) for part in (states[:, :n], states[:, n:]))
-    return np.repeat(list(largest), n)
+def _sizes(coordinates: Array, rates: Array, least: float = 0.0) -> Array:
+    """Return the sizes of coordinates and rates ``(m, n)``, ``(2n,)``."""
+    sizes = [max(float(np.max(np.abs(part))), least) for part in (coordinates, rates)]
+    return np.repeat(sizes, coordinates.shape[1])
 
 
 def unresolved(motion: Motion) -> float:

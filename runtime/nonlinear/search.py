@@ -299,7 +299,8 @@ def _marched(marcher: Marcher, speed: float, state: Array, turns: int) -> Motion
     states = [state]
     try:
         for _ in range(_SETTLING):
-            last = [*last, marcher.revolution(speed, states[-1], _newest(last))][-turns:]
+            before = last[-1] if last else None
+            last = [*last, marcher.revolution(speed, states[-1], before)][-turns:]
             states.append(end(last[-1]))
             size = np.abs(states[-1]) + marcher.problem.system.small
             near = [k for k in range(1, min(turns, len(states) - 1) + 1) if _back(states, k, size)]
@@ -311,10 +312,6 @@ def _marched(marcher: Marcher, speed: float, state: Array, turns: int) -> Motion
     steps = max(len(motion.x) for motion in last)
     whole = Motion.together([motion.resampled(steps, STAGES) for motion in last])
     return replace(whole, turns=len(last), runs=1)
-
-
-def _newest(motions: Sequence[Motion]) -> Motion | None:
-    return motions[-1] if motions else None
 
 
 def _back(states: Sequence[Array], turns: int, size: Array) -> bool:

@@ -295,7 +295,8 @@ def _jumps(speed: Array, size: Array, maps: Array, least: float) -> list[tuple[f
     settled = int(np.ceil(_SETTLED / decay)) if decay > 0.0 else count
     found: list[tuple[float, float]] = []
     last = 0
-    for part in np.split(*_clusters(np.flatnonzero(repelled))):
+    places = np.flatnonzero(repelled)
+    for part in np.split(places, np.flatnonzero(np.diff(places) > _PAUSE) + 1):
         if not part.size or part[0] < last:
             continue
         # Motions that repeat after more revolutions are not repelled over all of them.
@@ -324,11 +325,6 @@ def _growth(maps: Sequence[Array] | Array) -> Array:
         size = np.max(np.abs(behind), axis=(-2, -1))
         behind, scale = behind / size[..., None, None], scale + np.log(size)
     return np.asarray(np.log(np.max(np.abs(np.linalg.eigvals(behind)), axis=-1)) + scale)
-
-
-def _clusters(places: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return places and where to split them: between those that lie apart."""
-    return places, np.flatnonzero(np.diff(places) > _PAUSE) + 1
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -31,7 +31,8 @@ def scene_schema() -> Schema:
     mechanisms: dict[str, list[str]] = {}
     cases, every = [], []
     for layout in LAYOUTS:
-        reference = _define(definitions, _label(layout), _layout(layout, definitions))
+        label = f"{layout.mechanism}_{layout.formulations[0]}"
+        reference = _define(definitions, label, _layout(layout, definitions))
         named: Schema = {"mechanism": {"const": layout.mechanism}}
         named["formulation"] = {"enum": list(layout.formulations)}
         cases.append({"if": _model(named), "then": reference})
@@ -70,10 +71,6 @@ def _model(keys: Schema) -> Schema:
     """Return the schema of a scene whose ``[model]`` has these keys."""
     model = {"type": "object", "required": list(keys), "properties": keys}
     return {"type": "object", "required": ["model"], "properties": {"model": model}}
-
-
-def _label(layout: Layout) -> str:
-    return f"{layout.mechanism}_{layout.formulations[0]}"
 
 
 def _define(definitions: dict[str, Schema], name: str, schema: Schema) -> Schema:

@@ -15,7 +15,7 @@ from ..core.errors import LINEAR_RANGE, Problem, RedundantConstraints, bad, warn
 from ..core.families import Constrained, Guard
 from ..core.families.multipliers import check_rank, scaling
 from ..core.inputs import numbers, require_between, require_kind
-from ..core.plotting import Axes, axes_or_new, coordinates_label
+from ..core.plotting import Axes, draw_coordinates
 from ..core.results import FAIR, Check, Result, provenance
 from .collocation import collocation
 from .equations import (
@@ -182,9 +182,8 @@ def _given(
     try:
         batch = np.broadcast_shapes(*shapes)
     except ValueError as wrong:
-        raise bad(
-            "q, qd, t", f"shapes {shapes}", "shapes that broadcast", "correct them"
-        ) from wrong
+        fix = "correct them"
+        raise bad("q, qd, t", f"shapes {shapes}", "shapes that broadcast", fix) from wrong
     places, speeds = (np.broadcast_to(arrays[name], (*batch, n)).copy() for name in ("q", "qd"))
     return places, speeds, np.broadcast_to(arrays["t"], batch).copy()
 
@@ -200,9 +199,8 @@ def _free(system: Constrained, hold: Iterable[str | int]) -> Array:
         free[place] = 0.0
     number, most = system.size - int(free.sum()), max(system.size - system.constraints, 0)
     if number > most:
-        raise bad(
-            "hold", f"{number} coordinates", f"at most {most}, the degrees of freedom", "hold fewer"
-        )
+        fix = "hold fewer"
+        raise bad("hold", f"{number} coordinates", f"at most {most}, the degrees of freedom", fix)
     return free
 
 
@@ -225,14 +223,9 @@ def _checked_mass(system: Constrained, q: Array, t: Array) -> Array:
         for jacobian in (at["jacobian"], system.violation(aside, t)["jacobian"])
     )
     if np.any(here <= 1e-9 * there):
-        raise RedundantConstraints(
-            Problem(
-                "constraints",
-                "one without a direction",
-                "rows of the Jacobian that do not vanish",
-                "leave the position where the linkage can branch",
-            )
-        )
+        expected = "rows of the Jacobian that do not vanish"
+        fix = "leave the position where the linkage can branch"
+        raise RedundantConstraints(Problem("constraints", "one without a direction", expected, fix))
     return mass
 
 
@@ -298,13 +291,7 @@ class ConstrainedMotion(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the coordinates over time and return the axes."""
-        ax = axes_or_new(ax)
-        for label, values in zip(self.labels, self.q.T, strict=True):
-            ax.plot(self.time, values, label=label, linewidth=0.9)
-        ax.set(xlabel="time [s]", ylabel=coordinates_label(self.labels))
-        if len(self.labels) > 1:
-            ax.legend()
-        return ax
+        return draw_coordinates(ax, self.time, self.q, self.labels, "time [s]")
 
 
 def constrained_motion(

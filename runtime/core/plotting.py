@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .errors import bad
 from .files import write_whole
@@ -22,6 +23,8 @@ else:  # what annotations name; matplotlib loads with the first picture
 # Revolutions per minute of one radian per second.
 RPM = 30.0 / np.pi
 FORMATS = (".png", ".svg", ".pdf")
+# How a small text stands above a point of a curve.
+ABOVE: dict[str, Any] = {"textcoords": "offset points", "ha": "center", "fontsize": 7}
 _METADATA: dict[str, dict[str, Any]] = {
     ".png": {"Software": None},
     ".svg": {"Date": None, "Creator": "elastolink"},
@@ -45,6 +48,19 @@ def coordinates_label(labels: Sequence[str]) -> str:
     """Return the label of an axis of coordinates: their names, of many the first and the last."""
     names = labels if len(labels) < 4 else (*labels[:2], "...", labels[-1])
     return ", ".join(names) + ("" if all("/" in name for name in labels) else " [SI]")
+
+
+def draw_coordinates(
+    ax: Axes | None, across: Any, q: NDArray[np.float64], labels: Sequence[str], xlabel: str
+) -> Axes:
+    """Draw coordinates ``(nx, n)`` over a row, in ``ax`` or new axes, and return the axes."""
+    ax = axes_or_new(ax)
+    for label, values in zip(labels, q.T, strict=True):
+        ax.plot(across, values, label=label, linewidth=0.9)
+    ax.set(xlabel=xlabel, ylabel=coordinates_label(labels))
+    if len(labels) > 1:
+        ax.legend()
+    return ax
 
 
 def multiplier_plane(ax: Axes | None) -> Axes:

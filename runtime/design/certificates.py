@@ -11,14 +11,12 @@ import numpy as np
 from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic, require_system
 from ..core.inputs import require_between, speed_span
-from ..core.plotting import RPM, axes_or_new
+from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..periodic import floquet_multipliers
 from ..periodic.equation import SPEED_POWER
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from .enclosures import Band, Matrices, Revolution
 
 # Part of the way from the largest multiplier to 1 at which a bound is tried; what a multiplier that

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 from math import ceil, factorial, fmod
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,14 +15,12 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import LINEAR_RANGE, bad, warn_of_large_deflection
 from ..core.families import Array, LinearPeriodic
 from ..core.inputs import is_one_of, numbers, require_flag
+from ..core.plotting import Axes, draw_coordinates
 from ..core.progress import bar
 from ..core.results import FAIR, Check, DeferredChecks, Result, provenance
 from .equation import Equation, equation_of
 from .periodic_motion import peaks
 from .transition import Method, method, predicted_error, product, segments_from
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 SCIPY_METHODS = ("RK45", "DOP853", "Radau", "BDF", "LSODA")
 _EPS = float(np.finfo(float).eps)
@@ -109,16 +107,8 @@ class Trajectory(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the coordinates over the revolutions of the crank and return the axes."""
-        from ..core.plotting import axes_or_new, coordinates_label
-
-        ax = axes_or_new(ax)
-        for label, values in zip(self.labels, self.q.T, strict=True):
-            ax.plot(self.theta / (2 * np.pi), values, label=label, linewidth=0.9)
-        ax.set_xlabel("revolutions of the crank")
-        ax.set_ylabel(coordinates_label(self.labels))
-        if len(self.labels) > 1:
-            ax.legend()
-        return ax
+        turns = self.theta / (2 * np.pi)
+        return draw_coordinates(ax, turns, self.q, self.labels, "revolutions of the crank")
 
 
 def simulate(
@@ -530,16 +520,9 @@ def _by_scipy(
     beginning = _march(equation, quarter, state, "radau", _LEVELS[5], np.inf, None).states
     peak = float(np.max(np.abs(beginning[:, : 2 * equation.size])))
     atol = np.full(len(state), rtol * (peak if 0 < peak < np.inf else 1.0) * 1e-2)
+    options |= {"rtol": max(rtol, 2.5e-14), "atol": atol, "dense_output": True}
     with np.errstate(over="ignore", invalid="ignore"):
-        solution = solve_ivp(
-            slope,
-            (grid.theta[0], grid.theta[-1]),
-            state,
-            dense_output=True,
-            rtol=max(rtol, 2.5e-14),
-            atol=atol,
-            **options,
-        )
+        solution = solve_ivp(slope, (grid.theta[0], grid.theta[-1]), state, **options)
     states = np.ascontiguousarray(solution.y.T)
     steps = 0 if solution.sol is None else len(solution.sol.ts) - 1
     if solution.status == 1:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,13 +14,11 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic
 from ..core.inputs import require_between
+from ..core.plotting import Axes, multiplier_plane
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .equation import Equation, equation_of
 from .signatures import signatures_of
 from .transition import Method, choose, product, refined, segments_of
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 ComplexArray = NDArray[np.complex128]
 
@@ -216,8 +214,6 @@ class FloquetMultipliers(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the multipliers and the unit circle into ``ax`` and return the axes."""
-        from ..core.plotting import multiplier_plane
-
         ax = multiplier_plane(ax)
         values = self.multipliers.ravel()
         ax.plot(values.real, values.imag, "o", markersize=3)

@@ -16,7 +16,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
 from numbers import Real
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,15 +27,13 @@ from ..core.families import Array, LinearPeriodic
 from ..core.files import NOT_SAVED, NotSaved
 from ..core.inputs import is_one_of, numbers, require_between
 from ..core.maxima import largest_size
+from ..core.plotting import Axes, axes_or_new, draw_coordinates
 from ..core.progress import bar
 from ..core.results import Check, DeferredChecks, DeferredField, DeferredGroup, Result, provenance
 from .equation import Equation, equation_of
 from .multipliers import floquet_multipliers
 from .ring import solve_ring
 from .transition import Method, method, refined, segments_of
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 ComplexArray = NDArray[np.complex128]
 
@@ -212,23 +210,15 @@ class SteadyState(Result):
         Of motions at several speeds of a system with mode shapes the largest deflections are drawn
         over the speed, else the first motion.
         """
-        from ..core.plotting import axes_or_new, coordinates_label
-
-        ax = axes_or_new(ax)
         ends = np.array([0.0, 1.0])
         shapes = None if isinstance(self.shapes, NotSaved) else self.shapes
         deflects = shapes is not None and shapes(ends, self.theta[:1]) is not None
         if self.speed.ndim == 1 and self.speed.size > 1 and deflects:
-            return self._plot_peaks(ax)
+            return self._plot_peaks(axes_or_new(ax))
         first = self.q.reshape(-1, *self.q.shape[-2:])[0]
         angles = np.degrees(np.append(self.theta, self.period))
-        for label, values in zip(self.labels, np.vstack([first, first[:1]]).T, strict=True):
-            ax.plot(angles, values, label=label, linewidth=0.9)
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel(coordinates_label(self.labels))
-        if len(self.labels) > 1:
-            ax.legend()
-        return ax
+        whole = np.vstack([first, first[:1]])
+        return draw_coordinates(ax, angles, whole, self.labels, "crank angle [deg]")
 
     def _plot_peaks(self, ax: Axes) -> Axes:
         shapes = self.reference_length * self._shapes_at(np.linspace(0.0, 1.0, 41))
@@ -239,8 +229,7 @@ class SteadyState(Result):
         if np.any(unstable):
             ax.semilogy(self.speed[unstable], peaks[unstable], "r.", markersize=3, label="unstable")
             ax.legend()
-        ax.set_xlabel("crank speed [rad/s]")
-        ax.set_ylabel("largest deflection [mm]")
+        ax.set(xlabel="crank speed [rad/s]", ylabel="largest deflection [mm]")
         return ax
 
 

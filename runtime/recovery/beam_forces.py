@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,7 +25,7 @@ from ..core.errors import BadInput, Problem, bad, shown
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_whole, numbers, require_one_of
 from ..core.plotting import Axes, axes_or_new
-from .beam_motion import BeamMotion, beam_motion
+from .beam_motion import BeamMotion, Motion, beam_motion
 from .beam_result import (
     MotionValues,
     StationResult,
@@ -35,9 +35,6 @@ from .beam_result import (
     stations_on,
 )
 from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
-
-if TYPE_CHECKING:
-    from .beam_motion import Motion
 
 # Places on the beams: how many on each, or by beam x over its length.
 Stations = int | Mapping[str, ArrayLike] | None

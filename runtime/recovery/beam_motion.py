@@ -19,7 +19,7 @@ from ..core.results import Check
 if TYPE_CHECKING:
     from ..periodic import SteadyState, Trajectory
 
-    Motion: TypeAlias = "BeamMotion | SteadyState | Trajectory"
+Motion: TypeAlias = "BeamMotion | SteadyState | Trajectory"
 
 
 @dataclass(frozen=True, kw_only=True)

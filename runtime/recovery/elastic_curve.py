@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -16,12 +16,9 @@ from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite
 from ..core.plotting import Axes, axes_or_new
 from .beam_forces import recovery, stations_of
-from .beam_motion import BeamMotion, beam_motion, chunks
+from .beam_motion import BeamMotion, Motion, beam_motion, chunks
 from .beam_result import BeamResult, checked_forms, in_motion
 from .finer_mesh import with_mesh
-
-if TYPE_CHECKING:
-    from .beam_motion import Motion
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -16,12 +16,9 @@ from ..core.families import LinearPeriodic
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check
 from .beam_forces import propagated
-from .beam_motion import BeamMotion, beam_motion
+from .beam_motion import BeamMotion, Motion, beam_motion
 from .beam_result import BeamResult, MotionValues, in_motion, over_motion
 from .finer_mesh import ROUNDING, with_mesh
-
-if TYPE_CHECKING:
-    from .beam_motion import Motion
 
 _PARTS = ("x", "y", "moment")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -17,13 +17,9 @@ from ..core.families import LinearPeriodic
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check
 from ..core.trigonometric import differentiated, even_angles, interpolated
-from .beam_motion import BeamMotion, beam_motion, chunks
+from .beam_motion import BeamMotion, Motion, beam_motion, chunks
 from .beam_result import BeamResult, MotionValues, in_motion, over_motion
 from .finer_mesh import with_mesh
-
-if TYPE_CHECKING:
-    from .beam_motion import Motion
-
 
 Slopes = Mapping[int, Callable[[Array], Array]]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,12 +31,9 @@ from .beam_forces import (
     require_method,
     stations_of,
 )
-from .beam_motion import BeamMotion, beam_motion, chunks
+from .beam_motion import BeamMotion, Motion, beam_motion, chunks
 from .beam_result import StationResult, checked_forms, in_motion, stations_on
 from .finer_mesh import CAUTION, ROUNDING
-
-if TYPE_CHECKING:
-    from .beam_motion import Motion
 
 # How much finer the angles are at which the largest stress is sought, and how near to the largest
 # at the coarse angles a row has to come to be looked at.

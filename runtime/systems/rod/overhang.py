@@ -10,7 +10,7 @@ import inspect
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache, partial
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,12 +18,9 @@ from numpy.typing import ArrayLike, NDArray
 from ....generated import quick_return_overhang_modes as emitted
 from ...core.errors import bad
 from ...core.inputs import require_whole
-from ...core.plotting import axes_or_new
+from ...core.plotting import Axes, axes_or_new
 from ...core.results import Check, DeferredChecks, Result, provenance
 from .basis import Array, require_array, require_numbers, require_places, require_points
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _Emitted = Callable[..., tuple[Array, ...]]
 _characteristic: Callable[..., tuple[Array, Array]] = emitted.characteristic

@@ -243,13 +243,8 @@ def _counted(request: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     """Return the stages as counted in a fresh process."""
     path = [entry for entry in sys.path if entry]
     code = f"import sys; sys.path[:] = {path!r}; from {__package__}.probe import main; main()"
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        input=pickle.dumps(dict(request)),
-        capture_output=True,
-        timeout=600.0,
-        check=False,
-    )
+    command, given = [sys.executable, "-c", code], pickle.dumps(dict(request))
+    done = subprocess.run(command, input=given, capture_output=True, timeout=600.0, check=False)
     if done.returncode:
         last = done.stderr.decode(errors="replace").strip().splitlines()[-1:]
         raise ElastolinkError(f"explain: the counting process failed: {' '.join(last)}")

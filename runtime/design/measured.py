@@ -245,17 +245,9 @@ def draw_points(ax: Axes, points: Iterable[Point]) -> None:
         if point.deviation is not None and point.kind != "deflection":
             wide = 2.0 * point.deviation * RPM
             ax.axvspan(speed - wide, speed + wide, color=_COLOUR, alpha=0.12, linewidth=0.0)
-        place = ax.get_xaxis_transform()
         text: dict[str, Any] = {"rotation": 90, "ha": "right", "va": "top", "fontsize": 7}
-        ax.text(
-            speed,
-            0.98,
-            f"measured: {point.kind}",
-            transform=place,
-            color=_COLOUR,
-            clip_on=True,
-            **text,
-        )
+        text |= {"transform": ax.get_xaxis_transform(), "color": _COLOUR, "clip_on": True}
+        ax.text(speed, 0.98, f"measured: {point.kind}", **text)
 
 
 def checked_points(points: object) -> tuple[Point, ...]:

@@ -198,14 +198,8 @@ def running_speed(
         if first:
             own = system.parameters["damping_ratio"]
             ratios = own * np.array(_DAMPING)
-            damping = effect_of(
-                system,
-                "damping_ratio",
-                ratios,
-                quiet.curve.at(np.array([_place(quiet, band)])),
-                rtol,
-                tick=tick,
-            )
+            here = quiet.curve.at(np.array([_place(quiet, band)]))
+            damping = effect_of(system, "damping_ratio", ratios, here, rtol, tick=tick)
             best = float(ratios[np.argmin(np.max(_ratios(damping, quiet, allowed), axis=(1, 2)))])
         if band.above is not None:
             way, chosen = _way_up(

@@ -14,7 +14,7 @@ from ..core.errors import bad
 from ..core.families import DAMPING, Array, LinearPeriodic, require_system
 from ..core.inputs import require_flag, require_whole, speed_span
 from ..core.maxima import local_maxima
-from ..core.plotting import Axes, axes_or_new
+from ..core.plotting import ABOVE, Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
 from .held import buckling_speed, held_frequencies, mean_frequencies
@@ -89,18 +89,12 @@ class CriticalSpeeds(Result):
         values = np.concatenate([self.scan, np.where(top, self.height, np.nan)])
         ax.plot(joined[order], values[order], lw=0.9)
         ax.set_ylabel(self.quantity)
+        highest = 1.2 * np.max(self.scan)
         for speed, (mode, order_of), height in zip(
             self.speed, self.labels, self.height, strict=True
         ):
-            ax.annotate(
-                rf"$\bar\omega_{mode}/{order_of}$",
-                (speed, min(height, 1.2 * np.max(self.scan))),
-                xytext=(0, 3),
-                textcoords="offset points",
-                ha="center",
-                fontsize=7,
-                rotation=90,
-            )
+            name, place = rf"$\bar\omega_{mode}/{order_of}$", (speed, min(height, highest))
+            ax.annotate(name, place, (0, 3), rotation=90, **ABOVE)
         return ax
 
     def _plot_orders(self, ax: Axes) -> Axes:

@@ -13,7 +13,7 @@ from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic, require_system
 from ..core.inputs import numbers
 from ..core.maxima import local_maxima, narrowed
-from ..core.plotting import Axes, axes_or_new
+from ..core.plotting import ABOVE, Axes, axes_or_new
 from ..core.results import Result, provenance
 from ..periodic.periodic_motion import quiet_state
 from .critical import label_speeds
@@ -89,14 +89,8 @@ class ResonanceCurve(Result):
         for speed, peak, order, mode in zip(
             self.maxima, 1e3 * self.maxima_peak, self.order, self.mode, strict=True
         ):
-            ax.annotate(
-                rf"$\omega_{mode}/{order}$" if order > 1 else rf"$\omega_{mode}$",
-                (speed, peak),
-                xytext=(0, 3),
-                textcoords="offset points",
-                ha="center",
-                fontsize=7,
-            )
+            name = rf"$\omega_{mode}/{order}$" if order > 1 else rf"$\omega_{mode}$"
+            ax.annotate(name, (speed, peak), (0, 3), **ABOVE)
         ax.set(xlabel="crank speed [rad/s]", ylabel="largest deflection [mm]")
         return ax
 

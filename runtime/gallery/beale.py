@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from ..constrained import constrained_motion
 from ..core.families import LinearPeriodic
+from ..core.plotting import ABOVE
 from ..frequencies import ResonanceCurve, natural_frequencies, resonance_curve
 from ..linkages import QuickReturn
 from ..periodic import FloquetMultipliers, floquet_multipliers, simulate, steady_state
@@ -435,15 +436,9 @@ def _mark(ax: Axes, omega: Array) -> None:
     ax.axhline(0.0, color="0.2", lw=0.7)
     for i, group in enumerate(groups):
         # Neighbours stand on two lines, so that they do not meet.
-        ax.annotate(
-            ", ".join(name for _, name in group),
-            (float(np.mean([speed for speed, _ in group])), 0.0),
-            xytext=(0.0, -4.0 - 9.0 * (i % 2)),
-            textcoords="offset points",
-            ha="center",
-            va="top",
-            fontsize=6.5,
-        )
+        middle = float(np.mean([speed for speed, _ in group]))
+        names, look = ", ".join(name for _, name in group), {**ABOVE, "va": "top", "fontsize": 6.5}
+        ax.annotate(names, (middle, 0.0), (0.0, -4.0 - 9.0 * (i % 2)), **look)
 
 
 def _name(i: int, j: int, n: int) -> str:

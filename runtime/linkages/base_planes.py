@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.inputs import is_finite, require_whole
-from ..core.plotting import Axes, axes_or_new
+from ..core.plotting import ABOVE, Axes, axes_or_new
 from ..core.results import Result, provenance
 from .classification import SYMBOLS, classify, number_of_signs
 from .linkage import Array
@@ -68,23 +68,14 @@ class BasePlane(Result):
             colour = "#cfe0ee" if symbol.startswith("G") else "#f2c6a8"
             ax.fill(flat[:, 0], flat[:, 1], facecolor=colour, edgecolor="#444444", lw=0.8)
             x, y = _area_and_centroid(corners)[1]
-            ax.annotate(
-                symbol,
-                (x, y),
-                xytext=(0.0, self._aside((x, y), mark)),
-                textcoords="offset points",
-                ha="center",
-                va="center",
-                fontsize=9,
-            )
+            shift = (0.0, self._aside((x, y), mark))
+            ax.annotate(symbol, (x, y), shift, **{**ABOVE, "va": "center", "fontsize": 9})
         if mark is not None:
             at = _AXES @ np.asarray(mark)
             ax.plot(*at, "o", color="#8c2d04", mfc="none", ms=9, label="this linkage")
             ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), fontsize=8, frameon=False)
-        ax.set_aspect("equal")
-        ax.set_xlabel(r"$(\lambda_3-\lambda_2)/\sqrt{2}$")
-        ax.set_ylabel(r"$(2\lambda_4-\lambda_2-\lambda_3)/\sqrt{6}$")
-        ax.set_title(rf"base plane $\lambda$ = {self.lam:.4g}")
+        x, y = r"$(\lambda_3-\lambda_2)/\sqrt{2}$", r"$(2\lambda_4-\lambda_2-\lambda_3)/\sqrt{6}$"
+        ax.set(aspect="equal", xlabel=x, ylabel=y, title=rf"base plane $\lambda$ = {self.lam:.4g}")
         return ax
 
     def _aside(self, place: tuple[float, float], mark: Sequence[float] | None) -> float:

@@ -157,6 +157,7 @@ class ResponseCurve(Result):
             if len(at) < 2:
                 continue
             turns = int(self.turns[at[0]])
+            colour = f"C{turns.bit_length() - 1}"
             # A special point is all but stable: what it leads to decides.
             holds = self.stable[at[:-1]] & self.stable[at[1:]]
             ends = [0, *(np.flatnonzero(np.diff(holds)) + 1).tolist(), len(holds)]
@@ -174,39 +175,23 @@ class ResponseCurve(Result):
                     part = slice(_DRAWN * first, _DRAWN * last + 1)
                     style, word = ("-", "stable") if holds[first] else (":", "unstable")
                     label = f"{turns} turn{'s' * (turns > 1)}, {word}"
-                    ax.plot(
-                        along[part],
-                        shown[part],
-                        style,
-                        color=f"C{turns.bit_length() - 1}",
-                        label=None if label in seen else label,
-                    )
+                    named = None if label in seen else label
+                    ax.plot(along[part], shown[part], style, color=colour, label=named)
                     seen.add(label)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the peak-to-peak deflection: stable solid, unstable dotted, the linear one thin."""
         ax = axes_or_new(ax)
         factor, axis, size, unit = self._axes
-        ax.plot(
-            factor * self.linear_value,
-            size * (self.linear_highest - self.linear_lowest),
-            color="0.6",
-            linewidth=0.8,
-            label="linear",
-        )
+        linear = size * (self.linear_highest - self.linear_lowest)
+        ax.plot(factor * self.linear_value, linear, color="0.6", linewidth=0.8, label="linear")
         self.draw(ax, self.peak_to_peak)
         seen: set[str] = set()
         for kind, value, low, high in zip(
             self.special, self.special_value, self.special_lowest, self.special_highest, strict=True
         ):
-            ax.plot(
-                [factor * value],
-                [size * (high - low)],
-                _STYLE[kind],
-                color="k",
-                markersize=4,
-                label=None if kind in seen else kind,
-            )
+            label, swing = None if kind in seen else kind, size * (high - low)
+            ax.plot(factor * value, swing, _STYLE[kind], color="k", ms=4, label=label)
             seen.add(kind)
         largest = size * float(np.max(self.peak_to_peak, initial=0.0))
         height = with_unit("peak-to-peak deflection", unit)

@@ -381,14 +381,8 @@ def _result(
             continue
         if any(same_motion(solver, known, orbit.motion) for known in kept):
             continue
-        rows.append(
-            (
-                orbit.motion.turns,
-                *extremes(solver.problem, orbit),
-                abs(orbit.multipliers[0]),
-                measure.error,
-            )
-        )
+        ends = extremes(solver.problem, orbit)
+        rows.append((orbit.motion.turns, *ends, abs(orbit.multipliers[0]), measure.error))
         kept.append(orbit.motion)
     table = np.array(rows, dtype=float).reshape(-1, 5)
     order = np.argsort(table[:, 2] - table[:, 1], kind="stable")

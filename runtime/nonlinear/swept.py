@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -373,20 +373,11 @@ class Basins(Result):
         words = ["none of them"]
         for turns, deflection in zip(self.turns.tolist(), self.peak_to_peak, strict=True):
             words.append(f"{turns} turn{'s' * (turns > 1)}, {size * deflection:.3g} {unit}")
-        numbers = self.motion + 1
-        most = len(colours) - 0.5
-        ax.pcolormesh(
-            self.q, self.rate, numbers, cmap=ListedColormap(colours), vmin=-0.5, vmax=most
-        )
+        ends: dict[str, Any] = {"vmin": -0.5, "vmax": len(colours) - 0.5}
+        ax.pcolormesh(self.q, self.rate, self.motion + 1, cmap=ListedColormap(colours), **ends)
         patches = [Patch(color=c, label=w) for c, w in zip(colours, words, strict=True)]
-        ax.legend(
-            handles=patches,
-            fontsize="small",
-            frameon=False,
-            loc="lower center",
-            bbox_to_anchor=(0.5, 1.0),
-            ncols=3,
-        )
+        above: dict[str, Any] = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "ncols": 3}
+        ax.legend(handles=patches, fontsize="small", frameon=False, **above)
         ax.set(xlabel="initial q1", ylabel="initial dq1/dtheta")
         return ax
 

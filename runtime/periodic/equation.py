@@ -405,20 +405,8 @@ def equation_of(
         varying = [place for place in factors if not plain.terms[place].constant]
         known = _sampled(plain, forcing, varying)
     fields = _fields(known, factors)
-    ones = np.ones((len(flat), plain.size))
-    raw = Equation(
-        plain,
-        flat,
-        batch,
-        fields,
-        known.harmonics,
-        known.reach,
-        ones,
-        ones,
-        ones,
-        flat,
-        damped=False,
-    )
+    waves_of, ones = (known.harmonics, known.reach), np.ones((len(flat), plain.size))
+    raw = Equation(plain, flat, batch, fields, *waves_of, ones, ones, ones, flat, damped=False)
     scaled = replace(raw, scale=_scale(raw))
     _check_mass(scaled)
     frequency, decay, damped = _rates(scaled)
@@ -441,9 +429,8 @@ def _batch(
         batch = np.broadcast_shapes(speeds.shape, *(v.shape for v in values.values()))
     except ValueError as mismatch:
         shapes = {"speed": speeds.shape, **{k: v.shape for k, v in values.items()}}
-        raise bad(
-            "speed and parameters", shapes, "shapes that broadcast", "add axes of length 1"
-        ) from mismatch
+        fix = "add axes of length 1"
+        raise bad("speed and parameters", shapes, "shapes that broadcast", fix) from mismatch
     return speeds, values, batch
 
 

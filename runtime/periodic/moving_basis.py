@@ -168,16 +168,8 @@ def carried_basis(period: float, modes: int, still: StillModes) -> MovingBasis:
     if back is None:
         raise _rough(modes, "a basis that comes back mirrored after a period")
     smooth = values @ (np.stack(turns[:-1]) @ back)
-    kept, left_out = _border(squares, modes)
-    return MovingBasis(
-        interpolated(smooth, period),
-        theta,
-        smooth,
-        differentiated(smooth, period),
-        kept,
-        left_out,
-        tail(smooth),
-    )
+    phi, slopes = interpolated(smooth, period), differentiated(smooth, period)
+    return MovingBasis(phi, theta, smooth, slopes, *_border(squares, modes), tail(smooth))
 
 
 def still_modes(system: LinearPeriodic, angles: int) -> StillModes:

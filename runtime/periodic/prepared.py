@@ -182,14 +182,9 @@ class Prepared:
         error = (count + 1) * np.sqrt(flow**2 @ sizes**2) * self.scale[:n] / peaks(q[None])[0]
         if not np.max(error) <= _TRANSIENT:
             turn = 2 * np.pi / self.system.period
-            return simulate(
-                self.system,
-                given,
-                count / turn,
-                initial=initial,
-                samples=round(len(self.theta) * turn),
-                forcing=self.forced,
-            )
+            told: dict[str, Any] = {"initial": initial, "forcing": self.forced}
+            samples = round(len(self.theta) * turn)
+            return simulate(self.system, given, count / turn, samples=samples, **told)
         return Trajectory(
             method=_METHOD,
             error=error,

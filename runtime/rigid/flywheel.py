@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -330,15 +330,9 @@ def _confirmed(
 ) -> dict[str, Check]:
     from .motor_run import run_up
 
-    run = run_up(
-        machine,
-        motion.torque,
-        revolutions=1.0,
-        speed0=start,
-        flywheel=motion.inertia,
-        tolerance=1e-11,
-        samples=4001,
-    )
+    fine: dict[str, Any] = {"tolerance": 1e-11, "samples": 4001}
+    torque, inertia = motion.torque, motion.inertia
+    run = run_up(machine, torque, revolutions=1.0, speed0=start, flywheel=inertia, **fine)
     speeds = np.abs(run.speed)
     high, low = _summit(speeds), -_summit(-speeds)
     gap = abs((high - low) / ((high + low) / 2.0) - reached) / max(reached, 1e-12)

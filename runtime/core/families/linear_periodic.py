@@ -407,11 +407,8 @@ class LinearPeriodic:
         """Return the same system with other parameter values."""
         self.scale_values(**changes)
         changes = {name: as_numpy(value) for name, value in changes.items()}
-        return replace(
-            self,
-            parameters={**self.parameters, **changes},
-            provenance=self.changed_provenance(**changes),
-        )
+        told = self.changed_provenance(**changes)
+        return replace(self, parameters={**self.parameters, **changes}, provenance=told)
 
     def with_terms(self, *terms: Term, scales: Mapping[str, float] | None = None) -> LinearPeriodic:
         """Return the system with more terms, for example modal damping.
@@ -450,19 +447,13 @@ class LinearPeriodic:
         -----
         :meth:`with_geometry` changes the terms of the other geometry alike.
         """
-        return replace(
-            self,
-            terms=tuple(change(term) for term in self.terms),
-            **self.remade(methodcaller("with_changed_terms", change)),
-        )
+        terms, again = tuple(map(change, self.terms)), methodcaller("with_changed_terms", change)
+        return replace(self, terms=terms, **self.remade(again))
 
     def without(self, *arrays: str) -> LinearPeriodic:
         """Return the system without the terms of some arrays, for example ``*DAMPING``."""
-        return replace(
-            self,
-            terms=tuple(term for term in self.terms if term.array not in arrays),
-            **self.remade(methodcaller("without", *arrays)),
-        )
+        terms = tuple(term for term in self.terms if term.array not in arrays)
+        return replace(self, terms=terms, **self.remade(methodcaller("without", *arrays)))
 
     def remade(self, change: Callable[[LinearPeriodic], LinearPeriodic]) -> dict[str, Any]:
         """Return ``rebuild`` and ``remesh`` of the system that a change makes of this one.

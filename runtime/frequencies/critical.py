@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -276,17 +276,10 @@ def by_meissner(request: Request) -> CriticalSpeeds:
 
 def _marked(request: Request, maxima: Maxima, quantity: str) -> CriticalSpeeds:
     """Return maxima that know their mode; its mean frequency gives the order."""
-    mean = request.mean[maxima.mode - 1]
-    return request.answered(
-        maxima.method,
-        maxima.speed,
-        maxima.mode,
-        np.maximum(1, np.round(mean / maxima.speed)),
-        maxima.error,
-        height=maxima.value,
-        quantity=quantity,
-        checks=maxima.checks,
-    )
+    order = np.maximum(1, np.round(request.mean[maxima.mode - 1] / maxima.speed))
+    found = maxima.method, maxima.speed, maxima.mode, order, maxima.error
+    told: dict[str, Any] = {"height": maxima.value, "checks": maxima.checks}
+    return request.answered(*found, quantity=quantity, **told)
 
 
 def by_response(request: Request) -> CriticalSpeeds:

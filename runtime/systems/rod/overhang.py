@@ -235,13 +235,8 @@ class OverhangBasis:
         For places xi = x1/L of the block, above 0, to 1, ``(nt,)`` or a number; the length L [m],
         EI [N m^2] and mass per length [kg/m] are positive.
         """
-        require_numbers(
-            {
-                "length": length,
-                "bending_stiffness": bending_stiffness,
-                "mass_per_length": mass_per_length,
-            }
-        )
+        stiff = {"length": length, "bending_stiffness": bending_stiffness}
+        require_numbers({**stiff, "mass_per_length": mass_per_length})
         xi = require_places(place, alone=True)
         roots = self.roots(xi)
         with np.errstate(all="ignore"):

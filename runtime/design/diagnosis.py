@@ -22,10 +22,9 @@ from .nearest_regions import FASTEST, Margins, fastest_mode, margins
 # Tables that tell how a machine is run, seen or was measured, and not how it is made.
 _NOT_MADE = ("model", "operation", "measured", "chart", "loads", "motor")
 # How far from the running speed, over it, a region is wished to be; the largest change that is
-# spoken of; and up to which growth per turn a motion neither grows nor dies out.
-_AWAY, _LARGEST, _STILL = 0.1, 0.2, 1e-9
-# How far about a speed branches of motions are followed: from where these are small, mostly.
-_AROUND = 0.3
+# spoken of; up to which growth per turn a motion neither grows nor dies out; and how far about a
+# speed branches of motions are followed: from where these are small, mostly.
+_AWAY, _LARGEST, _STILL, _AROUND = 0.1, 0.2, 1e-9, 0.3
 
 
 @dataclass(frozen=True, kw_only=True)

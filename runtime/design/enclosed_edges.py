@@ -21,11 +21,10 @@ from ..core.families import Array
 from ..core.taylor_models import TaylorModel, UndecidedError
 
 Models = Mapping[str, TaylorModel]
-# Harmonics beyond the modes' own turns in a period; even angles for each; unknowns at most.
-_MORE, _ANGLES, _MOST = 24, 8, 200
-# Relative distance of an end from its eigenvalue; last harmonics over the largest, which enter
-# squared; part of the distance to other eigenvalues that is left free.
-_ALIKE, _FADED, _FREE = 1e-8, 1e-9, 0.1
+# Harmonics beyond the modes' own turns in a period; even angles for each; unknowns at most; relative
+# distance of an end from its eigenvalue; last harmonics over the largest, which enter squared; part
+# of the distance to other eigenvalues that is left free.
+_MORE, _ANGLES, _MOST, _ALIKE, _FADED, _FREE = 24, 8, 200, 1e-8, 1e-9, 0.1
 
 
 def harmonics_for(ends: Array, fastest: float, period: float) -> int:

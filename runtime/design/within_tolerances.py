@@ -30,11 +30,9 @@ from ..stability import stability_edges
 from ..systems.closed_form import closed_form
 from .enclosed_edges import angles_for, enclosed_ends, harmonics_for
 
-# Machines that check a proved bound, and a measured one; reserve over the largest remainder
-# measured; corners and points inside that it is measured at;
+# Reserve over the largest remainder measured; corners and points inside that it is measured at;
 # what round-off leaves, and no number; standard deviations to the worst case without a bound; the
 # part of the range of values that a band is seen at.
-_FEW, _MANY = 8, 32
 _SAFETY, _CORNERS, _INSIDE, _ROUND_OFF, _TINY, _REACH, _SEEN = 2.0, 16, 8, 1e-12, 1e-300, 3.0, 0.02
 _PROVED = "second order by Taylor models; remainder proved"
 _MEASURED = "second order by differences of a half-width; remainder measured, doubled"
@@ -223,7 +221,7 @@ def tolerance_bands(
     spare = np.repeat(_ROUND_OFF * size, shape[1]) + _TINY
     reserve, (low, high) = model.rest + spare, model.bounds()
     low, high = low - spare, high + spare
-    drawn = box.draw(trials or (_FEW if proved else _MANY), random)
+    drawn = box.draw(trials or (8 if proved else 32), random)
     used = np.abs(evaluate(drawn) - features(drawn) @ coefficients) / reserve
     left_out = np.maximum(model.rest - _ROUND_OFF * np.max(size), 0.0)  # of what is to be zero
     widest = [np.max(row.reshape(shape), axis=1) for row in (left_out, (high - low) / 2.0)]

@@ -47,10 +47,9 @@ _MARGIN, _LEAST = 12.0, 0.025
 # Of 1800 coordinates of a four-bar at five tolerances 99.7 % are covered, ten times in the middle.
 _STIFF = 3.0
 # Floats of the collocation matrices that are solved in one batch: they stay in the cache.  With
-# eight times as many, nine and 27 freedoms take a fifth longer.
-_BLOCK = 500_000
-# Entries of the equations of all segments up to which they are kept beside their solutions.
-_KEPT = 2_000_000
+# eight times as many, nine and 27 freedoms take a fifth longer.  Floats of the equations of all
+# segments up to which they are kept beside their solutions.
+_BLOCK, _KEPT = 500_000, 2_000_000
 # Power of the length of a segment that a field carries in the equations.
 _POWER = {"mass": 0, "gyroscopic": 1, "feedback": 1, "stiffness": 2}
 

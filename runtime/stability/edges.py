@@ -35,12 +35,10 @@ from .pairs import Edges, Events, Samples, meetings, refined_edges, sampled_phas
 ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
 
-# Relative width from which a tongue gets samples of its own on either side.
-_WIDE = 1e-6
-# Factor beyond the range up to which a region is followed that is wider than the search.
-_WIDEST = 5.0
-# Sine of the argument up to which two multipliers meet at +-1.
-_REAL = 1e-4
+# Relative width from which a tongue gets samples of its own on either side; factor beyond the range
+# up to which a region is followed that is wider than the search; sine of the argument up to which
+# two multipliers meet at +-1.
+_WIDE, _WIDEST, _REAL = 1e-6, 5.0, 1e-4
 _GAP = "multiplier +-1, and gap of multipliers of opposite Krein signature"
 _TOLD = ("lower", "upper", "multiplier", "modes", "harmonic", "detuning")
 _CLOSED = "closed: too narrow to be told from none"

@@ -21,9 +21,9 @@ from ..core.families import Array
 from ..core.taylor_models import TaylorModel, UndecidedError
 
 Models = Mapping[str, TaylorModel]
-# Harmonics beyond the modes' own turns in a period; even angles for each; unknowns at most; relative
-# distance of an end from its eigenvalue; last harmonics over the largest, which enter squared; part
-# of the distance to other eigenvalues that is left free.
+# Harmonics beyond the modes' own turns in a period; even angles for each; unknowns at
+# most; relative distance of an end from its eigenvalue; last harmonics over the largest, which
+# enter squared; part of the distance to other eigenvalues that is left free.
 _MORE, _ANGLES, _MOST, _ALIKE, _FADED, _FREE = 24, 8, 200, 1e-8, 1e-9, 0.1
 
 

@@ -203,7 +203,7 @@ def tolerance_bands(
     evaluate = partial(_values, scene, asked, box)
     model = _enclosed(scene, asked, box)
     proved = model is not None
-    points = np.zeros((1, box.n)) if model else box.design()
+    points = np.zeros((1, box.n)) if proved else box.design()
     first = evaluate(points)
     if model is None:
         model = TaylorModel(np.linalg.solve(features(points), first).T.astype(float), 0.0, box.n)

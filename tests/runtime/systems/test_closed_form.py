@@ -1,11 +1,14 @@
 """Arrays in closed form: those of the system, and their derivatives by numbers of the scene."""
 
 import elastolink as el
+import flint
 import numpy as np
 import pytest
 from elastolink.runtime.design import coefficient_changes as changes_module
 from elastolink.runtime.design.coefficient_changes import coefficient_changes
+from elastolink.runtime.design.enclosures import Ball
 from elastolink.runtime.periodic.equation import SPEED_POWER
+from elastolink.runtime.scenes import with_numbers
 from elastolink.runtime.systems.closed_form import closed_form
 
 COUPLER = "smith_1972_5152_sixteenth_inch"
@@ -49,6 +52,48 @@ def test_derivatives_are_those_of_differences_of_systems(name, more, by, monkeyp
         assert np.all(gap <= 1e-11 * np.max(np.abs(expected.parts[part])) + 1e-11 * np.max(size))
         moving.append(np.max(size) > 0.1 * np.max(np.abs(expected.parts[part])))
     assert sum(moving) >= (3 if "mass_per_length" in by[-1] else 2)
+
+
+def random_couplers(count):
+    random, found = np.random.default_rng(0), []
+    while len(found) < count:
+        frame, coupler = 0.381 * random.uniform(0.7, 1.3, 2)
+        crank, follower = 0.0762 * random.uniform(0.5, 1.6), 0.1524 * random.uniform(0.9, 2.0)
+        lengths = {"frame": frame, "crank": crank, "coupler": coupler, "follower": follower}
+        try:
+            found.append(el.load_scene(COUPLER, {f"links.{k}": v for k, v in lengths.items()}))
+        except el.BadInput:
+            continue
+    return found
+
+
+def balls(values):
+    row = np.empty(len(values), dtype=object)
+    row[:] = [Ball(flint.acb(value)) for value in values]
+    return row
+
+
+def test_derivatives_by_a_complex_step_are_off_by_the_round_off_that_is_told():
+    """Against the same step in balls of 300 bits."""
+    told = changes_module._ROUNDED
+    for scene in random_couplers(8):
+        closed = closed_form(scene)
+        for name in BY:
+            value, step = scene.get(name), 1e-40
+            moved = with_numbers(scene, {name: complex(value, step)}, checked=False)
+            found = closed.arrays(closed.numbers(moved), ANGLES, ("B", "f"))
+            with flint.ctx.workprec(300):
+                moved = with_numbers(scene, {name: Ball(flint.acb(value, step))}, checked=False)
+                numbers = closed.numbers(moved)
+                numbers = {
+                    k: v if isinstance(v, Ball) else balls([v])[0] for k, v in numbers.items()
+                }
+                exact = closed.arrays(numbers, balls(ANGLES.tolist()), ("B", "f"))
+            for part, slope in found.items():
+                reference = [float(x.value.imag.mid()) for x in exact[part].ravel()]
+                if np.iscomplexobj(slope) and np.any(reference):
+                    gap = np.abs(slope.imag.ravel() - reference)
+                    assert np.max(gap) <= told * np.max(np.abs(reference))
 
 
 def test_parameters_that_are_held_stay():

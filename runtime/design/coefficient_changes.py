@@ -80,7 +80,8 @@ class Changes:
         total, by_speed = np.zeros(shape, dtype=complex), np.zeros(weights.shape, dtype=complex)
         error, bulk = np.zeros(shape), np.zeros(shape)
         table = self.table(weights.angles)
-        sizes = {field: weights.sizes(field) for field in weights.pairs}
+        fields = {FIELD[array][0] for array, _ in self._moving}
+        sizes = {field: weights.sizes(field) for field in fields & set(weights.fields)}
         for part, (series, moving, change, off) in self._moving.items():
             field, sign = FIELD[part[0]]
             if field not in sizes:
@@ -89,13 +90,12 @@ class Changes:
             pace = sign * speed[:, None] ** power
             waved = table[: 1 if series.shape[1] == 1 else None, : series.shape[1]]
             values = np.tensordot(series, waved, axes=(1, 1))
-            values = np.moveaxis(values, -1, 1)
             found = weights.effect(field, values)
             if power:
                 by_speed += power * pace / speed[:, None] * found[0]
             total[..., moving] += pace[..., None] * np.moveaxis(found[1:], 0, -1)
             # What is told of a sum's terms by their largest coefficient.
-            largest = np.max(np.abs(values[0]), axis=0).ravel()
+            largest = np.max(np.abs(values[0]), axis=-1).ravel()
             size = (np.abs(pace) * (sizes[field] @ largest))[..., None]
             bulk += size * change
             error += size * off
@@ -117,18 +117,18 @@ class Changes:
             top = float(_largest(series[None])[0]) or 1.0
             change = _largest(self.slopes[part]) / top
             gap = _largest(self.slopes[part] - self.rough[part])
-            each = [self.round_off(part, i) for i in range(len(self.by))]
-            off = (gap + _largest(np.array(each))) / top
+            off = (gap + _largest(self.round_off(part))) / top
             moving = np.flatnonzero(change)
             both = np.concatenate([series[None], self.slopes[part][moving]])
             found[part] = both if np.any(both[:, 1:]) else both[:, :1], moving, change, off
         return found
 
-    def round_off(self, part: Part, place: int) -> Array:
-        """Return bounds of the round-off of a part's derivatives by one number."""
-        slope, series = self.slopes[part][place], self.parts[part]
-        subtracted = np.abs(np.where(slope, series, 0.0)) * (_EPS / self.step[place])
-        return np.asarray(subtracted + self.doubt[place] * np.abs(slope))
+    def round_off(self, part: Part) -> Array:
+        """Return bounds of the round-off of a part's derivatives, as ``slopes``."""
+        slopes, series = self.slopes[part], self.parts[part]
+        step, doubt = (one.reshape(-1, *(1,) * series.ndim) for one in (self.step, self.doubt))
+        subtracted = np.abs(np.where(slopes, series, 0.0)) * (_EPS / step)
+        return np.asarray(subtracted + doubt * np.abs(slopes))
 
     def table(self, angles: Array) -> Array:
         """Return the waves of the coefficients at angles [rad]."""

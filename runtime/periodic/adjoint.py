@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,14 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 # Entries of weights that are made at once: they stay in the cache.
 _BLOCK = 1 << 15
+# By field, the sign of its change, and vectors between which it stands, summed over the nodes.
+_PAIRS = {
+    "mass": ((1.0, "momentum", "slope"),),
+    "gyroscopic": ((1.0, "momentum", "place"), (1.0, "slope", "load")),
+    "damping": ((-1.0, "load", "slope"),),
+    "stiffness": ((1.0, "load", "place"),),
+    "force": ((1.0, "load", "one"),),
+}
 
 
 @dataclass(frozen=True)
@@ -37,47 +45,55 @@ class FieldWeights:
     ----------
     angles : ndarray
         Crank angles [rad] of all nodes of the period, shape ``(nt,)``.
-    pairs : mapping
-        By field, pairs of vectors in unscaled coordinates between which its change stands, summed
-        over the nodes, ``(nb k, nt, n)`` each; the second of the force is 1, ``(nb k, nt, 1)``.
+    vectors : mapping
+        By the names of :data:`_PAIRS`, vectors in unscaled coordinates, ``(nb k, n, nt)`` each;
+        ``one``, of a system with a force, is 1, ``(nb k, 1, nt)``.
     shape : tuple of int
         ``(nb, k)``.
     """
 
     angles: Array
-    pairs: Mapping[str, tuple[tuple[ComplexArray, ComplexArray], ...]]
+    vectors: Mapping[str, ComplexArray]
     shape: tuple[int, int]
 
     def effect(self, field: str, changes: Array) -> ComplexArray:
         """Return what changes do, ``(c, nb, k)``.
 
-        They are ``(c, nt, n, n)``, or ``(c, nt, n)`` of the force; what is constant has one angle.
+        They are ``(c, n, n, nt)``, or ``(c, n, nt)`` of the force; what is constant has one angle.
         """
-        count, nodes = changes.shape[:2]
-        flat = np.ascontiguousarray(changes.reshape(count, nodes, -1).mT)
+        count, nodes = len(changes), changes.shape[-1]
+        flat = changes.reshape(count, -1, nodes)
         lines = self.shape[0] * self.shape[1]
         total = np.zeros((lines, count, 2))
         together = max(1, _BLOCK // (flat.shape[1] * lines))
-        for left, right in self.pairs.get(field, ()):
+        for sign, *names in _PAIRS[field]:
+            left, right = (self.vectors[name] for name in names)
             if nodes == 1:
-                table = (left.mT @ right).reshape(lines, -1).view(float).reshape(lines, -1, 2)
-                total += flat[..., 0] @ table
+                table = (left @ right.mT).reshape(lines, -1).view(float).reshape(lines, -1, 2)
+                total += sign * (flat[..., 0] @ table)
                 continue
             for begin in range(0, nodes, together):
                 some = slice(begin, begin + together)
-                one, other = (np.ascontiguousarray(part[:, some].mT) for part in (left, right))
-                entries = one[:, :, None] * other[:, None]
+                entries = left[:, :, None, some] * right[:, None, :, some]
                 # Real times complex in one product of real arrays.
                 table = entries.reshape(lines, -1).view(float).reshape(lines, -1, 2)
-                total += flat[..., some].reshape(count, -1) @ table
+                total += sign * (flat[..., some].reshape(count, -1) @ table)
         found = np.ascontiguousarray(total.swapaxes(0, 1)).view(complex)
         return found.reshape(count, *self.shape)
 
     def sizes(self, field: str) -> Array:
         """Return what each entry of a change enters with, without signs, ``(nb, k, n n)``."""
-        pairs = self.pairs.get(field, ())
-        total: Any = sum(np.abs(left).mT @ np.abs(right) for left, right in pairs)
-        return np.reshape(total, (*self.shape, -1)) if pairs else np.zeros((*self.shape, 1))
+        pairs = ((self._sizes[left], self._sizes[right]) for _, left, right in _PAIRS[field])
+        return np.reshape(sum(left @ right.mT for left, right in pairs), (*self.shape, -1))
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """Fields that the system has: a force not always."""
+        return tuple(name for name in _PAIRS if name != "force" or "one" in self.vectors)
+
+    @cached_property
+    def _sizes(self) -> Mapping[str, Array]:
+        return {name: np.abs(vector) for name, vector in self.vectors.items()}
 
 
 def field_weights(
@@ -96,25 +112,22 @@ def field_weights(
     ``(nb, k, m)``.
     """
     maps, slopes = segments.maps, segments.slopes
-    if slopes is None:
-        raise ValueError("segments without slopes")
     n, count, (nb, k) = equation.size, maps.shape[1], rows.shape[:2]
     h = equation.period / count
     left = begin + h * np.arange(float(count))
     # Real parts, then imaginary ones.
-    before = np.empty((count, nb, 2 * k, states.shape[2]))
-    after = np.empty((count, nb, 2 * k, rows.shape[2]))
-    state, row = (np.concatenate([one.real, one.imag], axis=1) for one in (states, rows))
-    for i in range(count):
-        before[i] = state
-        state = state @ maps[:, i].mT
-    for i in range(count)[::-1]:
-        after[i] = row
-        row = row @ maps[:, i]
-    # Indices: segment, member, part, node, coordinate.
-    flat = np.moveaxis(slopes, 1, 0).reshape(count, nb, way.stages * n, -1)
-    slope = (before @ flat.mT).reshape(count, nb, 2 * k, way.stages, n)
-    place = before[..., None, :n] + h * (way.a @ slope)
+    before, after = (np.empty((count, nb, 2 * k, one.shape[2])) for one in (states, rows))
+    np.concatenate([states.real, states.imag], axis=1, out=before[0])
+    np.concatenate([rows.real, rows.imag], axis=1, out=after[-1])
+    for i, step in enumerate(np.moveaxis(maps, 1, 0)[:-1]):
+        np.matmul(before[i], step.mT, out=before[i + 1])
+    for i, step in enumerate(np.moveaxis(maps, 1, 0)[:0:-1]):
+        np.matmul(after[-1 - i], step, out=after[-2 - i])
+    # Indices: segment, member, part, coordinate, node.
+    flat = np.moveaxis(slopes, 1, 0).reshape(count, nb, -1, n * way.stages)
+    slope = (before @ flat).reshape(count, nb, 2 * k, n, way.stages)
+    place = slope @ (h * way.a.T)
+    place += before[..., :n, None]
     parts, kept = blocks(equation, way, count), segments.stages
     made = kept or (stages_of(equation, left[part], h, way) for part in parts)
     solved = [
@@ -122,30 +135,24 @@ def field_weights(
     ]
     load, momentum = map(np.concatenate, zip(*solved, strict=True))
 
-    unit = np.tile(equation.scale, (1, way.stages))[:, None, None]
-
-    def by_node(values: Array) -> ComplexArray:
-        """Return complex vectors in unscaled coordinates, ``(nb k, nt, n)``."""
-        turned = values.reshape(count, nb, 2, k, -1).transpose(2, 1, 3, 0, 4)
+    def by_node(values: Array, factor: float = 1.0) -> ComplexArray:
+        """Return multiples as complex vectors in unscaled coordinates, ``(nb k, n, nt)``."""
+        unit = (factor * equation.scale)[:, None, :, None, None]
+        turned = values.reshape(count, nb, 2, k, n, way.stages).transpose(2, 1, 3, 4, 0, 5)
         whole = np.empty(turned.shape[1:], dtype=complex)
         for part, target in zip(turned, (whole.real, whole.imag), strict=True):
             np.multiply(part, unit, out=target)
-        return whole.reshape(nb * k, count * way.stages, n)
+        return whole.reshape(nb * k, n, count * way.stages)
 
-    moved, placed, loaded, pushed = map(by_node, (slope, place, h * load, momentum))
-    pairs: dict[str, tuple[tuple[ComplexArray, ComplexArray], ...]] = {
-        "mass": ((pushed, moved),),
-        "gyroscopic": ((pushed, placed), (moved, loaded)),
-        "damping": ((-loaded, moved),),
-        "stiffness": ((loaded, placed),),
-    }
+    vectors = {"slope": by_node(slope), "place": by_node(place)}
+    vectors |= {"load": by_node(load, h), "momentum": by_node(momentum)}
     if equation.forced:
-        pairs["force"] = ((loaded, np.ones_like(loaded[..., :1])),)
-    return FieldWeights((left[:, None] + way.c * h).ravel(), pairs, (nb, k))
+        vectors["one"] = np.ones_like(vectors["load"][:, :1])
+    return FieldWeights((left[:, None] + way.c * h).ravel(), vectors, (nb, k))
 
 
 def _adjoint(stages: Stages, way: Method, h: float, after: Array) -> tuple[Array, Array]:
-    """Return lambda and mu of rows at the right ends, ``(segments, nb, k, s, n)`` each."""
+    """Return lambda and mu of rows at the right ends, ``(segments, nb, k, n, s)`` each."""
     s, n = way.stages, stages.columns.shape[-1] // way.stages
     end = way.b @ way.inverse
     # Indices: member, segment, functional, coordinate, node.
@@ -155,14 +162,18 @@ def _adjoint(stages: Stages, way: Method, h: float, after: Array) -> tuple[Array
 
     def at_nodes(field: str) -> Array:
         by_row = stages.at_nodes[field].reshape(*shape[:2], n * s, n)
-        return np.asarray(end * (row_p @ by_row.mT).reshape(shape))
+        found = (row_p @ by_row.mT).reshape(shape)
+        found *= end
+        return found
 
-    right = at_nodes("mass") + h * way.b * parts[..., :n, None]
+    right = at_nodes("mass")
+    right += h * way.b * parts[..., :n, None]
     if "gyroscopic" in stages.at_nodes:
         right += at_nodes("gyroscopic") @ way.a
     # Equations are (node, coordinate).
     flat = right.reshape(*shape[:3], n * s)
     solved = np.linalg.solve(stages.columns, flat.mT).mT.reshape(*shape[:3], s, n)
-    load: Array = solved.swapaxes(0, 1).astype(float, copy=False)
-    momentum = end[:, None] * after[..., None, n : 2 * n] - way.inverse.T @ load
+    load: Array = solved.mT.swapaxes(0, 1).astype(float, copy=False)
+    momentum = load @ -way.inverse
+    momentum += end * after[..., n : 2 * n, None]
     return load, momentum

@@ -371,7 +371,8 @@ def ring_motion(way: Method, samples: int, equation: Equation, count: int) -> tu
     flow, load = segments.maps[..., : 2 * n, : 2 * n], segments.maps[..., : 2 * n, 2 * n]
     nodes, sensitivity = solve_ring(flow, load)
     whole = np.concatenate([nodes, np.ones((*nodes.shape[:2], 1))], axis=-1)
-    slopes = (segments.slopes @ whole[:, :, None, :, None])[..., 0]
+    by_column = segments.slopes.reshape(*whole.shape, -1)
+    slopes = (whole[:, :, None] @ by_column).reshape(*whole.shape[:2], n, way.stages).mT
     q, slope = along_segments(way, equation.period, nodes[..., :n], slopes, samples)
     unit = equation.scale[:, None, :]
     return q * unit, slope * unit, sensitivity

@@ -110,9 +110,9 @@ class Segments:
     # From the scaled state at the left end of a segment to that at its right end, shape
     # (nb, segments, m, m), m = 2n, or 2n + 1 with a last component 1 that the force acts on.
     maps: Array
-    # From the state at the left end to the scaled slopes at the nodes, (nb, segments, s, n, m),
-    # where they were wanted.
-    slopes: Array | None
+    # From the state at the left end, by columns, to the scaled slopes at the nodes,
+    # (nb, segments, m, n, s); empty unless they were wanted.
+    slopes: Array
     # The equations of the slopes by blocks, where these are wanted and the equations small.
     stages: list[Stages] = field(default_factory=list)
 
@@ -133,7 +133,7 @@ def segments_from(
     s = way.stages
     nb, n, ns = len(equation.speed), equation.size, len(left)
     m = 2 * n + equation.forced
-    whole = Segments(np.empty((nb, ns, m, m)), np.empty((nb, ns, s, n, m)) if slopes else None)
+    whole = Segments(np.empty((nb, ns, m, m)), np.empty((nb, ns, m, n, s) if slopes else 0))
     small = slopes and nb * ns * (s * n) ** 2 <= _KEPT
     for part in blocks(equation, way, ns):
         stages = stages_of(equation, left[part], h, way)
@@ -141,7 +141,7 @@ def segments_from(
         whole.maps[:, part] = ends
         if small:
             whole.stages.append(stages)
-        if whole.slopes is not None:
+        if slopes:
             whole.slopes[:, part] = unknown
     return whole
 
@@ -242,7 +242,7 @@ def _solved(equation: Equation, stages: Stages, h: float, way: Method) -> tuple[
     ends[..., :n, :n] += np.eye(n)
     if equation.forced:
         ends[..., 2 * n, 2 * n] = 1.0
-    return ends.mT, np.transpose(unknown, (0, 1, 4, 3, 2))
+    return ends.mT, unknown
 
 
 def _solution(columns: Array, right: Array) -> Array:

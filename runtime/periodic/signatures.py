@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Signs = NDArray[np.int8]
+Mask = NDArray[np.bool_]
 
 
 def form_matrix(vectors: ComplexArray) -> ComplexArray:
@@ -34,41 +35,42 @@ def signatures_of(vectors: ComplexArray, multipliers: ComplexArray, error: Array
     is 0 off the circle, where errors leave the sign open, and where multipliers that errors do not
     tell apart have a form that is not definite.
     """
-    out = np.zeros(multipliers.shape, dtype=np.int8)
-    for row, values in enumerate(multipliers):
-        if np.all(np.isfinite(values)):
-            out[row] = _signs(values, vectors[row], error[row])
-    return out
+    with np.errstate(divide="ignore", invalid="ignore"):
+        distance = np.abs(multipliers[:, :, None] - multipliers[:, None, :])
+        # Within ten errors two multipliers are taken as one, and a modulus for 1.
+        near = distance <= 10.0 * (error[:, :, None] + error[:, None, :])
+        on_circle = (np.abs(np.abs(multipliers) - 1.0) <= 10.0 * error) & (error < 0.1)
+        # A vector is in error by that of its multiplier, over the distance to the others.
+        apart = np.min(np.where(np.eye(distance.shape[-1]), 2.0, distance), axis=-1)
+        slack = 4.0 * error / np.minimum(apart, 2.0)
+    levels = np.diagonal(form_matrix(vectors), axis1=-2, axis2=-1).real
+    signs: Array = np.sign(levels) * (on_circle & (np.abs(levels) > slack))
+    for row in np.flatnonzero(np.count_nonzero(near, axis=(1, 2)) > distance.shape[-1]).tolist():
+        signs[row] = _of_groups(near[row], on_circle[row], distance[row], vectors[row], error[row])
+    signs[~np.all(np.isfinite(multipliers), axis=-1)] = 0
+    return signs.astype(np.int8)
 
 
-def _signs(values: ComplexArray, vectors: ComplexArray, error: Array) -> Signs:
-    signs = np.zeros(len(values), dtype=np.int8)
-    # Within ten errors two multipliers are taken as one, and a modulus for 1.
-    distance = np.abs(values[:, None] - values)
-    near = distance <= 10.0 * (error[:, None] + error)
-    on_circle = (np.abs(np.abs(values) - 1.0) <= 10.0 * error) & (error < 0.1)
+def _of_groups(
+    near: Mask, on_circle: Mask, distance: Array, vectors: ComplexArray, error: Array
+) -> Array:
+    """Return the signatures of one matrix whose multipliers are not all apart."""
+    signs = np.zeros(len(error))
     for members in _groups(near):
         if not np.all(on_circle[members]):
             continue
-        basis = vectors[:, members]
-        if len(members) > 1:
-            basis, _ = np.linalg.qr(basis)
+        basis, _ = np.linalg.qr(vectors[:, members])
         levels = np.linalg.eigvalsh(form_matrix(basis))
-        # A vector is in error by that of its multiplier, over the distance to the others.
         apart = np.delete(distance[members], members, axis=1)
         slack = 4.0 * float(np.max(error[members])) / float(np.min(apart, initial=2.0))
-        if np.all(levels > slack):
-            signs[members] = 1
-        elif np.all(levels < -slack):
-            signs[members] = -1
+        signs[members] = float(np.all(levels > slack)) - float(np.all(levels < -slack))
     return signs
 
 
-def _groups(linked: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
+def _groups(linked: Mask) -> list[NDArray[np.intp]]:
     """Return the connected groups of a symmetric relation."""
     reached = linked
-    if np.count_nonzero(linked) > len(linked):
-        for _ in range(len(linked).bit_length()):
-            reached = (reached.astype(int) @ reached.astype(int)) > 0
+    for _ in range(len(linked).bit_length()):
+        reached = (reached.astype(int) @ reached.astype(int)) > 0
     firsts = np.argmax(reached, axis=1)
     return [np.flatnonzero(firsts == first) for first in np.unique(firsts)]

@@ -114,19 +114,24 @@ class Changes:
         """
         found = {}
         for part, series in self.parts.items():
-            top = float(_largest(series[None])[0]) or 1.0
-            change = _largest(self.slopes[part]) / top
-            gap = _largest(self.slopes[part] - self.rough[part])
-            off = (gap + _largest(self.round_off(part))) / top
-            moving = np.flatnonzero(change)
-            both = np.concatenate([series[None], self.slopes[part][moving]])
+            top, slopes = float(_largest(series[None])[0]) or 1.0, self.slopes[part]
+            change = _largest(slopes) / top
+            moving, off = np.flatnonzero(change), np.zeros(len(change))
+            gap = _largest(slopes[moving] - self.rough[part][moving])
+            off[moving] = (gap + _largest(self.round_off(part, moving))) / top
+            both = np.concatenate([series[None], slopes[moving]])
             found[part] = both if np.any(both[:, 1:]) else both[:, :1], moving, change, off
         return found
 
-    def round_off(self, part: Part) -> Array:
-        """Return bounds of the round-off of a part's derivatives, as ``slopes``."""
-        slopes, series = self.slopes[part], self.parts[part]
-        step, doubt = (one.reshape(-1, *(1,) * series.ndim) for one in (self.step, self.doubt))
+    def round_off(self, part: Part, places: NDArray[np.intp]) -> Array:
+        """Return bounds of the round-off of a part's derivatives by some numbers, by their places.
+
+        They are shaped as ``slopes``.
+        """
+        slopes, series = self.slopes[part][places], self.parts[part]
+        step, doubt = (
+            one[places].reshape(-1, *(1,) * series.ndim) for one in (self.step, self.doubt)
+        )
         subtracted = np.abs(np.where(slopes, series, 0.0)) * (_EPS / step)
         return np.asarray(subtracted + doubt * np.abs(slopes))
 

@@ -664,7 +664,6 @@ def _of_frequencies(
             continue
         pace = speed**power if array == "Kg" else 1.0
         factor = -0.5 * values if array == "M" else 0.5 * pace / values
-        round_off = changes.round_off((array, power))
 
         def of(change: Array, shapes: Array = shapes, factor: Array = factor) -> Array:
             return np.asarray(factor * np.einsum("tik,tij,tjk->tk", shapes, change, shapes))
@@ -675,7 +674,7 @@ def _of_frequencies(
             slope[..., i] += of(moved)
             rough[..., i] += of(series_at(table, changes.rough[array, power][i]))
             size[..., i] += np.abs(of(np.abs(moved), np.abs(shapes)))
-            rounded = series_at(np.abs(table), round_off[i])
+            rounded = series_at(np.abs(table), changes.round_off((array, power), np.array([i]))[0])
             off[..., i] += np.abs(of(rounded, np.abs(shapes)))
     distance = np.abs(values[:, :, None] - values[:, None, :]) / values[:, :, None]
     distance = np.maximum(distance, np.finfo(float).eps)

@@ -9,6 +9,10 @@ matrix, for all changes together.  Rows go back through the segments, states for
     (dr/dV)^T lambda = (dz/dV)^T l,  mu_j = (b a^-1)_j l_p - sum_l (a^-1)_lj lambda_l.
 
 That is the derivative of the matrix X as it is computed, so that it converges as X does.
+
+Without damping there is nothing to solve: Gauss's nodes keep the flow symplectic, and what a row
+(l_q, l_p) sees goes as the motion from (l_p, -l_q) does.  With its slopes W and places Y at the
+nodes ``mu_j = h b_j W_j`` and ``lambda_j = b_j Y_j``.
 """
 
 from __future__ import annotations
@@ -128,12 +132,20 @@ def field_weights(
     slope = (before @ flat).reshape(count, nb, 2 * k, n, way.stages)
     place = slope @ (h * way.a.T)
     place += before[..., :n, None]
-    parts, kept = blocks(equation, way, count), segments.stages
-    made = kept or (stages_of(equation, left[part], h, way) for part in parts)
-    solved = [
-        _adjoint(stages, way, h, after[part]) for part, stages in zip(parts, made, strict=True)
-    ]
-    load, momentum = map(np.concatenate, zip(*solved, strict=True))
+    if way.ends:
+        parts, kept = blocks(equation, way, count), segments.stages
+        made = kept or (stages_of(equation, left[part], h, way) for part in parts)
+        solved = [
+            _adjoint(stages, way, h, after[part]) for part, stages in zip(parts, made, strict=True)
+        ]
+        load, momentum = map(np.concatenate, zip(*solved, strict=True))
+    else:
+        row = after @ np.moveaxis(maps, 1, 0)
+        turned = np.concatenate([row[..., n : 2 * n], -row[..., :n]], axis=-1)
+        rate = (turned @ flat[:, :, : 2 * n]).reshape(slope.shape)
+        load, momentum = rate @ (h * way.a.T), (h * way.b) * rate
+        load += turned[..., :n, None]
+        load *= way.b
 
     def by_node(values: Array, factor: float = 1.0) -> ComplexArray:
         """Return multiples as complex vectors in unscaled coordinates, ``(nb k, n, nt)``."""
@@ -152,28 +164,22 @@ def field_weights(
 
 
 def _adjoint(stages: Stages, way: Method, h: float, after: Array) -> tuple[Array, Array]:
-    """Return lambda and mu of rows at the right ends, ``(segments, nb, k, n, s)`` each."""
+    """Return lambda and mu of rows at the right ends, ``(segments, nb, k, n, s)`` each.
+
+    The last node is the right end.
+    """
     s, n = way.stages, stages.columns.shape[-1] // way.stages
-    end = way.b @ way.inverse
     # Indices: member, segment, functional, coordinate, node.
-    parts = after.swapaxes(0, 1)
-    row_p = np.ascontiguousarray(parts[..., n : 2 * n])
-    shape = (*row_p.shape, s)
-
-    def at_nodes(field: str) -> Array:
-        by_row = stages.at_nodes[field].reshape(*shape[:2], n * s, n)
-        found = (row_p @ by_row.mT).reshape(shape)
-        found *= end
-        return found
-
-    right = at_nodes("mass")
-    right += h * way.b * parts[..., :n, None]
+    row_q, row_p = (after[..., part].swapaxes(0, 1) for part in (slice(n), slice(n, 2 * n)))
+    right = h * row_q
     if "gyroscopic" in stages.at_nodes:
-        right += at_nodes("gyroscopic") @ way.a
+        right += row_p @ stages.at_nodes["gyroscopic"][..., -1, :].mT
+    right = right[..., None] * way.b
+    right[..., -1] += row_p @ stages.at_nodes["mass"][..., -1, :].mT
     # Equations are (node, coordinate).
-    flat = right.reshape(*shape[:3], n * s)
-    solved = np.linalg.solve(stages.columns, flat.mT).mT.reshape(*shape[:3], s, n)
-    load: Array = solved.mT.swapaxes(0, 1).astype(float, copy=False)
-    momentum = load @ -way.inverse
-    momentum += end * after[..., n : 2 * n, None]
-    return load, momentum
+    flat = right.reshape(*row_p.shape[:3], n * s)
+    unknown = np.linalg.solve(stages.columns, flat.mT).mT
+    solved: Array = unknown.reshape(*row_p.shape[:3], s, n).astype(float, copy=False)
+    momentum: Array = -way.inverse.T @ solved
+    momentum[..., -1, :] += row_p
+    return solved.swapaxes(0, 1).mT, momentum.swapaxes(0, 1).mT

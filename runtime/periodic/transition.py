@@ -113,7 +113,7 @@ class Segments:
     # From the state at the left end, by columns, to the scaled slopes at the nodes,
     # (nb, segments, m, n, s); empty unless they were wanted.
     slopes: Array
-    # The equations of the slopes by blocks, where these are wanted and the equations small.
+    # Where these are wanted of a damped system: their equations by blocks, if small.
     stages: list[Stages] = field(default_factory=list)
 
 
@@ -134,12 +134,12 @@ def segments_from(
     nb, n, ns = len(equation.speed), equation.size, len(left)
     m = 2 * n + equation.forced
     whole = Segments(np.empty((nb, ns, m, m)), np.empty((nb, ns, m, n, s) if slopes else 0))
-    small = slopes and nb * ns * (s * n) ** 2 <= _KEPT
+    kept = slopes and way.ends and nb * ns * (s * n) ** 2 <= _KEPT
     for part in blocks(equation, way, ns):
         stages = stages_of(equation, left[part], h, way)
         ends, unknown = _solved(equation, stages, h, way)
         whole.maps[:, part] = ends
-        if small:
+        if kept:
             whole.stages.append(stages)
         if slopes:
             whole.slopes[:, part] = unknown

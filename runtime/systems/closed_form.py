@@ -64,7 +64,7 @@ class ClosedForm:
             ``(nt, n, n)`` each, or ``(nt, n)``; nt is 1 where it is constant.
         """
         rows = [row for row in self.module.TERMS if row[0] in wanted]
-        modal: Any = modal_arrays(self.module, self.modes, None, rows)
+        modal: Any = modal_arrays(self.module, self.modes, rows)
         factors: dict[Any, Any] = {None: np.ones(1)}
         factors |= {name: function(theta) for name, function in self.functions.items()}
         for kernel, names in self.module.RETURNS.items():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +13,7 @@ from ..beams.section import Section
 from ..beams.structure import DIRECTIONS
 from ..core.families import LinearPeriodic
 from ..core.families.modal_damping import with_modal_damping
+from .from_scene import origin, pull_of_gravity
 
 if TYPE_CHECKING:
     from ..scenes import Scene
@@ -28,12 +28,11 @@ def beams_of_scene(scene: Scene) -> LinearPeriodic:
         "rayleigh": tuple(
             scene.get(f"damping.{key}", 0.0) for key in ("rayleigh_mass", "rayleigh_stiffness")
         ),
-        "gravity": _gravity(scene),
+        "gravity": pull_of_gravity(scene),
     }
     kind = BEAM_FORMULATIONS[scene.model["formulation"]]
-    told = {"scene": scene.name, "scene_digest": scene.digest()}
     if scene.model["mechanism"] == "frame":
-        system = _frame(scene, kind, told, options)
+        system = _frame(scene, kind, options)
     else:
         links = scene.layout.flexible
         system = linkage_system(
@@ -42,7 +41,7 @@ def beams_of_scene(scene: Scene) -> LinearPeriodic:
             elements={link: _elements(scene, scene[link]) for link in links},
             kind=kind,
             nodes={letter: _node(table) for letter, table in scene.get("joints", {}).items()},
-            provenance=told,
+            provenance=origin(scene),
             **options,
         )
     ratio = scene.get("damping.ratio", 0.0)
@@ -56,9 +55,7 @@ def section(table: Mapping[str, Any]) -> Section:
     return Section(**given, retardation=table.get("retardation_time", 0.0))
 
 
-def _frame(
-    scene: Scene, kind: str, told: Mapping[str, str], options: Mapping[str, Any]
-) -> LinearPeriodic:
+def _frame(scene: Scene, kind: str, options: Mapping[str, Any]) -> LinearPeriodic:
     nodes, members = scene["nodes"], scene["members"]
     structure = frame(
         {name: table["place"] for name, table in nodes.items()},
@@ -69,7 +66,7 @@ def _frame(
         elements={name: _elements(scene, table) for name, table in members.items()},
         kind=kind,
         nodes={name: _node(table) for name, table in nodes.items()},
-        provenance=told,
+        provenance=origin(scene),
     )
     system = linear_system(structure, **options)
     return without_stretching(system) if scene["frame"]["axial"] == "rigid" else system
@@ -89,11 +86,3 @@ def _node(table: Mapping[str, Any]) -> dict[str, Any]:
         if given:
             found[group] = given
     return found
-
-
-def _gravity(scene: Scene) -> tuple[float, float]:
-    direction = scene.get("gravity.direction", None)
-    if direction is None:
-        return 0.0, 0.0
-    size = scene["gravity"]["acceleration"]
-    return size * math.cos(direction), size * math.sin(direction)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -43,7 +44,7 @@ def coupler_system(scene: Scene) -> LinearPeriodic:
         limits=_COUPLER_LIMITS,
         reference_length=linkage.lengths["coupler"],
         shape=partial(_pinned_modes, modes),
-        provenance={**_origin(scene), **emitted.provenance, "nonlinear": "inextensible"},
+        provenance={**origin(scene), **emitted.provenance, "nonlinear": "inextensible"},
     )
 
 
@@ -76,7 +77,7 @@ def hill_system(scene: Scene) -> LinearPeriodic:
         external={"f": fourier_series(scene)},
         limits={"damping": "non-negative"},
         labels=("y",),
-        provenance={**_origin(scene), **emitted.provenance},
+        provenance={**origin(scene), **emitted.provenance},
     )
 
 
@@ -124,7 +125,7 @@ def _linear_rod(scene: Scene, numbers: dict[str, float]) -> LinearPeriodic:
         damping=damping,
         internal_damping=internal,
         drop=tuple(scene.model["drop"]),
-        provenance=_origin(scene),
+        provenance=origin(scene),
     )
     return with_modal_damping(system, ratio) if ratio and law == "modal" else system
 
@@ -156,9 +157,19 @@ def _floating_rod(scene: Scene, numbers: dict[str, float]) -> Constrained:
         **numbers,
         speed=speed,
         drop=tuple(scene.model["drop"]),
-        provenance=_origin(scene),
+        provenance=origin(scene),
     )
 
 
-def _origin(scene: Scene) -> dict[str, str]:
+def origin(scene: Scene) -> dict[str, str]:
+    """Return what results of a scene say of it."""
     return {"scene": scene.name, "scene_digest": scene.digest()}
+
+
+def pull_of_gravity(scene: Scene) -> tuple[float, float]:
+    """Return the acceleration of free fall [m/s^2] along x and y; 0 where the machine lies flat."""
+    gravity = scene["gravity"]
+    if "direction" not in gravity:
+        return 0.0, 0.0
+    size, direction = gravity["acceleration"], gravity["direction"]
+    return size * math.cos(direction), size * math.sin(direction)

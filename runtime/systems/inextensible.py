@@ -18,6 +18,7 @@ from ..core.families.nonlinear import Drive, Equations, Nonlinear, Reduced
 from ..core.families.stations import AtStations, Stations
 from ..core.modules import find_module
 from .driven import Driven, nothing_held
+from .from_scene import origin, pull_of_gravity
 
 if TYPE_CHECKING:
     from ..scenes import Scene
@@ -143,22 +144,22 @@ def inextensible_system(scene: Scene) -> Nonlinear:
     linkage.require_full_turn()
     emitted = find_module(scene.model_spec())
     coupler, modes = scene["coupler"], int(scene.model["modes"])
-    direction, pull = scene.get("gravity.direction", None), scene["gravity"]["acceleration"]
+    gravity = pull_of_gravity(scene)
     parameters = {
         **linkage.lengths,
         "bending_stiffness": coupler["bending_stiffness"],
         "mass_per_length": coupler["mass_per_length"],
         "damping": coupler["damping"],
         "bow": coupler["bow"],
-        "gravity_x": 0.0 if direction is None else pull * np.cos(direction),
-        "gravity_y": 0.0 if direction is None else pull * np.sin(direction),
+        "gravity_x": gravity[0],
+        "gravity_y": gravity[1],
     }
     if "slider_mass" in emitted.module.PARAMETERS:
         parameters["slider_mass"] = scene["slider"]["mass"]
     else:
         follower = scene["follower"]
         parameters["follower_inertia"] = follower["inertia"]
-        if direction is not None and "first_moment" not in follower:
+        if "direction" in scene["gravity"] and "first_moment" not in follower:
             expected, fix = "the follower's, for gravity pulls at it", "add it (0 if balanced)"
             raise bad("follower.first_moment", "nothing", expected, fix)
         parameters["follower_first_moment"] = follower.get("first_moment", 0.0)
@@ -178,5 +179,5 @@ def inextensible_system(scene: Scene) -> Nonlinear:
         watch=made.largest,
         unit="m",
         limits=_LIMITS,
-        provenance={"scene": scene.name, "scene_digest": scene.digest(), **emitted.provenance},
+        provenance={**origin(scene), **emitted.provenance},
     )

@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike
 from ..core.errors import BadInput, Problem, bad, refuse
 from ..core.families import LinearPeriodic, Term
 from ..core.inputs import are_finite
+from ..core.trigonometric import Remembered
 from .assembly import AngleArrays, Array, in_own_axes, rotation, turned
-from .elements import placed_shapes
+from .elements import shapes_of
 from .structure import Freedoms, Structure
 
 
@@ -27,7 +28,7 @@ def relative_deflection(arrays: AngleArrays, slide: Slide | None, theta: Array) 
     motion = arrays.motion(theta)
     found = []
     for placed in arrays.structure.elements:
-        _, across = placed_shapes(placed, np.array([0.5, 1.0]))
+        across = shapes_of(placed, np.array([0.5, 1.0]))["v"]
         c, s = motion.products[placed.beam.name][:, 1:3].T[..., None]
         local = in_own_axes(np.tile(across, (len(theta), 1, 1)), c, -s)
         full = np.zeros((len(theta), 2, arrays.count))
@@ -511,6 +512,8 @@ class Slide:
         places = [structure.freedoms.places[node.name, part] for part in ("x", "y")]
         self.x, self.y = np.searchsorted(arrays.free, places)
         self.elements = [placed for placed in structure.elements if placed.beam is self.carried]
+        # Z and Z' at crank angles, (nt, n, n - 1).
+        self.basis, self.basis_slope = Remembered(self._basis), Remembered(self._basis_slope)
 
     def place(self, theta: Array) -> tuple[Array, Array]:
         """Return the rigid place x1 of the pin on the beam [m] and its derivative."""
@@ -521,60 +524,45 @@ class Slide:
         # What the turning of the axis adds is across it: nothing, for the pin lies on it.
         return place, np.sum((pin.velocity - link.velocity) * axis, axis=-1)
 
-    def rows(self, theta: Array, derivative: int) -> tuple[Array, Array]:
-        """Return displacements along and across the beam at the pin, or derivatives by the place.
+    def shape(self, name: str, theta: Array, *, by_angle: bool = False) -> Array:
+        """Return a shape function of the beam at the pin, or its derivative by the beam's angle.
 
-        Rows ``(nt, N)`` for all coordinates, those at the ends of the elements in the beam's axes.
+        By the free coordinates along the fixed axes, ``(nt, n)``; for names see :func:`shapes_of`.
         """
         place, _ = self.place(theta)
         ends = np.array([placed.start for placed in self.elements])
         number = np.clip(np.searchsorted(ends, place, side="right") - 1, 0, len(ends) - 1)
-        along, across = np.zeros((2, len(theta), self.arrays.count))
+        c, s = self._axis(theta)
+        if by_angle:
+            c, s = -s, c
+        # The coordinates that turn with the beam.
+        turning = [0, 1, 3, 4] if by_angle else slice(None)
+        found = np.zeros((len(theta), self.arrays.count))
         for k in np.unique(number):
             placed, here = self.elements[k], np.flatnonzero(number == k)
             xi = np.clip((place[here] - placed.start) / placed.length, 0.0, 1.0)
-            where = np.ix_(here, placed.indices)
-            along[where], across[where] = placed_shapes(placed, xi, derivative)
-        return along, across
-
-    def turned(self, row: Array, theta: Array, slope: bool = False) -> Array:
-        """Return a row of :meth:`rows` by the fixed axes, or its derivative by the beam's angle.
-
-        Of the free coordinates alone, ``(nt, n)``.
-        """
-        c, s = self._axis(theta)
-        if slope:
-            c, s = -s, c
-        found = np.zeros_like(row) if slope else row.copy()
-        for placed in self.elements:
-            turning = [0, 1, 3, 4]
-            by_axes = in_own_axes(row[:, placed.indices], c, -s)
-            found[:, placed.indices[turning]] = by_axes[:, turning]
+            row = in_own_axes(shapes_of(placed, xi)[name], c[here], -s[here])
+            found[np.ix_(here, placed.indices[turning])] = row[:, turning]
         return found[:, self.arrays.free]
 
-    def basis(self, theta: Array) -> Array:
-        """Return Z at crank angles, ``(nt, n, n - 1)``."""
+    def _basis(self, theta: Array) -> Array:
         c, s = self._axis(theta)
-        across = self.turned(self.rows(theta, 0)[1], theta)
         normal = np.stack([-s, c], axis=-1)
-        found = normal[:, :, None] * across[:, None, :]
+        found = normal[:, :, None] * self.shape("v", theta)[:, None, :]
         found[:, 0, self.x] += c
         found[:, 1, self.x] += s
         return self._reduced(found, unit=1.0)
 
-    def basis_slope(self, theta: Array) -> Array:
-        """Return Z', ``(nt, n, n - 1)``."""
+    def _basis_slope(self, theta: Array) -> Array:
         c, s = self._axis(theta)
-        turn = self.arrays.motion(theta).turning[self.carried.name]
+        turn = self.arrays.motion(theta).turning[self.carried.name][:, None]
         _, rate = self.place(theta)
-        shapes = self.rows(theta, 0)[1]
-        across = self.turned(shapes, theta)
-        hurried = rate[:, None] * self.turned(self.rows(theta, 1)[1], theta)
-        hurried += turn[:, None] * self.turned(shapes, theta, slope=True)
+        hurried = rate[:, None] * self.shape("slope", theta)
+        hurried += turn * self.shape("v", theta, by_angle=True)
         normal, tangent = np.stack([-s, c], axis=-1), np.stack([c, s], axis=-1)
         found = normal[:, :, None] * hurried[:, None, :]
-        found -= (turn[:, None] * tangent)[:, :, None] * across[:, None, :]
-        found[:, :, self.x] += turn[:, None] * normal
+        found -= (turn * tangent)[:, :, None] * self.shape("v", theta)[:, None, :]
+        found[:, :, self.x] += turn * normal
         return self._reduced(found, unit=0.0)
 
     def contact(self, rest: Array, theta: Array) -> Array:
@@ -584,10 +572,10 @@ class Slide:
         """
         c, s = self._axis(theta)
         force = s * rest[:, self.x] - c * rest[:, self.y]
-        relative = -self.turned(self.rows(theta, 0)[0], theta)
+        relative = -self.shape("u", theta)
         relative[:, self.x] += c
         relative[:, self.y] += s
-        slope = self.turned(self.rows(theta, 1)[1], theta)
+        slope = self.shape("slope", theta)
         half = -force[:, None, None] * slope[:, :, None] * relative[:, None, :]
         return np.asarray(half + np.swapaxes(half, -1, -2))
 

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from ..beams.assembly import Array
 from ..beams.element_forms import ElementForms, required_structure
-from ..beams.elements import placed_rotation, placed_shapes
+from ..beams.elements import shapes_of
 from ..beams.recovery_forms import LinearForm, stacked
 from ..beams.structure import Beam, PlacedElement, Structure
 from ..core.errors import BadInput, Problem, bad, shown
@@ -125,22 +125,20 @@ _FIELDS = ("along", "across", "slope")
 
 
 def _displacements(forms: ElementForms, e: int, xi: Array) -> dict[str, LinearForm]:
-    placed = forms.elements[e][0]
-    along, across = placed_shapes(placed, xi)
-    local = forms.local(e)
-    matrices = {"along": along, "across": across, "slope": placed_rotation(placed, xi)}
-    return {name: local.turned(matrix) for name, matrix in matrices.items()}
+    shapes, local = shapes_of(forms.elements[e][0], xi), forms.local(e)
+    names = zip(_FIELDS, ("u", "v", "rotation"), strict=True)
+    return {field: local.turned(shapes[name]) for field, name in names}
 
 
 def _by_shape(forms: ElementForms, e: int, xi: Array) -> dict[str, LinearForm]:
     """Return forces by derivatives of the shape functions: E A u', E I v'', -E I v'''."""
     placed = forms.elements[e][0]
     section, strain = placed.beam.section, forms.strain(e)
-    stretch, _ = placed_shapes(placed, xi, 1)
+    shapes = shapes_of(placed, xi)
     return {
-        "axial": strain.turned(section.axial_stiffness * stretch),
-        "shear": strain.turned(-section.bending_stiffness * placed_rotation(placed, xi, 2)),
-        "moment": strain.turned(section.bending_stiffness * placed_rotation(placed, xi, 1)),
+        "axial": strain.turned(section.axial_stiffness * shapes["strain"]),
+        "shear": strain.turned(-section.bending_stiffness * shapes["third"]),
+        "moment": strain.turned(section.bending_stiffness * shapes["curvature"]),
     }
 
 
@@ -181,19 +179,15 @@ def _integrals(placed: PlacedElement, xi: Array) -> dict[str, Array]:
     places = 0.5 * xi[:, None] * (1.0 + _GAUSS_PLACES)
     weights = 0.5 * placed.length * xi[:, None] * _GAUSS_WEIGHTS
     lever = placed.length * (xi[:, None] - places)
-    flat = np.clip(places.ravel(), 0.0, 1.0)
-    u, v = (value.reshape(*places.shape, -1) for value in placed_shapes(placed, flat))
-    slope = placed_shapes(placed, flat, 1)[1].reshape(*places.shape, -1)
-    rotation = placed_rotation(placed, flat).reshape(*places.shape, -1)
-    powers = np.stack([places**k for k in range(3)])
-    return {
-        "u": np.einsum("xg,xgn->xn", weights, u),
-        "v": np.einsum("xg,xgn->xn", weights, v),
-        "u lever": np.einsum("xg,xgn->xn", weights * lever, u),
-        "v lever": np.einsum("xg,xgn->xn", weights * lever, v),
-        "rotation": np.einsum("xg,xgn->xn", weights, rotation),
-        "slope": np.einsum("kxg,xgn->kxn", powers * weights, slope),
+    shapes = shapes_of(placed, np.clip(places, 0.0, 1.0))
+    found = {
+        name: np.einsum("xg,xgn->xn", weights, shapes[name]) for name in ("u", "v", "rotation")
     }
+    for name in ("u", "v"):
+        found[f"{name} lever"] = np.einsum("xg,xgn->xn", weights * lever, shapes[name])
+    powers = np.stack([places**k for k in range(3)])
+    found["slope"] = np.einsum("kxg,xgn->kxn", powers * weights, shapes["slope"])
+    return found
 
 
 QUANTITIES = (*_FIELDS, *FORCES)

@@ -9,7 +9,7 @@ one or two orders of the element's length less.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, ClassVar
 
@@ -289,79 +289,68 @@ def recover(
     """
     require_method(method)
     chosen = stations_of(required_structure(system), stations)
-    moving = beam_motion(system, motion)
-    own: dict[str, Any] = dict(evaluated(system, moving, stations, method))
-    doubt = partial(_doubt, system, moving, stations, method, own)
+    asked = Recovery(system, beam_motion(system, motion), stations, method)
+    own: dict[str, Any] = dict(asked.values())
     return BeamForces(
         method=method,
         links=tuple(station.beam for station in chosen),
         places=np.array([station.place for station in chosen]),
-        **in_motion(system, moving, doubt),
+        **in_motion(system, asked.motion, partial(_doubt, asked, own)),
         **own,
     )
 
 
-def _doubt(
-    system: LinearPeriodic,
-    moving: BeamMotion,
-    stations: Stations,
-    method: str,
-    own: Mapping[str, Array],
-) -> dict[str, Any]:
+def _doubt(asked: Recovery, own: Mapping[str, Array]) -> dict[str, Any]:
     norm = "largest error of axial force [N], shear force [N], moment [N m]"
-    better, finer = compared(system, moving, stations, method, FORCES)
+    better, finer = asked.compared(FORCES)
     gaps = np.array([np.max(np.abs(own[name] - better[name])) for name in FORCES])
     sizes = np.array([np.max(np.abs(own[name])) for name in FORCES])
     share = CAUTION if finer else 1.0
     return {
-        "error": share * gaps + propagated(system, moving, stations) + ROUNDING * sizes,
+        "error": share * gaps + asked.propagated() + ROUNDING * sizes,
         "error_norm": norm if finer else f"{norm}; that of the mesh's frequencies apart",
     }
 
 
-def compared(
-    system: LinearPeriodic,
-    motion: BeamMotion,
-    stations: Stations,
-    method: str,
-    names: tuple[str, ...],
-) -> tuple[dict[str, Array], bool]:
-    """Return quantities on a finer mesh, or else by the other method; and whether there is one."""
-    finer = on_finer_mesh(system, motion)
-    if finer is not None:
-        return evaluated(*finer, stations, "equilibrium", names), True
-    other = next(name for name in METHODS if name != method)
-    return evaluated(system, motion, stations, other, names), False
+@dataclass(frozen=True)
+class Recovery:
+    """Forces and displacements along the beams of a system in a motion, recovered by a method."""
 
+    system: LinearPeriodic
+    motion: BeamMotion
+    stations: Stations
+    method: str
 
-def evaluated(
-    system: LinearPeriodic,
-    motion: BeamMotion,
-    stations: Stations,
-    method: str,
-    names: tuple[str, ...] = QUANTITIES,
-) -> dict[str, Array]:
-    """Return quantities ``(nt, stations)`` in a motion."""
-    chosen = stations_of(required_structure(system), stations)
+    def values(self, names: tuple[str, ...] = QUANTITIES) -> dict[str, Array]:
+        """Return quantities at all angles, ``(nt, stations)`` each."""
+        chosen = stations_of(required_structure(self.system), self.stations)
 
-    def piece(forms: ElementForms, values: MotionValues) -> dict[str, Array]:
-        made, shape = recovery(forms, chosen, method), (len(forms.theta), len(chosen))
-        return {name: np.broadcast_to(values(made[name]), shape) for name in names}
+        def piece(forms: ElementForms, values: MotionValues) -> dict[str, Array]:
+            made, shape = recovery(forms, chosen, self.method), (len(forms.theta), len(chosen))
+            return {name: np.broadcast_to(values(made[name]), shape) for name in names}
 
-    return over_motion(system, motion, piece)
+        return over_motion(self.system, self.motion, piece)
 
+    def compared(self, names: tuple[str, ...]) -> tuple[dict[str, Array], bool]:
+        """Return them on a finer mesh, or else by the other method; and whether there is one."""
+        finer = on_finer_mesh(self.system, self.motion)
+        if finer is not None:
+            return Recovery(*finer, self.stations, "equilibrium").values(names), True
+        other = next(name for name in METHODS if name != self.method)
+        return replace(self, method=other).values(names), False
 
-def propagated(system: LinearPeriodic, motion: BeamMotion, stations: Stations) -> Array:
-    """Return what the error of the motion can do to axial force, shear force and moment.
+    def propagated(self) -> Array:
+        """Return what the error of the motion can do to axial force, shear force and moment.
 
-    The errors of the coordinates are taken to vary no faster than the crank turns, and not to
-    cancel each other.
-    """
-    if not np.any(motion.doubt):
-        return np.zeros(len(FORCES))
-    # A few angles tell the size of the coefficients.
-    picked = np.linspace(0, len(motion.theta) - 1, min(len(motion.theta), 16)).astype(int)
-    chosen = stations_of(required_structure(system), stations)
-    made = recovery(checked_forms(system, motion.theta[picked]), chosen, "shape")
-    rows = [made[name].at_speed(motion.speed)["q"] for name in FORCES]
-    return np.array([np.max(np.abs(row) @ motion.doubt) for row in rows])
+        The errors of the coordinates are taken to vary no faster than the crank turns, and not to
+        cancel each other.
+        """
+        motion = self.motion
+        if not np.any(motion.doubt):
+            return np.zeros(len(FORCES))
+        # A few angles tell the size of the coefficients.
+        picked = np.linspace(0, len(motion.theta) - 1, min(len(motion.theta), 16)).astype(int)
+        chosen = stations_of(required_structure(self.system), self.stations)
+        made = recovery(checked_forms(self.system, motion.theta[picked]), chosen, "shape")
+        rows = [made[name].at_speed(motion.speed)["q"] for name in FORCES]
+        return np.array([np.max(np.abs(row) @ motion.doubt) for row in rows])

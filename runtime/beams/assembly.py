@@ -124,11 +124,6 @@ class AngleArrays:
             (placed, beam_element(placed.beam, placed.length)) for placed in self.structure.elements
         )
 
-    def inertia_force(self, theta: Array, derivative: int = 2) -> Array:
-        """Return the forces ``-M r_r''`` of the distributed mass, or ``-M r_r'``: ``(nt, n)``."""
-        motion = self.motion(theta)
-        return -self.distributed(motion.second if derivative == 2 else motion.first, theta)
-
     def distributed(self, field: Array, theta: Array) -> Array:
         """Return the distributed mass times values of all coordinates ``(nt, N)``: ``(nt, n)``."""
         motion = self.motion(theta)

@@ -63,13 +63,17 @@ class AxialForces:
                 found[structure.freedoms.places[node.name, part]] += value
         return found
 
-    def force(self, source: str, theta: Array) -> Array:
-        """Return the generalised forces of a source at unit crank speed, ``(nt, n)``."""
+    def force(self, source: str, theta: Array, derivative: int = 2) -> Array:
+        """Return the generalised forces of a source at unit crank speed, ``(nt, n)``.
+
+        Those of masses are ``-M r_r''``, or with the first derivative ``-M r_r'``.
+        """
+        free, motion = self.arrays.free, self.arrays.motion(theta)
+        field = motion.second if derivative == 2 else motion.first
         if source == "distributed":
-            return self.arrays.inertia_force(theta)
-        free = self.arrays.free
+            return -self.arrays.distributed(field, theta)
         if source == "lumped":
-            return np.asarray(-(self.arrays.motion(theta).second * self.lumped)[:, free])
+            return np.asarray(-(field * self.lumped)[:, free])
         field = self.weight_field(theta)
         weight = self.arrays.distributed(field, theta) + (self.lumped * field)[:, free]
         return np.asarray(weight + self.node_forces[free])
@@ -307,29 +311,49 @@ def linear_system(
     free = arrays.free
     slide = Slide(arrays) if structure.sliding else None
     require_held(arrays, springs[free], slide)
-    mass, stiffness = np.diag(lumped[free]), np.diag(springs[free])
+    mass, stiffness, drag = (np.diag(values[free]) for values in (lumped, springs, dampers))
     axial = AxialForces(arrays, stiffness, lumped, gravity, slide)
-    at_nodes = [("M", "lumped_mass", mass), ("K", None, stiffness)]
-    at_nodes.append(("C", None, np.diag(dampers[free])))
-    terms = [
-        Term("M", "distributed_mass", partial(arrays.sum, "mass")),
-        Term("K", "elasticity", arrays.stiffness),
-        Term("f", "distributed_mass", arrays.inertia_force),
-        Term("g", "distributed_mass", partial(arrays.inertia_force, derivative=1)),
+    moving, full, damped = structure.moving, form == "full", any(rayleigh)
+    heavy, loaded = moving and np.any(lumped), any(gravity) or np.any(axial.node_forces)
+    viscous = any(beam.section.retardation for beam in structure.beams)
+    rows: list[tuple[str, str | None, Any, int, Any]] = [
+        # array, scale, function, extra power of the speed, and whether there is such a term
+        ("M", "distributed_mass", partial(arrays.sum, "mass"), 0, True),
+        ("K", "elasticity", arrays.stiffness, 0, True),
+        ("f", "distributed_mass", partial(axial.force, "distributed"), 0, moving),
+        ("g", "distributed_mass", partial(axial.force, "distributed", derivative=1), 0, moving),
+        ("A", "distributed_mass", partial(arrays.sum, "coupling"), 0, full and moving),
+        ("B", "distributed_mass", partial(arrays.sum, "centripetal"), 0, full and moving),
+        # The family's equation holds M' qd, which this form lacks: the damping takes it out again.
+        ("C", "distributed_mass", partial(_minus_mass_slope, arrays), 1, not full),
+        ("M", "lumped_mass", mass, 0, np.any(mass)),
+        ("K", None, stiffness, 0, np.any(stiffness)),
+        ("C", None, drag, 0, np.any(drag)),
+        ("C", "rayleigh distributed", partial(arrays.sum, "mass"), 0, damped),
+        ("C", "rayleigh lumped", mass, 0, damped),
+        ("C", "rayleigh elastic", arrays.stiffness, 0, damped),
+        ("C", "rayleigh springs", stiffness, 0, damped),
+        ("C", "viscous", partial(arrays.sum, "retarded"), 0, viscous),
+        ("D", "viscous", partial(arrays.sum, "retarded slope"), 0, viscous and moving),
+        ("f", "lumped_mass", partial(axial.force, "lumped"), 0, heavy),
+        ("g", "lumped_mass", partial(axial.force, "lumped", derivative=1), 0, heavy),
+        ("p", None, partial(axial.force, "static"), 0, loaded),
     ]
-    terms += _form_terms(arrays, form)
-    terms += [Term(*found) for found in at_nodes if np.any(found[2])]
-    terms += _damping_terms(arrays, rayleigh, mass, stiffness)
-    terms += _loading_terms(axial, geometric_stiffness)
+    if geometric_stiffness:
+        rows += [
+            ("Kg", "distributed_mass", partial(axial.geometric, "distributed"), 2, moving),
+            ("Kg", "lumped_mass", partial(axial.geometric, "lumped"), 2, heavy),
+            ("Kg", None, partial(axial.geometric, "static"), 0, loaded),
+        ]
+    terms = [Term(*row) for *row, there in rows if there]
     if slide is not None:
         terms = slid_terms(terms, slide, form=form)
-    if not structure.moving:
-        still = (term for term in terms if term.array not in ("A", "B", "f", "g", "D"))
-        terms = [replace(term, function=term(np.zeros(1))[0]) for term in still]
+    if not moving:
+        terms = [replace(term, function=term(np.zeros(1))[0]) for term in terms]
     parameters = dict.fromkeys(FACTORS, 1.0)
-    if any(rayleigh):
+    if damped:
         parameters |= {"rayleigh_mass": rayleigh[0], "rayleigh_stiffness": rayleigh[1]}
-    if any(beam.section.retardation for beam in structure.beams):
+    if viscous:
         parameters["retardation"] = 1.0
     options = {"form": form, "geometric_stiffness": str(geometric_stiffness).lower()}
     made_with = {
@@ -419,58 +443,9 @@ def lumped_values(
     return mass, springs, dampers
 
 
-def _form_terms(arrays: AngleArrays, form: str) -> list[Term]:
-    if form == "full":
-        return [
-            Term("A", "distributed_mass", partial(arrays.sum, "coupling")),
-            Term("B", "distributed_mass", partial(arrays.sum, "centripetal")),
-        ]
-    # The family's equation holds M' qd, which this form lacks: the damping takes it out again.
-    return [Term("C", "distributed_mass", partial(_minus_mass_slope, arrays), power=1)]
-
-
 def _minus_mass_slope(arrays: AngleArrays, theta: Array) -> Array:
     half = arrays.sum("mass slope", theta)
     return -half - np.swapaxes(half, -1, -2)
-
-
-def _damping_terms(
-    arrays: AngleArrays, rayleigh: tuple[float, float], mass: Array, springs: Array
-) -> list[Term]:
-    found: list[Term] = []
-    if rayleigh[0] or rayleigh[1]:
-        found += [
-            Term("C", "rayleigh distributed", partial(arrays.sum, "mass")),
-            Term("C", "rayleigh lumped", mass),
-            Term("C", "rayleigh elastic", arrays.stiffness),
-            Term("C", "rayleigh springs", springs),
-        ]
-    if any(beam.section.retardation for beam in arrays.structure.beams):
-        found += [
-            Term("C", "viscous", partial(arrays.sum, "retarded")),
-            Term("D", "viscous", partial(arrays.sum, "retarded slope")),
-        ]
-    return found
-
-
-def _loading_terms(axial: AxialForces, stiffening: bool) -> list[Term]:
-    """Return forces of lumped masses and constant loads, and geometric stiffness of all."""
-    found, stiff = [], []
-    if axial.arrays.structure.moving:
-        stiff.append(Term("Kg", "distributed_mass", partial(axial.geometric, "distributed"), 2))
-        if np.any(axial.lumped):
-            found.append(Term("f", "lumped_mass", partial(axial.force, "lumped")))
-            found.append(Term("g", "lumped_mass", partial(_lumped_impulse, axial)))
-            stiff.append(Term("Kg", "lumped_mass", partial(axial.geometric, "lumped"), 2))
-    if any(axial.gravity) or np.any(axial.node_forces):
-        found.append(Term("p", None, partial(axial.force, "static")))
-        stiff.append(Term("Kg", None, partial(axial.geometric, "static")))
-    return found + stiff if stiffening else found
-
-
-def _lumped_impulse(axial: AxialForces, theta: Array) -> Array:
-    arrays = axial.arrays
-    return np.asarray(-(arrays.motion(theta).first * axial.lumped)[:, arrays.free])
 
 
 # What a term becomes: its new array, and whether Z or Z' stands to its left and right, or whether

@@ -73,16 +73,9 @@ class ElementForms:
         self.elements = self.arrays.local  # every element with its arrays in its own axes
         self.lumped, self.springs, self.dampers = lumped_values(self.structure)
         self.full = system.has("A") or not self.structure.moving
-        self.factor = {
-            name: float(system.parameters.get(name, default))
-            for name, default in (
-                ("elasticity", 1.0),
-                ("distributed_mass", 1.0),
-                ("lumped_mass", 1.0),
-                ("rayleigh_stiffness", 0.0),
-                ("retardation", 1.0),
-            )
-        }
+        masses = dict.fromkeys(("distributed_mass", "lumped_mass"), 1.0)
+        factors = {"elasticity": 1.0, **masses, "rayleigh_stiffness": 0.0, "retardation": 1.0}
+        self.factor = {k: float(system.parameters.get(k, one)) for k, one in factors.items()}
         dampings = (("rayleigh_stiffness", "rayleigh elastic"), ("retardation", "viscous"))
         for name, kind in dampings:
             self.factor[name] *= self.has_damping(kind)

@@ -6,7 +6,7 @@ import inspect
 from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import partial
 from types import ModuleType
-from typing import Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,21 +17,13 @@ from ..core.families.emitted import check_module, dropped_names
 from ..core.inputs import require_kind
 from ..core.trigonometric import Remembered
 
+if TYPE_CHECKING:
+    from .rod import MovingBasis
+
 Array = NDArray[np.float64]
 
 _Row: TypeAlias = tuple[str, int, str | None, str | None, str]
 _ANGLE = ""  # stands for the crank angle among names of arguments
-
-
-class BasisArrays(Protocol):
-    """Shapes that depend on the place of a support, by the integrals that a module needs."""
-
-    @property
-    def size(self) -> int:
-        """Number of shapes."""
-
-    def array(self, name: str, place: Array) -> Array:
-        """Return integrals at places ``(nt,)`` of the support: ``(nt, n, n)`` or ``(nt, n)``."""
 
 
 def assemble(
@@ -41,7 +33,7 @@ def assemble(
     parameters: Mapping[str, float],
     modes: int | None = None,
     external: Mapping[str, Callable[[Array], Array]] | None = None,
-    basis: BasisArrays | None = None,
+    basis: MovingBasis | None = None,
     drop: Collection[str] = (),
     **attributes: Any,
 ) -> LinearPeriodic:
@@ -165,7 +157,7 @@ class _AtAngles:
         module: ModuleType,
         geometry: Mapping[str, float],
         external: Mapping[str, Callable[[Array], Array]],
-        basis: BasisArrays | None,
+        basis: MovingBasis | None,
     ) -> None:
         self._geometry, self._external, self._basis = geometry, external, basis
         self._found: Remembered[dict[str, Array]] = Remembered(_nothing_yet)

@@ -72,16 +72,10 @@ def _brackets(place: Array, modes: int) -> tuple[Array, Array]:
     return lower * (1 - 4 * _ROUND), upper * (1 + 4 * _ROUND)
 
 
-def overhang_roots(place: ArrayLike, modes: int) -> Array:
-    """Return the roots beta of the rod pinned at an end, held at the block and free at the tip.
-
-    For places xi = x1/L of the block, above 0, to 1, ``(nt,)`` or a number, and up to 1000 modes:
-    ``(nt, modes)``, ascending; mode n solves ``e'''' = beta_n^4 e``.  Each root lies alone in a
-    bracket (Wittrick and Williams' count with the two bays held at the block); Newton's method,
-    halving where it leaves the bracket, goes on to round-off.
-    """
-    modes = require_whole("modes", modes, 1, _MOST, _FEWER)
-    xi = require_places(place, alone=True)
+def _roots(xi: Array, modes: int) -> Array:
+    """Return the roots beta, ascending, ``(nt, modes)``; of mode n ``e'''' = beta_n^4 e``."""
+    # Each root lies alone in its bracket (Wittrick and Williams' count with the two bays held at
+    # the block); Newton's method, halving where it leaves the bracket, goes on to round-off.
     lower, upper = (bound.ravel() for bound in _brackets(xi, modes))
     where = np.repeat(xi, modes)
     # The residual is positive below the first root and changes its sign at each.
@@ -166,7 +160,7 @@ def _modes(size: int, places: bytes) -> dict[str, Array]:
     """Return what the emitted ``end_values`` gives, with places, a column, and roots ``beta``."""
     # All arrays are read-only.
     place = np.frombuffer(places)
-    column, roots = place[:, None], overhang_roots(place, size)
+    column, roots = place[:, None], _roots(place, size)
     values = _end_values(roots, column)
     ends = dict(zip(emitted.RETURNS["end_values"], values, strict=True))
     ends |= {"place": column, "beta": roots}

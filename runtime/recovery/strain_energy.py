@@ -56,6 +56,9 @@ def _slope(system: LinearPeriodic, power: int) -> Callable[[Array], Array]:
             raise bad("structure", found, "a smooth motion", "keep off dead points")
 
 
+_SUMS = ("springs", "stiffening", "kinetic", "dissipated", "loads", "drive")
+
+
 class Energies:
     """Energies and powers of a motion at some of its angles."""
 
@@ -73,10 +76,7 @@ class Energies:
         forms, count = self.forms, len(self.forms.theta)
         links = [beam.name for beam in forms.structure.beams]
         strain = np.zeros((count, len(links)))
-        sums = {
-            name: np.zeros(count)
-            for name in ("springs", "stiffening", "kinetic", "dissipated", "loads", "drive")
-        }
+        sums = {name: np.zeros(count) for name in _SUMS}
         for e, (placed, _) in enumerate(forms.elements):
             strain[:, links.index(placed.beam.name)] += self._element(e, sums)
         self._nodes(sums)
@@ -112,15 +112,13 @@ class Energies:
         work += np.vecdot(turned, forces - passive)
         work += self._stiffening(e, local, turned, rate, sums)
         weight = forms.weight(e)
-        carried = weight @ mass
-        power = w * np.vecdot(first + rate, carried) + w * np.vecdot(spun, weight @ across)
-        sums["loads"] += power
+        sums["loads"] += w * np.vecdot(first + rate, weight @ mass)
+        sums["loads"] += w * np.vecdot(spun, weight @ across)
         # The direct part holds the weight; the drive's own share is what is left without it.
         sums["drive"] += w * work
         elastic = stiff * (local @ own.stiffness)
-        lost = np.vecdot(w * rate, forces - elastic - passive)
-        lost += w * np.vecdot(_times(at.own, self.slope), passive)
-        sums["dissipated"] += lost
+        sums["dissipated"] += np.vecdot(w * rate, forces - elastic - passive)
+        sums["dissipated"] += w * np.vecdot(_times(at.own, self.slope), passive)
         return np.asarray(0.5 * np.vecdot(local, elastic))
 
     def _stiffening(
@@ -150,27 +148,19 @@ class Energies:
 
     def _nodes(self, sums: dict[str, Array]) -> None:
         """Add lumped masses, springs, dampers and loads."""
-        forms, free = self.forms, self.forms.arrays.free
+        forms, first, spread = self.forms, self.rigid.first, self.forms.spread.T
         lumped = forms.factor["lumped_mass"] * forms.lumped
-        count = (len(forms.theta), forms.arrays.count)
-        first = self.rigid.first
-        speeds = first.copy()
-        speeds[:, free] += self.slope
-        speeds = self.speed * speeds
+        q, rates = self.q @ spread, self.speed * self.slope @ spread
+        speeds = self.speed * first + rates
         sums["kinetic"] += 0.5 * speeds**2 @ lumped
-        drag = forms.outside.values(self.speed, self.q, self.slope)
-        inertia = np.array(self._spread(forms.node_inertia(), first))
-        inertia[:, free] -= drag * lumped[free]
+        drag = self._spread(forms.outside, self.q) @ spread
+        inertia = self._spread(forms.node_inertia(), first) - drag * lumped
         loads = self._spread(forms.node_loads(), first)
         weight = forms.axial.weight_field(forms.theta) * lumped
         sums["drive"] += self.speed * np.vecdot(first, inertia - loads)
         sums["loads"] += np.vecdot(speeds, weight + loads)
-        q = np.zeros(count)
-        q[:, free] = self.q
         sums["springs"] += 0.5 * q**2 @ forms.springs
         holds = self._spread(forms.node_holds(), first)
-        rates = np.zeros(count)
-        rates[:, free] = self.speed * self.slope
         sums["dissipated"] += np.vecdot(rates, holds - q * forms.springs)
 
 
@@ -206,7 +196,7 @@ class BeamEnergies(BeamResult):
 
     arrays_along: ClassVar = {
         "sample link": "strain",
-        "sample": "springs stiffening kinetic dissipated loads drive total",
+        "sample": " ".join((*_SUMS, "total")),
     }
     exported: ClassVar[tuple[str, ...]] = ("total",)
     column_units: ClassVar = {"J": "error total", "W": "dissipated loads drive"}

@@ -30,20 +30,31 @@ def beams_of_scene(scene: Scene) -> LinearPeriodic:
         ),
         "gravity": pull_of_gravity(scene),
     }
-    kind = BEAM_FORMULATIONS[scene.model["formulation"]]
-    if scene.model["mechanism"] == "frame":
-        system = _frame(scene, kind, options)
-    else:
-        links = scene.layout.flexible
-        system = linkage_system(
-            scene.mechanism(),
-            {link: section(scene[link]) for link in links},
-            elements={link: _elements(scene, scene[link]) for link in links},
-            kind=kind,
-            nodes={letter: _node(table) for letter, table in scene.get("joints", {}).items()},
-            provenance=origin(scene),
-            **options,
+    still = scene.model["mechanism"] == "frame"
+    tables = scene["members"] if still else {link: scene[link] for link in scene.layout.flexible}
+    nodes = scene["nodes"] if still else scene.get("joints", {})
+    sections = {name: section(table) for name, table in tables.items()}
+    common = scene["mesh"]["elements"]
+    parts: dict[str, Any] = {
+        "elements": {name: int(table.get("elements", common)) for name, table in tables.items()},
+        "kind": BEAM_FORMULATIONS[scene.model["formulation"]],
+        "nodes": {name: _node(table) for name, table in nodes.items()},
+        "provenance": origin(scene),
+    }
+    if still:
+        structure = frame(
+            {name: table["place"] for name, table in nodes.items()},
+            {name: (table["start"], table["end"]) for name, table in tables.items()},
+            sections,
+            supports={name: table.get("held", ()) for name, table in nodes.items()},
+            pins=[name for name, table in nodes.items() if table.get("pinned") == "yes"],
+            **parts,
         )
+        system = linear_system(structure, **options)
+        if scene["frame"]["axial"] == "rigid":
+            system = without_stretching(system)
+    else:
+        system = linkage_system(scene.mechanism(), sections, **parts, **options)
     ratio = scene.get("damping.ratio", 0.0)
     return with_modal_damping(system, ratio) if ratio else system
 
@@ -53,27 +64,6 @@ def section(table: Mapping[str, Any]) -> Section:
     names = ("area", "second_moment", "modulus", "density", "thickness", "shear_stiffness")
     given = {name: table[name] for name in names if name in table}
     return Section(**given, retardation=table.get("retardation_time", 0.0))
-
-
-def _frame(scene: Scene, kind: str, options: Mapping[str, Any]) -> LinearPeriodic:
-    nodes, members = scene["nodes"], scene["members"]
-    structure = frame(
-        {name: table["place"] for name, table in nodes.items()},
-        {name: (table["start"], table["end"]) for name, table in members.items()},
-        {name: section(table) for name, table in members.items()},
-        supports={name: table.get("held", ()) for name, table in nodes.items()},
-        pins=[name for name, table in nodes.items() if table.get("pinned") == "yes"],
-        elements={name: _elements(scene, table) for name, table in members.items()},
-        kind=kind,
-        nodes={name: _node(table) for name, table in nodes.items()},
-        provenance=origin(scene),
-    )
-    system = linear_system(structure, **options)
-    return without_stretching(system) if scene["frame"]["axial"] == "rigid" else system
-
-
-def _elements(scene: Scene, table: Mapping[str, Any]) -> int:
-    return int(table.get("elements", scene["mesh"]["elements"]))
 
 
 def _node(table: Mapping[str, Any]) -> dict[str, Any]:

@@ -93,17 +93,15 @@ class ElementForms:
         found = []
         for placed, own in self.elements:
             size = len(own.mass)
-            c, s = motion.products[placed.beam.name][:, 1:3].T
-            parts, slopes = rotation(size), rotation_slope(size)
+            weights = motion.products[placed.beam.name][:, :3]
             pick = self.spread[placed.indices]
-            turned = c[:, None, None] * parts["c"] + s[:, None, None] * parts["s"]
-            slope = c[:, None, None] * slopes["c"] + s[:, None, None] * slopes["s"]
-            back = parts["1"] + turned
+            back = np.tensordot(weights, rotation(size), axes=1)
+            slope = np.tensordot(weights, rotation_slope(size), axes=1)
             found.append(
                 Turning(
                     back @ pick,
                     slope @ pick,
-                    turned @ pick,
+                    (back - rotation(size)[0]) @ pick,
                     motion.turning[placed.beam.name],
                     np.asarray(moving[placed.beam.name].angular_acceleration),
                     np.einsum("tij,tj->ti", back, motion.second[:, placed.indices]),

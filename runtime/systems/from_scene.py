@@ -94,18 +94,20 @@ def rod_of_scene(scene: Scene) -> LinearPeriodic | Constrained:
     """
     scene.mechanism().require_full_turn()
     links, rod = scene["links"], scene["rod"]
-    numbers = {
+    given = {
         "crank_ratio": links["crank"] / links["frame"],
         "frame": links["frame"],
         "length": links["rod"],
         "bending_stiffness": rod["bending_stiffness"],
         "mass_per_length": rod["mass_per_length"],
+        "drop": tuple(scene.model["drop"]),
+        "provenance": origin(scene),
     }
     free_free = scene.model["formulation"] == "free_free"
-    return _floating_rod(scene, numbers) if free_free else _linear_rod(scene, numbers)
+    return _floating_rod(scene, given) if free_free else _linear_rod(scene, given)
 
 
-def _linear_rod(scene: Scene, numbers: dict[str, float]) -> LinearPeriodic:
+def _linear_rod(scene: Scene, given: dict[str, Any]) -> LinearPeriodic:
     from .rod.linear import rod_system
 
     rod = scene["rod"]
@@ -113,33 +115,22 @@ def _linear_rod(scene: Scene, numbers: dict[str, float]) -> LinearPeriodic:
     internal = rod["relaxation_time"] * rod["bending_stiffness"]
     ratio, law = rod["damping_ratio"], rod["damping_law"]
     if ratio and law != "modal":
-        first = _first_frequency(numbers)
+        from .rod.overhang import OverhangBasis
+
+        # The first natural frequency [rad/s] of the rod held still at the base length.
+        still = {name: given[name] for name in ("length", "bending_stiffness", "mass_per_length")}
+        found = OverhangBasis(1).frequencies(given["frame"] / given["length"], **still)
+        first = float(found.frequencies[0, 0])
         if law == "viscous":
             damping = 2.0 * ratio * first * rod["mass_per_length"]
         else:
             internal = 2.0 * ratio / first * rod["bending_stiffness"]
-    system = rod_system(
-        scene.model["formulation"].removesuffix("_linear"),
-        int(scene.model["modes"]),
-        **numbers,
-        damping=damping,
-        internal_damping=internal,
-        drop=tuple(scene.model["drop"]),
-        provenance=origin(scene),
-    )
+    basis, modes = scene.model["formulation"].removesuffix("_linear"), int(scene.model["modes"])
+    system = rod_system(basis, modes, **given, damping=damping, internal_damping=internal)
     return with_modal_damping(system, ratio) if ratio and law == "modal" else system
 
 
-def _first_frequency(numbers: dict[str, float]) -> float:
-    """Return the first natural frequency [rad/s] of the rod held still at the base length."""
-    from .rod.overhang import OverhangBasis
-
-    rod = {name: numbers[name] for name in ("length", "bending_stiffness", "mass_per_length")}
-    first = OverhangBasis(1).frequencies(numbers["frame"] / numbers["length"], **rod)
-    return float(first.frequencies[0, 0])
-
-
-def _floating_rod(scene: Scene, numbers: dict[str, float]) -> Constrained:
+def _floating_rod(scene: Scene, given: dict[str, Any]) -> Constrained:
     from .rod.floating import free_free_rod
 
     rod = scene["rod"]
@@ -152,13 +143,7 @@ def _floating_rod(scene: Scene, numbers: dict[str, float]) -> Constrained:
     if speed is None:
         fix = "add it: the constrained equations hold at one crank speed"
         raise bad("operation.speed", "nothing", "the crank speed, such as '100 rad/s'", fix)
-    return free_free_rod(
-        int(scene.model["modes"]),
-        **numbers,
-        speed=speed,
-        drop=tuple(scene.model["drop"]),
-        provenance=origin(scene),
-    )
+    return free_free_rod(int(scene.model["modes"]), **given, speed=speed)
 
 
 def origin(scene: Scene) -> dict[str, str]:

@@ -20,7 +20,7 @@ from ..beams.assembly import Array
 from ..beams.element_forms import ElementForms, required_structure
 from ..beams.elements import shapes_of
 from ..beams.recovery_forms import LinearForm, stacked
-from ..beams.structure import Beam, PlacedElement, Structure
+from ..beams.structure import PlacedElement, Structure
 from ..core.errors import BadInput, Problem, bad, shown
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_whole, numbers, require_one_of
@@ -80,18 +80,16 @@ def stations_of(structure: Structure, stations: Stations = None) -> tuple[Statio
             fix = "divide by the beam's length"
             problems.append(Problem(f"stations on {name}", str(given), "places from 0 to 1", fix))
             continue
-        found += [_station(structure, beam, float(place)) for place in places]
+        own = [(e, p) for e, p in enumerate(structure.elements) if p.beam.name == name]
+        ends = np.array([placed.start + placed.length for _, placed in own[:-1]])
+        for place in places.tolist():
+            along = place * beam.length
+            e, placed = own[int(np.searchsorted(ends, along))]
+            xi = min(max((along - placed.start) / placed.length, 0.0), 1.0)
+            found.append(Station(name, place, e, xi))
     if problems or not found:
         raise BadInput(*(problems or [Problem("stations", "none", "at least one", "name some")]))
     return tuple(found)
-
-
-def _station(structure: Structure, beam: Beam, place: float) -> Station:
-    along = place * beam.length
-    own = [(e, p) for e, p in enumerate(structure.elements) if p.beam.name == beam.name]
-    e, placed = next((pair for pair in own if along <= pair[1].start + pair[1].length), own[-1])
-    xi = min(max((along - placed.start) / placed.length, 0.0), 1.0)
-    return Station(beam.name, place, e, xi)
 
 
 def require_method(method: str) -> None:
@@ -114,7 +112,10 @@ def recovery(
     for e, own in by_element.items():
         xi = np.array([station.xi for station in own])
         forces = _by_equilibrium if method == "equilibrium" else _by_shape
-        for name, form in {**forces(forms, e, xi), **_displacements(forms, e, xi)}.items():
+        shapes, local = shapes_of(forms.elements[e][0], xi), forms.local(e)
+        for name, shape in zip(_FIELDS, ("u", "v", "rotation"), strict=True):
+            rows[name].append(local.turned(shapes[shape]))
+        for name, form in forces(forms, e, xi).items():
             rows[name].append(form)
     met = [station for own in by_element.values() for station in own]
     order = np.array([met.index(station) for station in stations])
@@ -122,12 +123,6 @@ def recovery(
 
 
 _FIELDS = ("along", "across", "slope")
-
-
-def _displacements(forms: ElementForms, e: int, xi: Array) -> dict[str, LinearForm]:
-    shapes, local = shapes_of(forms.elements[e][0], xi), forms.local(e)
-    names = zip(_FIELDS, ("u", "v", "rotation"), strict=True)
-    return {field: local.turned(shapes[name]) for field, name in names}
 
 
 def _by_shape(forms: ElementForms, e: int, xi: Array) -> dict[str, LinearForm]:

@@ -21,17 +21,9 @@ from .beam_motion import BeamMotion, Motion, beam_motion, chunks
 from .beam_result import BeamResult, MotionValues, in_motion, over_motion
 from .finer_mesh import with_mesh
 
+# How the axial forces of the geometric stiffness change with the crank angle: by power of the
+# speed, from angles (nt,) to (nt, elements, 3).
 Slopes = Mapping[int, Callable[[Array], Array]]
-
-
-def force_slopes(system: LinearPeriodic) -> Slopes:
-    """Return how the axial forces of the geometric stiffness change with the crank angle.
-
-    By power of the speed, from angles ``(nt,)`` to ``(nt, elements, 3)``; none where nothing moves.
-    """
-    if not required_structure(system).moving:
-        return {}
-    return {power: _slope(system, power) for power in ElementForms(system, np.zeros(1)).stiffening}
 
 
 def _slope(system: LinearPeriodic, power: int) -> Callable[[Array], Array]:
@@ -283,12 +275,21 @@ def _doubt(system: LinearPeriodic, moving: BeamMotion, strain: Array) -> dict[st
         better = np.sum(_energies(finer, motion)["strain"], axis=1)
         return float(np.max(np.abs(better - np.sum(strain, axis=1))))
 
+    # What the error of the motion can do to the strain energy.
+    error = 0.0
+    for chunk in chunks(moving) if np.any(moving.doubt) else ():
+        stiffness = system.array("K", moving.theta[chunk])
+        force = np.einsum("tij,tj->ti", stiffness, moving.q[chunk])
+        error = max(error, float(np.max(np.abs(force) @ moving.doubt)))
     norm = "largest error of the strain energy of all beams [J]"
-    return with_mesh(system, moving, norm, _motion_error(system, moving), change)
+    return with_mesh(system, moving, norm, error, change)
 
 
 def _energies(system: LinearPeriodic, motion: BeamMotion) -> dict[str, Any]:
-    slopes = force_slopes(system)
+    slopes: Slopes = {}
+    if required_structure(system).moving:
+        powers = ElementForms(system, np.zeros(1)).stiffening
+        slopes = {power: _slope(system, power) for power in powers}
     return over_motion(
         system, motion, lambda forms, values: Energies(forms, values, slopes).by_name()
     )
@@ -309,15 +310,3 @@ def _balance(made: BeamEnergies, motion: BeamMotion) -> Check:
     # Round-off of energies that are sums of large parts, over the largest power.
     limit = count * relative + beyond / max(largest, np.finfo(float).tiny) + 1e-9
     return Check(float(np.max(np.abs(rate - power))) / largest if largest else 0.0, limit)
-
-
-def _motion_error(system: LinearPeriodic, motion: BeamMotion) -> float:
-    """Return what the error of the motion can do to the strain energy [J]."""
-    if not np.any(motion.doubt):
-        return 0.0
-    largest = 0.0
-    for chunk in chunks(motion):
-        stiffness = system.array("K", motion.theta[chunk])
-        force = np.einsum("tij,tj->ti", stiffness, motion.q[chunk])
-        largest = max(largest, float(np.max(np.abs(force) @ motion.doubt)))
-    return largest

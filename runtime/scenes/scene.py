@@ -154,11 +154,6 @@ class Scene:
         """The ``[model]`` table, defaults filled in."""
         return self["model"]
 
-    @property
-    def _declared(self) -> bool:
-        """True where the scene declares its own tables, for a model of the user's."""
-        return not self.layout.formulations
-
     def get(self, key: str, default: Any = _MISSING) -> Any:
         """Return the value of a dotted key, in SI units.
 
@@ -283,7 +278,8 @@ class Scene:
         Raises ``BadInput`` if the scene has no linkage.
         """
         kind = LINKAGES.get(self.model["mechanism"])
-        if kind is None or self._declared:
+        # A scene of a model of the user's own declares its tables, in any formulation.
+        if kind is None or not self.layout.formulations:
             found = f"mechanism '{self.model['mechanism']}'"
             fix = "choose a scene with a [links] table"
             raise bad(f"scene {self.name}", found, f"a linkage: one of {sorted(LINKAGES)}", fix)

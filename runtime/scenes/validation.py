@@ -355,10 +355,10 @@ def _key(table: str, name: str, entry: object, problems: list[Problem]) -> Key:
         entry = {}
     kind, dimension = entry.get("kind", "quantity"), entry.get("dimension", "dimensionless")
     limit, choices = entry.get("limit", "any"), entry.get("choices", [])
-    kinds, limits = list(get_args(Kind)), list(get_args(Range))
-    for found, allowed in ((kind, kinds), (dimension, sorted(DIMENSIONS)), (limit, limits)):
+    known = (kind, get_args(Kind)), (dimension, sorted(DIMENSIONS)), (limit, get_args(Range))
+    for found, allowed in known:
         if not isinstance(found, str) or found not in allowed:
-            refuse(repr(found)[:60], f"one of {allowed}", "correct it")
+            refuse(repr(found)[:60], f"one of {list(allowed)}", "correct it")
     unknown = sorted(set(entry) - set(KEY_FIELDS))
     if unknown:
         refuse(f"unknown {unknown}", f"some of {KEY_FIELDS}", "remove them")

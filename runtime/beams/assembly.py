@@ -127,6 +127,14 @@ class AngleArrays:
             total[:, placed.indices] += values.reshape(len(theta), -1) @ kernel
         return total[:, self.free]
 
+    def rows(self, placed: PlacedElement, own: Array, theta: Array) -> Array:
+        """Return rows ``(k, m)`` by an element's axes as rows by the fixed ones, ``(nt, k, n)``."""
+        c, s = self.motion(theta).products[placed.beam.name][:, 1:3].T[..., None]
+        found = np.zeros((len(theta), len(own), self.count))
+        turned = in_own_axes(np.tile(own, (len(theta), 1, 1)), c, -s)
+        found[:, :, placed.indices[: own.shape[1]]] = turned
+        return found[:, :, self.free]
+
     @cached_property
     def _mass_of_elements(self) -> tuple[tuple[PlacedElement, Array], ...]:
         """Every element with its mass: from products times values to forces, ``(6 m, m)``."""

@@ -25,15 +25,11 @@ def relative_deflection(arrays: AngleArrays, slide: Slide | None, theta: Array) 
     Shape ``(nt, k, n)``: displacement across each element from its place on the rigid beam, at
     its middle and its end.
     """
-    motion = arrays.motion(theta)
-    found = []
-    for placed in arrays.structure.elements:
-        across = shapes_of(placed, np.array([0.5, 1.0]))["v"]
-        c, s = motion.products[placed.beam.name][:, 1:3].T[..., None]
-        local = in_own_axes(np.tile(across, (len(theta), 1, 1)), c, -s)
-        full = np.zeros((len(theta), 2, arrays.count))
-        full[:, :, placed.indices] = local / placed.beam.length
-        found.append(full[:, :, arrays.free])
+    watched = np.array([0.5, 1.0])
+    found = [
+        arrays.rows(placed, shapes_of(placed, watched)["v"] / placed.beam.length, theta)
+        for placed in arrays.structure.elements
+    ]
     rows = np.concatenate(found, axis=1)
     return rows if slide is None else np.asarray(rows @ slide.basis(theta))
 
@@ -99,8 +95,11 @@ class AxialForces:
         arrays = self.arrays
         q = np.zeros((len(theta), arrays.count))
         q[:, arrays.free] = self._at_rest(source, theta)[0]
-        field = self._body_field(source, theta)
         motion = arrays.motion(theta)
+        # The acceleration that the beams' own mass resists; to lumped masses it is nothing.
+        field = motion.second if source == "distributed" else np.zeros_like(q)
+        if source == "static":
+            field = -self.weight_field(theta)
         found = np.zeros((len(theta), len(arrays.local), 3))
         for e, (placed, own) in enumerate(arrays.local):
             c, s = motion.products[placed.beam.name][:, 1:3].T
@@ -125,14 +124,6 @@ class AxialForces:
         q: Array = basis @ np.linalg.solve(turned @ stiffness @ basis, turned @ loads)
         rest: Array = stiffness @ q - loads
         return q[..., 0], rest[..., 0]
-
-    def _body_field(self, source: str, theta: Array) -> Array:
-        """Return the acceleration that the beams' own mass resists, all coordinates."""
-        if source == "distributed":
-            return self.arrays.motion(theta).second
-        if source == "lumped":
-            return np.zeros((len(theta), self.arrays.count))
-        return -self.weight_field(theta)
 
     def geometric(self, source: str, theta: Array) -> Array:
         """Return ``int P v'^2`` of the axial forces of one source, ``(nt, n, n)`` (4.38)."""
@@ -201,7 +192,6 @@ def _strains(arrays: AngleArrays, springs: Array, theta: Array) -> Array:
     # element is as good as a long one.
     elements = arrays.structure.elements
     longest = max(placed.length for placed in elements)
-    motion = arrays.motion(theta)
     rows = []
     for placed in elements:
         half = placed.length / 2.0
@@ -209,10 +199,7 @@ def _strains(arrays: AngleArrays, springs: Array, theta: Array) -> Array:
         own[0, [0, 3]] = -1.0, 1.0
         own[1, [2, 5]] = -longest, longest
         own[2, [1, 4, 2, 5]] = -1.0, 1.0, -half, -half
-        c, s = motion.products[placed.beam.name][:, 1:3].T[..., None]
-        placed_rows = np.zeros((len(theta), 3, arrays.count))
-        placed_rows[:, :, placed.indices[:6]] = in_own_axes(np.tile(own, (len(theta), 1, 1)), c, -s)
-        rows.append(placed_rows[:, :, arrays.free])
+        rows.append(arrays.rows(placed, own, theta))
     sprung = np.eye(len(springs))[springs > 0.0]
     rows.append(np.broadcast_to(sprung, (len(theta), *sprung.shape)))
     return np.concatenate(rows, axis=1)
@@ -355,7 +342,7 @@ def linear_system(
         parameters |= {"rayleigh_mass": rayleigh[0], "rayleigh_stiffness": rayleigh[1]}
     if viscous:
         parameters["retardation"] = 1.0
-    options = {"form": form, "geometric_stiffness": str(geometric_stiffness).lower()}
+    told = {"form": form, "geometric_stiffness": str(geometric_stiffness).lower()}
     made_with = {
         "form": form,
         "geometric_stiffness": geometric_stiffness,
@@ -369,7 +356,7 @@ def linear_system(
         scales=_scales,
         period=structure.period,
         labels=structure.labels,
-        provenance={**structure.provenance, **options},
+        provenance={**structure.provenance, **told},
         limits={name: "non-negative" for name in parameters} | dict.fromkeys(FACTORS, "positive"),
         relative_deflection=partial(relative_deflection, arrays, slide),
         structure=structure if slide is None else None,

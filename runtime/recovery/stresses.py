@@ -95,24 +95,21 @@ def energy_gap(system: LinearPeriodic, motion: BeamMotion) -> float:
     picked = np.unique(np.linspace(0, len(motion.theta) - 1, 64).astype(int))
     rows = {name: getattr(motion, name)[picked] for name in ("theta", "q", "qd")}
     few = replace(motion, **rows, period=None)
-    places: dict[str, list[Array]] = {beam.name: [] for beam in structure.beams}
-    weights: dict[str, list[Array]] = {beam.name: [] for beam in structure.beams}
-    for placed in structure.elements:
-        along = placed.start + 0.5 * placed.length * (1.0 + _PLACES)
-        places[placed.beam.name].append(along / placed.beam.length)
-        weights[placed.beam.name].append(0.5 * placed.length * _WEIGHTS)
-    stations = {name: np.concatenate(own) for name, own in places.items()}
+    stations: dict[str, Array] = {}
+    weights = []
+    for beam in structure.beams:
+        own = [placed for placed in structure.elements if placed.beam is beam]
+        along = [placed.start + 0.5 * placed.length * (1.0 + _PLACES) for placed in own]
+        stations[beam.name] = np.concatenate(along) / beam.length
+        weights.append(np.concatenate([0.5 * placed.length * _WEIGHTS for placed in own]))
     first, second = (Recovery(system, few, stations, m).values(_STRESSING) for m in METHODS)
     scale = float(system.parameters.get("elasticity", 1.0))
     wrong = total = 0.0
     for name, key in (("axial", "axial_stiffness"), ("moment", "bending_stiffness")):
-        flat = [
-            weight / (scale * getattr(structure.beam(beam).section, key))
-            for beam, own in weights.items()
-            for weight in np.concatenate(own)
-        ]
-        wrong += float(np.sum((first[name] - second[name]) ** 2 @ np.array(flat)))
-        total += float(np.sum(first[name] ** 2 @ np.array(flat)))
+        stiff = [scale * getattr(beam.section, key) for beam in structure.beams]
+        flat = np.concatenate([w / k for w, k in zip(weights, stiff, strict=True)])
+        wrong += float(np.sum((first[name] - second[name]) ** 2 @ flat))
+        total += float(np.sum(first[name] ** 2 @ flat))
     return min(wrong / total, 0.5) if total else 0.0
 
 

@@ -52,9 +52,7 @@ def coupler_parameters(scene: Scene) -> dict[str, Any]:
     """Return the inertial and elastic parameters of a coupler, those of the emitted module."""
     coupler = scene["coupler"]
     return {
-        "bending_stiffness": coupler["bending_stiffness"],
-        "mass_per_length": coupler["mass_per_length"],
-        "damping": coupler["damping"],
+        **{name: coupler[name] for name in ("bending_stiffness", "mass_per_length", "damping")},
         "coupler_inertia": coupler["inertia"],
         "coupler_first_moment": coupler["first_moment"],
         "follower_inertia": scene["follower"]["inertia"],

@@ -144,16 +144,9 @@ def inextensible_system(scene: Scene) -> Nonlinear:
     linkage.require_full_turn()
     emitted = find_module(scene.model_spec())
     coupler, modes = scene["coupler"], int(scene.model["modes"])
-    gravity = pull_of_gravity(scene)
-    parameters = {
-        **linkage.lengths,
-        "bending_stiffness": coupler["bending_stiffness"],
-        "mass_per_length": coupler["mass_per_length"],
-        "damping": coupler["damping"],
-        "bow": coupler["bow"],
-        "gravity_x": gravity[0],
-        "gravity_y": gravity[1],
-    }
+    own = ("bending_stiffness", "mass_per_length", "damping", "bow")
+    parameters = {**linkage.lengths, **{name: coupler[name] for name in own}}
+    parameters["gravity_x"], parameters["gravity_y"] = pull_of_gravity(scene)
     if "slider_mass" in emitted.module.PARAMETERS:
         parameters["slider_mass"] = scene["slider"]["mass"]
     else:

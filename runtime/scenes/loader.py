@@ -128,7 +128,7 @@ def with_numbers(scene: Scene, numbers: Mapping[str, Any], *, checked: bool = Tr
     if checked:
         check_geometry(values, scene.layout)
     complete(values, scene.layout, checked=checked)
-    tables = ReadOnlyTable(scene.name, {k: _read_only(k, table) for k, table in values.items()})
+    tables = ReadOnlyTable(scene.name, {k: ReadOnlyTable(k, table) for k, table in values.items()})
     document = _copied(scene.document)
     _override(document, numbers)
     return Scene(scene.name, scene.title, scene.source, tables, scene.layout, document, given)
@@ -136,15 +136,6 @@ def with_numbers(scene: Scene, numbers: Mapping[str, Any], *, checked: bool = Tr
 
 def _copied(values: Mapping[str, Any]) -> dict[str, Any]:
     return {k: _copied(v) if isinstance(v, Mapping) else v for k, v in values.items()}
-
-
-def _read_only(name: str, table: Mapping[str, Any]) -> ReadOnlyTable:
-    """Return a table that cannot be changed, nor can the ones inside it."""
-    inner = {
-        key: _read_only(f"{name}.{key}", value) if isinstance(value, Mapping) else value
-        for key, value in table.items()
-    }
-    return ReadOnlyTable(name, inner)
 
 
 def _override(tables: dict[str, Any], overrides: Mapping[str, Any]) -> None:

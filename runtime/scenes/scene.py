@@ -30,14 +30,17 @@ _MISSING = object()
 class ReadOnlyTable(Mapping[str, Any]):
     """A table of a scene that cannot be changed, its name known to messages.
 
-    By key: floats in SI units, tuples of them, whole numbers and texts.
+    By key: floats in SI units, tuples of them, whole numbers and texts, and tables of the same.
     """
 
     __slots__ = ("_name", "_values")
 
     def __init__(self, name: str, values: Mapping[str, Any]) -> None:
         self._name = name
-        self._values = dict(values)
+        self._values = {
+            key: ReadOnlyTable(f"{name}.{key}", value) if type(value) is dict else value
+            for key, value in values.items()
+        }
 
     def __getitem__(self, key: str) -> Any:
         """Return one value; a wrong key is refused with the ones that there are."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from itertools import chain, pairwise
 from typing import Any, get_args
@@ -26,14 +26,13 @@ def validate(document: Mapping[str, Any]) -> tuple[Layout, Values]:
     in.
     """
     problems: list[Problem] = []
-    layouts = declared_layout(document, problems) or LAYOUTS
-    layout = _choose(document, layouts, problems)
+    layout = find_layout(document, problems)
     if layout is None:
         raise BadInput(*problems)
     _top_level(document, layout, problems)
     values: Values = {}
     for table in layout.all_tables():
-        read = _table(document, table, layout, problems)
+        read = _table(document.get(table.name), table, layout, problems)
         if read is not None:
             values[table.name] = read
     if {"formulation", "flexible"} <= set(values.get("model", {})):
@@ -45,12 +44,6 @@ def validate(document: Mapping[str, Any]) -> tuple[Layout, Values]:
         problems += _unusable_names(values.get("model", {}))
     refuse(list(dict.fromkeys(problems)))
     return layout, values
-
-
-def find_layout(document: Mapping[str, Any]) -> Layout | None:
-    """Return the layout that a scene's mechanism and formulation call for, as far as they tell."""
-    ignored: list[Problem] = []
-    return _choose(document, declared_layout(document, ignored) or LAYOUTS, ignored)
 
 
 def nearest(word: str, known: Iterable[str], otherwise: str, most: int = 3) -> str:
@@ -68,10 +61,15 @@ def show(value: object) -> str:
     return shown(value)
 
 
-def _choose(
-    document: Mapping[str, Any], layouts: Sequence[Layout], problems: list[Problem]
+def find_layout(
+    document: Mapping[str, Any], problems: list[Problem] | None = None
 ) -> Layout | None:
-    """Find the layout by mechanism and formulation; guess where only the latter is wrong."""
+    """Return the layout that a scene's mechanism and formulation call for, as far as they tell.
+
+    Guessed where only the formulation is wrong; what is wrong is added to ``problems``.
+    """
+    problems = [] if problems is None else problems
+    layouts = declared_layout(document, problems) or LAYOUTS
     model = document.get("model")
     mechanisms = list(dict.fromkeys(layout.mechanism for layout in layouts))
     if not isinstance(model, Mapping):
@@ -113,9 +111,8 @@ def _top_level(document: Mapping[str, Any], layout: Layout, problems: list[Probl
 
 
 def _table(
-    document: Mapping[str, Any], table: Table, layout: Layout, problems: list[Problem]
+    given: object, table: Table, layout: Layout, problems: list[Problem]
 ) -> dict[str, Any] | None:
-    given = document.get(table.name)
     if given is None:
         if not table.required:
             defaults = {key.name: key.default for key in table.keys if key.default is not None}
@@ -154,7 +151,7 @@ def _named_tables(
         full = f"{table.name}.{name}"
         one = replace(table, name=full, named=False)
         if isinstance(content, Mapping):
-            found[name] = _table({full: content}, one, layout, problems)
+            found[name] = _table(content, one, layout, problems)
         else:
             fix = f"write [{table.name}.NAME] above the keys"
             problems.append(Problem(full, show(content), "a table under a name", fix))

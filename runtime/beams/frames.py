@@ -14,7 +14,7 @@ from ..core.errors import Problem, bad, refuse
 from ..core.families import MATRICES, LinearPeriodic, Term
 from ..core.inputs import are_finite, names_problems, require_mapping
 from ..linkages.linkage import LinkMotion
-from .assembly import Array
+from .assembly import AngleArrays, Array
 from .section import Section
 from .structure import Node, Structure, beams_between, missing_problems, node_value_problems
 
@@ -179,7 +179,9 @@ def without_stretching(system: LinearPeriodic) -> LinearPeriodic:
         found = "a system that is not of a frame standing still"
         fix = "a moving linkage keeps its axial motion: it is stiff, but cheap to keep"
         raise bad("without_stretching", found, "one from linear_system(frame(...))", fix)
-    kept, spread = eliminated(_axial_rows(structure))
+    arrays, stretch = AngleArrays(structure), np.array([[-1.0, 0.0, 0.0, 1.0, 0.0, 0.0]])
+    rows = [arrays.rows(placed, stretch, np.zeros(1))[0] for placed in structure.elements]
+    kept, spread = eliminated(np.concatenate(rows))
     if not kept.size:
         raise bad("frame", "no motion without stretching", "members that bend", "add elements")
     # What watches the deflections is given in all coordinates.
@@ -193,18 +195,6 @@ def without_stretching(system: LinearPeriodic) -> LinearPeriodic:
         relative_deflection=None if watch is None else partial(_watched, watch, spread),
         provenance={**system.provenance, "axial": "rigid"},
     )
-
-
-def _axial_rows(structure: Structure) -> Array:
-    """Return how much each element stretches, per coordinate: ``(elements, n)``."""
-    motion = structure.configuration(np.zeros(1))
-    freedoms = structure.freedoms
-    rows = np.zeros((len(structure.elements), len(freedoms.all)))
-    for row, placed in zip(rows, structure.elements, strict=True):
-        angle = motion[placed.beam.name].angle[0]
-        c, s = np.cos(angle), np.sin(angle)
-        np.add.at(row, placed.indices[[0, 1, 3, 4]], [-c, -s, c, s])
-    return rows[:, freedoms.free]
 
 
 def eliminated(rows: Array) -> tuple[NDArray[np.int64], Array]:

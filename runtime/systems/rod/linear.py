@@ -135,15 +135,12 @@ def _assembled(
         drop=emitted.dropped,
         labels=basis.labels,
         reference_length=length,
-        provenance={**origin, **emitted.provenance},
-    )
-    return replace(
-        system,
         limits={name: "non-negative" if name in free else "positive" for name in parameters},
-        geometry=dict(geometry),
         rebuild=partial(_assembled, basis, parameters, emitted, origin),
         moving_shape=partial(_shapes, basis, linkage),
+        provenance={**origin, **emitted.provenance},
     )
+    return replace(system, geometry=dict(geometry))
 
 
 def _shapes(basis: MovingBasis, linkage: QuickReturn, x: Array, theta: Array) -> Array:

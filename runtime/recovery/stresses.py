@@ -20,15 +20,7 @@ from ..core.maxima import polished
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import DeferredField, DeferredGroup
 from ..core.trigonometric import resampled
-from .beam_forces import (
-    METHODS,
-    Recovery,
-    Station,
-    Stations,
-    recovery,
-    require_method,
-    stations_of,
-)
+from .beam_forces import METHODS, Recovery, Station, Stations, recovery, require_method, stations_of
 from .beam_motion import BeamMotion, Motion, beam_motion, chunks
 from .beam_result import StationResult, checked_forms, in_motion, stations_on
 from .finer_mesh import CAUTION, ROUNDING

@@ -16,7 +16,7 @@ from ..core.inputs import are_finite, names_problems, require_mapping
 from ..linkages.linkage import LinkMotion
 from .assembly import AngleArrays, Array
 from .section import Section
-from .structure import Node, Structure, beams_between, missing_problems, node_value_problems
+from .structure import Structure, missing_problems, node_value_problems, structure_of
 
 
 def frame(
@@ -78,22 +78,15 @@ def frame(
     _check(places, members, sections, [*supports, *pins, *(nodes or {})])
     ends = {name: (complex(*places[a]), complex(*places[b])) for name, (a, b) in members.items()}
     lengths = {name: abs(end - start) for name, (start, end) in ends.items()}
-    beams = beams_between(members, lengths, sections, elements, kind)
-    made = []
+    own: dict[str, dict[str, Any]] = {}
     for letter in places:
-        meeting = tuple(beam.name for beam in beams if letter in (beam.start, beam.end))
-        values: dict[str, Any] = {
-            "held": tuple(supports.get(letter, ())),
-            "joined": () if letter in pins or len(meeting) < 2 else meeting,
-        }
-        made.append(Node(name=letter, **{**values, **(nodes or {}).get(letter, {})}))
-    return Structure(
-        beams=beams,
-        nodes=tuple(made),
-        configuration=partial(_standing, ends),
-        moving=False,
-        provenance=dict(provenance or {}),
-    )
+        meeting = tuple(name for name, pair in members.items() if letter in pair)
+        joined = () if letter in pins or len(meeting) < 2 else meeting
+        own[letter] = {"held": tuple(supports.get(letter, ())), "joined": joined}
+        own[letter] |= (nodes or {}).get(letter, {})
+    still = {"configuration": partial(_standing, ends), "moving": False}
+    told = dict(provenance or {})
+    return structure_of(members, lengths, sections, elements, kind, own, provenance=told, **still)
 
 
 def _standing(

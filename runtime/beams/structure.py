@@ -476,15 +476,20 @@ class Structure:
                 raise bad(f"node {name}", found, "a node on the beam", fix)
 
 
-def beams_between(
+def structure_of(
     ends: Mapping[str, tuple[str, str]],
     lengths: Mapping[str, float],
     sections: Section | Mapping[str, Section],
     elements: int | Mapping[str, int | tuple[float, ...]],
     kind: str,
-) -> tuple[Beam, ...]:
-    """Return a beam for each pair of nodes, with its own or the same section and elements."""
-    return tuple(
+    nodes: Mapping[str, Mapping[str, Any]],
+    **fields: Any,
+) -> Structure:
+    """Return a structure of beams between pairs of nodes, and of nodes with values by name.
+
+    Beams have their own or the same section and elements; ``fields`` are others of it.
+    """
+    beams = tuple(
         Beam(
             name=name,
             start=start,
@@ -496,6 +501,8 @@ def beams_between(
         )
         for name, (start, end) in ends.items()
     )
+    made = tuple(Node(name=name, **values) for name, values in nodes.items())
+    return Structure(beams=beams, nodes=made, **fields)
 
 
 def _named(what: str, items: tuple[_Item, ...], name: str) -> _Item:

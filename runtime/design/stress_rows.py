@@ -14,7 +14,7 @@ from ..core.families import Array, LinearPeriodic
 from ..core.trigonometric import interpolated
 from ..periodic.equation import Equation
 from ..periodic.periodic_motion import SteadyState
-from ..recovery.beam_forces import Recovery, stations_of
+from ..recovery.beam_forces import Recovered, stations_of
 from ..recovery.beam_motion import beam_motion
 from ..recovery.stresses import FIBRES, fibre_factors, stress_operator, stresses
 from ..scenes import Scene
@@ -39,7 +39,7 @@ class StressRow:
 
     def history(self, system: LinearPeriodic, motion: SteadyState) -> tuple[Array, float]:
         """Return the stress over the angles of a motion, and what the motion's error does to it."""
-        asked = Recovery(system, beam_motion(system, motion), self._stations, self.method)
+        asked = Recovered(system, beam_motion(system, motion), self._stations, self.method)
         factors = fibre_factors(system, stations_of(required_structure(system), self._stations))
         axial, bending = stresses(asked, factors)
         sign = 1.0 if self.fibre == FIBRES[0] else -1.0

@@ -284,7 +284,7 @@ def recover(
     """
     require_method(method)
     chosen = stations_of(required_structure(system), stations)
-    asked = Recovery(system, beam_motion(system, motion), stations, method)
+    asked = Recovered(system, beam_motion(system, motion), stations, method)
     own: dict[str, Any] = dict(asked.values())
     return BeamForces(
         method=method,
@@ -295,7 +295,7 @@ def recover(
     )
 
 
-def _doubt(asked: Recovery, own: Mapping[str, Array]) -> dict[str, Any]:
+def _doubt(asked: Recovered, own: Mapping[str, Array]) -> dict[str, Any]:
     norm = "largest error of axial force [N], shear force [N], moment [N m]"
     better, finer = asked.compared(FORCES)
     gaps = np.array([np.max(np.abs(own[name] - better[name])) for name in FORCES])
@@ -308,7 +308,7 @@ def _doubt(asked: Recovery, own: Mapping[str, Array]) -> dict[str, Any]:
 
 
 @dataclass(frozen=True)
-class Recovery:
+class Recovered:
     """Forces and displacements along the beams of a system in a motion, recovered by a method."""
 
     system: LinearPeriodic
@@ -330,7 +330,7 @@ class Recovery:
         """Return them on a finer mesh, or else by the other method; and whether there is one."""
         finer = on_finer_mesh(self.system, self.motion)
         if finer is not None:
-            return Recovery(*finer, self.stations, "equilibrium").values(names), True
+            return Recovered(*finer, self.stations, "equilibrium").values(names), True
         other = next(name for name in METHODS if name != self.method)
         return replace(self, method=other).values(names), False
 

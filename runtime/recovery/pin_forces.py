@@ -15,7 +15,7 @@ from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check
-from .beam_forces import Recovery
+from .beam_forces import Recovered
 from .beam_motion import BeamMotion, Motion, beam_motion
 from .beam_result import BeamResult, MotionValues, in_motion, over_motion
 from .finer_mesh import ROUNDING, with_mesh
@@ -217,7 +217,7 @@ def _doubt(
     longest = max(beam.length for beam in required_structure(system).beams)
     scale = np.array([1.0, 1.0, 1.0 / longest])
     own = np.stack(list(on_beams.values())) * scale
-    axial, shear, moment = Recovery(system, motion, 2, "shape").propagated()
+    axial, shear, moment = Recovered(system, motion, 2, "shape").propagated()
     by_motion = float(np.hypot(axial, shear) + moment / longest)
 
     def change(finer: LinearPeriodic, motion: BeamMotion) -> float:

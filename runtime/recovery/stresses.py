@@ -20,7 +20,15 @@ from ..core.maxima import polished
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import DeferredField, DeferredGroup
 from ..core.trigonometric import resampled
-from .beam_forces import METHODS, Recovery, Station, Stations, recovery, require_method, stations_of
+from .beam_forces import (
+    METHODS,
+    Recovered,
+    Station,
+    Stations,
+    recovery,
+    require_method,
+    stations_of,
+)
 from .beam_motion import BeamMotion, Motion, beam_motion, chunks
 from .beam_result import StationResult, checked_forms, in_motion, stations_on
 from .finer_mesh import CAUTION, ROUNDING
@@ -48,7 +56,7 @@ def fibre_factors(system: LinearPeriodic, stations: Sequence[Station]) -> Array:
     return np.array([[1.0 / section.area for section in own], levers])
 
 
-def stresses(asked: Recovery, factors: Array) -> Array:
+def stresses(asked: Recovered, factors: Array) -> Array:
     """Return stresses of axial force and of bending at the positive fibre [Pa].
 
     Shape ``(2, nt, stations)``, from the ``factors`` of :func:`fibre_factors`.
@@ -94,7 +102,7 @@ def energy_gap(system: LinearPeriodic, motion: BeamMotion) -> float:
         along = [placed.start + 0.5 * placed.length * (1.0 + _PLACES) for placed in own]
         stations[beam.name] = np.concatenate(along) / beam.length
         weights.append(np.concatenate([0.5 * placed.length * _WEIGHTS for placed in own]))
-    first, second = (Recovery(system, few, stations, m).values(_STRESSING) for m in METHODS)
+    first, second = (Recovered(system, few, stations, m).values(_STRESSING) for m in METHODS)
     scale = float(system.parameters.get("elasticity", 1.0))
     wrong = total = 0.0
     for name, key in (("axial", "axial_stiffness"), ("moment", "bending_stiffness")):
@@ -397,7 +405,7 @@ def stress(
     require_method(method)
     chosen = stations_of(required_structure(system), stations)
     factors = fibre_factors(system, chosen)
-    asked = Recovery(system, beam_motion(system, motion), stations, method)
+    asked = Recovered(system, beam_motion(system, motion), stations, method)
     own = stresses(asked, factors)
     still = DeferredGroup(partial(_still, asked, factors))
     doubt = partial(_doubt, asked, factors, own)
@@ -414,12 +422,12 @@ def stress(
     )
 
 
-def _still(asked: Recovery, factors: Array) -> dict[str, Array]:
+def _still(asked: Recovered, factors: Array) -> dict[str, Array]:
     still = replace(asked, motion=frozen(asked.system, asked.motion))
     return dict(zip(("axial", "bending"), stresses(still, factors), strict=True))
 
 
-def _doubt(asked: Recovery, factors: Array, own: Array) -> dict[str, float | str]:
+def _doubt(asked: Recovered, factors: Array, own: Array) -> dict[str, float | str]:
     axial, _, moment = asked.propagated()
     by_motion = float(np.max(factors[0]) * axial + np.max(factors[1]) * moment)
     norm = "largest error of a stress over angles and stations [Pa]"

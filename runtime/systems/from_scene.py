@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 # As in the tables of a scene; a first moment may have either sign.
-_COUPLER_LIMITS = {
+COUPLER_LIMITS = {
     **dict.fromkeys(("bending_stiffness", "mass_per_length"), "positive"),
     **dict.fromkeys(("damping", "coupler_inertia", "follower_inertia"), "non-negative"),
 }
@@ -41,7 +41,7 @@ def coupler_system(scene: Scene) -> LinearPeriodic:
         parameters=coupler_parameters(scene),
         modes=modes,
         labels=tuple(f"Y{m}/l3" for m in range(1, modes + 1)),
-        limits=_COUPLER_LIMITS,
+        limits=COUPLER_LIMITS,
         reference_length=linkage.lengths["coupler"],
         shape=partial(_pinned_modes, modes),
         provenance={**origin(scene), **emitted.provenance, "nonlinear": "inextensible"},

@@ -18,7 +18,7 @@ from ..core.families.nonlinear import Drive, Equations, Nonlinear, Reduced
 from ..core.families.stations import AtStations, Stations
 from ..core.modules import find_module
 from .driven import Driven, nothing_held
-from .from_scene import origin, pull_of_gravity
+from .from_scene import COUPLER_LIMITS, origin, pull_of_gravity
 
 if TYPE_CHECKING:
     from ..scenes import Scene
@@ -27,11 +27,8 @@ _HARMONICS: ModuleType = beam_tangent_harmonics
 # Stations of the coupler: with amplitudes up to 0.7 / k^1.5 of the tangent's angle what is left of
 # the equations is right to 1e-13 (one mode) to 5e-12 (five).
 _LEAST, _PER_MODE = 8, 4
-_LIMITS = {
-    **dict.fromkeys(("frame", "crank", "coupler", "follower"), "positive"),
-    **dict.fromkeys(("bending_stiffness", "mass_per_length", "slider_mass"), "positive"),
-    **dict.fromkeys(("damping", "follower_inertia"), "non-negative"),
-}
+_POSITIVE = ("frame", "crank", "coupler", "follower", "slider_mass")
+_LIMITS = {**COUPLER_LIMITS, **dict.fromkeys(_POSITIVE, "positive")}
 
 
 @lru_cache(maxsize=32)

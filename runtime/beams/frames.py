@@ -74,8 +74,7 @@ def frame(
     """
     for where, given in (("places", places), ("members", members), ("supports", supports)):
         require_mapping(where, given, "see the example of frame")
-    _check_form(places, members, elements, nodes)
-    _check(places, members, sections, [*supports, *pins, *(nodes or {})])
+    _check(places, members, sections, elements, nodes, [*supports, *pins])
     ends = {name: (complex(*places[a]), complex(*places[b])) for name, (a, b) in members.items()}
     lengths = {name: abs(end - start) for name, (start, end) in ends.items()}
     own: dict[str, dict[str, Any]] = {}
@@ -103,13 +102,14 @@ def _standing(
     return found
 
 
-def _check_form(
+def _check(
     places: Mapping[str, tuple[float, float]],
     members: Mapping[str, tuple[str, str]],
+    sections: Section | Mapping[str, Section],
     elements: object,
-    nodes: object,
+    nodes: Mapping[str, object] | None,
+    held: Sequence[str],
 ) -> None:
-    """Refuse values of another form."""
     problems = node_value_problems(nodes)
     for letter, place in places.items():
         if not are_finite(place, 2):
@@ -119,17 +119,8 @@ def _check_form(
             found, fix = repr(pair), 'say ("A", "B")'
             problems.append(Problem(f"member {name}", found, "the names of two nodes", fix))
     refuse(problems + missing_problems("elements", elements, members))
-
-
-def _check(
-    places: Mapping[str, tuple[float, float]],
-    members: Mapping[str, tuple[str, str]],
-    sections: Section | Mapping[str, Section],
-    named: Sequence[str],
-) -> None:
-    problems = []
     ends = {letter for pair in members.values() for letter in pair}
-    for word, names in (("members", ends), ("supports, pins, nodes", set(named))):
+    for word, names in (("members", ends), ("supports, pins, nodes", {*held, *(nodes or {})})):
         strange = sorted(names - set(places))
         if strange:
             fix = "give it a place, or correct the name"

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..beams.assembly import Array
-from ..beams.element_forms import ElementForms, required_structure
+from ..beams.element_forms import ElementForms, MovingElement, required_structure
 from ..beams.elements import shapes_of
 from ..beams.recovery_forms import LinearForm, stacked
 from ..beams.structure import PlacedElement, Structure
@@ -110,12 +110,12 @@ def recovery(
     for station in dict.fromkeys(stations):
         by_element.setdefault(station.element, []).append(station)
     for e, own in by_element.items():
-        xi = np.array([station.xi for station in own])
+        xi, element = np.array([station.xi for station in own]), forms.elements[e]
         forces = _by_equilibrium if method == "equilibrium" else _by_shape
-        shapes, local = shapes_of(forms.elements[e][0], xi), forms.local(e)
+        shapes, local = shapes_of(element.placed, xi), element.local()
         for name, shape in zip(_FIELDS, ("u", "v", "rotation"), strict=True):
             rows[name].append(local.turned(shapes[shape]))
-        for name, form in forces(forms, e, xi).items():
+        for name, form in forces(element, xi).items():
             rows[name].append(form)
     met = [station for own in by_element.values() for station in own]
     order = np.array([met.index(station) for station in stations])
@@ -125,11 +125,10 @@ def recovery(
 _FIELDS = ("along", "across", "slope")
 
 
-def _by_shape(forms: ElementForms, e: int, xi: Array) -> dict[str, LinearForm]:
+def _by_shape(element: MovingElement, xi: Array) -> dict[str, LinearForm]:
     """Return forces by derivatives of the shape functions: E A u', E I v'', -E I v'''."""
-    placed = forms.elements[e][0]
-    section, strain = placed.beam.section, forms.strain(e)
-    shapes = shapes_of(placed, xi)
+    section, strain = element.placed.beam.section, element.strain()
+    shapes = shapes_of(element.placed, xi)
     return {
         "axial": strain.turned(section.axial_stiffness * shapes["strain"]),
         "shear": strain.turned(-section.bending_stiffness * shapes["third"]),
@@ -137,17 +136,16 @@ def _by_shape(forms: ElementForms, e: int, xi: Array) -> dict[str, LinearForm]:
     }
 
 
-def _by_equilibrium(forms: ElementForms, e: int, xi: Array) -> dict[str, LinearForm]:
+def _by_equilibrium(element: MovingElement, xi: Array) -> dict[str, LinearForm]:
     """Return forces that balance the part of an element before each place."""
-    placed = forms.elements[e][0]
+    forms, placed = element.forms, element.placed
     share = forms.factor["distributed_mass"]
     mass = share * placed.beam.section.mass_per_length
     weights = _integrals(placed, xi)
-    direct, across = forms.direct(e), forms.across(e)
-    plain = direct - forms.centripetal(e)
-    ends = forms.end_forces(e)
-    size = len(forms.elements[e][1].mass)
-    pick = np.repeat(np.eye(3, size)[:, None], len(xi), axis=1)
+    direct, across = element.direct(), element.across()
+    plain = direct - element.centripetal()
+    ends = element.end_forces()
+    pick = np.repeat(np.eye(3, len(element.arrays.mass))[:, None], len(xi), axis=1)
     lever = (placed.length * xi)[:, None]
     # The inertia m a of the part: along, across, and its moment about the place.
     along = plain.turned(mass * weights["u"]) - across.turned(mass * weights["v"])
@@ -158,8 +156,8 @@ def _by_equilibrium(forms: ElementForms, e: int, xi: Array) -> dict[str, LinearF
         rotary = share * placed.beam.section.rotary_inertia
         turned = turned + direct.turned(rotary * weights["rotation"])
     for power, forces in forms.stiffening.items():
-        kernel = np.einsum("tk,kxn->txn", forces[:, e], weights["slope"])
-        turned = turned + forms.local(e).turned(kernel).faster(power)
+        kernel = np.einsum("tk,kxn->txn", forces[:, element.number], weights["slope"])
+        turned = turned + element.local().turned(kernel).faster(power)
     return {
         "axial": along - ends.turned(pick[0]),
         "shear": sideways - ends.turned(pick[1]),

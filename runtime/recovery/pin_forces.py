@@ -184,14 +184,14 @@ def _at_nodes(forms: ElementForms, values: MotionValues) -> dict[str, Array]:
     resisted = lumped.copy()
     # What drag from outside takes is counted among the inertia.
     momentum, drag = np.zeros((2, len(forms.theta), 2))
-    for e, (placed, own) in enumerate(forms.elements):
-        at = forms.turning[e]
-        back = np.swapaxes(at.back, -1, -2)
-        fixed = values(forms.end_forces(e).turned(back))
+    for element in forms.elements:
+        placed = element.placed
+        fixed = values(element.end_forces().turned(element.fixed))
         resisted[:, placed.indices] += fixed
         momentum += fixed[:, [0, 1]] + fixed[:, [3, 4]]
         if outside.parts:
-            taken = values(outside.turned(back @ (share * own.mass) @ at.own))
+            inertia = element.fixed @ (share * element.arrays.mass) @ element.own
+            taken = values(outside.turned(inertia))
             drag -= taken[:, [0, 1]] + taken[:, [3, 4]]
         if placed.number == 0:
             found[f"{placed.beam.start} {placed.beam.name}"] = fixed[:, :3]

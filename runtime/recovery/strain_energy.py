@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..beams.assembly import Array
-from ..beams.element_forms import ElementForms, required_structure
+from ..beams.element_forms import ElementForms, MovingElement, required_structure
 from ..beams.recovery_forms import LinearForm
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
@@ -69,41 +69,41 @@ class Energies:
         links = [beam.name for beam in forms.structure.beams]
         strain = np.zeros((count, len(links)))
         sums = {name: np.zeros(count) for name in _SUMS}
-        for e, (placed, _) in enumerate(forms.elements):
-            strain[:, links.index(placed.beam.name)] += self._element(e, sums)
+        for element in forms.elements:
+            link = links.index(element.placed.beam.name)
+            strain[:, link] += self._element(element, sums)
         self._nodes(sums)
         if forms.outside.parts:
             force = forms.outside.turned(forms.mass).values(self.speed, self.q, self.slope)
             sums["dissipated"] += np.vecdot(self.speed * self.slope, force)
         return {"strain": strain, **sums}
 
-    def _element(self, e: int, sums: dict[str, Array]) -> Array:
+    def _element(self, at: MovingElement, sums: dict[str, Array]) -> Array:
         """Add what an element has to the sums; return its strain energy."""
-        forms, at = self.forms, self.forms.turning[e]
-        placed, own = forms.elements[e]
+        forms, own, turning = self.forms, at.arrays, at.turning[..., 0]
         share, stiff = forms.factor["distributed_mass"], forms.factor["elasticity"]
         mass, across, centre = (share * m for m in (own.mass, own.coupling, own.centripetal))
         local = _times(at.own, self.q)
-        turned = at.rate[:, None] * _times(at.slope, self.q)
+        turned = turning * _times(at.slope, self.q)
         rate = _times(at.own, self.slope) + turned
-        first = np.einsum("tij,tj->ti", at.back, self.rigid.first[:, placed.indices])
-        spun = at.rate[:, None] * local
+        first = np.einsum("tij,tj->ti", at.back, self.rigid.first[:, at.placed.indices])
+        spun = turning * local
         w = self.speed
         sums["kinetic"] += 0.5 * w**2 * _square(first + rate, mass, spun, across, centre)
         # Accelerations, with gravity but without what acts from outside.
-        direct = self._spread(forms.direct(e) - forms.outside.turned(at.own), local)
-        sideways = self._spread(forms.across(e), local)
-        towards = self._spread(forms.centripetal(e), local)
+        direct = self._spread(at.direct() - forms.outside.turned(at.own), local)
+        sideways = self._spread(at.across(), local)
+        towards = self._spread(at.centripetal(), local)
         virtual = first + turned
         work = np.vecdot(virtual, direct @ mass + sideways @ across.T - towards @ centre)
         work += np.vecdot(spun, direct @ across + sideways @ centre - towards @ across)
-        forces = self._spread(forms.strain(e), local) @ own.stiffness
+        forces = self._spread(at.strain(), local) @ own.stiffness
         # Rayleigh's damping knows the rates of the coordinates alone; it turns nothing.
         resisted = forms.factor["rayleigh_stiffness"] * stiff * w * _times(at.own, self.slope)
         passive = resisted @ own.stiffness
         work += np.vecdot(turned, forces - passive)
-        work += self._stiffening(e, local, turned, rate, sums)
-        weight = forms.weight(e)
+        work += self._stiffening(at, local, turned, rate, sums)
+        weight = at.weight()
         sums["loads"] += w * np.vecdot(first + rate, weight @ mass)
         sums["loads"] += w * np.vecdot(spun, weight @ across)
         # The direct part holds the weight; the drive's own share is what is left without it.
@@ -114,18 +114,18 @@ class Energies:
         return np.asarray(0.5 * np.vecdot(local, elastic))
 
     def _stiffening(
-        self, e: int, local: Array, turned: Array, rate: Array, sums: dict[str, Array]
+        self, at: MovingElement, local: Array, turned: Array, rate: Array, sums: dict[str, Array]
     ) -> Array:
         """Add the energy of the axial forces; return the work that their change asks for."""
-        geometric = self.forms.elements[e][1].geometric
+        geometric = at.arrays.geometric
         total = np.zeros(len(local))
         for power, forces in self.forms.stiffening.items():
-            weights = forces[:, e] * self.speed**power
+            weights = forces[:, at.number] * self.speed**power
             kernel = np.tensordot(weights, geometric, axes=1)
             pull = np.einsum("tij,tj->ti", kernel, local)
             change = np.vecdot(turned, pull)
             if power in self.changing:
-                rates = self.changing[power][:, e] * self.speed**power
+                rates = self.changing[power][:, at.number] * self.speed**power
                 slope = np.tensordot(rates, geometric, axes=1)
                 change = 0.5 * np.einsum("ti,tij,tj->t", local, slope, local) + change
             energy = 0.5 * np.vecdot(local, pull)

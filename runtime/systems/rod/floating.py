@@ -65,13 +65,10 @@ class FreeFreeRod(Constrained):
         motion = self.linkage.motion(self.speed * np.asarray(t, dtype=float), self.speed)
         half = self.linkage.rod / 2.0
         sin, cos = np.sin(motion.theta4), np.cos(motion.theta4)
-        q = np.zeros((*motion.theta4.shape, self.size))
-        qd = np.zeros_like(q)
+        q, qd = np.zeros((2, *motion.theta4.shape, self.size))
         q[..., 0], q[..., 1], q[..., 2] = half * cos, half * sin, motion.theta4
-        qd[..., 0] = -half * sin * motion.omega4
-        qd[..., 1] = half * cos * motion.omega4
-        qd[..., 2] = motion.omega4
-        return q, qd
+        qd[..., 0], qd[..., 1], qd[..., 2] = -half * sin, half * cos, 1.0
+        return q, qd * np.asarray(motion.omega4)[..., None]
 
     def energy(self, q: Array, qd: Array, t: ArrayLike = 0.0) -> Array:
         """Return kinetic and strain energy [J], Beale & Scott (37) and (40); shape batch.

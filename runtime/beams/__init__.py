@@ -12,8 +12,6 @@ from ..core.lazy import on_first_use
 if TYPE_CHECKING:
     from .elements import KINDS as KINDS
     from .elements import element_arrays as element_arrays
-    from .elements import section_rotation as section_rotation
-    from .elements import shape_functions as shape_functions
     from .frames import frame as frame
     from .frames import without_stretching as without_stretching
     from .layered import ElasticLayer as ElasticLayer
@@ -30,7 +28,7 @@ if TYPE_CHECKING:
 __all__ = on_first_use(
     globals(),
     {
-        "elements": "KINDS element_arrays section_rotation shape_functions",
+        "elements": "KINDS element_arrays",
         "frames": "frame without_stretching",
         "layered": "ElasticLayer ViscoelasticLayer sandwich_section",
         "linear": "linear_system",

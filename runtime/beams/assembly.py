@@ -6,7 +6,7 @@ found once; the angles, and how the rigid beams move, are shared by all arrays.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property, partial
 
@@ -20,9 +20,8 @@ from .structure import Beam, PlacedElement, Structure
 
 Array = NDArray[np.float64]
 
-# The products of 1, c = cos(phi) and s = sin(phi), two at a time.
-PRODUCTS = ("1", "c", "s", "cc", "cs", "ss")
-_PLACE = {"11": 0, "1c": 1, "1s": 2, "cc": 3, "cs": 4, "ss": 5}
+# Places among the six products of 1, c = cos(phi) and s = sin(phi), two at a time.
+_PLACES = np.array([[0, 1, 2], [1, 3, 4], [2, 4, 5]])
 
 
 def products(angle: Array) -> Array:
@@ -31,28 +30,25 @@ def products(angle: Array) -> Array:
     return np.stack([np.ones_like(c), c, s, c * c, c * s, s * s], axis=-1)
 
 
-def rotation(size: int) -> dict[str, Array]:
+def rotation(size: int) -> Array:
     """Return R(phi), from fixed to the axes of an element, as factors of 1, c and s (4.26).
 
-    Of displacement and rotation at both ends, then the element's own coordinates: ``size`` in all.
+    Of displacement and rotation at both ends, then the element's own coordinates: ``(3, n, n)``.
     """
-    fixed = np.zeros((size, size))
-    cosine, sine = np.zeros_like(fixed), np.zeros_like(fixed)
-    for first in (0, 3):
-        u, v, turn = first, first + 1, first + 2
-        cosine[u, u] = cosine[v, v] = 1.0
+    constant, cosine, sine = parts = np.zeros((3, size, size))
+    for u, v, turn in ((0, 1, 2), (3, 4, 5)):
+        cosine[u, u] = cosine[v, v] = constant[turn, turn] = 1.0
         sine[u, v], sine[v, u] = 1.0, -1.0
-        fixed[turn, turn] = 1.0
     # Beyond the six of its two ends the coordinates of an element are its own and do not turn.
     own = np.arange(6, size)
-    fixed[own, own] = 1.0
-    return {"1": fixed, "c": cosine, "s": sine}
+    constant[own, own] = 1.0
+    return parts
 
 
-def rotation_slope(size: int) -> dict[str, Array]:
-    """Return dR/dphi as factors of c and s."""
-    parts = rotation(size)
-    return {"c": parts["s"], "s": -parts["c"]}
+def rotation_slope(size: int) -> Array:
+    """Return dR/dphi as factors of 1, c and s, ``(3, n, n)``."""
+    constant, cosine, sine = rotation(size)
+    return np.stack([0.0 * constant, sine, -cosine])
 
 
 def in_own_axes(values: Array, c: Array, s: Array) -> Array:
@@ -67,13 +63,10 @@ def in_own_axes(values: Array, c: Array, s: Array) -> Array:
     return found
 
 
-def turned(left: Mapping[str, Array], matrix: Array, right: Mapping[str, Array]) -> Array:
+def turned(left: Array, matrix: Array, right: Array) -> Array:
     """Return ``left^T matrix right`` as factors of the six products, shape ``(6, n, n)``."""
-    size = matrix.shape[0]
-    total = np.zeros((len(PRODUCTS), size, size))
-    for a, first in left.items():
-        for b, second in right.items():
-            total[_PLACE["".join(sorted(a + b))]] += first.T @ matrix @ second
+    total = np.zeros((6, *matrix.shape))
+    np.add.at(total, _PLACES, left.mT[:, None] @ matrix @ right)
     return total
 
 
@@ -124,11 +117,6 @@ class AngleArrays:
             (placed, beam_element(placed.beam, placed.length)) for placed in self.structure.elements
         )
 
-    def inertia_force(self, theta: Array, derivative: int = 2) -> Array:
-        """Return the forces ``-M r_r''`` of the distributed mass, or ``-M r_r'``: ``(nt, n)``."""
-        motion = self.motion(theta)
-        return -self.distributed(motion.second if derivative == 2 else motion.first, theta)
-
     def distributed(self, field: Array, theta: Array) -> Array:
         """Return the distributed mass times values of all coordinates ``(nt, N)``: ``(nt, n)``."""
         motion = self.motion(theta)
@@ -138,6 +126,14 @@ class AngleArrays:
             values = weights[:, :, None] * field[:, None, placed.indices]
             total[:, placed.indices] += values.reshape(len(theta), -1) @ kernel
         return total[:, self.free]
+
+    def rows(self, placed: PlacedElement, own: Array, theta: Array) -> Array:
+        """Return rows ``(k, m)`` by an element's axes as rows by the fixed ones, ``(nt, k, n)``."""
+        c, s = self.motion(theta).products[placed.beam.name][:, 1:3].T[..., None]
+        found = np.zeros((len(theta), len(own), self.count))
+        turned = in_own_axes(np.tile(own, (len(theta), 1, 1)), c, -s)
+        found[:, :, placed.indices[: own.shape[1]]] = turned
+        return found[:, :, self.free]
 
     @cached_property
     def _mass_of_elements(self) -> tuple[tuple[PlacedElement, Array], ...]:
@@ -182,7 +178,7 @@ class AngleArrays:
                     places.append((row * len(self.free) + column)[there])
                     factors.append(_kernel(name, placed, own)[:, there])
             found, which = np.unique(np.concatenate(places), return_inverse=True)
-            kernel = np.zeros((len(PRODUCTS), len(found)))
+            kernel = np.zeros((6, len(found)))
             np.add.at(kernel.T, which, np.concatenate(factors, axis=1).T)
             yield beam.name, found, kernel
 

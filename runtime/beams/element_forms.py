@@ -6,13 +6,14 @@ exert; with them and its inertia it is in equilibrium, whatever its shape functi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
 from functools import cached_property
 
 import numpy as np
 
 from ..core.errors import bad
 from ..core.families import LinearPeriodic, Term
+from ..linkages.linkage import LinkMotion
 from .assembly import AngleArrays, Array, rotation, rotation_slope
 from .linear import AxialForces, lumped_values
 from .recovery_forms import LinearForm
@@ -44,19 +45,92 @@ _OUTSIDE = {
 }
 
 
-@dataclass(frozen=True)
-class Turning:
-    """One element at the given angles: its own axes, its turning, its rigid acceleration."""
+class MovingElement:
+    """One element of a system of beams at crank angles ``(nt,)``, in the axes of its rigid link."""
 
-    # (nt, n_local, n): from the free coordinates to local nodal values, R, dR/dphi, -d2R/dphi2
-    own: Array
-    slope: Array
-    circle: Array
-    # (nt,): dphi/dtheta, d2phi/dtheta2
-    rate: Array
-    acceleration: Array
-    rigid: Array  # (nt, n_local): nodal values of the rigid acceleration, at unit crank speed
-    back: Array  # (nt, n_local, n_local): R itself, from fixed to own axes
+    def __init__(self, forms: ElementForms, number: int) -> None:
+        self.forms, self.number = forms, number
+        self.placed, self.arrays = forms.arrays.local[number]
+        name, size = self.placed.beam.name, len(self.arrays.mass)
+        motion = forms.arrays.motion(forms.theta)
+        weights, pick = motion.products[name][:, :3], forms.spread[self.placed.indices]
+        # R itself, from fixed to own axes: (nt, n_local, n_local).
+        self.back = np.tensordot(weights, rotation(size), axes=1)
+        # From the free coordinates to local nodal values, (nt, n_local, n): R, dR/dphi, -d2R/dphi2.
+        self.own = self.back @ pick
+        self.slope = np.tensordot(weights, rotation_slope(size), axes=1) @ pick
+        self.circle = (self.back - rotation(size)[0]) @ pick
+        # dphi/dtheta, d2phi/dtheta2, (nt, 1, 1).
+        self.turning = motion.turning[name][:, None, None]
+        self.hurrying = np.asarray(forms.moving[name].angular_acceleration)[:, None, None]
+        # Nodal values of the rigid acceleration at unit crank speed, (nt, n_local).
+        self.rigid = np.einsum("tij,tj->ti", self.back, motion.second[:, self.placed.indices])
+
+    @property
+    def fixed(self) -> Array:
+        """From own to fixed axes, ``(nt, n_local, n_local)``."""
+        return np.swapaxes(self.back, -1, -2)
+
+    def local(self) -> LinearForm:
+        """Return the local nodal values: ``R q``."""
+        return LinearForm({("q", 0): self.own})
+
+    def direct(self) -> LinearForm:
+        """Return nodal accelerations with the shapes as they are: elastic, rigid, weight, outside.
+
+        The field of the acceleration is ``N direct + J N across - N centripetal``.
+        """
+        forms = self.forms
+        parts = {("ddq", 2): self.own}
+        if forms.full:
+            parts["dq", 2] = 2.0 * self.turning * self.slope
+            parts["q", 2] = self.hurrying * self.slope - self.turning**2 * self.circle
+        if forms.structure.moving:
+            parts["1", 2] = self.rigid
+        if any(forms.gravity):
+            parts["1", 0] = -self.weight()
+        return LinearForm(parts) + forms.outside.turned(self.own)
+
+    def weight(self) -> Array:
+        """Return gravity as local nodal values, ``(nt, n_local)`` [m/s^2]."""
+        field = self.forms.axial.weight_field(self.forms.theta)[:, self.placed.indices]
+        return np.asarray(np.einsum("tij,tj->ti", self.back, field))
+
+    def across(self) -> LinearForm:
+        """Return nodal values of what acts at a right angle: Coriolis' and Euler's parts."""
+        if not self.forms.full:
+            return LinearForm()
+        own, slope = 2.0 * self.turning * self.own, 2.0 * self.turning**2 * self.slope
+        return LinearForm({("dq", 2): own, ("q", 2): slope + self.hurrying * self.own})
+
+    def centripetal(self) -> LinearForm:
+        """Return nodal values of the part towards the centre, to be taken off."""
+        parts = {("q", 2): self.turning**2 * self.own} if self.forms.full else {}
+        return LinearForm(parts)
+
+    def strain(self) -> LinearForm:
+        """Return what the stiffness multiplies: values, and rates times the retardation."""
+        found, factor = self.local(), self.forms.factor
+        tau = self.placed.beam.section.retardation * factor["retardation"]
+        if tau:
+            rates = LinearForm({("dq", 1): self.own, ("q", 1): self.turning * self.slope})
+            found = found + rates.scaled(tau)
+        share = factor["rayleigh_stiffness"]
+        if share:
+            found = found + LinearForm({("dq", 1): share * self.own})
+        return found.scaled(factor["elasticity"])
+
+    def end_forces(self) -> LinearForm:
+        """Return the generalised forces of the nodes on the element, in its own axes."""
+        share, own = self.forms.factor["distributed_mass"], self.arrays
+        total = self.direct().turned(share * own.mass)
+        total = total + self.across().turned(share * own.coupling)
+        total = total - self.centripetal().turned(share * own.centripetal)
+        total = total + self.strain().turned(own.stiffness)
+        for power, forces in self.forms.stiffening.items():
+            kernel = np.tensordot(forces[:, self.number], own.geometric, axes=1)
+            total = total + self.local().turned(kernel).faster(power)
+        return total
 
 
 class ElementForms:
@@ -70,19 +144,11 @@ class ElementForms:
         self.structure = required_structure(system)
         self.theta = theta
         self.arrays = AngleArrays(self.structure)
-        self.elements = self.arrays.local  # every element with its arrays in its own axes
         self.lumped, self.springs, self.dampers = lumped_values(self.structure)
         self.full = system.has("A") or not self.structure.moving
-        self.factor = {
-            name: float(system.parameters.get(name, default))
-            for name, default in (
-                ("elasticity", 1.0),
-                ("distributed_mass", 1.0),
-                ("lumped_mass", 1.0),
-                ("rayleigh_stiffness", 0.0),
-                ("retardation", 1.0),
-            )
-        }
+        masses = dict.fromkeys(("distributed_mass", "lumped_mass"), 1.0)
+        factors = {"elasticity": 1.0, **masses, "rayleigh_stiffness": 0.0, "retardation": 1.0}
+        self.factor = {k: float(system.parameters.get(k, one)) for k, one in factors.items()}
         dampings = (("rayleigh_stiffness", "rayleigh elastic"), ("retardation", "viscous"))
         for name, kind in dampings:
             self.factor[name] *= self.has_damping(kind)
@@ -93,31 +159,14 @@ class ElementForms:
         return np.eye(self.arrays.count)[:, self.arrays.free]
 
     @cached_property
-    def turning(self) -> tuple[Turning, ...]:
-        """Every element's axes and rigid motion."""
-        motion = self.arrays.motion(self.theta)
-        moving = self.structure.configuration(self.theta)
-        found = []
-        for placed, own in self.elements:
-            size = len(own.mass)
-            c, s = motion.products[placed.beam.name][:, 1:3].T
-            parts, slopes = rotation(size), rotation_slope(size)
-            pick = self.spread[placed.indices]
-            turned = c[:, None, None] * parts["c"] + s[:, None, None] * parts["s"]
-            slope = c[:, None, None] * slopes["c"] + s[:, None, None] * slopes["s"]
-            back = parts["1"] + turned
-            found.append(
-                Turning(
-                    back @ pick,
-                    slope @ pick,
-                    turned @ pick,
-                    motion.turning[placed.beam.name],
-                    np.asarray(moving[placed.beam.name].angular_acceleration),
-                    np.einsum("tij,tj->ti", back, motion.second[:, placed.indices]),
-                    back,
-                )
-            )
-        return tuple(found)
+    def moving(self) -> Mapping[str, LinkMotion]:
+        """The motion of each rigid beam, by name."""
+        return self.structure.configuration(self.theta)
+
+    @cached_property
+    def elements(self) -> tuple[MovingElement, ...]:
+        """Every element, beam by beam."""
+        return tuple(MovingElement(self, e) for e in range(len(self.arrays.local)))
 
     @cached_property
     def gravity(self) -> tuple[float, float]:
@@ -188,83 +237,9 @@ class ElementForms:
             total = total + LinearForm({(name, power + term.power): value})
         return total.turned(_inverse(self.mass)) if total.parts else total
 
-    def local(self, e: int) -> LinearForm:
-        """Return the local nodal values of an element: ``R q``."""
-        return LinearForm({("q", 0): self.turning[e].own})
-
-    def rate(self, e: int) -> LinearForm:
-        """Return the time derivatives of the local nodal values."""
-        at = self.turning[e]
-        slope = at.rate[:, None, None] * at.slope
-        return LinearForm({("dq", 1): at.own, ("q", 1): slope})
-
-    def direct(self, e: int) -> LinearForm:
-        """Return nodal accelerations with the shapes as they are: elastic, rigid, weight, outside.
-
-        The field of the acceleration is ``N direct + J N across - N centripetal``.
-        """
-        at = self.turning[e]
-        parts = {("ddq", 2): at.own}
-        if self.full:
-            first, second = at.rate[:, None, None], at.acceleration[:, None, None]
-            parts["dq", 2] = 2.0 * first * at.slope
-            parts["q", 2] = second * at.slope - first**2 * at.circle
-        found = LinearForm(parts)
-        if self.structure.moving:
-            found = found + LinearForm({("1", 2): at.rigid})
-        if any(self.gravity):
-            found = found + LinearForm({("1", 0): -self.weight(e)})
-        return found + self.outside.turned(at.own)
-
-    def weight(self, e: int) -> Array:
-        """Return gravity as local nodal values of an element, ``(nt, n_local)`` [m/s^2]."""
-        field = self.axial.weight_field(self.theta)[:, self.elements[e][0].indices]
-        return np.asarray(np.einsum("tij,tj->ti", self.turning[e].back, field))
-
-    def across(self, e: int) -> LinearForm:
-        """Return nodal values of what acts at a right angle: Coriolis' and Euler's parts."""
-        at = self.turning[e]
-        if not self.full:
-            return LinearForm()
-        first, second = at.rate[:, None, None], at.acceleration[:, None, None]
-        turning = 2.0 * first**2 * at.slope + second * at.own
-        return LinearForm({("dq", 2): 2.0 * first * at.own, ("q", 2): turning})
-
-    def centripetal(self, e: int) -> LinearForm:
-        """Return nodal values of the part towards the centre, to be taken off."""
-        at = self.turning[e]
-        if not self.full:
-            return LinearForm()
-        return LinearForm({("q", 2): at.rate[:, None, None] ** 2 * at.own})
-
-    def strain(self, e: int) -> LinearForm:
-        """Return what the stiffness multiplies: values, and rates times the retardation."""
-        placed, at = self.elements[e][0], self.turning[e]
-        found = self.local(e)
-        tau = placed.beam.section.retardation * self.factor["retardation"]
-        if tau:
-            found = found + self.rate(e).scaled(tau)
-        share = self.factor["rayleigh_stiffness"]
-        if share:
-            found = found + LinearForm({("dq", 1): share * at.own})
-        return found.scaled(self.factor["elasticity"])
-
     def has_damping(self, scale: str | None) -> bool:
         """Return True where the system has a damping of that kind; None is that of dampers."""
         return any(term.array == "C" and term.scale == scale for term in self.system.terms)
-
-    def end_forces(self, e: int) -> LinearForm:
-        """Return the generalised forces of the nodes on an element, in its own axes."""
-        own = self.elements[e][1]
-        share = self.factor["distributed_mass"]
-        total = self.direct(e).turned(share * own.mass)
-        total = total + self.across(e).turned(share * own.coupling)
-        total = total - self.centripetal(e).turned(share * own.centripetal)
-        total = total + self.strain(e).turned(own.stiffness)
-        for power, forces in self.stiffening.items():
-            kernel = np.tensordot(forces[:, e], own.geometric, axes=1)
-            total = total + self.local(e).turned(kernel).faster(power)
-        return total
 
     def node_inertia(self) -> LinearForm:
         """Return lumped mass times acceleration less gravity, of every coordinate."""
@@ -298,10 +273,9 @@ class ElementForms:
     def resisted(self) -> LinearForm:
         """The forces that the motion needs at every coordinate ``(nt, N)``; of free ones none."""
         total = self.node_inertia() + self.node_holds() - self.node_loads()
-        for e, (placed, _) in enumerate(self.elements):
-            scatter = np.eye(self.arrays.count)[:, placed.indices]
-            turned = scatter @ np.swapaxes(self.turning[e].back, -1, -2)
-            total = total + self.end_forces(e).turned(turned)
+        for element in self.elements:
+            scatter = np.eye(self.arrays.count)[:, element.placed.indices]
+            total = total + element.end_forces().turned(scatter @ element.fixed)
         return total
 
     @cached_property

@@ -7,18 +7,18 @@ frame.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ..core.errors import bad, refuse
 from ..core.families.emitted import array_function
-from ..core.inputs import number_problems, numbers_in_a_row, require_one_of, require_positive
+from ..core.inputs import number_problems, require_one_of, require_positive
 
 if TYPE_CHECKING:
     from .structure import PlacedElement
@@ -27,25 +27,17 @@ Array: TypeAlias = NDArray[np.float64]
 
 KINDS = ("cubic", "internal_node", "curvature", "timoshenko")
 
-_END_VALUES = ("u1", "v1", "r1", "u2", "v2", "r2")
-NODAL_VALUES: Mapping[str, tuple[str, ...]] = {
-    "cubic": _END_VALUES,
-    "internal_node": (*_END_VALUES, "v3", "r3"),
-    "curvature": (*_END_VALUES, "k1", "k2"),
-    "timoshenko": _END_VALUES,
-}
-_ALONG = ("u", "strain")
-_ACROSS = ("v", "slope", "curvature", "third")
-_SECTION = ("rotation", "rotation_slope", "rotation_second")
-
 
 @dataclass(frozen=True)
 class ElementArrays:
-    """Matrices of one element in its local axes, n nodal values in the order of ``NODAL_VALUES``.
+    """Matrices of one element in its local axes, by its n nodal values.
 
-    In axes that turn at the rate w the element has ``mass qdd + 2 w coupling qd + (stiffness + Kg -
-    w^2 centripetal + wd coupling) q``, with ``Kg = sum_k P_k geometric[k]`` for an axial force
-    ``P_0 + P_1 s + P_2 s^2`` [N], tension positive, s from 0 to 1.
+    These are displacements along and across the element and the rotation at its first end, then
+    those at its second; of "internal_node" also those across and the rotation in the middle, of
+    "curvature" the curvatures of both ends.  In axes that turn at the rate w the element has ``mass
+    qdd + 2 w coupling qd + (stiffness + Kg - w^2 centripetal + wd coupling) q``, with ``Kg = sum_k
+    P_k geometric[k]`` for an axial force ``P_0 + P_1 s + P_2 s^2`` [N], tension positive, s from 0
+    to 1.
     """
 
     mass: Array  # M, (n, n): [kg] for displacements, [kg m], [kg m^2] where rotations enter
@@ -88,7 +80,8 @@ def element_arrays(
     inertias = {"mass_per_length": mass_per_length}
     if kind == "timoshenko":
         sizes["shear_stiffness"], inertias["rotary_inertia"] = shear_stiffness, rotary_inertia
-    _require_sizes(sizes)
+    for name, value in sizes.items():
+        require_positive("element", **{name: value})
     refuse(number_problems("element", inertias, "not negative"))
     found = _in_range(array_function(_emitted("element", kind), "element"), **sizes, **inertias)
     arrays = {name: value for name, value in found.items() if not name.startswith("geometric")}
@@ -98,79 +91,9 @@ def element_arrays(
     )
 
 
-def shape_functions(
-    kind: str,
-    xi: ArrayLike,
-    length: float,
-    derivative: int = 0,
-    *,
-    bending_stiffness: float | None = None,
-    shear_stiffness: float | None = None,
-) -> tuple[Array, Array]:
-    """Return the shape functions of displacements along and across an element (Aannaque 4.3-4.10).
-
-    At places ``xi`` over the element's length [m], 0 to 1, shape ``(nx,)``, or their derivative by
-    x, to the third: two arrays ``(nx, n)`` per nodal value, ``u = u_shapes @ q_local``.  The kind
-    "timoshenko" needs EI [N m^2] and k G A [N].  Also (A.1), (A.2), (A.5), (A.6).
-    """
-    rows = _shape_rows(kind, xi, length, bending_stiffness, shear_stiffness)
-    if derivative not in range(4):
-        raise bad("derivative", derivative, "0, 1, 2 or 3", "give one of these")
-    across = rows[_ACROSS[derivative]]
-    along = rows[_ALONG[derivative]] if derivative < len(_ALONG) else np.zeros_like(across)
-    return along, across
-
-
-def section_rotation(
-    kind: str,
-    xi: ArrayLike,
-    length: float,
-    derivative: int = 0,
-    *,
-    bending_stiffness: float | None = None,
-    shear_stiffness: float | None = None,
-) -> Array:
-    """Return the shape functions of the rotation of the cross-section, ``(nx, n)``.
-
-    The rotation is the slope v' where there is no shear deformation.  Its first derivative by x
-    times EI is the bending moment, its second times EI less the shear force.  The arguments are
-    those of :func:`shape_functions`.
-    """
-    rows = _shape_rows(kind, xi, length, bending_stiffness, shear_stiffness)
-    if derivative not in range(3):
-        raise bad("derivative", derivative, "0, 1 or 2", "give one of these")
-    names = _SECTION if kind == "timoshenko" else _ACROSS[1:]
-    return rows[names[derivative]]
-
-
 def _emitted(what: str, kind: str) -> ModuleType:
     """Return the emitted module of a kind; those of the other kinds are not loaded."""
     return import_module(f"...generated.beam_{what}_{kind}", __package__)
-
-
-def _shape_rows(
-    kind: str,
-    xi: ArrayLike,
-    length: float,
-    bending_stiffness: float | None,
-    shear_stiffness: float | None,
-) -> dict[str, Array]:
-    require_one_of("kind", kind, KINDS)
-    place = numbers_in_a_row("xi", xi)
-    if not np.all((place >= 0.0) & (place <= 1.0)):
-        raise bad("xi", xi, "places from 0 to 1", "divide by the element's length")
-    numbers: dict[str, Any] = {"length": length}
-    if kind == "timoshenko":
-        numbers |= {"bending_stiffness": bending_stiffness, "shear_stiffness": shear_stiffness}
-    _require_sizes(numbers)
-    found = _in_range(array_function(_emitted("shapes", kind), "shapes"), place, **numbers)
-    return {name: value[..., 0, :] for name, value in found.items()}
-
-
-def _require_sizes(sizes: Mapping[str, Any]) -> None:
-    """Refuse the first length or stiffness that is not positive."""
-    for name, value in sizes.items():
-        require_positive("element", **{name: value})
 
 
 def _in_range(
@@ -191,19 +114,20 @@ def _fixed(array: Array) -> Array:
     return array
 
 
-def placed_shapes(placed: PlacedElement, xi: ArrayLike, derivative: int = 0) -> tuple[Array, Array]:
-    """Return :func:`shape_functions` of an element of a beam."""
-    return shape_functions(placed.beam.kind, xi, placed.length, derivative, **_stiffness(placed))
+def shapes_of(placed: PlacedElement, xi: Array) -> dict[str, Array]:
+    """Return the shape functions of an element of a beam, by name (Aannaque 4.3-4.10).
 
-
-def placed_rotation(placed: PlacedElement, xi: ArrayLike, derivative: int = 0) -> Array:
-    """Return :func:`section_rotation` of an element of a beam."""
-    return section_rotation(placed.beam.kind, xi, placed.length, derivative, **_stiffness(placed))
-
-
-def _stiffness(placed: PlacedElement) -> dict[str, float | None]:
-    section = placed.beam.section
-    return {
-        "bending_stiffness": section.bending_stiffness,
-        "shear_stiffness": section.shear_stiffness,
-    }
+    At places ``(...)`` over the element's length, 0 to 1; each is ``(..., n)`` by nodal values:
+    ``u`` along the element, with its derivative by x ``strain``; ``v`` across it, with ``slope``,
+    ``curvature`` and ``third``; ``rotation`` of the cross-section, the slope where there is no
+    shear deformation.  Curvature and third are derivatives of the rotation, too: times EI the
+    bending moment, and less the shear force.  Also (A.1), (A.2), (A.5), (A.6).
+    """
+    section, kind = placed.beam.section, placed.beam.kind
+    numbers: dict[str, Any] = {"length": placed.length}
+    if kind == "timoshenko":
+        numbers["bending_stiffness"] = section.bending_stiffness
+        numbers["shear_stiffness"] = section.shear_stiffness
+    found = _in_range(array_function(_emitted("shapes", kind), "shapes"), xi, **numbers)
+    rows = {name: value[..., 0, :] for name, value in found.items()}
+    return {"rotation": rows["slope"], **rows}

@@ -14,9 +14,9 @@ from ..core.errors import Problem, bad, refuse
 from ..core.families import MATRICES, LinearPeriodic, Term
 from ..core.inputs import are_finite, names_problems, require_mapping
 from ..linkages.linkage import LinkMotion
-from .assembly import Array
+from .assembly import AngleArrays, Array
 from .section import Section
-from .structure import Node, Structure, beams_between, missing_problems, node_value_problems
+from .structure import Structure, missing_problems, node_value_problems, structure_of
 
 
 def frame(
@@ -74,26 +74,18 @@ def frame(
     """
     for where, given in (("places", places), ("members", members), ("supports", supports)):
         require_mapping(where, given, "see the example of frame")
-    _check_form(places, members, elements, nodes)
-    _check(places, members, sections, [*supports, *pins, *(nodes or {})])
+    _check(places, members, sections, elements, nodes, [*supports, *pins])
     ends = {name: (complex(*places[a]), complex(*places[b])) for name, (a, b) in members.items()}
     lengths = {name: abs(end - start) for name, (start, end) in ends.items()}
-    beams = beams_between(members, lengths, sections, elements, kind)
-    made = []
+    own: dict[str, dict[str, Any]] = {}
     for letter in places:
-        meeting = tuple(beam.name for beam in beams if letter in (beam.start, beam.end))
-        values: dict[str, Any] = {
-            "held": tuple(supports.get(letter, ())),
-            "joined": () if letter in pins or len(meeting) < 2 else meeting,
-        }
-        made.append(Node(name=letter, **{**values, **(nodes or {}).get(letter, {})}))
-    return Structure(
-        beams=beams,
-        nodes=tuple(made),
-        configuration=partial(_standing, ends),
-        moving=False,
-        provenance=dict(provenance or {}),
-    )
+        meeting = tuple(name for name, pair in members.items() if letter in pair)
+        joined = () if letter in pins or len(meeting) < 2 else meeting
+        own[letter] = {"held": tuple(supports.get(letter, ())), "joined": joined}
+        own[letter] |= (nodes or {}).get(letter, {})
+    still = {"configuration": partial(_standing, ends), "moving": False}
+    told = dict(provenance or {})
+    return structure_of(members, lengths, sections, elements, kind, own, provenance=told, **still)
 
 
 def _standing(
@@ -110,13 +102,14 @@ def _standing(
     return found
 
 
-def _check_form(
+def _check(
     places: Mapping[str, tuple[float, float]],
     members: Mapping[str, tuple[str, str]],
+    sections: Section | Mapping[str, Section],
     elements: object,
-    nodes: object,
+    nodes: Mapping[str, object] | None,
+    held: Sequence[str],
 ) -> None:
-    """Refuse values of another form."""
     problems = node_value_problems(nodes)
     for letter, place in places.items():
         if not are_finite(place, 2):
@@ -126,17 +119,8 @@ def _check_form(
             found, fix = repr(pair), 'say ("A", "B")'
             problems.append(Problem(f"member {name}", found, "the names of two nodes", fix))
     refuse(problems + missing_problems("elements", elements, members))
-
-
-def _check(
-    places: Mapping[str, tuple[float, float]],
-    members: Mapping[str, tuple[str, str]],
-    sections: Section | Mapping[str, Section],
-    named: Sequence[str],
-) -> None:
-    problems = []
     ends = {letter for pair in members.values() for letter in pair}
-    for word, names in (("members", ends), ("supports, pins, nodes", set(named))):
+    for word, names in (("members", ends), ("supports, pins, nodes", {*held, *(nodes or {})})):
         strange = sorted(names - set(places))
         if strange:
             fix = "give it a place, or correct the name"
@@ -179,7 +163,9 @@ def without_stretching(system: LinearPeriodic) -> LinearPeriodic:
         found = "a system that is not of a frame standing still"
         fix = "a moving linkage keeps its axial motion: it is stiff, but cheap to keep"
         raise bad("without_stretching", found, "one from linear_system(frame(...))", fix)
-    kept, spread = eliminated(_axial_rows(structure))
+    arrays, stretch = AngleArrays(structure), np.array([[-1.0, 0.0, 0.0, 1.0, 0.0, 0.0]])
+    rows = [arrays.rows(placed, stretch, np.zeros(1))[0] for placed in structure.elements]
+    kept, spread = eliminated(np.concatenate(rows))
     if not kept.size:
         raise bad("frame", "no motion without stretching", "members that bend", "add elements")
     # What watches the deflections is given in all coordinates.
@@ -193,18 +179,6 @@ def without_stretching(system: LinearPeriodic) -> LinearPeriodic:
         relative_deflection=None if watch is None else partial(_watched, watch, spread),
         provenance={**system.provenance, "axial": "rigid"},
     )
-
-
-def _axial_rows(structure: Structure) -> Array:
-    """Return how much each element stretches, per coordinate: ``(elements, n)``."""
-    motion = structure.configuration(np.zeros(1))
-    freedoms = structure.freedoms
-    rows = np.zeros((len(structure.elements), len(freedoms.all)))
-    for row, placed in zip(rows, structure.elements, strict=True):
-        angle = motion[placed.beam.name].angle[0]
-        c, s = np.cos(angle), np.sin(angle)
-        np.add.at(row, placed.indices[[0, 1, 3, 4]], [-c, -s, c, s])
-    return rows[:, freedoms.free]
 
 
 def eliminated(rows: Array) -> tuple[NDArray[np.int64], Array]:

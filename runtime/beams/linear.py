@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike
 from ..core.errors import BadInput, Problem, bad, refuse
 from ..core.families import LinearPeriodic, Term
 from ..core.inputs import are_finite
+from ..core.trigonometric import Remembered
 from .assembly import AngleArrays, Array, in_own_axes, rotation, turned
-from .elements import placed_shapes
+from .elements import shapes_of
 from .structure import Freedoms, Structure
 
 
@@ -24,15 +25,11 @@ def relative_deflection(arrays: AngleArrays, slide: Slide | None, theta: Array) 
     Shape ``(nt, k, n)``: displacement across each element from its place on the rigid beam, at
     its middle and its end.
     """
-    motion = arrays.motion(theta)
-    found = []
-    for placed in arrays.structure.elements:
-        _, across = placed_shapes(placed, np.array([0.5, 1.0]))
-        c, s = motion.products[placed.beam.name][:, 1:3].T[..., None]
-        local = in_own_axes(np.tile(across, (len(theta), 1, 1)), c, -s)
-        full = np.zeros((len(theta), 2, arrays.count))
-        full[:, :, placed.indices] = local / placed.beam.length
-        found.append(full[:, :, arrays.free])
+    watched = np.array([0.5, 1.0])
+    found = [
+        arrays.rows(placed, shapes_of(placed, watched)["v"] / placed.beam.length, theta)
+        for placed in arrays.structure.elements
+    ]
     rows = np.concatenate(found, axis=1)
     return rows if slide is None else np.asarray(rows @ slide.basis(theta))
 
@@ -62,13 +59,17 @@ class AxialForces:
                 found[structure.freedoms.places[node.name, part]] += value
         return found
 
-    def force(self, source: str, theta: Array) -> Array:
-        """Return the generalised forces of a source at unit crank speed, ``(nt, n)``."""
+    def force(self, source: str, theta: Array, derivative: int = 2) -> Array:
+        """Return the generalised forces of a source at unit crank speed, ``(nt, n)``.
+
+        Those of masses are ``-M r_r''``, or with the first derivative ``-M r_r'``.
+        """
+        free, motion = self.arrays.free, self.arrays.motion(theta)
+        field = motion.second if derivative == 2 else motion.first
         if source == "distributed":
-            return self.arrays.inertia_force(theta)
-        free = self.arrays.free
+            return -self.arrays.distributed(field, theta)
         if source == "lumped":
-            return np.asarray(-(self.arrays.motion(theta).second * self.lumped)[:, free])
+            return np.asarray(-(field * self.lumped)[:, free])
         field = self.weight_field(theta)
         weight = self.arrays.distributed(field, theta) + (self.lumped * field)[:, free]
         return np.asarray(weight + self.node_forces[free])
@@ -94,8 +95,11 @@ class AxialForces:
         arrays = self.arrays
         q = np.zeros((len(theta), arrays.count))
         q[:, arrays.free] = self._at_rest(source, theta)[0]
-        field = self._body_field(source, theta)
         motion = arrays.motion(theta)
+        # The acceleration that the beams' own mass resists; to lumped masses it is nothing.
+        field = motion.second if source == "distributed" else np.zeros_like(q)
+        if source == "static":
+            field = -self.weight_field(theta)
         found = np.zeros((len(theta), len(arrays.local), 3))
         for e, (placed, own) in enumerate(arrays.local):
             c, s = motion.products[placed.beam.name][:, 1:3].T
@@ -120,14 +124,6 @@ class AxialForces:
         q: Array = basis @ np.linalg.solve(turned @ stiffness @ basis, turned @ loads)
         rest: Array = stiffness @ q - loads
         return q[..., 0], rest[..., 0]
-
-    def _body_field(self, source: str, theta: Array) -> Array:
-        """Return the acceleration that the beams' own mass resists, all coordinates."""
-        if source == "distributed":
-            return self.arrays.motion(theta).second
-        if source == "lumped":
-            return np.zeros((len(theta), self.arrays.count))
-        return -self.weight_field(theta)
 
     def geometric(self, source: str, theta: Array) -> Array:
         """Return ``int P v'^2`` of the axial forces of one source, ``(nt, n, n)`` (4.38)."""
@@ -196,7 +192,6 @@ def _strains(arrays: AngleArrays, springs: Array, theta: Array) -> Array:
     # element is as good as a long one.
     elements = arrays.structure.elements
     longest = max(placed.length for placed in elements)
-    motion = arrays.motion(theta)
     rows = []
     for placed in elements:
         half = placed.length / 2.0
@@ -204,10 +199,7 @@ def _strains(arrays: AngleArrays, springs: Array, theta: Array) -> Array:
         own[0, [0, 3]] = -1.0, 1.0
         own[1, [2, 5]] = -longest, longest
         own[2, [1, 4, 2, 5]] = -1.0, 1.0, -half, -half
-        c, s = motion.products[placed.beam.name][:, 1:3].T[..., None]
-        placed_rows = np.zeros((len(theta), 3, arrays.count))
-        placed_rows[:, :, placed.indices[:6]] = in_own_axes(np.tile(own, (len(theta), 1, 1)), c, -s)
-        rows.append(placed_rows[:, :, arrays.free])
+        rows.append(arrays.rows(placed, own, theta))
     sprung = np.eye(len(springs))[springs > 0.0]
     rows.append(np.broadcast_to(sprung, (len(theta), *sprung.shape)))
     return np.concatenate(rows, axis=1)
@@ -306,31 +298,51 @@ def linear_system(
     free = arrays.free
     slide = Slide(arrays) if structure.sliding else None
     require_held(arrays, springs[free], slide)
-    mass, stiffness = np.diag(lumped[free]), np.diag(springs[free])
+    mass, stiffness, drag = (np.diag(values[free]) for values in (lumped, springs, dampers))
     axial = AxialForces(arrays, stiffness, lumped, gravity, slide)
-    at_nodes = [("M", "lumped_mass", mass), ("K", None, stiffness)]
-    at_nodes.append(("C", None, np.diag(dampers[free])))
-    terms = [
-        Term("M", "distributed_mass", partial(arrays.sum, "mass")),
-        Term("K", "elasticity", arrays.stiffness),
-        Term("f", "distributed_mass", arrays.inertia_force),
-        Term("g", "distributed_mass", partial(arrays.inertia_force, derivative=1)),
+    moving, full, damped = structure.moving, form == "full", any(rayleigh)
+    heavy, loaded = moving and np.any(lumped), any(gravity) or np.any(axial.node_forces)
+    viscous = any(beam.section.retardation for beam in structure.beams)
+    rows: list[tuple[str, str | None, Any, int, Any]] = [
+        # array, scale, function, extra power of the speed, and whether there is such a term
+        ("M", "distributed_mass", partial(arrays.sum, "mass"), 0, True),
+        ("K", "elasticity", arrays.stiffness, 0, True),
+        ("f", "distributed_mass", partial(axial.force, "distributed"), 0, moving),
+        ("g", "distributed_mass", partial(axial.force, "distributed", derivative=1), 0, moving),
+        ("A", "distributed_mass", partial(arrays.sum, "coupling"), 0, full and moving),
+        ("B", "distributed_mass", partial(arrays.sum, "centripetal"), 0, full and moving),
+        # The family's equation holds M' qd, which this form lacks: the damping takes it out again.
+        ("C", "distributed_mass", partial(_minus_mass_slope, arrays), 1, not full),
+        ("M", "lumped_mass", mass, 0, np.any(mass)),
+        ("K", None, stiffness, 0, np.any(stiffness)),
+        ("C", None, drag, 0, np.any(drag)),
+        ("C", "rayleigh distributed", partial(arrays.sum, "mass"), 0, damped),
+        ("C", "rayleigh lumped", mass, 0, damped),
+        ("C", "rayleigh elastic", arrays.stiffness, 0, damped),
+        ("C", "rayleigh springs", stiffness, 0, damped),
+        ("C", "viscous", partial(arrays.sum, "retarded"), 0, viscous),
+        ("D", "viscous", partial(arrays.sum, "retarded slope"), 0, viscous and moving),
+        ("f", "lumped_mass", partial(axial.force, "lumped"), 0, heavy),
+        ("g", "lumped_mass", partial(axial.force, "lumped", derivative=1), 0, heavy),
+        ("p", None, partial(axial.force, "static"), 0, loaded),
     ]
-    terms += _form_terms(arrays, form)
-    terms += [Term(*found) for found in at_nodes if np.any(found[2])]
-    terms += _damping_terms(arrays, rayleigh, mass, stiffness)
-    terms += _loading_terms(axial, geometric_stiffness)
+    if geometric_stiffness:
+        rows += [
+            ("Kg", "distributed_mass", partial(axial.geometric, "distributed"), 2, moving),
+            ("Kg", "lumped_mass", partial(axial.geometric, "lumped"), 2, heavy),
+            ("Kg", None, partial(axial.geometric, "static"), 0, loaded),
+        ]
+    terms = [Term(*row) for *row, there in rows if there]
     if slide is not None:
         terms = slid_terms(terms, slide, form=form)
-    if not structure.moving:
-        still = (term for term in terms if term.array not in ("A", "B", "f", "g", "D"))
-        terms = [replace(term, function=term(np.zeros(1))[0]) for term in still]
+    if not moving:
+        terms = [replace(term, function=term(np.zeros(1))[0]) for term in terms]
     parameters = dict.fromkeys(FACTORS, 1.0)
-    if any(rayleigh):
+    if damped:
         parameters |= {"rayleigh_mass": rayleigh[0], "rayleigh_stiffness": rayleigh[1]}
-    if any(beam.section.retardation for beam in structure.beams):
+    if viscous:
         parameters["retardation"] = 1.0
-    options = {"form": form, "geometric_stiffness": str(geometric_stiffness).lower()}
+    told = {"form": form, "geometric_stiffness": str(geometric_stiffness).lower()}
     made_with = {
         "form": form,
         "geometric_stiffness": geometric_stiffness,
@@ -344,7 +356,7 @@ def linear_system(
         scales=_scales,
         period=structure.period,
         labels=structure.labels,
-        provenance={**structure.provenance, **options},
+        provenance={**structure.provenance, **told},
         limits={name: "non-negative" for name in parameters} | dict.fromkeys(FACTORS, "positive"),
         relative_deflection=partial(relative_deflection, arrays, slide),
         structure=structure if slide is None else None,
@@ -418,58 +430,9 @@ def lumped_values(
     return mass, springs, dampers
 
 
-def _form_terms(arrays: AngleArrays, form: str) -> list[Term]:
-    if form == "full":
-        return [
-            Term("A", "distributed_mass", partial(arrays.sum, "coupling")),
-            Term("B", "distributed_mass", partial(arrays.sum, "centripetal")),
-        ]
-    # The family's equation holds M' qd, which this form lacks: the damping takes it out again.
-    return [Term("C", "distributed_mass", partial(_minus_mass_slope, arrays), power=1)]
-
-
 def _minus_mass_slope(arrays: AngleArrays, theta: Array) -> Array:
     half = arrays.sum("mass slope", theta)
     return -half - np.swapaxes(half, -1, -2)
-
-
-def _damping_terms(
-    arrays: AngleArrays, rayleigh: tuple[float, float], mass: Array, springs: Array
-) -> list[Term]:
-    found: list[Term] = []
-    if rayleigh[0] or rayleigh[1]:
-        found += [
-            Term("C", "rayleigh distributed", partial(arrays.sum, "mass")),
-            Term("C", "rayleigh lumped", mass),
-            Term("C", "rayleigh elastic", arrays.stiffness),
-            Term("C", "rayleigh springs", springs),
-        ]
-    if any(beam.section.retardation for beam in arrays.structure.beams):
-        found += [
-            Term("C", "viscous", partial(arrays.sum, "retarded")),
-            Term("D", "viscous", partial(arrays.sum, "retarded slope")),
-        ]
-    return found
-
-
-def _loading_terms(axial: AxialForces, stiffening: bool) -> list[Term]:
-    """Return forces of lumped masses and constant loads, and geometric stiffness of all."""
-    found, stiff = [], []
-    if axial.arrays.structure.moving:
-        stiff.append(Term("Kg", "distributed_mass", partial(axial.geometric, "distributed"), 2))
-        if np.any(axial.lumped):
-            found.append(Term("f", "lumped_mass", partial(axial.force, "lumped")))
-            found.append(Term("g", "lumped_mass", partial(_lumped_impulse, axial)))
-            stiff.append(Term("Kg", "lumped_mass", partial(axial.geometric, "lumped"), 2))
-    if any(axial.gravity) or np.any(axial.node_forces):
-        found.append(Term("p", None, partial(axial.force, "static")))
-        stiff.append(Term("Kg", None, partial(axial.geometric, "static")))
-    return found + stiff if stiffening else found
-
-
-def _lumped_impulse(axial: AxialForces, theta: Array) -> Array:
-    arrays = axial.arrays
-    return np.asarray(-(arrays.motion(theta).first * axial.lumped)[:, arrays.free])
 
 
 # What a term becomes: its new array, and whether Z or Z' stands to its left and right, or whether
@@ -511,6 +474,8 @@ class Slide:
         places = [structure.freedoms.places[node.name, part] for part in ("x", "y")]
         self.x, self.y = np.searchsorted(arrays.free, places)
         self.elements = [placed for placed in structure.elements if placed.beam is self.carried]
+        # Z and Z' at crank angles, (nt, n, n - 1).
+        self.basis, self.basis_slope = Remembered(self._basis), Remembered(self._basis_slope)
 
     def place(self, theta: Array) -> tuple[Array, Array]:
         """Return the rigid place x1 of the pin on the beam [m] and its derivative."""
@@ -521,60 +486,45 @@ class Slide:
         # What the turning of the axis adds is across it: nothing, for the pin lies on it.
         return place, np.sum((pin.velocity - link.velocity) * axis, axis=-1)
 
-    def rows(self, theta: Array, derivative: int) -> tuple[Array, Array]:
-        """Return displacements along and across the beam at the pin, or derivatives by the place.
+    def shape(self, name: str, theta: Array, *, by_angle: bool = False) -> Array:
+        """Return a shape function of the beam at the pin, or its derivative by the beam's angle.
 
-        Rows ``(nt, N)`` for all coordinates, those at the ends of the elements in the beam's axes.
+        By the free coordinates along the fixed axes, ``(nt, n)``; for names see :func:`shapes_of`.
         """
         place, _ = self.place(theta)
         ends = np.array([placed.start for placed in self.elements])
         number = np.clip(np.searchsorted(ends, place, side="right") - 1, 0, len(ends) - 1)
-        along, across = np.zeros((2, len(theta), self.arrays.count))
+        c, s = self._axis(theta)
+        if by_angle:
+            c, s = -s, c
+        # The coordinates that turn with the beam.
+        turning = [0, 1, 3, 4] if by_angle else slice(None)
+        found = np.zeros((len(theta), self.arrays.count))
         for k in np.unique(number):
             placed, here = self.elements[k], np.flatnonzero(number == k)
             xi = np.clip((place[here] - placed.start) / placed.length, 0.0, 1.0)
-            where = np.ix_(here, placed.indices)
-            along[where], across[where] = placed_shapes(placed, xi, derivative)
-        return along, across
-
-    def turned(self, row: Array, theta: Array, slope: bool = False) -> Array:
-        """Return a row of :meth:`rows` by the fixed axes, or its derivative by the beam's angle.
-
-        Of the free coordinates alone, ``(nt, n)``.
-        """
-        c, s = self._axis(theta)
-        if slope:
-            c, s = -s, c
-        found = np.zeros_like(row) if slope else row.copy()
-        for placed in self.elements:
-            turning = [0, 1, 3, 4]
-            by_axes = in_own_axes(row[:, placed.indices], c, -s)
-            found[:, placed.indices[turning]] = by_axes[:, turning]
+            row = in_own_axes(shapes_of(placed, xi)[name], c[here], -s[here])
+            found[np.ix_(here, placed.indices[turning])] = row[:, turning]
         return found[:, self.arrays.free]
 
-    def basis(self, theta: Array) -> Array:
-        """Return Z at crank angles, ``(nt, n, n - 1)``."""
+    def _basis(self, theta: Array) -> Array:
         c, s = self._axis(theta)
-        across = self.turned(self.rows(theta, 0)[1], theta)
         normal = np.stack([-s, c], axis=-1)
-        found = normal[:, :, None] * across[:, None, :]
+        found = normal[:, :, None] * self.shape("v", theta)[:, None, :]
         found[:, 0, self.x] += c
         found[:, 1, self.x] += s
         return self._reduced(found, unit=1.0)
 
-    def basis_slope(self, theta: Array) -> Array:
-        """Return Z', ``(nt, n, n - 1)``."""
+    def _basis_slope(self, theta: Array) -> Array:
         c, s = self._axis(theta)
-        turn = self.arrays.motion(theta).turning[self.carried.name]
+        turn = self.arrays.motion(theta).turning[self.carried.name][:, None]
         _, rate = self.place(theta)
-        shapes = self.rows(theta, 0)[1]
-        across = self.turned(shapes, theta)
-        hurried = rate[:, None] * self.turned(self.rows(theta, 1)[1], theta)
-        hurried += turn[:, None] * self.turned(shapes, theta, slope=True)
+        hurried = rate[:, None] * self.shape("slope", theta)
+        hurried += turn * self.shape("v", theta, by_angle=True)
         normal, tangent = np.stack([-s, c], axis=-1), np.stack([c, s], axis=-1)
         found = normal[:, :, None] * hurried[:, None, :]
-        found -= (turn[:, None] * tangent)[:, :, None] * across[:, None, :]
-        found[:, :, self.x] += turn[:, None] * normal
+        found -= (turn * tangent)[:, :, None] * self.shape("v", theta)[:, None, :]
+        found[:, :, self.x] += turn * normal
         return self._reduced(found, unit=0.0)
 
     def contact(self, rest: Array, theta: Array) -> Array:
@@ -584,10 +534,10 @@ class Slide:
         """
         c, s = self._axis(theta)
         force = s * rest[:, self.x] - c * rest[:, self.y]
-        relative = -self.turned(self.rows(theta, 0)[0], theta)
+        relative = -self.shape("u", theta)
         relative[:, self.x] += c
         relative[:, self.y] += s
-        slope = self.turned(self.rows(theta, 1)[1], theta)
+        slope = self.shape("slope", theta)
         half = -force[:, None, None] * slope[:, :, None] * relative[:, None, :]
         return np.asarray(half + np.swapaxes(half, -1, -2))
 

@@ -17,11 +17,10 @@ from .linear import linear_system
 from .section import Section
 from .structure import (
     DIRECTIONS,
-    Node,
     Structure,
-    beams_between,
     missing_problems,
     node_value_problems,
+    structure_of,
 )
 
 # The crank turns with its shaft; pins to the frame hold a place; a slider moves along x.
@@ -81,20 +80,18 @@ def beam_linkage(
     bars = {name: (ends[0], ends[1]) for name, ends in linkage.bars.items() if len(ends) == 2}
     _check_names(bars, sections, elements, joint_masses, nodes)
     lengths = {name: float(linkage.lengths[name]) for name in bars}
-    beams = beams_between(bars, lengths, sections, elements, kind)
-    made = []
+    own: dict[str, dict[str, Any]] = {}
     for letter in _letters(bars):
-        values: dict[str, Any] = {
+        own[letter] = {
             "held": _HELD[type(linkage)].get(letter, ()),
             "slides_on": _SLIDING.get(type(linkage), {}).get(letter),
             "mass": (joint_masses or {}).get(letter, 0.0),
+            **(nodes or {}).get(letter, {}),
         }
-        made.append(Node(name=letter, **{**values, **(nodes or {}).get(letter, {})}))
-    return Structure(
-        beams=beams,
-        nodes=tuple(made),
-        configuration=partial(_configuration, linkage, tuple(bars)),
-        provenance={**(provenance or {}), **linkage.provenance},
+    motion = partial(_configuration, linkage, tuple(bars))
+    told = {**(provenance or {}), **linkage.provenance}
+    return structure_of(
+        bars, lengths, sections, elements, kind, own, configuration=motion, provenance=told
     )
 
 

@@ -73,70 +73,64 @@ class _Numbering:
         self.found: list[Freedom] = []
         self.places: dict[tuple[str, str], int] = {}
 
-    def add(self, freedom: Freedom) -> int:
-        self.found.append(freedom)
+    def add(
+        self, label: str, beam: Beam, place: Node | float, part: str, held: bool = False
+    ) -> int:
+        if isinstance(place, Node):
+            place = 0.0 if beam.start == place.name else beam.length
+        self.found.append(Freedom(label, beam.name, float(place), part, held))
         return len(self.found) - 1
 
     def node(self, node: Node, beams: Sequence[Beam]) -> None:
         """Add the displacement of a node, and the rotations of the beams that meet there."""
-        first = beams[0]
         for part in ("x", "y"):
-            freedom = Freedom(
-                f"{node.name}.{part}", first.name, _end(first, node), part, part in node.held
-            )
-            self.places[node.name, part] = self.add(freedom)
+            held = part in node.held
+            place = self.add(f"{node.name}.{part}", beams[0], node, part, held)
+            self.places[node.name, part] = place
         for beam in beams:
             shared = beam.name in node.joined
             if shared and node.joined[0] != beam.name:
                 continue
             held = "rotation" in node.held and (shared or not node.joined)
-            label = f"{node.name}.rotation" if shared else f"{node.name}.{beam.name}"
-            place = self.add(Freedom(label, beam.name, _end(beam, node), "rotation", held))
+            label = f"{node.name}.{'rotation' if shared else beam.name}"
+            place = self.add(label, beam, node, "rotation", held)
             for name in node.joined if shared else (beam.name,):
                 self.places[node.name, name] = place
 
-    def curvature(self, node: Node, beam: Beam) -> int:
-        """Add the curvature at the end of a beam: 0 where nothing there takes a moment."""
-        own = node.carried_by in (None, beam.name)
-        rotation = self.found[self.places[node.name, beam.name]]
-        loaded = rotation.held or beam.name in node.joined
-        turned = node.inertia or node.stiffness.get("rotation") or node.damping.get("rotation")
-        loaded |= bool(own and turned)
-        label = f"{node.name}.{beam.name}.curvature"
-        freedom = Freedom(label, beam.name, _end(beam, node), "curvature", not loaded)
-        return self.add(freedom)
+    def end(self, beam: Beam, node: Node) -> list[int]:
+        """Return the coordinates of a beam's end; its curvature there is added."""
+        point = [self.places[node.name, part] for part in ("x", "y", beam.name)]
+        if beam.kind == "curvature":
+            # It is 0 where nothing takes a moment.
+            loaded = self.found[point[2]].held or beam.name in node.joined
+            if node.carried_by in (None, beam.name):
+                springs = (group.get("rotation") for group in (node.stiffness, node.damping))
+                loaded |= bool(node.inertia) or any(springs)
+            label = f"{node.name}.{beam.name}.curvature"
+            point.append(self.add(label, beam, node, "curvature", not loaded))
+        return point
 
     def beam(self, beam: Beam, nodes: dict[str, Node]) -> list[PlacedElement]:
         """Add the inside of a beam and return its elements."""
         places = beam.places
-        points = [self._end_point(beam, beam.start, nodes)]
+        points = [self.end(beam, nodes[beam.start])]
+        parts = (*DIRECTIONS, "curvature") if beam.kind == "curvature" else DIRECTIONS
         for k in range(1, len(places) - 1):
-            parts = (*DIRECTIONS, "curvature") if beam.kind == "curvature" else DIRECTIONS
-            point = [
-                self.add(Freedom(f"{beam.name}.{k}.{part}", beam.name, float(places[k]), part))
-                for part in parts
-            ]
-            points.append(point)
-        points.append(self._end_point(beam, beam.end, nodes))
+            at = places[k]
+            points.append([self.add(f"{beam.name}.{k}.{part}", beam, at, part) for part in parts])
+        points.append(self.end(beam, nodes[beam.end]))
         found = []
         for k, (start, stop) in enumerate(pairwise(places)):
             left, right = points[k], points[k + 1]
             indices = [*left[:3], *right[:3], *left[3:], *right[3:]]
             if beam.kind == "internal_node":
-                middle = float(start + stop) / 2.0
-                indices += [
-                    self.add(Freedom(f"{beam.name}.{k + 1}m.{part}", beam.name, middle, part))
-                    for part in ("across", "rotation")
-                ]
+                middle = (start + stop) / 2.0
+                for part in ("across", "rotation"):
+                    label = f"{beam.name}.{k + 1}m.{part}"
+                    indices.append(self.add(label, beam, middle, part))
             order = np.array(indices, dtype=np.int64)
             found.append(PlacedElement(beam, k, float(start), float(stop - start), order))
         return found
-
-    def _end_point(self, beam: Beam, name: str, nodes: dict[str, Node]) -> list[int]:
-        point = [self.places[name, part] for part in ("x", "y", beam.name)]
-        if beam.kind == "curvature":
-            point.append(self.curvature(nodes[name], beam))
-        return point
 
 
 def number_freedoms(beams: Sequence[Beam], nodes: Sequence[Node]) -> Freedoms:
@@ -152,10 +146,6 @@ def number_freedoms(beams: Sequence[Beam], nodes: Sequence[Node]) -> Freedoms:
     return Freedoms(
         tuple(numbering.found), np.array(free, dtype=np.int64), tuple(elements), numbering.places
     )
-
-
-def _end(beam: Beam, node: Node) -> float:
-    return 0.0 if beam.start == node.name else beam.length
 
 
 Array = NDArray[np.float64]
@@ -486,15 +476,20 @@ class Structure:
                 raise bad(f"node {name}", found, "a node on the beam", fix)
 
 
-def beams_between(
+def structure_of(
     ends: Mapping[str, tuple[str, str]],
     lengths: Mapping[str, float],
     sections: Section | Mapping[str, Section],
     elements: int | Mapping[str, int | tuple[float, ...]],
     kind: str,
-) -> tuple[Beam, ...]:
-    """Return a beam for each pair of nodes, with its own or the same section and elements."""
-    return tuple(
+    nodes: Mapping[str, Mapping[str, Any]],
+    **fields: Any,
+) -> Structure:
+    """Return a structure of beams between pairs of nodes, and of nodes with values by name.
+
+    Beams have their own or the same section and elements; ``fields`` are others of it.
+    """
+    beams = tuple(
         Beam(
             name=name,
             start=start,
@@ -506,6 +501,8 @@ def beams_between(
         )
         for name, (start, end) in ends.items()
     )
+    made = tuple(Node(name=name, **values) for name, values in nodes.items())
+    return Structure(beams=beams, nodes=made, **fields)
 
 
 def _named(what: str, items: tuple[_Item, ...], name: str) -> _Item:

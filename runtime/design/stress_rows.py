@@ -14,7 +14,7 @@ from ..core.families import Array, LinearPeriodic
 from ..core.trigonometric import interpolated
 from ..periodic.equation import Equation
 from ..periodic.periodic_motion import SteadyState
-from ..recovery.beam_forces import propagated, stations_of
+from ..recovery.beam_forces import Recovered, stations_of
 from ..recovery.beam_motion import beam_motion
 from ..recovery.stresses import FIBRES, fibre_factors, stress_operator, stresses
 from ..scenes import Scene
@@ -39,11 +39,11 @@ class StressRow:
 
     def history(self, system: LinearPeriodic, motion: SteadyState) -> tuple[Array, float]:
         """Return the stress over the angles of a motion, and what the motion's error does to it."""
-        moving = beam_motion(system, motion)
+        asked = Recovered(system, beam_motion(system, motion), self._stations, self.method)
         factors = fibre_factors(system, stations_of(required_structure(system), self._stations))
-        axial, bending = stresses(system, moving, self._stations, self.method, factors)
+        axial, bending = stresses(asked, factors)
         sign = 1.0 if self.fibre == FIBRES[0] else -1.0
-        doubt = propagated(system, moving, self._stations)
+        doubt = asked.propagated()
         return (axial + sign * bending)[:, 0], doubt[0] * factors[0][0] + doubt[2] * factors[1][0]
 
     def _parts(self, system: LinearPeriodic, angles: Array, speed: float) -> tuple[Array, ...]:

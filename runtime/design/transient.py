@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from ..beams.assembly import in_own_axes, products
 from ..beams.element_forms import required_structure
-from ..beams.elements import placed_rotation, placed_shapes
+from ..beams.elements import shapes_of
 from ..core.collocation import gauss_maps
 from ..core.errors import LINEAR_RANGE, Problem, bad, refuse, warn_of_large_deflection
 from ..core.families import DAMPING, MATRICES, VECTORS, LinearPeriodic, require_system
@@ -540,10 +540,10 @@ def largest_by_shape(
         if section.thickness is None:
             fix = "give Section.thickness"
             raise bad(f"beam {placed.beam.name}", "no thickness", "one, for its stresses", fix)
-        stretch, _ = placed_shapes(placed, xi, 1)
-        bend = 0.5 * section.thickness * placed_rotation(placed, xi, 1)
+        shapes = shapes_of(placed, xi)
+        bend = 0.5 * section.thickness * shapes["curvature"]
         local = in_own_axes(full[:, placed.indices], *directions[placed.beam.name].T)
-        strain = np.abs(local @ stretch.T) + np.abs(local @ bend.T)
+        strain = np.abs(local @ shapes["strain"].T) + np.abs(local @ bend.T)
         k = links.index(placed.beam.name)
         largest[:, k] = np.maximum(largest[:, k], section.modulus * np.max(strain, axis=1))
     return largest

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..beams.assembly import in_own_axes
 from ..beams.element_forms import required_structure
-from ..beams.elements import placed_shapes
+from ..beams.elements import shapes_of
 from ..beams.structure import Structure
 from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic, require_system
@@ -296,12 +296,12 @@ def deflected_links(
     places = np.linspace(0.0, 1.0, 17)
     for element in structure.elements:
         beam = element.beam
-        along, across = placed_shapes(element, places)
+        shapes = shapes_of(element, places)
         own = motion[beam.name]
         angle = float(own.angle[0])
         axes = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
         local = in_own_axes(full[None, element.indices], axes[0, 0], axes[0, 1])[0]
-        moved = np.stack([along @ local, across @ local], axis=-1) @ axes
+        moved = np.stack([shapes["u"] @ local, shapes["v"] @ local], axis=-1) @ axes
         at = element.start + element.length * places
         rigid, bent = found.setdefault(beam.name, ([], []))
         rigid.append(own.origin[0] + at[:, None] * axes[0])

@@ -9,7 +9,7 @@ one or two orders of the element's length less.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, ClassVar
 
@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..beams.assembly import Array
-from ..beams.element_forms import ElementForms, required_structure
-from ..beams.elements import placed_rotation, placed_shapes
+from ..beams.element_forms import ElementForms, MovingElement, required_structure
+from ..beams.elements import shapes_of
 from ..beams.recovery_forms import LinearForm, stacked
-from ..beams.structure import Beam, PlacedElement, Structure
+from ..beams.structure import PlacedElement, Structure
 from ..core.errors import BadInput, Problem, bad, shown
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_whole, numbers, require_one_of
@@ -80,18 +80,16 @@ def stations_of(structure: Structure, stations: Stations = None) -> tuple[Statio
             fix = "divide by the beam's length"
             problems.append(Problem(f"stations on {name}", str(given), "places from 0 to 1", fix))
             continue
-        found += [_station(structure, beam, float(place)) for place in places]
+        own = [(e, p) for e, p in enumerate(structure.elements) if p.beam.name == name]
+        ends = np.array([placed.start + placed.length for _, placed in own[:-1]])
+        for place in places.tolist():
+            along = place * beam.length
+            e, placed = own[int(np.searchsorted(ends, along))]
+            xi = min(max((along - placed.start) / placed.length, 0.0), 1.0)
+            found.append(Station(name, place, e, xi))
     if problems or not found:
         raise BadInput(*(problems or [Problem("stations", "none", "at least one", "name some")]))
     return tuple(found)
-
-
-def _station(structure: Structure, beam: Beam, place: float) -> Station:
-    along = place * beam.length
-    own = [(e, p) for e, p in enumerate(structure.elements) if p.beam.name == beam.name]
-    e, placed = next((pair for pair in own if along <= pair[1].start + pair[1].length), own[-1])
-    xi = min(max((along - placed.start) / placed.length, 0.0), 1.0)
-    return Station(beam.name, place, e, xi)
 
 
 def require_method(method: str) -> None:
@@ -112,9 +110,12 @@ def recovery(
     for station in dict.fromkeys(stations):
         by_element.setdefault(station.element, []).append(station)
     for e, own in by_element.items():
-        xi = np.array([station.xi for station in own])
+        xi, element = np.array([station.xi for station in own]), forms.elements[e]
         forces = _by_equilibrium if method == "equilibrium" else _by_shape
-        for name, form in {**forces(forms, e, xi), **_displacements(forms, e, xi)}.items():
+        shapes, local = shapes_of(element.placed, xi), element.local()
+        for name, shape in zip(_FIELDS, ("u", "v", "rotation"), strict=True):
+            rows[name].append(local.turned(shapes[shape]))
+        for name, form in forces(element, xi).items():
             rows[name].append(form)
     met = [station for own in by_element.values() for station in own]
     order = np.array([met.index(station) for station in stations])
@@ -124,37 +125,27 @@ def recovery(
 _FIELDS = ("along", "across", "slope")
 
 
-def _displacements(forms: ElementForms, e: int, xi: Array) -> dict[str, LinearForm]:
-    placed = forms.elements[e][0]
-    along, across = placed_shapes(placed, xi)
-    local = forms.local(e)
-    matrices = {"along": along, "across": across, "slope": placed_rotation(placed, xi)}
-    return {name: local.turned(matrix) for name, matrix in matrices.items()}
-
-
-def _by_shape(forms: ElementForms, e: int, xi: Array) -> dict[str, LinearForm]:
+def _by_shape(element: MovingElement, xi: Array) -> dict[str, LinearForm]:
     """Return forces by derivatives of the shape functions: E A u', E I v'', -E I v'''."""
-    placed = forms.elements[e][0]
-    section, strain = placed.beam.section, forms.strain(e)
-    stretch, _ = placed_shapes(placed, xi, 1)
+    section, strain = element.placed.beam.section, element.strain()
+    shapes = shapes_of(element.placed, xi)
     return {
-        "axial": strain.turned(section.axial_stiffness * stretch),
-        "shear": strain.turned(-section.bending_stiffness * placed_rotation(placed, xi, 2)),
-        "moment": strain.turned(section.bending_stiffness * placed_rotation(placed, xi, 1)),
+        "axial": strain.turned(section.axial_stiffness * shapes["strain"]),
+        "shear": strain.turned(-section.bending_stiffness * shapes["third"]),
+        "moment": strain.turned(section.bending_stiffness * shapes["curvature"]),
     }
 
 
-def _by_equilibrium(forms: ElementForms, e: int, xi: Array) -> dict[str, LinearForm]:
+def _by_equilibrium(element: MovingElement, xi: Array) -> dict[str, LinearForm]:
     """Return forces that balance the part of an element before each place."""
-    placed = forms.elements[e][0]
+    forms, placed = element.forms, element.placed
     share = forms.factor["distributed_mass"]
     mass = share * placed.beam.section.mass_per_length
     weights = _integrals(placed, xi)
-    direct, across = forms.direct(e), forms.across(e)
-    plain = direct - forms.centripetal(e)
-    ends = forms.end_forces(e)
-    size = len(forms.elements[e][1].mass)
-    pick = np.repeat(np.eye(3, size)[:, None], len(xi), axis=1)
+    direct, across = element.direct(), element.across()
+    plain = direct - element.centripetal()
+    ends = element.end_forces()
+    pick = np.repeat(np.eye(3, len(element.arrays.mass))[:, None], len(xi), axis=1)
     lever = (placed.length * xi)[:, None]
     # The inertia m a of the part: along, across, and its moment about the place.
     along = plain.turned(mass * weights["u"]) - across.turned(mass * weights["v"])
@@ -165,8 +156,8 @@ def _by_equilibrium(forms: ElementForms, e: int, xi: Array) -> dict[str, LinearF
         rotary = share * placed.beam.section.rotary_inertia
         turned = turned + direct.turned(rotary * weights["rotation"])
     for power, forces in forms.stiffening.items():
-        kernel = np.einsum("tk,kxn->txn", forces[:, e], weights["slope"])
-        turned = turned + forms.local(e).turned(kernel).faster(power)
+        kernel = np.einsum("tk,kxn->txn", forces[:, element.number], weights["slope"])
+        turned = turned + element.local().turned(kernel).faster(power)
     return {
         "axial": along - ends.turned(pick[0]),
         "shear": sideways - ends.turned(pick[1]),
@@ -181,19 +172,15 @@ def _integrals(placed: PlacedElement, xi: Array) -> dict[str, Array]:
     places = 0.5 * xi[:, None] * (1.0 + _GAUSS_PLACES)
     weights = 0.5 * placed.length * xi[:, None] * _GAUSS_WEIGHTS
     lever = placed.length * (xi[:, None] - places)
-    flat = np.clip(places.ravel(), 0.0, 1.0)
-    u, v = (value.reshape(*places.shape, -1) for value in placed_shapes(placed, flat))
-    slope = placed_shapes(placed, flat, 1)[1].reshape(*places.shape, -1)
-    rotation = placed_rotation(placed, flat).reshape(*places.shape, -1)
-    powers = np.stack([places**k for k in range(3)])
-    return {
-        "u": np.einsum("xg,xgn->xn", weights, u),
-        "v": np.einsum("xg,xgn->xn", weights, v),
-        "u lever": np.einsum("xg,xgn->xn", weights * lever, u),
-        "v lever": np.einsum("xg,xgn->xn", weights * lever, v),
-        "rotation": np.einsum("xg,xgn->xn", weights, rotation),
-        "slope": np.einsum("kxg,xgn->kxn", powers * weights, slope),
+    shapes = shapes_of(placed, np.clip(places, 0.0, 1.0))
+    found = {
+        name: np.einsum("xg,xgn->xn", weights, shapes[name]) for name in ("u", "v", "rotation")
     }
+    for name in ("u", "v"):
+        found[f"{name} lever"] = np.einsum("xg,xgn->xn", weights * lever, shapes[name])
+    powers = np.stack([places**k for k in range(3)])
+    found["slope"] = np.einsum("kxg,xgn->kxn", powers * weights, shapes["slope"])
+    return found
 
 
 QUANTITIES = (*_FIELDS, *FORCES)
@@ -295,79 +282,68 @@ def recover(
     """
     require_method(method)
     chosen = stations_of(required_structure(system), stations)
-    moving = beam_motion(system, motion)
-    own: dict[str, Any] = dict(evaluated(system, moving, stations, method))
-    doubt = partial(_doubt, system, moving, stations, method, own)
+    asked = Recovered(system, beam_motion(system, motion), stations, method)
+    own: dict[str, Any] = dict(asked.values())
     return BeamForces(
         method=method,
         links=tuple(station.beam for station in chosen),
         places=np.array([station.place for station in chosen]),
-        **in_motion(system, moving, doubt),
+        **in_motion(system, asked.motion, partial(_doubt, asked, own)),
         **own,
     )
 
 
-def _doubt(
-    system: LinearPeriodic,
-    moving: BeamMotion,
-    stations: Stations,
-    method: str,
-    own: Mapping[str, Array],
-) -> dict[str, Any]:
+def _doubt(asked: Recovered, own: Mapping[str, Array]) -> dict[str, Any]:
     norm = "largest error of axial force [N], shear force [N], moment [N m]"
-    better, finer = compared(system, moving, stations, method, FORCES)
+    better, finer = asked.compared(FORCES)
     gaps = np.array([np.max(np.abs(own[name] - better[name])) for name in FORCES])
     sizes = np.array([np.max(np.abs(own[name])) for name in FORCES])
     share = CAUTION if finer else 1.0
     return {
-        "error": share * gaps + propagated(system, moving, stations) + ROUNDING * sizes,
+        "error": share * gaps + asked.propagated() + ROUNDING * sizes,
         "error_norm": norm if finer else f"{norm}; that of the mesh's frequencies apart",
     }
 
 
-def compared(
-    system: LinearPeriodic,
-    motion: BeamMotion,
-    stations: Stations,
-    method: str,
-    names: tuple[str, ...],
-) -> tuple[dict[str, Array], bool]:
-    """Return quantities on a finer mesh, or else by the other method; and whether there is one."""
-    finer = on_finer_mesh(system, motion)
-    if finer is not None:
-        return evaluated(*finer, stations, "equilibrium", names), True
-    other = next(name for name in METHODS if name != method)
-    return evaluated(system, motion, stations, other, names), False
+@dataclass(frozen=True)
+class Recovered:
+    """Forces and displacements along the beams of a system in a motion, recovered by a method."""
 
+    system: LinearPeriodic
+    motion: BeamMotion
+    stations: Stations
+    method: str
 
-def evaluated(
-    system: LinearPeriodic,
-    motion: BeamMotion,
-    stations: Stations,
-    method: str,
-    names: tuple[str, ...] = QUANTITIES,
-) -> dict[str, Array]:
-    """Return quantities ``(nt, stations)`` in a motion."""
-    chosen = stations_of(required_structure(system), stations)
+    def values(self, names: tuple[str, ...] = QUANTITIES) -> dict[str, Array]:
+        """Return quantities at all angles, ``(nt, stations)`` each."""
+        chosen = stations_of(required_structure(self.system), self.stations)
 
-    def piece(forms: ElementForms, values: MotionValues) -> dict[str, Array]:
-        made, shape = recovery(forms, chosen, method), (len(forms.theta), len(chosen))
-        return {name: np.broadcast_to(values(made[name]), shape) for name in names}
+        def piece(forms: ElementForms, values: MotionValues) -> dict[str, Array]:
+            made, shape = recovery(forms, chosen, self.method), (len(forms.theta), len(chosen))
+            return {name: np.broadcast_to(values(made[name]), shape) for name in names}
 
-    return over_motion(system, motion, piece)
+        return over_motion(self.system, self.motion, piece)
 
+    def compared(self, names: tuple[str, ...]) -> tuple[dict[str, Array], bool]:
+        """Return them on a finer mesh, or else by the other method; and whether there is one."""
+        finer = on_finer_mesh(self.system, self.motion)
+        if finer is not None:
+            return Recovered(*finer, self.stations, "equilibrium").values(names), True
+        other = next(name for name in METHODS if name != self.method)
+        return replace(self, method=other).values(names), False
 
-def propagated(system: LinearPeriodic, motion: BeamMotion, stations: Stations) -> Array:
-    """Return what the error of the motion can do to axial force, shear force and moment.
+    def propagated(self) -> Array:
+        """Return what the error of the motion can do to axial force, shear force and moment.
 
-    The errors of the coordinates are taken to vary no faster than the crank turns, and not to
-    cancel each other.
-    """
-    if not np.any(motion.doubt):
-        return np.zeros(len(FORCES))
-    # A few angles tell the size of the coefficients.
-    picked = np.linspace(0, len(motion.theta) - 1, min(len(motion.theta), 16)).astype(int)
-    chosen = stations_of(required_structure(system), stations)
-    made = recovery(checked_forms(system, motion.theta[picked]), chosen, "shape")
-    rows = [made[name].at_speed(motion.speed)["q"] for name in FORCES]
-    return np.array([np.max(np.abs(row) @ motion.doubt) for row in rows])
+        The errors of the coordinates are taken to vary no faster than the crank turns, and not to
+        cancel each other.
+        """
+        motion = self.motion
+        if not np.any(motion.doubt):
+            return np.zeros(len(FORCES))
+        # A few angles tell the size of the coefficients.
+        picked = np.linspace(0, len(motion.theta) - 1, min(len(motion.theta), 16)).astype(int)
+        chosen = stations_of(required_structure(self.system), self.stations)
+        made = recovery(checked_forms(self.system, motion.theta[picked]), chosen, "shape")
+        rows = [made[name].at_speed(motion.speed)["q"] for name in FORCES]
+        return np.array([np.max(np.abs(row) @ motion.doubt) for row in rows])

@@ -10,7 +10,6 @@ import numpy as np
 
 from ..beams.assembly import Array
 from ..beams.element_forms import required_structure
-from ..beams.structure import Beam
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite
@@ -108,32 +107,29 @@ def elastic_coupler_curve(
     moving = beam_motion(system, motion)
     if not structure.moving:
         raise bad("system", "a structure that stands still", "a linkage", "use recover()")
-    place = (float(foot), float(across))
-    shift, doubt = _shift(system, beam, moving, place)
-    later = partial(_doubt, system, moving, link, place, (shift, doubt))
-    rigid = structure.configuration(moving.theta)[link].point(float(foot), float(across)).position
+    place = link, float(foot), float(across)
+    shift, doubt = _shift(system, moving, *place)
+    rigid = structure.configuration(moving.theta)[link].point(*place[1:]).position
     return ElasticCurve(
         method="shape functions",
         link=link,
-        along=float(foot),
-        across=float(across),
+        along=place[1],
+        across=place[2],
         rigid=rigid,
         elastic=rigid + shift,
-        **in_motion(system, moving, later),
+        **in_motion(system, moving, partial(_doubt, system, moving, place, shift, doubt)),
     )
 
 
 def _doubt(
     system: LinearPeriodic,
     moving: BeamMotion,
-    link: str,
-    place: tuple[float, float],
-    own: tuple[Array, float],
+    place: tuple[str, float, float],
+    shift: Array,
+    doubt: float,
 ) -> dict[str, float | str]:
-    shift, doubt = own
-
     def change(finer: LinearPeriodic, motion: BeamMotion) -> float:
-        better, _ = _shift(finer, required_structure(system).beam(link), motion, place)
+        better, _ = _shift(finer, motion, *place)
         return float(np.max(np.hypot(*(better - shift).T)))
 
     error = float(np.sqrt(2.0)) * doubt
@@ -141,26 +137,23 @@ def _doubt(
 
 
 def _shift(
-    system: LinearPeriodic, beam: Beam, motion: BeamMotion, place: tuple[float, float]
+    system: LinearPeriodic, motion: BeamMotion, link: str, along: float, across: float
 ) -> tuple[Array, float]:
     """Return the displacement of the point ``(nt, 2)``, and what the motion's error does to it."""
+    structure = required_structure(system)
+    length = structure.beam(link).length
+    nearest = min(max(along, 0.0), length)
+    foot = stations_of(structure, {link: nearest / length})
     found, doubt = [], 0.0
     for chunk in chunks(motion):
-        rows = _rows(system, beam, motion.theta[chunk], *place)
+        theta = motion.theta[chunk]
+        made = recovery(checked_forms(system, theta), foot, "shape")
+        u, v, turn = (made[name].parts["q", 0][:, 0] for name in ("along", "across", "slope"))
+        own_x, own_y = u - across * turn, v + (along - nearest) * turn
+        angle = structure.configuration(theta)[link].angle[:, None]
+        x = np.cos(angle) * own_x - np.sin(angle) * own_y
+        y = np.sin(angle) * own_x + np.cos(angle) * own_y
+        rows = np.stack([x, y], axis=1)  # from the coordinates, (nt, 2, n)
         found.append(np.einsum("txn,tn->tx", rows, motion.q[chunk]))
         doubt = max(doubt, float(np.max(np.abs(rows) @ motion.doubt)))
     return np.concatenate(found), doubt
-
-
-def _rows(system: LinearPeriodic, beam: Beam, theta: Array, along: float, across: float) -> Array:
-    """Return what turns coordinates into the displacement of the point: ``(nt, 2, n)``."""
-    nearest = min(max(along, 0.0), beam.length)
-    structure = required_structure(system)
-    foot = stations_of(structure, {beam.name: nearest / beam.length})
-    made = recovery(checked_forms(system, theta), foot, "shape")
-    u, v, turn = (made[name].parts["q", 0][:, 0] for name in ("along", "across", "slope"))
-    along_beam, across_beam = u - across * turn, v + (along - nearest) * turn
-    angle = structure.configuration(theta)[beam.name].angle[:, None]
-    x = np.cos(angle) * along_beam - np.sin(angle) * across_beam
-    y = np.sin(angle) * along_beam + np.cos(angle) * across_beam
-    return np.stack([x, y], axis=1)

@@ -15,7 +15,7 @@ from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check
-from .beam_forces import propagated
+from .beam_forces import Recovered
 from .beam_motion import BeamMotion, Motion, beam_motion
 from .beam_result import BeamResult, MotionValues, in_motion, over_motion
 from .finer_mesh import ROUNDING, with_mesh
@@ -160,8 +160,8 @@ def _forces(
     system: LinearPeriodic, motion: BeamMotion
 ) -> tuple[dict[tuple[str, str], Array], dict[str, Array], dict[str, Array]]:
     """Return forces by node and beam, of the ground by node, and all of them with the sums."""
-    structure = required_structure(system)
     joined = over_motion(system, motion, _at_nodes)
+    structure = required_structure(system)
     on_beams = {
         (node.name, beam.name): joined[f"{node.name} {beam.name}"]
         for node in structure.nodes
@@ -174,54 +174,41 @@ def _forces(
 
 def _at_nodes(forms: ElementForms, values: MotionValues) -> dict[str, Array]:
     """Return forces by node and beam, of the ground by node, drag and rate of momentum."""
-    structure, freedoms = forms.structure, forms.structure.freedoms
+    structure, places, outside = forms.structure, forms.structure.freedoms.places, forms.outside
     found: dict[str, Array] = {}
+    share = forms.factor["distributed_mass"]
+    mass = forms.factor["lumped_mass"] * forms.lumped
     lumped = np.broadcast_to(
         values(forms.node_inertia() - forms.node_loads()), (len(forms.theta), forms.arrays.count)
     )
     resisted = lumped.copy()
-    momentum = np.zeros((len(forms.theta), 2))
-    for e, (placed, _) in enumerate(forms.elements):
-        back = np.swapaxes(forms.turning[e].back, -1, -2)
-        fixed = values(forms.end_forces(e).turned(back))
+    # What drag from outside takes is counted among the inertia.
+    momentum, drag = np.zeros((2, len(forms.theta), 2))
+    for element in forms.elements:
+        placed = element.placed
+        fixed = values(element.end_forces().turned(element.fixed))
         resisted[:, placed.indices] += fixed
         momentum += fixed[:, [0, 1]] + fixed[:, [3, 4]]
+        if outside.parts:
+            inertia = element.fixed @ (share * element.arrays.mass) @ element.own
+            taken = values(outside.turned(inertia))
+            drag -= taken[:, [0, 1]] + taken[:, [3, 4]]
         if placed.number == 0:
             found[f"{placed.beam.start} {placed.beam.name}"] = fixed[:, :3]
         if placed.number == len(placed.beam.places) - 2:
             found[f"{placed.beam.end} {placed.beam.name}"] = fixed[:, 3:6]
+    taken = values(outside.turned(mass[:, None] * forms.spread))
     for node in structure.nodes:
-        x, y = (freedoms.places[node.name, part] for part in ("x", "y"))
+        x, y = (places[node.name, part] for part in ("x", "y"))
         momentum += lumped[:, [x, y]]
-        if not (node.held or node.stiffness or node.damping):
-            continue
-        meeting = [b.name for b in structure.beams if node.name in (b.start, b.end)]
-        turning = {freedoms.places[node.name, name] for name in meeting}
-        moments = sum(resisted[:, place] for place in turning)
-        found[node.name] = np.stack([resisted[:, x], resisted[:, y], moments], axis=-1)
-    outside = _outside_forces(forms, values)
-    found["drag "] = -outside
-    found["momentum "] = momentum - outside
-    return found
-
-
-def _outside_forces(forms: ElementForms, values: MotionValues) -> Array:
-    """Return the sum of what drag from outside takes, counted among the inertia: ``(nt, 2)``."""
-    total = np.zeros((len(forms.theta), 2))
-    if not forms.outside.parts:
-        return total
-    share = forms.factor["distributed_mass"]
-    for e, (_, own) in enumerate(forms.elements):
-        at = forms.turning[e]
-        back = np.swapaxes(at.back, -1, -2)
-        force = values(forms.outside.turned(back @ (share * own.mass) @ at.own))
-        total += force[:, [0, 1]] + force[:, [3, 4]]
-    lumped = forms.factor["lumped_mass"] * forms.lumped
-    nodes = values(forms.outside.turned(lumped[:, None] * forms.spread))
-    for node in forms.structure.nodes:
-        places = [forms.structure.freedoms.places[node.name, part] for part in ("x", "y")]
-        total += nodes[:, places]
-    return total
+        if outside.parts:
+            drag -= taken[:, [x, y]]
+        if node.held or node.stiffness or node.damping:
+            meeting = (b.name for b in structure.beams if node.name in (b.start, b.end))
+            turning = {places[node.name, name] for name in meeting}
+            moments = sum(resisted[:, place] for place in turning)
+            found[node.name] = np.stack([resisted[:, x], resisted[:, y], moments], axis=-1)
+    return found | {"drag ": drag, "momentum ": momentum + drag}
 
 
 def _doubt(
@@ -230,7 +217,7 @@ def _doubt(
     longest = max(beam.length for beam in required_structure(system).beams)
     scale = np.array([1.0, 1.0, 1.0 / longest])
     own = np.stack(list(on_beams.values())) * scale
-    axial, shear, moment = propagated(system, motion, 2)
+    axial, shear, moment = Recovered(system, motion, 2, "shape").propagated()
     by_motion = float(np.hypot(axial, shear) + moment / longest)
 
     def change(finer: LinearPeriodic, motion: BeamMotion) -> float:

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..beams.assembly import Array
-from ..beams.element_forms import ElementForms, required_structure
+from ..beams.element_forms import ElementForms, MovingElement, required_structure
 from ..beams.recovery_forms import LinearForm
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
@@ -21,17 +21,9 @@ from .beam_motion import BeamMotion, Motion, beam_motion, chunks
 from .beam_result import BeamResult, MotionValues, in_motion, over_motion
 from .finer_mesh import with_mesh
 
+# How the axial forces of the geometric stiffness change with the crank angle: by power of the
+# speed, from angles (nt,) to (nt, elements, 3).
 Slopes = Mapping[int, Callable[[Array], Array]]
-
-
-def force_slopes(system: LinearPeriodic) -> Slopes:
-    """Return how the axial forces of the geometric stiffness change with the crank angle.
-
-    By power of the speed, from angles ``(nt,)`` to ``(nt, elements, 3)``; none where nothing moves.
-    """
-    if not required_structure(system).moving:
-        return {}
-    return {power: _slope(system, power) for power in ElementForms(system, np.zeros(1)).stiffening}
 
 
 def _slope(system: LinearPeriodic, power: int) -> Callable[[Array], Array]:
@@ -56,6 +48,9 @@ def _slope(system: LinearPeriodic, power: int) -> Callable[[Array], Array]:
             raise bad("structure", found, "a smooth motion", "keep off dead points")
 
 
+_SUMS = ("springs", "stiffening", "kinetic", "dissipated", "loads", "drive")
+
+
 class Energies:
     """Energies and powers of a motion at some of its angles."""
 
@@ -73,69 +68,64 @@ class Energies:
         forms, count = self.forms, len(self.forms.theta)
         links = [beam.name for beam in forms.structure.beams]
         strain = np.zeros((count, len(links)))
-        sums = {
-            name: np.zeros(count)
-            for name in ("springs", "stiffening", "kinetic", "dissipated", "loads", "drive")
-        }
-        for e, (placed, _) in enumerate(forms.elements):
-            strain[:, links.index(placed.beam.name)] += self._element(e, sums)
+        sums = {name: np.zeros(count) for name in _SUMS}
+        for element in forms.elements:
+            link = links.index(element.placed.beam.name)
+            strain[:, link] += self._element(element, sums)
         self._nodes(sums)
         if forms.outside.parts:
             force = forms.outside.turned(forms.mass).values(self.speed, self.q, self.slope)
             sums["dissipated"] += np.vecdot(self.speed * self.slope, force)
         return {"strain": strain, **sums}
 
-    def _element(self, e: int, sums: dict[str, Array]) -> Array:
+    def _element(self, at: MovingElement, sums: dict[str, Array]) -> Array:
         """Add what an element has to the sums; return its strain energy."""
-        forms, at = self.forms, self.forms.turning[e]
-        placed, own = forms.elements[e]
+        forms, own, turning = self.forms, at.arrays, at.turning[..., 0]
         share, stiff = forms.factor["distributed_mass"], forms.factor["elasticity"]
         mass, across, centre = (share * m for m in (own.mass, own.coupling, own.centripetal))
         local = _times(at.own, self.q)
-        turned = at.rate[:, None] * _times(at.slope, self.q)
+        turned = turning * _times(at.slope, self.q)
         rate = _times(at.own, self.slope) + turned
-        first = np.einsum("tij,tj->ti", at.back, self.rigid.first[:, placed.indices])
-        spun = at.rate[:, None] * local
+        first = np.einsum("tij,tj->ti", at.back, self.rigid.first[:, at.placed.indices])
+        spun = turning * local
         w = self.speed
         sums["kinetic"] += 0.5 * w**2 * _square(first + rate, mass, spun, across, centre)
         # Accelerations, with gravity but without what acts from outside.
-        direct = self._spread(forms.direct(e) - forms.outside.turned(at.own), local)
-        sideways = self._spread(forms.across(e), local)
-        towards = self._spread(forms.centripetal(e), local)
+        direct = self._spread(at.direct() - forms.outside.turned(at.own), local)
+        sideways = self._spread(at.across(), local)
+        towards = self._spread(at.centripetal(), local)
         virtual = first + turned
         work = np.vecdot(virtual, direct @ mass + sideways @ across.T - towards @ centre)
         work += np.vecdot(spun, direct @ across + sideways @ centre - towards @ across)
-        forces = self._spread(forms.strain(e), local) @ own.stiffness
+        forces = self._spread(at.strain(), local) @ own.stiffness
         # Rayleigh's damping knows the rates of the coordinates alone; it turns nothing.
         resisted = forms.factor["rayleigh_stiffness"] * stiff * w * _times(at.own, self.slope)
         passive = resisted @ own.stiffness
         work += np.vecdot(turned, forces - passive)
-        work += self._stiffening(e, local, turned, rate, sums)
-        weight = forms.weight(e)
-        carried = weight @ mass
-        power = w * np.vecdot(first + rate, carried) + w * np.vecdot(spun, weight @ across)
-        sums["loads"] += power
+        work += self._stiffening(at, local, turned, rate, sums)
+        weight = at.weight()
+        sums["loads"] += w * np.vecdot(first + rate, weight @ mass)
+        sums["loads"] += w * np.vecdot(spun, weight @ across)
         # The direct part holds the weight; the drive's own share is what is left without it.
         sums["drive"] += w * work
         elastic = stiff * (local @ own.stiffness)
-        lost = np.vecdot(w * rate, forces - elastic - passive)
-        lost += w * np.vecdot(_times(at.own, self.slope), passive)
-        sums["dissipated"] += lost
+        sums["dissipated"] += np.vecdot(w * rate, forces - elastic - passive)
+        sums["dissipated"] += w * np.vecdot(_times(at.own, self.slope), passive)
         return np.asarray(0.5 * np.vecdot(local, elastic))
 
     def _stiffening(
-        self, e: int, local: Array, turned: Array, rate: Array, sums: dict[str, Array]
+        self, at: MovingElement, local: Array, turned: Array, rate: Array, sums: dict[str, Array]
     ) -> Array:
         """Add the energy of the axial forces; return the work that their change asks for."""
-        geometric = self.forms.elements[e][1].geometric
+        geometric = at.arrays.geometric
         total = np.zeros(len(local))
         for power, forces in self.forms.stiffening.items():
-            weights = forces[:, e] * self.speed**power
+            weights = forces[:, at.number] * self.speed**power
             kernel = np.tensordot(weights, geometric, axes=1)
             pull = np.einsum("tij,tj->ti", kernel, local)
             change = np.vecdot(turned, pull)
             if power in self.changing:
-                rates = self.changing[power][:, e] * self.speed**power
+                rates = self.changing[power][:, at.number] * self.speed**power
                 slope = np.tensordot(rates, geometric, axes=1)
                 change = 0.5 * np.einsum("ti,tij,tj->t", local, slope, local) + change
             energy = 0.5 * np.vecdot(local, pull)
@@ -150,27 +140,19 @@ class Energies:
 
     def _nodes(self, sums: dict[str, Array]) -> None:
         """Add lumped masses, springs, dampers and loads."""
-        forms, free = self.forms, self.forms.arrays.free
+        forms, first, spread = self.forms, self.rigid.first, self.forms.spread.T
         lumped = forms.factor["lumped_mass"] * forms.lumped
-        count = (len(forms.theta), forms.arrays.count)
-        first = self.rigid.first
-        speeds = first.copy()
-        speeds[:, free] += self.slope
-        speeds = self.speed * speeds
+        q, rates = self.q @ spread, self.speed * self.slope @ spread
+        speeds = self.speed * first + rates
         sums["kinetic"] += 0.5 * speeds**2 @ lumped
-        drag = forms.outside.values(self.speed, self.q, self.slope)
-        inertia = np.array(self._spread(forms.node_inertia(), first))
-        inertia[:, free] -= drag * lumped[free]
+        drag = self._spread(forms.outside, self.q) @ spread
+        inertia = self._spread(forms.node_inertia(), first) - drag * lumped
         loads = self._spread(forms.node_loads(), first)
         weight = forms.axial.weight_field(forms.theta) * lumped
         sums["drive"] += self.speed * np.vecdot(first, inertia - loads)
         sums["loads"] += np.vecdot(speeds, weight + loads)
-        q = np.zeros(count)
-        q[:, free] = self.q
         sums["springs"] += 0.5 * q**2 @ forms.springs
         holds = self._spread(forms.node_holds(), first)
-        rates = np.zeros(count)
-        rates[:, free] = self.speed * self.slope
         sums["dissipated"] += np.vecdot(rates, holds - q * forms.springs)
 
 
@@ -206,7 +188,7 @@ class BeamEnergies(BeamResult):
 
     arrays_along: ClassVar = {
         "sample link": "strain",
-        "sample": "springs stiffening kinetic dissipated loads drive total",
+        "sample": " ".join((*_SUMS, "total")),
     }
     exported: ClassVar[tuple[str, ...]] = ("total",)
     column_units: ClassVar = {"J": "error total", "W": "dissipated loads drive"}
@@ -293,12 +275,21 @@ def _doubt(system: LinearPeriodic, moving: BeamMotion, strain: Array) -> dict[st
         better = np.sum(_energies(finer, motion)["strain"], axis=1)
         return float(np.max(np.abs(better - np.sum(strain, axis=1))))
 
+    # What the error of the motion can do to the strain energy.
+    error = 0.0
+    for chunk in chunks(moving) if np.any(moving.doubt) else ():
+        stiffness = system.array("K", moving.theta[chunk])
+        force = np.einsum("tij,tj->ti", stiffness, moving.q[chunk])
+        error = max(error, float(np.max(np.abs(force) @ moving.doubt)))
     norm = "largest error of the strain energy of all beams [J]"
-    return with_mesh(system, moving, norm, _motion_error(system, moving), change)
+    return with_mesh(system, moving, norm, error, change)
 
 
 def _energies(system: LinearPeriodic, motion: BeamMotion) -> dict[str, Any]:
-    slopes = force_slopes(system)
+    slopes: Slopes = {}
+    if required_structure(system).moving:
+        powers = ElementForms(system, np.zeros(1)).stiffening
+        slopes = {power: _slope(system, power) for power in powers}
     return over_motion(
         system, motion, lambda forms, values: Energies(forms, values, slopes).by_name()
     )
@@ -319,15 +310,3 @@ def _balance(made: BeamEnergies, motion: BeamMotion) -> Check:
     # Round-off of energies that are sums of large parts, over the largest power.
     limit = count * relative + beyond / max(largest, np.finfo(float).tiny) + 1e-9
     return Check(float(np.max(np.abs(rate - power))) / largest if largest else 0.0, limit)
-
-
-def _motion_error(system: LinearPeriodic, motion: BeamMotion) -> float:
-    """Return what the error of the motion can do to the strain energy [J]."""
-    if not np.any(motion.doubt):
-        return 0.0
-    largest = 0.0
-    for chunk in chunks(motion):
-        stiffness = system.array("K", motion.theta[chunk])
-        force = np.einsum("tij,tj->ti", stiffness, motion.q[chunk])
-        largest = max(largest, float(np.max(np.abs(force) @ motion.doubt)))
-    return largest

@@ -209,7 +209,11 @@ def stress_curve(
     >>> print(curve.links, (curve.maximum / 1e6).round().tolist())
     ('crank', 'coupler', 'follower') [[52.0, 10.0, 39.0], [91.0, 16.0, 77.0]]
     """
-    given = _checked(system, speeds, rtol)
+    required_structure(system)
+    given = np.atleast_1d(numbers("speeds", speeds))
+    if given.ndim != 1 or not given.size or not np.all(np.isfinite(given) & (given > 0)):
+        raise bad("speeds", speeds, "positive finite speeds [rad/s], one row", "correct them")
+    require_between("rtol", rtol, 1e-6, 1e-2, "choose 1e-4")
     require_method(method)
     # Nothing else bounds the resonances.
     if not any(name in DAMPING for name, _ in arrays_at(system, even_angles(system.period, 16))):
@@ -414,12 +418,3 @@ def _growth(system: LinearPeriodic, parts: list[_Range], speeds: Array) -> tuple
     gap = abs(float(np.max(np.abs(whole.multipliers))) - modulus[-1]) / condition[-1]
     defect = max(ELSEWHERE * max(part.defect for part in parts), 2.0 * gap)
     return modulus, error + defect * condition
-
-
-def _checked(system: LinearPeriodic, speeds: ArrayLike, rtol: float) -> Array:
-    required_structure(system)
-    given = np.atleast_1d(numbers("speeds", speeds))
-    if given.ndim != 1 or not given.size or not np.all(np.isfinite(given) & (given > 0)):
-        raise bad("speeds", speeds, "positive finite speeds [rad/s], one row", "correct them")
-    require_between("rtol", rtol, 1e-6, 1e-2, "choose 1e-4")
-    return given

@@ -22,11 +22,9 @@ from ..core.results import DeferredField, DeferredGroup
 from ..core.trigonometric import resampled
 from .beam_forces import (
     METHODS,
+    Recovered,
     Station,
     Stations,
-    compared,
-    evaluated,
-    propagated,
     recovery,
     require_method,
     stations_of,
@@ -38,12 +36,13 @@ from .finer_mesh import CAUTION, ROUNDING
 # How much finer the angles are at which the largest stress is sought, and how near to the largest
 # at the coarse angles a row has to come to be looked at.
 FINER, _NEAR = 8, 0.6
+_STRESSING = ("axial", "moment")
 # Places over each element for its energy: exact for the recovered polynomials' squares.
 _PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
-def fibre_factors(system: LinearPeriodic, stations: Sequence[Station]) -> tuple[Array, Array]:
-    """Return 1/A [1/m^2] and c/I [1/m^3] of each station, c half the thickness."""
+def fibre_factors(system: LinearPeriodic, stations: Sequence[Station]) -> Array:
+    """Return 1/A [1/m^2] and c/I [1/m^3], c half the thickness: ``(2, stations)``."""
     structure = required_structure(system)
     sections = {beam.name: beam.section for beam in structure.beams}
     problems = [
@@ -54,28 +53,24 @@ def fibre_factors(system: LinearPeriodic, stations: Sequence[Station]) -> tuple[
     refuse(problems)
     own = [sections[station.beam] for station in stations]
     levers = [0.5 * (section.thickness or 0.0) / section.second_moment for section in own]
-    return np.array([1.0 / section.area for section in own]), np.array(levers)
+    return np.array([[1.0 / section.area for section in own], levers])
 
 
-def stresses(
-    system: LinearPeriodic,
-    motion: BeamMotion,
-    stations: Stations,
-    method: str,
-    factors: tuple[Array, Array],
-) -> tuple[Array, Array]:
-    """Return axial stress and bending stress at the positive fibre [Pa], ``(nt, stations)``."""
-    return _of_forces(evaluated(system, motion, stations, method, ("axial", "moment")), factors)
+def stresses(asked: Recovered, factors: Array) -> Array:
+    """Return stresses of axial force and of bending at the positive fibre [Pa].
+
+    Shape ``(2, nt, stations)``, from the ``factors`` of :func:`fibre_factors`.
+    """
+    return _of_forces(asked.values(_STRESSING), factors)
 
 
-def _of_forces(forces: Mapping[str, Array], factors: tuple[Array, Array]) -> tuple[Array, Array]:
-    return forces["axial"] * factors[0], -forces["moment"] * factors[1]
+def _of_forces(forces: Mapping[str, Array], factors: Array) -> Array:
+    return np.stack([forces["axial"] * factors[0], -forces["moment"] * factors[1]])
 
 
-def largest_difference(first: tuple[Array, Array], second: tuple[Array, Array]) -> float:
+def largest_difference(first: ArrayLike, second: ArrayLike) -> float:
     """Return the largest difference of the stresses of a fibre [Pa]."""
-    axial, bending = (np.abs(a - b) for a, b in zip(first, second, strict=True))
-    return float(np.max(axial + bending))
+    return float(np.max(np.sum(np.abs(np.subtract(first, second)), axis=0)))
 
 
 def frozen(system: LinearPeriodic, motion: BeamMotion) -> BeamMotion:
@@ -100,24 +95,21 @@ def energy_gap(system: LinearPeriodic, motion: BeamMotion) -> float:
     picked = np.unique(np.linspace(0, len(motion.theta) - 1, 64).astype(int))
     rows = {name: getattr(motion, name)[picked] for name in ("theta", "q", "qd")}
     few = replace(motion, **rows, period=None)
-    places: dict[str, list[Array]] = {beam.name: [] for beam in structure.beams}
-    weights: dict[str, list[Array]] = {beam.name: [] for beam in structure.beams}
-    for placed in structure.elements:
-        along = placed.start + 0.5 * placed.length * (1.0 + _PLACES)
-        places[placed.beam.name].append(along / placed.beam.length)
-        weights[placed.beam.name].append(0.5 * placed.length * _WEIGHTS)
-    stations = {name: np.concatenate(own) for name, own in places.items()}
-    first, second = (evaluated(system, few, stations, m, ("axial", "moment")) for m in METHODS)
+    stations: dict[str, Array] = {}
+    weights = []
+    for beam in structure.beams:
+        own = [placed for placed in structure.elements if placed.beam is beam]
+        along = [placed.start + 0.5 * placed.length * (1.0 + _PLACES) for placed in own]
+        stations[beam.name] = np.concatenate(along) / beam.length
+        weights.append(np.concatenate([0.5 * placed.length * _WEIGHTS for placed in own]))
+    first, second = (Recovered(system, few, stations, m).values(_STRESSING) for m in METHODS)
     scale = float(system.parameters.get("elasticity", 1.0))
     wrong = total = 0.0
     for name, key in (("axial", "axial_stiffness"), ("moment", "bending_stiffness")):
-        flat = [
-            weight / (scale * getattr(structure.beam(beam).section, key))
-            for beam, own in weights.items()
-            for weight in np.concatenate(own)
-        ]
-        wrong += float(np.sum((first[name] - second[name]) ** 2 @ np.array(flat)))
-        total += float(np.sum(first[name] ** 2 @ np.array(flat)))
+        stiff = [scale * getattr(beam.section, key) for beam in structure.beams]
+        flat = np.concatenate([w / k for w, k in zip(weights, stiff, strict=True)])
+        wrong += float(np.sum((first[name] - second[name]) ** 2 @ flat))
+        total += float(np.sum(first[name] ** 2 @ flat))
     return min(wrong / total, 0.5) if total else 0.0
 
 
@@ -411,13 +403,12 @@ def stress(
     crank 52
     """
     require_method(method)
-    structure = required_structure(system)
-    chosen = stations_of(structure, stations)
-    levers = fibre_factors(system, chosen)
-    moving = beam_motion(system, motion)
-    own = stresses(system, moving, stations, method, levers)
-    still = DeferredGroup(partial(_still, system, moving, stations, method, levers))
-    doubt = partial(_doubt, system, moving, stations, method, levers, own)
+    chosen = stations_of(required_structure(system), stations)
+    factors = fibre_factors(system, chosen)
+    asked = Recovered(system, beam_motion(system, motion), stations, method)
+    own = stresses(asked, factors)
+    still = DeferredGroup(partial(_still, asked, factors))
+    doubt = partial(_doubt, asked, factors, own)
     return StressResult(
         method=method,
         links=tuple(station.beam for station in chosen),
@@ -426,40 +417,27 @@ def stress(
         bending=own[1],
         static_axial=still.later("axial"),
         static_bending=still.later("bending"),
-        period=moving.period,
-        **in_motion(system, moving, doubt, later=("motion_error", "mesh_error")),
+        period=asked.motion.period,
+        **in_motion(system, asked.motion, doubt, later=("motion_error", "mesh_error")),
     )
 
 
-def _still(
-    system: LinearPeriodic,
-    moving: BeamMotion,
-    stations: Stations,
-    method: str,
-    levers: tuple[Array, Array],
-) -> dict[str, Array]:
-    still = stresses(system, frozen(system, moving), stations, method, levers)
-    return dict(zip(("axial", "bending"), still, strict=True))
+def _still(asked: Recovered, factors: Array) -> dict[str, Array]:
+    still = replace(asked, motion=frozen(asked.system, asked.motion))
+    return dict(zip(("axial", "bending"), stresses(still, factors), strict=True))
 
 
-def _doubt(
-    system: LinearPeriodic,
-    moving: BeamMotion,
-    stations: Stations,
-    method: str,
-    levers: tuple[Array, Array],
-    own: tuple[Array, Array],
-) -> dict[str, float | str]:
-    axial, _, moment = propagated(system, moving, stations)
-    by_motion = float(np.max(levers[0]) * axial + np.max(levers[1]) * moment)
+def _doubt(asked: Recovered, factors: Array, own: Array) -> dict[str, float | str]:
+    axial, _, moment = asked.propagated()
+    by_motion = float(np.max(factors[0]) * axial + np.max(factors[1]) * moment)
     norm = "largest error of a stress over angles and stations [Pa]"
-    better, finer = compared(system, moving, stations, method, ("axial", "moment"))
-    by_mesh = largest_difference(own, _of_forces(better, levers))
+    better, finer = asked.compared(_STRESSING)
+    by_mesh = largest_difference(own, _of_forces(better, factors))
     if not finer:
         norm = f"{norm}, that of the mesh's frequencies apart"
-        if method == "equilibrium":
-            by_mesh *= float(np.sqrt(energy_gap(system, moving)))
-    largest = float(np.max(np.abs(own[0]) + np.abs(own[1])))
+        if asked.method == "equilibrium":
+            by_mesh *= float(np.sqrt(energy_gap(asked.system, asked.motion)))
+    largest = float(np.max(np.sum(np.abs(own), axis=0)))
     return {
         "error": by_motion + CAUTION * by_mesh + ROUNDING * largest,
         "error_norm": norm,

@@ -137,15 +137,15 @@ def _complete_section(
     if {"width", "thickness"} <= set(table):
         table.setdefault("area", table["width"] * table["thickness"])
         table.setdefault("second_moment", table["width"] * table["thickness"] ** 3 / 12.0)
-    problems = []
-    for key, fix in (
-        ("area", "give it, or width and thickness"),
-        ("second_moment", "give it, or width and thickness"),
-        ("modulus", "give it here or in [material]"),
-        ("density", "give it here or in [material]"),
-    ):
-        if key not in table:
-            problems.append(Problem(f"{where}.{key}", "nothing", "a positive value", fix))
+    needed = {
+        **dict.fromkeys(("area", "second_moment"), "give it, or width and thickness"),
+        **dict.fromkeys(("modulus", "density"), "give it here or in [material]"),
+    }
+    problems = [
+        Problem(f"{where}.{key}", "nothing", "a positive value", fix)
+        for key, fix in needed.items()
+        if key not in table
+    ]
     if needs_shear and "shear_stiffness" not in table and not problems:
         if "poisson" in material:
             nu = material["poisson"]

@@ -90,6 +90,7 @@ FLEXIBLE_COUPLER = Layout(
     links=LINKS[1:],
     parameters=_COUPLER_PARAMETERS,
     closed_in_modes=True,
+    system="systems.from_scene.coupler_system",
 )
 
 # What is uniform has no inertia of its own, and what is not straight when unloaded has a bow.
@@ -112,6 +113,7 @@ INEXTENSIBLE_COUPLER = replace(
     outputs=("motion", "variations"),
     parameters=_BENT_PARAMETERS,
     closed_in_modes=False,
+    system="systems.inextensible.inextensible_system",
 )
 INEXTENSIBLE_ROD = replace(
     INEXTENSIBLE_COUPLER,
@@ -133,24 +135,22 @@ INEXTENSIBLE_ROD = replace(
     parameters={},
 )
 
-_ROD_TABLES = (ROD_LINKS, ROD, OPERATION, chart_table(ROD_PARAMETERS))
 FLEXIBLE_ROD = Layout(
     "quick_return",
     tuple(name for mechanism, name in DERIVED_AS if mechanism == "quick_return"),
-    _ROD_TABLES,
+    (ROD_LINKS, ROD, OPERATION, chart_table(ROD_PARAMETERS)),
     flexible=("rod",),
     outputs=("stability", "forcing"),
     parameters=ROD_PARAMETERS,
     closed_in_modes=True,
+    system="systems.from_scene.rod_of_scene",
     named_drops=NAMED_DROPS["quick_return", "moving_basis"],
 )
-FREE_FREE_ROD = Layout(
-    "quick_return",
-    ("free_free",),
-    _ROD_TABLES,
-    flexible=("rod",),
+FREE_FREE_ROD = replace(
+    FLEXIBLE_ROD,
+    formulations=("free_free",),
     outputs=("motion", "variations"),
-    parameters=ROD_PARAMETERS,
+    closed_in_modes=False,
     named_drops=NAMED_DROPS["quick_return", "free_free"],
 )
 
@@ -181,8 +181,10 @@ HILL = Layout(
     ),
     outputs=("stability",),
     parameters=_HILL_PARAMETERS,
+    system="systems.from_scene.hill_system",
 )
 
+_BEAM_SYSTEM = "systems.beam_scenes.beams_of_scene"
 _BEAM_TABLES = (MATERIAL, JOINTS, MESH, DAMPING, ACTING_GRAVITY, OPERATION)
 
 
@@ -201,6 +203,7 @@ def _beams(mechanism: str, geometry: Table, links: tuple[str, ...]) -> Layout:
         flexible=links,
         parameters=parameters,
         closed_in_modes=True,
+        system=_BEAM_SYSTEM,
         named_drops=BEAM_DROPS,
     )
 
@@ -212,6 +215,7 @@ FRAME_OF_BEAMS = Layout(
     tuple(BEAM_FORMULATIONS),
     (NODES, MEMBERS, FRAME, MATERIAL, MESH, DAMPING, ACTING_GRAVITY),
     closed_in_modes=True,
+    system=_BEAM_SYSTEM,
     named_drops=BEAM_DROPS,
 )
 

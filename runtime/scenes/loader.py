@@ -128,7 +128,7 @@ def with_numbers(scene: Scene, numbers: Mapping[str, Any], *, checked: bool = Tr
     if checked:
         check_geometry(values, scene.layout)
     complete(values, scene.layout, checked=checked)
-    tables = ReadOnlyTable(scene.name, {k: _read_only(k, table) for k, table in values.items()})
+    tables = ReadOnlyTable(scene.name, {k: ReadOnlyTable(k, table) for k, table in values.items()})
     document = _copied(scene.document)
     _override(document, numbers)
     return Scene(scene.name, scene.title, scene.source, tables, scene.layout, document, given)
@@ -136,15 +136,6 @@ def with_numbers(scene: Scene, numbers: Mapping[str, Any], *, checked: bool = Tr
 
 def _copied(values: Mapping[str, Any]) -> dict[str, Any]:
     return {k: _copied(v) if isinstance(v, Mapping) else v for k, v in values.items()}
-
-
-def _read_only(name: str, table: Mapping[str, Any]) -> ReadOnlyTable:
-    """Return a table that cannot be changed, nor can the ones inside it."""
-    inner = {
-        key: _read_only(f"{name}.{key}", value) if isinstance(value, Mapping) else value
-        for key, value in table.items()
-    }
-    return ReadOnlyTable(name, inner)
 
 
 def _override(tables: dict[str, Any], overrides: Mapping[str, Any]) -> None:
@@ -230,7 +221,10 @@ Values = dict[str, dict[str, Any]]
 def complete(values: Values, layout: Layout, *, checked: bool = True) -> None:
     """Fill in what the given quantities determine; refuse those that contradict each other."""
     if layout.mechanism == "hill":
-        _pad_series(values["function"])
+        function = values["function"]
+        a, b = function["a"], function.get("b", ())
+        function["a"] = a + (0.0,) * (len(b) - len(a))
+        function["b"] = b + (0.0,) * (len(a) - len(b))
     if layout.formulations == tuple(BEAM_FORMULATIONS):
         complete_beams(values, layout.flexible)
     if "rod" in layout.flexible:
@@ -260,13 +254,6 @@ def complete(values: Values, layout: Layout, *, checked: bool = True) -> None:
                 if checked:
                     check_body(link, values[link])
     refuse(problems)
-
-
-def _pad_series(function: dict[str, Any]) -> None:
-    a, b = function["a"], function.get("b", ())
-    size = max(len(a), len(b))
-    function["a"] = a + (0.0,) * (size - len(a))
-    function["b"] = b + (0.0,) * (size - len(b))
 
 
 def _flexible_bar(bar: dict[str, Any], length: float) -> None:
@@ -307,14 +294,11 @@ def _complete_bar(
         raise bad(f"{link}.{given[0]}", "no mass", expected, "add the mass")
     if balanced:
         bar["first_moment"] = 0.0
-    if "mass" in bar:
-        _about_first_joint(bar, bar["mass"], length)
-
-
-def _about_first_joint(bar: dict[str, Any], mass: float, length: float) -> None:
-    """First moments and inertia about the first joint, from centre and inertia about it."""
-    moment = mass * bar["centre_along"] if "centre_along" in bar else mass * length / 2.0
-    bar.setdefault("first_moment", moment)
+    if "mass" not in bar:
+        return
+    mass = bar["mass"]
+    # About the first joint, from centre and inertia about it.
+    bar.setdefault("first_moment", mass * bar.get("centre_along", length / 2.0))
     if "centre_across" in bar:
         bar["transverse_moment"] = mass * bar["centre_across"]
     if "inertia_about_centre" in bar:

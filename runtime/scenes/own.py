@@ -12,6 +12,7 @@ from ..core.families import LinearPeriodic, Nonlinear
 from ..core.modules import find_module
 from ..systems import assemble
 from ..systems.driven import driven_system
+from ..systems.from_scene import origin
 
 if TYPE_CHECKING:
     from .scene import Scene
@@ -39,11 +40,10 @@ def own_system(scene: Scene) -> LinearPeriodic | Nonlinear:
         known = f"one of {sorted(numbers)}"
         fix = f"module {emitted.entry.module} takes it: declare it in [schema] and give it"
         raise BadInput(*(Problem(name, "nothing", known, fix) for name in missing))
-    origin = {"scene": scene.name, "scene_digest": scene.digest()}
     limits = _limits(scene, parameters)
     if driven:
         values = {name: numbers[name] for name in parameters}
-        return driven_system(emitted, values, limits=limits, provenance=origin)
+        return driven_system(emitted, values, limits=limits, provenance=origin(scene))
     return assemble(
         emitted.module,
         geometry={name: numbers[name] for name in sorted(arguments)},
@@ -51,7 +51,7 @@ def own_system(scene: Scene) -> LinearPeriodic | Nonlinear:
         modes=scene.model.get("modes"),
         drop=emitted.dropped,
         limits=limits,
-        provenance={**origin, **emitted.provenance},
+        provenance={**origin(scene), **emitted.provenance},
     )
 
 

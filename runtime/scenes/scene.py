@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from ...derive.spec import BEAM_FORMULATIONS, INEXTENSIBLE, ModelSpec
+from ...derive.spec import INEXTENSIBLE, ModelSpec
 from ..core.errors import bad, one_line
 from ..core.units import describe
 from .schema import Layout, Table
@@ -23,15 +23,6 @@ if TYPE_CHECKING:
     from ..linkages import Linkage
     from ..rigid import Machine
 
-# Where each mechanism's equations become a family object; imported when one is asked for.
-_BUILDERS = {
-    "four_bar": ("..systems.from_scene", "coupler_system"),
-    "hill": ("..systems.from_scene", "hill_system"),
-    "quick_return": ("..systems.from_scene", "rod_of_scene"),
-}
-_BEAM_BUILDER = ("..systems.beam_scenes", "beams_of_scene")
-_BENT_BUILDER = ("..systems.inextensible", "inextensible_system")
-_OWN_BUILDER = (".own", "own_system")
 LINKAGES = {"four_bar": "FourBar", "slider_crank": "SliderCrank", "quick_return": "QuickReturn"}
 _MISSING = object()
 
@@ -39,14 +30,17 @@ _MISSING = object()
 class ReadOnlyTable(Mapping[str, Any]):
     """A table of a scene that cannot be changed, its name known to messages.
 
-    By key: floats in SI units, tuples of them, whole numbers and texts.
+    By key: floats in SI units, tuples of them, whole numbers and texts, and tables of the same.
     """
 
     __slots__ = ("_name", "_values")
 
     def __init__(self, name: str, values: Mapping[str, Any]) -> None:
         self._name = name
-        self._values = dict(values)
+        self._values = {
+            key: ReadOnlyTable(f"{name}.{key}", value) if type(value) is dict else value
+            for key, value in values.items()
+        }
 
     def __getitem__(self, key: str) -> Any:
         """Return one value; a wrong key is refused with the ones that there are."""
@@ -163,11 +157,6 @@ class Scene:
         """The ``[model]`` table, defaults filled in."""
         return self["model"]
 
-    @property
-    def _declared(self) -> bool:
-        """True where the scene declares its own tables, for a model of the user's."""
-        return not self.layout.formulations
-
     def get(self, key: str, default: Any = _MISSING) -> Any:
         """Return the value of a dotted key, in SI units.
 
@@ -256,18 +245,13 @@ class Scene:
         BadInput
             If the scene is about rigid links alone, or its module was not emitted yet.
         """
-        mechanism = self.model["mechanism"]
-        if mechanism in LINKAGES and not self.layout.flexible and not self._declared:
+        if not self.layout.system:
             found = f"formulation '{self.model['formulation']}', in which nothing vibrates"
             fix = "use kinematics or forces, or choose a scene with a flexible link"
             raise bad(f"scene {self.name}", found, "a scene with a flexible link", fix)
-        module, function = _BUILDERS.get(mechanism, _OWN_BUILDER)
-        if self.layout.formulations == tuple(BEAM_FORMULATIONS):
-            module, function = _BEAM_BUILDER
-        if self.layout.formulations == INEXTENSIBLE:
-            module, function = _BENT_BUILDER
-        builder = getattr(importlib.import_module(module, __package__), function)
-        return builder(self)
+        module, _, function = self.layout.system.rpartition(".")
+        # Imported when it is asked for.
+        return getattr(importlib.import_module(f"..{module}", __package__), function)(self)
 
     def linear_system(self) -> LinearPeriodic:
         """Return the system of the scene for solvers that take the linear-periodic family alone.
@@ -297,7 +281,8 @@ class Scene:
         Raises ``BadInput`` if the scene has no linkage.
         """
         kind = LINKAGES.get(self.model["mechanism"])
-        if kind is None or self._declared:
+        # A scene of a model of the user's own declares its tables, in any formulation.
+        if kind is None or not self.layout.formulations:
             found = f"mechanism '{self.model['mechanism']}'"
             fix = "choose a scene with a [links] table"
             raise bad(f"scene {self.name}", found, f"a linkage: one of {sorted(LINKAGES)}", fix)

@@ -97,6 +97,7 @@ class Layout:
     links: tuple[str, ...] = ()  # those that may be called balanced
     parameters: Mapping[str, str] = field(default_factory=dict)  # what a chart may vary, dimensions
     closed_in_modes: bool = False  # where one emitted module serves any number of modes
+    system: str = ""  # what makes the system of a scene, below runtime; empty: nothing vibrates
     # Names for sets of terms left out, for model.drop.
     named_drops: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from functools import partial
 from itertools import chain, pairwise
 from typing import Any, get_args
 
@@ -17,7 +16,6 @@ from .layouts import LAYOUTS
 from .linkage_tables import chart_table
 from .schema import Key, Kind, Layout, Range, Table
 
-_Reader = Callable[[object, Key, str], Any]
 Values = dict[str, dict[str, Any]]
 
 
@@ -28,14 +26,13 @@ def validate(document: Mapping[str, Any]) -> tuple[Layout, Values]:
     in.
     """
     problems: list[Problem] = []
-    layouts = declared_layout(document, problems) or LAYOUTS
-    layout = _choose(document, layouts, problems)
+    layout = find_layout(document, problems)
     if layout is None:
         raise BadInput(*problems)
     _top_level(document, layout, problems)
     values: Values = {}
     for table in layout.all_tables():
-        read = _table(document, table, layout, problems)
+        read = _table(document.get(table.name), table, layout, problems)
         if read is not None:
             values[table.name] = read
     if {"formulation", "flexible"} <= set(values.get("model", {})):
@@ -47,12 +44,6 @@ def validate(document: Mapping[str, Any]) -> tuple[Layout, Values]:
         problems += _unusable_names(values.get("model", {}))
     refuse(list(dict.fromkeys(problems)))
     return layout, values
-
-
-def find_layout(document: Mapping[str, Any]) -> Layout | None:
-    """Return the layout that a scene's mechanism and formulation call for, as far as they tell."""
-    ignored: list[Problem] = []
-    return _choose(document, declared_layout(document, ignored) or LAYOUTS, ignored)
 
 
 def nearest(word: str, known: Iterable[str], otherwise: str, most: int = 3) -> str:
@@ -70,10 +61,15 @@ def show(value: object) -> str:
     return shown(value)
 
 
-def _choose(
-    document: Mapping[str, Any], layouts: Sequence[Layout], problems: list[Problem]
+def find_layout(
+    document: Mapping[str, Any], problems: list[Problem] | None = None
 ) -> Layout | None:
-    """Find the layout by mechanism and formulation; guess where only the latter is wrong."""
+    """Return the layout that a scene's mechanism and formulation call for, as far as they tell.
+
+    Guessed where only the formulation is wrong; what is wrong is added to ``problems``.
+    """
+    problems = [] if problems is None else problems
+    layouts = declared_layout(document, problems) or LAYOUTS
     model = document.get("model")
     mechanisms = list(dict.fromkeys(layout.mechanism for layout in layouts))
     if not isinstance(model, Mapping):
@@ -115,9 +111,8 @@ def _top_level(document: Mapping[str, Any], layout: Layout, problems: list[Probl
 
 
 def _table(
-    document: Mapping[str, Any], table: Table, layout: Layout, problems: list[Problem]
+    given: object, table: Table, layout: Layout, problems: list[Problem]
 ) -> dict[str, Any] | None:
-    given = document.get(table.name)
     if given is None:
         if not table.required:
             defaults = {key.name: key.default for key in table.keys if key.default is not None}
@@ -139,7 +134,7 @@ def _table(
             # Defaults are read, too: those that a scene declares may have units.
             value = given.get(key.name, key.default)
             with collecting(problems):
-                values[key.name] = _READERS[key.kind](value, key, where)
+                values[key.name] = _read(value, key, where)
         elif key.required:
             what = f"{key.meaning}: {_expectation(key)}"
             problems.append(Problem(where, "nothing", what, f"add it to [{table.name}]"))
@@ -156,7 +151,7 @@ def _named_tables(
         full = f"{table.name}.{name}"
         one = replace(table, name=full, named=False)
         if isinstance(content, Mapping):
-            found[name] = _table({full: content}, one, layout, problems)
+            found[name] = _table(content, one, layout, problems)
         else:
             fix = f"write [{table.name}.NAME] above the keys"
             problems.append(Problem(full, show(content), "a table under a name", fix))
@@ -208,13 +203,44 @@ def _expectation(key: Key) -> str:
     return f"{kind} of {list(key.choices)}" if key.choices else kind
 
 
-def _quantity(value: object, key: Key, where: str) -> float:
-    number = to_si(value, key.dimension, where)
-    _check_range(number, value, key, where)
-    return number
+def _read(value: object, key: Key, where: str) -> Any:
+    """Return what a file gives for a key, checked and in SI units; every wrong item is told."""
+    if not key.kind.endswith("s"):
+        return _read_one(value, key, where)
+    if not isinstance(value, (list, tuple)):
+        raise bad(where, show(value), _expectation(key), "put it in brackets: [...]")
+    if key.length is not None and len(value) != key.length:
+        raise bad(where, f"{len(value)} values", f"{key.length} values", "correct the list")
+    if key.kind == "quantities" and len(value) == 0:
+        raise bad(where, "an empty list", _expectation(key), "add a value")
+    if key.axis:  # see check_chart
+        return tuple(value)
+    problems: list[Problem] = []
+    found = []
+    for i, item in enumerate(value):
+        with collecting(problems):
+            found.append(_read_one(item, key, f"{where}[{i}]"))
+    refuse(problems)
+    if key.rising and any(b <= a for a, b in pairwise(found)):
+        raise bad(where, show(value), "values that increase", "sort them")
+    return tuple(found)
 
 
-def _check_range(number: float, value: object, key: Key, where: str) -> None:
+def _read_one(value: object, key: Key, where: str) -> Any:
+    if key.kind.startswith("text"):
+        if not isinstance(value, str):
+            raise bad(where, show(value), _expectation(key), "put it in quotes")
+        if key.choices and value not in key.choices:
+            fix = nearest(value, key.choices, "choose one of them")
+            raise bad(where, show(value), f"one of {list(key.choices)}", fix)
+        return value
+    if key.kind.startswith("count"):
+        # No text and no 2.0, whoever gives it: a count means the same in a file and in Python.
+        if isinstance(value, bool) or not isinstance(value, int):
+            raise bad(where, show(value), "a whole number", f"write {where} = 1")
+        number: float = value
+    else:
+        number = to_si(value, key.dimension, where)
     if not {"any": True, "positive": number > 0, "non-negative": number >= 0}[key.limit]:
         fix = f"give {DIMENSIONS[key.dimension].words} above 0"
         fix = "correct the sign" if number < 0 else fix
@@ -223,64 +249,7 @@ def _check_range(number: float, value: object, key: Key, where: str) -> None:
         raise bad(where, show(value), f"at least {key.least}", "make it larger")
     if key.most is not None and number > key.most:
         raise bad(where, show(value), f"at most {key.most}", "make it smaller")
-
-
-def _list(value: object, key: Key, where: str) -> Sequence[Any]:
-    if not isinstance(value, (list, tuple)):
-        raise bad(where, show(value), _expectation(key), "put it in brackets: [...]")
-    if key.length is not None and len(value) != key.length:
-        raise bad(where, f"{len(value)} values", f"{key.length} values", "correct the list")
-    return value
-
-
-def _quantities(value: object, key: Key, where: str) -> tuple[float, ...]:
-    items = _list(value, key, where)
-    if len(items) == 0:
-        raise bad(where, "an empty list", _expectation(key), "add a value")
-    if key.axis:  # see check_chart
-        return tuple(items)
-    numbers = _each(_quantity, items, key, where)
-    if key.rising and any(b <= a for a, b in pairwise(numbers)):
-        raise bad(where, show(value), "values that increase", "sort them")
-    return numbers
-
-
-def _count(value: object, key: Key, where: str) -> int:
-    # No text and no 2.0, whoever gives it: a count means the same in a file and in Python.
-    if isinstance(value, bool) or not isinstance(value, int):
-        raise bad(where, show(value), "a whole number", f"write {where} = 1")
-    _check_range(value, value, key, where)
-    return value
-
-
-def _text(value: object, key: Key, where: str) -> str:
-    if not isinstance(value, str):
-        raise bad(where, show(value), _expectation(key), "put it in quotes")
-    if key.choices and value not in key.choices:
-        fix = nearest(value, key.choices, "choose one of them")
-        raise bad(where, show(value), f"one of {list(key.choices)}", fix)
-    return value
-
-
-def _each(reader: _Reader, value: object, key: Key, where: str) -> tuple[Any, ...]:
-    """Return what a reader makes of every item of a list; every wrong one is told."""
-    problems: list[Problem] = []
-    found = []
-    for i, item in enumerate(_list(value, key, where)):
-        with collecting(problems):
-            found.append(reader(item, key, f"{where}[{i}]"))
-    refuse(problems)
-    return tuple(found)
-
-
-_READERS: dict[str, _Reader] = {
-    "quantity": _quantity,
-    "quantities": _quantities,
-    "count": _count,
-    "counts": partial(_each, _count),
-    "text": _text,
-    "texts": partial(_each, _text),
-}
+    return number
 
 
 def _unusable_names(model: Mapping[str, Any]) -> list[Problem]:
@@ -357,8 +326,15 @@ def declared_layout(
             tables.append(Table(name, f"declared in [schema.{name}]", keys, required=True))
     if parameters:
         tables.append(chart_table(parameters))
-    closed = schema.get("closed_in_modes") is True
-    return (Layout(mechanism, (), tuple(tables), parameters=parameters, closed_in_modes=closed),)
+    layout = Layout(
+        mechanism,
+        (),
+        tuple(tables),
+        parameters=parameters,
+        closed_in_modes=schema.get("closed_in_modes") is True,
+        system="scenes.own.own_system",
+    )
+    return (layout,)
 
 
 def _key(table: str, name: str, entry: object, problems: list[Problem]) -> Key:
@@ -376,10 +352,10 @@ def _key(table: str, name: str, entry: object, problems: list[Problem]) -> Key:
         entry = {}
     kind, dimension = entry.get("kind", "quantity"), entry.get("dimension", "dimensionless")
     limit, choices = entry.get("limit", "any"), entry.get("choices", [])
-    kinds, limits = list(get_args(Kind)), list(get_args(Range))
-    for found, allowed in ((kind, kinds), (dimension, sorted(DIMENSIONS)), (limit, limits)):
+    known = (kind, get_args(Kind)), (dimension, sorted(DIMENSIONS)), (limit, get_args(Range))
+    for found, allowed in known:
         if not isinstance(found, str) or found not in allowed:
-            refuse(repr(found)[:60], f"one of {allowed}", "correct it")
+            refuse(repr(found)[:60], f"one of {list(allowed)}", "correct it")
     unknown = sorted(set(entry) - set(KEY_FIELDS))
     if unknown:
         refuse(f"unknown {unknown}", f"some of {KEY_FIELDS}", "remove them")

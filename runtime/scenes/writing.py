@@ -40,7 +40,8 @@ def _key(name: str) -> str:
 def _value(value: Any) -> str:
     if isinstance(value, str):
         # The escapes of JSON are TOML's; what else is not printable may not stand in it.
-        return "".join(map(_escaped, json.dumps(value, ensure_ascii=False)))
+        text = json.dumps(value, ensure_ascii=False)
+        return "".join(c if c.isprintable() else f"\\U{ord(c):08X}" for c in text)
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, Mapping):
@@ -49,7 +50,3 @@ def _value(value: Any) -> str:
     if isinstance(value, (list, tuple)):
         return f"[{', '.join(map(_value, value))}]"
     return repr(value)
-
-
-def _escaped(character: str) -> str:
-    return character if character.isprintable() else f"\\U{ord(character):08X}"

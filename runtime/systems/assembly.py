@@ -6,7 +6,7 @@ import inspect
 from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import partial
 from types import ModuleType
-from typing import Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,21 +17,13 @@ from ..core.families.emitted import check_module, dropped_names
 from ..core.inputs import require_kind
 from ..core.trigonometric import Remembered
 
+if TYPE_CHECKING:
+    from .rod import MovingBasis
+
 Array = NDArray[np.float64]
 
 _Row: TypeAlias = tuple[str, int, str | None, str | None, str]
-_Kernel: TypeAlias = Remembered[dict[str, Array]]  # all terms share one evaluation
-
-
-class BasisArrays(Protocol):
-    """Shapes that depend on the place of a support, by the integrals that a module needs."""
-
-    @property
-    def size(self) -> int:
-        """Number of shapes."""
-
-    def array(self, name: str, place: Array) -> Array:
-        """Return integrals at places ``(nt,)`` of the support: ``(nt, n, n)`` or ``(nt, n)``."""
+_ANGLE = ""  # stands for the crank angle among names of arguments
 
 
 def assemble(
@@ -41,7 +33,7 @@ def assemble(
     parameters: Mapping[str, float],
     modes: int | None = None,
     external: Mapping[str, Callable[[Array], Array]] | None = None,
-    basis: BasisArrays | None = None,
+    basis: MovingBasis | None = None,
     drop: Collection[str] = (),
     **attributes: Any,
 ) -> LinearPeriodic:
@@ -98,22 +90,21 @@ def assemble(
     if drop:
         gone, come = dropped_names(module, drop)
         rows = (*(row for row in rows if row not in gone), *come)
-    integrals = _integrals(module, geometry, basis, rows)
-    modal = modal_arrays(module, modes, integrals, rows)
-    shared = _angle_kernels(module, geometry, external)
+    at_angles = _AtAngles(module, geometry, external, basis)
+    modal: Mapping[str, Array | Callable[[Array], Array]]
+    if hasattr(module, "BASIS") and basis is not None:
+        modal, size = {row[4]: partial(at_angles, row[4]) for row in rows}, basis.size
+    else:
+        modal = constant = modal_arrays(module, modes, rows)
+        size = len(constant[rows[0][4]])
+    if modes is not None and modes != size:
+        raise bad("modes", modes, f"{size}, the module's own", "ask for a module of that number")
     terms = []
     for array, power, scale, angle, mode in rows:
         function = modal[mode]
         if angle is not None:
-            kernel = shared.get(angle)
-            factor = partial(_of_kernel, kernel, angle) if kernel else external[angle]
-            function = partial(_multiplied, factor, function)
+            function = partial(_multiplied, partial(at_angles, angle), function)
         terms.append(Term(array, scale, function, power))
-    size = (
-        next(v.shape[0] for v in modal.values() if not callable(v)) if basis is None else basis.size
-    )
-    if modes is not None and modes != size:
-        raise bad("modes", modes, f"{size}, the module's own", "ask for a module of that number")
     if "scales" in module.RETURNS:
         used = inspect.signature(module.scales).parameters
         fixed = {name: geometry[name] for name in used if name in geometry}
@@ -139,99 +130,93 @@ def _scales(
     return _arrays_by_name(returned, function(**given, **fixed))
 
 
-def modal_arrays(
-    module: ModuleType, modes: int | None, integrals: _Integrals | None, rows: Iterable[_Row]
-) -> dict[str, Array | Callable[[Array], Array]]:
-    """Return the modal arrays, or integrals, of the rows of a module's terms."""
-    arrays: dict[str, Array | Callable[[Array], Array]] = {}
-    if integrals is not None:
-        arrays |= {name: partial(integrals, name) for name in integrals.names}
+def modal_arrays(module: ModuleType, modes: int | None, rows: Iterable[_Row]) -> dict[str, Array]:
+    """Return the modal arrays of the rows of a module's terms."""
+    arrays: dict[str, Array] = {}
     for kernel, dimension in (("modal_matrices", 2), ("modal_vectors", 1)):
         if kernel not in module.RETURNS:
             continue
         if modes is None or modes < 1:
             raise bad("modes", modes, "a number of modes, from 1", "set model.modes")
         numbers = np.ix_(*[np.arange(1.0, modes + 1.0)] * dimension)
-        values = _arrays_by_name(module.RETURNS[kernel], getattr(module, kernel)(*numbers))
+        values = by_name(module.RETURNS[kernel], getattr(module, kernel)(*numbers))
         shape = (modes,) * dimension
         arrays |= {
             name: np.array(np.broadcast_to(value, shape), dtype=float)
             for name, value in values.items()
         }
-    for _, _, _, _, name in rows:
-        if name not in arrays:
-            arrays[name] = np.array(getattr(module, name.upper()))
-    return arrays
+    own = {row[4] for row in rows} - set(arrays)
+    return arrays | {name: np.array(getattr(module, name.upper())) for name in own}
 
 
-def _integrals(
-    module: ModuleType,
-    geometry: Mapping[str, float],
-    basis: BasisArrays | None,
-    rows: Iterable[_Row],
-) -> _Integrals | None:
-    if not hasattr(module, "BASIS"):
-        return None
-    if basis is None:
-        raise bad("basis", "none", "shapes for the module's integrals", "pass a basis")
-    lengths = {name: geometry[name] for name in _arguments(module.place, geometry)}
-    return _Integrals(module, basis, lengths, {row[4] for row in rows})
-
-
-def _arguments(function: Callable[..., Any], given: Collection[str]) -> list[str]:
-    """Return the arguments behind the angle, refused where one is not given."""
-    wanted = list(inspect.signature(function).parameters)[1:]
-    missing = sorted(set(wanted) - set(given))
-    if missing:
-        raise bad("geometry", f"none for {missing}", "a value each", "supply them")
-    return wanted
-
-
-class _Integrals:
-    """Integrals over shapes that follow a support, each computed once for all terms."""
+class _AtAngles:
+    """Arrays of a module that depend on the crank angle, each computed once for all terms."""
 
     def __init__(
         self,
         module: ModuleType,
-        basis: BasisArrays,
         geometry: Mapping[str, float],
-        names: Collection[str],
+        external: Mapping[str, Callable[[Array], Array]],
+        basis: MovingBasis | None,
     ) -> None:
-        self.names = names
-        self._arrays = Remembered(partial(_at_place, module.place, geometry))
-        self._basis = basis
-        self._products: tuple[str, ...] = module.RETURNS.get("basis_products", ())
-        self._multiply: Callable[..., Any] = getattr(module, "basis_products", tuple)
+        self._geometry, self._external, self._basis = geometry, external, basis
+        self._found: Remembered[dict[str, Array]] = Remembered(_nothing_yet)
+        kernels = [name for name in module.RETURNS if name.endswith("_functions")]
+        # Of each name the emitted function that returns it among others, and its arguments.
+        self._functions: dict[str, tuple[Callable[..., Any], tuple[str, ...], list[str]]] = {}
+        if hasattr(module, "BASIS"):
+            if basis is None:
+                raise bad("basis", "none", "shapes for the module's integrals", "pass a basis")
+            kernels.append("place")
+            names = module.RETURNS.get("basis_products", ())
+            products = getattr(module, "basis_products", tuple)
+            wanted = [*inspect.signature(products).parameters] if names else []
+            self._functions |= dict.fromkeys(names, (products, names, wanted))
+        for kernel in kernels:
+            function, names = getattr(module, kernel), module.RETURNS[kernel]
+            _, *wanted = inspect.signature(function).parameters
+            missing = sorted(set(wanted) - {*geometry, *external})
+            if missing:
+                raise bad("geometry", f"none for {missing}", "a value each", "supply them")
+            self._functions |= dict.fromkeys(names, (function, names, [_ANGLE, *wanted]))
 
     def __call__(self, name: str, theta: Array) -> Array:
-        arrays = self._arrays(theta)
-        if name not in arrays:
-            if name in self._products:
-                arrays |= self._multiply_vectors(theta)
-            else:
-                arrays[name] = self._basis.array(name, arrays["place"])
-        return arrays[name]
+        """Return an array at crank angles, ``(nt, ...)``."""
+        found = self._found(theta)
+        if name not in found:
+            found |= self._computed(name, theta)
+        return found[name]
 
-    def _multiply_vectors(self, theta: Array) -> dict[str, Array]:
-        """Return the matrices that are products of vectors."""
-        given = {}
-        for argument in inspect.signature(self._multiply).parameters:
-            vector, _, end = argument.rpartition("_")
-            value = self(vector, theta)
-            given[argument] = value[..., None] if end == "row" else value[..., None, :]
-        return _arrays_by_name(self._products, self._multiply(**given))
+    def _computed(self, name: str, theta: Array) -> dict[str, Array]:
+        if name in self._external:
+            return {name: self._external[name](theta)}
+        if name not in self._functions:
+            assert self._basis is not None
+            return {name: self._basis.array(name, self("place", theta))}
+        function, names, wanted = self._functions[name]
+        found = _arrays_by_name(names, function(*(self._argument(w, theta) for w in wanted)))
+        if name == "place" and theta.dtype != object:
+            # A support at the very end, beyond it by rounding.
+            round_off = 8.0 * float(np.finfo(float).eps)
+            place = found[name]
+            found[name] = np.where(place <= 1.0 + round_off, np.minimum(place, 1.0), place)
+        return found
+
+    def _argument(self, name: str, theta: Array) -> Any:
+        if name == _ANGLE:
+            return theta
+        if name in self._geometry:
+            # Of the kind of the angles: where these are balls, nothing is rounded.
+            number = self._geometry[name]
+            return 0.0 * theta + number if theta.dtype == object else number
+        if name in self._external:
+            return self(name, theta)
+        vector, _, side = name.rpartition("_")
+        return self(vector, theta)[(..., None) if side == "row" else (..., None, slice(None))]
 
 
-def _at_place(
-    function: Callable[..., Array], geometry: Mapping[str, float], theta: Array
-) -> dict[str, Array]:
-    """Return the support's place at each angle, where its integrals are to be kept beside it."""
-    place = np.asarray(function(theta, **_beside(theta, geometry)))
-    if place.dtype == object:
-        return {"place": place}
-    # A support at the very end, beyond it by rounding.
-    round_off = 8.0 * float(np.finfo(float).eps)
-    return {"place": np.where(place <= 1.0 + round_off, np.minimum(place, 1.0), place)}
+def _nothing_yet(theta: Array) -> dict[str, Array]:
+    return {}
 
 
 def _arrays_by_name(names: tuple[str, ...], values: Any) -> dict[str, Array]:
@@ -241,47 +226,6 @@ def _arrays_by_name(names: tuple[str, ...], values: Any) -> dict[str, Array]:
 def by_name(names: tuple[str, ...], values: Any) -> dict[str, Any]:
     """Return what an emitted function gave by name; a single value stands alone."""
     return dict(zip(names, (values,) if len(names) == 1 else values, strict=True))
-
-
-def _kernel_values(
-    function: Callable[..., Any],
-    names: tuple[str, ...],
-    fixed: Mapping[str, float],
-    external: Mapping[str, Callable[[Array], Array]],
-    theta: Array,
-) -> dict[str, Array]:
-    passed = {name: given(theta) for name, given in external.items()}
-    return _arrays_by_name(names, function(theta, **_beside(theta, fixed), **passed))
-
-
-def _beside(theta: Array, numbers: Mapping[str, float]) -> Mapping[str, Any]:
-    """Return numbers of the kind of the angles: where these are balls, nothing is rounded."""
-    if theta.dtype != object:
-        return numbers
-    return {name: 0.0 * theta + value for name, value in numbers.items()}
-
-
-def _angle_kernels(
-    module: ModuleType,
-    geometry: Mapping[str, float],
-    external: Mapping[str, Callable[[Array], Array]],
-) -> dict[str, _Kernel]:
-    """Return, for each function of angle, the emitted kernel that gives it."""
-    kernels: dict[str, _Kernel] = {}
-    for kernel, names in module.RETURNS.items():
-        if not kernel.endswith("_functions"):
-            continue
-        function = getattr(module, kernel)
-        wanted = _arguments(function, {*geometry, *external})
-        fixed = {name: geometry[name] for name in wanted if name in geometry}
-        passed = {name: external[name] for name in wanted if name in external}
-        shared = Remembered(partial(_kernel_values, function, names, fixed, passed))
-        kernels |= dict.fromkeys(names, shared)
-    return kernels
-
-
-def _of_kernel(kernel: _Kernel, name: str, theta: Array) -> Array:
-    return kernel(theta)[name]
 
 
 def _multiplied(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +13,7 @@ from ..beams.section import Section
 from ..beams.structure import DIRECTIONS
 from ..core.families import LinearPeriodic
 from ..core.families.modal_damping import with_modal_damping
+from .from_scene import origin, pull_of_gravity
 
 if TYPE_CHECKING:
     from ..scenes import Scene
@@ -28,23 +28,33 @@ def beams_of_scene(scene: Scene) -> LinearPeriodic:
         "rayleigh": tuple(
             scene.get(f"damping.{key}", 0.0) for key in ("rayleigh_mass", "rayleigh_stiffness")
         ),
-        "gravity": _gravity(scene),
+        "gravity": pull_of_gravity(scene),
     }
-    kind = BEAM_FORMULATIONS[scene.model["formulation"]]
-    told = {"scene": scene.name, "scene_digest": scene.digest()}
-    if scene.model["mechanism"] == "frame":
-        system = _frame(scene, kind, told, options)
-    else:
-        links = scene.layout.flexible
-        system = linkage_system(
-            scene.mechanism(),
-            {link: section(scene[link]) for link in links},
-            elements={link: _elements(scene, scene[link]) for link in links},
-            kind=kind,
-            nodes={letter: _node(table) for letter, table in scene.get("joints", {}).items()},
-            provenance=told,
-            **options,
+    still = scene.model["mechanism"] == "frame"
+    tables = scene["members"] if still else {link: scene[link] for link in scene.layout.flexible}
+    nodes = scene["nodes"] if still else scene.get("joints", {})
+    sections = {name: section(table) for name, table in tables.items()}
+    common = scene["mesh"]["elements"]
+    parts: dict[str, Any] = {
+        "elements": {name: int(table.get("elements", common)) for name, table in tables.items()},
+        "kind": BEAM_FORMULATIONS[scene.model["formulation"]],
+        "nodes": {name: _node(table) for name, table in nodes.items()},
+        "provenance": origin(scene),
+    }
+    if still:
+        structure = frame(
+            {name: table["place"] for name, table in nodes.items()},
+            {name: (table["start"], table["end"]) for name, table in tables.items()},
+            sections,
+            supports={name: table.get("held", ()) for name, table in nodes.items()},
+            pins=[name for name, table in nodes.items() if table.get("pinned") == "yes"],
+            **parts,
         )
+        system = linear_system(structure, **options)
+        if scene["frame"]["axial"] == "rigid":
+            system = without_stretching(system)
+    else:
+        system = linkage_system(scene.mechanism(), sections, **parts, **options)
     ratio = scene.get("damping.ratio", 0.0)
     return with_modal_damping(system, ratio) if ratio else system
 
@@ -54,29 +64,6 @@ def section(table: Mapping[str, Any]) -> Section:
     names = ("area", "second_moment", "modulus", "density", "thickness", "shear_stiffness")
     given = {name: table[name] for name in names if name in table}
     return Section(**given, retardation=table.get("retardation_time", 0.0))
-
-
-def _frame(
-    scene: Scene, kind: str, told: Mapping[str, str], options: Mapping[str, Any]
-) -> LinearPeriodic:
-    nodes, members = scene["nodes"], scene["members"]
-    structure = frame(
-        {name: table["place"] for name, table in nodes.items()},
-        {name: (table["start"], table["end"]) for name, table in members.items()},
-        {name: section(table) for name, table in members.items()},
-        supports={name: table.get("held", ()) for name, table in nodes.items()},
-        pins=[name for name, table in nodes.items() if table.get("pinned") == "yes"],
-        elements={name: _elements(scene, table) for name, table in members.items()},
-        kind=kind,
-        nodes={name: _node(table) for name, table in nodes.items()},
-        provenance=told,
-    )
-    system = linear_system(structure, **options)
-    return without_stretching(system) if scene["frame"]["axial"] == "rigid" else system
-
-
-def _elements(scene: Scene, table: Mapping[str, Any]) -> int:
-    return int(table.get("elements", scene["mesh"]["elements"]))
 
 
 def _node(table: Mapping[str, Any]) -> dict[str, Any]:
@@ -89,11 +76,3 @@ def _node(table: Mapping[str, Any]) -> dict[str, Any]:
         if given:
             found[group] = given
     return found
-
-
-def _gravity(scene: Scene) -> tuple[float, float]:
-    direction = scene.get("gravity.direction", None)
-    if direction is None:
-        return 0.0, 0.0
-    size = scene["gravity"]["acceleration"]
-    return size * math.cos(direction), size * math.sin(direction)

@@ -25,46 +25,25 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ClosedForm:
-    """An emitted module, and what its functions are given besides the numbers of a scene.
+    """An emitted module, and what its functions are given besides the numbers of a scene."""
 
-    Attributes
-    ----------
-    module : module
-        Emitted, with separated terms whose modal arrays are constant.
-    modes : int or None
-        Number of modes, where it serves any.
-    functions : mapping
-        Values at crank angles by name, of functions that the module wants passed in.
-    numbers : callable
-        From a scene, with numbers of any kind, to the arguments of the emitted functions.
-    """
-
-    module: ModuleType
-    modes: int | None
+    module: ModuleType  # with separated terms whose modal arrays are constant
+    modes: int | None  # number of modes, where it serves any
+    # By name, of the crank angle, what the module wants passed in.
     functions: Mapping[str, Callable[[Array], Array]]
+    # From a scene, with numbers of any kind, to the arguments of the emitted functions.
     numbers: Callable[[Scene], Mapping[str, Any]]
 
     def arrays(
         self, numbers: Mapping[str, Any], theta: Array, wanted: Collection[str]
     ) -> dict[tuple[str, int], Any]:
-        """Return arrays of the equation by name and extra power of the speed.
+        """Return the wanted arrays of the equation by name and extra power of the speed.
 
-        Parameters
-        ----------
-        numbers : mapping
-            As :attr:`numbers` tells, some of them changed.
-        theta : ndarray
-            Crank angles [rad], ``(nt,)``.
-        wanted : collection of str
-            Names of the arrays.
-
-        Returns
-        -------
-        dict
-            ``(nt, n, n)`` each, or ``(nt, n)``; nt is 1 where it is constant.
+        For ``numbers`` as the field tells, some of them changed, at crank angles ``(nt,)`` [rad]:
+        ``(nt, n, n)`` each, or ``(nt, n)``; nt is 1 where it is constant.
         """
         rows = [row for row in self.module.TERMS if row[0] in wanted]
-        modal: Any = modal_arrays(self.module, self.modes, None, rows)
+        modal: Any = modal_arrays(self.module, self.modes, rows)
         factors: dict[Any, Any] = {None: np.ones(1)}
         factors |= {name: function(theta) for name, function in self.functions.items()}
         for kernel, names in self.module.RETURNS.items():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 
 # As in the tables of a scene; a first moment may have either sign.
-_COUPLER_LIMITS = {
+COUPLER_LIMITS = {
     **dict.fromkeys(("bending_stiffness", "mass_per_length"), "positive"),
     **dict.fromkeys(("damping", "coupler_inertia", "follower_inertia"), "non-negative"),
 }
@@ -40,10 +41,10 @@ def coupler_system(scene: Scene) -> LinearPeriodic:
         parameters=coupler_parameters(scene),
         modes=modes,
         labels=tuple(f"Y{m}/l3" for m in range(1, modes + 1)),
-        limits=_COUPLER_LIMITS,
+        limits=COUPLER_LIMITS,
         reference_length=linkage.lengths["coupler"],
         shape=partial(_pinned_modes, modes),
-        provenance={**_origin(scene), **emitted.provenance, "nonlinear": "inextensible"},
+        provenance={**origin(scene), **emitted.provenance, "nonlinear": "inextensible"},
     )
 
 
@@ -51,9 +52,7 @@ def coupler_parameters(scene: Scene) -> dict[str, Any]:
     """Return the inertial and elastic parameters of a coupler, those of the emitted module."""
     coupler = scene["coupler"]
     return {
-        "bending_stiffness": coupler["bending_stiffness"],
-        "mass_per_length": coupler["mass_per_length"],
-        "damping": coupler["damping"],
+        **{name: coupler[name] for name in ("bending_stiffness", "mass_per_length", "damping")},
         "coupler_inertia": coupler["inertia"],
         "coupler_first_moment": coupler["first_moment"],
         "follower_inertia": scene["follower"]["inertia"],
@@ -76,7 +75,7 @@ def hill_system(scene: Scene) -> LinearPeriodic:
         external={"f": fourier_series(scene)},
         limits={"damping": "non-negative"},
         labels=("y",),
-        provenance={**_origin(scene), **emitted.provenance},
+        provenance={**origin(scene), **emitted.provenance},
     )
 
 
@@ -93,18 +92,20 @@ def rod_of_scene(scene: Scene) -> LinearPeriodic | Constrained:
     """
     scene.mechanism().require_full_turn()
     links, rod = scene["links"], scene["rod"]
-    numbers = {
+    given = {
         "crank_ratio": links["crank"] / links["frame"],
         "frame": links["frame"],
         "length": links["rod"],
         "bending_stiffness": rod["bending_stiffness"],
         "mass_per_length": rod["mass_per_length"],
+        "drop": tuple(scene.model["drop"]),
+        "provenance": origin(scene),
     }
     free_free = scene.model["formulation"] == "free_free"
-    return _floating_rod(scene, numbers) if free_free else _linear_rod(scene, numbers)
+    return _floating_rod(scene, given) if free_free else _linear_rod(scene, given)
 
 
-def _linear_rod(scene: Scene, numbers: dict[str, float]) -> LinearPeriodic:
+def _linear_rod(scene: Scene, given: dict[str, Any]) -> LinearPeriodic:
     from .rod.linear import rod_system
 
     rod = scene["rod"]
@@ -112,33 +113,22 @@ def _linear_rod(scene: Scene, numbers: dict[str, float]) -> LinearPeriodic:
     internal = rod["relaxation_time"] * rod["bending_stiffness"]
     ratio, law = rod["damping_ratio"], rod["damping_law"]
     if ratio and law != "modal":
-        first = _first_frequency(numbers)
+        from .rod.overhang import OverhangBasis
+
+        # The first natural frequency [rad/s] of the rod held still at the base length.
+        still = {name: given[name] for name in ("length", "bending_stiffness", "mass_per_length")}
+        found = OverhangBasis(1).frequencies(given["frame"] / given["length"], **still)
+        first = float(found.frequencies[0, 0])
         if law == "viscous":
             damping = 2.0 * ratio * first * rod["mass_per_length"]
         else:
             internal = 2.0 * ratio / first * rod["bending_stiffness"]
-    system = rod_system(
-        scene.model["formulation"].removesuffix("_linear"),
-        int(scene.model["modes"]),
-        **numbers,
-        damping=damping,
-        internal_damping=internal,
-        drop=tuple(scene.model["drop"]),
-        provenance=_origin(scene),
-    )
+    basis, modes = scene.model["formulation"].removesuffix("_linear"), int(scene.model["modes"])
+    system = rod_system(basis, modes, **given, damping=damping, internal_damping=internal)
     return with_modal_damping(system, ratio) if ratio and law == "modal" else system
 
 
-def _first_frequency(numbers: dict[str, float]) -> float:
-    """Return the first natural frequency [rad/s] of the rod held still at the base length."""
-    from .rod.overhang import OverhangBasis
-
-    rod = {name: numbers[name] for name in ("length", "bending_stiffness", "mass_per_length")}
-    first = OverhangBasis(1).frequencies(numbers["frame"] / numbers["length"], **rod)
-    return float(first.frequencies[0, 0])
-
-
-def _floating_rod(scene: Scene, numbers: dict[str, float]) -> Constrained:
+def _floating_rod(scene: Scene, given: dict[str, Any]) -> Constrained:
     from .rod.floating import free_free_rod
 
     rod = scene["rod"]
@@ -151,14 +141,18 @@ def _floating_rod(scene: Scene, numbers: dict[str, float]) -> Constrained:
     if speed is None:
         fix = "add it: the constrained equations hold at one crank speed"
         raise bad("operation.speed", "nothing", "the crank speed, such as '100 rad/s'", fix)
-    return free_free_rod(
-        int(scene.model["modes"]),
-        **numbers,
-        speed=speed,
-        drop=tuple(scene.model["drop"]),
-        provenance=_origin(scene),
-    )
+    return free_free_rod(int(scene.model["modes"]), **given, speed=speed)
 
 
-def _origin(scene: Scene) -> dict[str, str]:
+def origin(scene: Scene) -> dict[str, str]:
+    """Return what results of a scene say of it."""
     return {"scene": scene.name, "scene_digest": scene.digest()}
+
+
+def pull_of_gravity(scene: Scene) -> tuple[float, float]:
+    """Return the acceleration of free fall [m/s^2] along x and y; 0 where the machine lies flat."""
+    gravity = scene["gravity"]
+    if "direction" not in gravity:
+        return 0.0, 0.0
+    size, direction = gravity["acceleration"], gravity["direction"]
+    return size * math.cos(direction), size * math.sin(direction)

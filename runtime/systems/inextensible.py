@@ -18,6 +18,7 @@ from ..core.families.nonlinear import Drive, Equations, Nonlinear, Reduced
 from ..core.families.stations import AtStations, Stations
 from ..core.modules import find_module
 from .driven import Driven, nothing_held
+from .from_scene import COUPLER_LIMITS, origin, pull_of_gravity
 
 if TYPE_CHECKING:
     from ..scenes import Scene
@@ -26,11 +27,8 @@ _HARMONICS: ModuleType = beam_tangent_harmonics
 # Stations of the coupler: with amplitudes up to 0.7 / k^1.5 of the tangent's angle what is left of
 # the equations is right to 1e-13 (one mode) to 5e-12 (five).
 _LEAST, _PER_MODE = 8, 4
-_LIMITS = {
-    **dict.fromkeys(("frame", "crank", "coupler", "follower"), "positive"),
-    **dict.fromkeys(("bending_stiffness", "mass_per_length", "slider_mass"), "positive"),
-    **dict.fromkeys(("damping", "follower_inertia"), "non-negative"),
-}
+_POSITIVE = ("frame", "crank", "coupler", "follower", "slider_mass")
+_LIMITS = {**COUPLER_LIMITS, **dict.fromkeys(_POSITIVE, "positive")}
 
 
 @lru_cache(maxsize=32)
@@ -143,22 +141,15 @@ def inextensible_system(scene: Scene) -> Nonlinear:
     linkage.require_full_turn()
     emitted = find_module(scene.model_spec())
     coupler, modes = scene["coupler"], int(scene.model["modes"])
-    direction, pull = scene.get("gravity.direction", None), scene["gravity"]["acceleration"]
-    parameters = {
-        **linkage.lengths,
-        "bending_stiffness": coupler["bending_stiffness"],
-        "mass_per_length": coupler["mass_per_length"],
-        "damping": coupler["damping"],
-        "bow": coupler["bow"],
-        "gravity_x": 0.0 if direction is None else pull * np.cos(direction),
-        "gravity_y": 0.0 if direction is None else pull * np.sin(direction),
-    }
+    own = ("bending_stiffness", "mass_per_length", "damping", "bow")
+    parameters = {**linkage.lengths, **{name: coupler[name] for name in own}}
+    parameters["gravity_x"], parameters["gravity_y"] = pull_of_gravity(scene)
     if "slider_mass" in emitted.module.PARAMETERS:
         parameters["slider_mass"] = scene["slider"]["mass"]
     else:
         follower = scene["follower"]
         parameters["follower_inertia"] = follower["inertia"]
-        if direction is not None and "first_moment" not in follower:
+        if "direction" in scene["gravity"] and "first_moment" not in follower:
             expected, fix = "the follower's, for gravity pulls at it", "add it (0 if balanced)"
             raise bad("follower.first_moment", "nothing", expected, fix)
         parameters["follower_first_moment"] = follower.get("first_moment", 0.0)
@@ -178,5 +169,5 @@ def inextensible_system(scene: Scene) -> Nonlinear:
         watch=made.largest,
         unit="m",
         limits=_LIMITS,
-        provenance={"scene": scene.name, "scene_digest": scene.digest(), **emitted.provenance},
+        provenance={**origin(scene), **emitted.provenance},
     )

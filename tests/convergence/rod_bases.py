@@ -38,7 +38,7 @@ def frequencies(basis, place: float) -> np.ndarray:
 
 def frequency_error(basis, place: float, mode: int) -> float:
     """Return the relative error of one frozen frequency; mode from 1."""
-    exact = rods.overhang_roots(np.array([place]), mode)[0, -1] ** 2
+    exact = rods.OverhangBasis(mode).roots(np.array([place]))[0, -1] ** 2
     return float(abs(frequencies(basis, place)[mode - 1] / exact - 1))
 
 

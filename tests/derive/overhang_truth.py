@@ -9,7 +9,7 @@ import mpmath
 import numpy as np
 import overhang_reference
 from elastolink.generated import quick_return_overhang_modes as emitted
-from elastolink.runtime.systems.rod import overhang_roots
+from elastolink.runtime.systems.rod import OverhangBasis
 from judging import Point
 
 # Of the hyperbolic functions of the 60th root determinants lose some 250.
@@ -34,7 +34,7 @@ NAMED = {
 
 def exact_root(place, mode):
     """Return a root to many digits, next to the computed one."""
-    start = overhang_roots(place, mode)[0, -1]
+    start = OverhangBasis(mode).roots(np.array([place]))[0, -1]
     with mpmath.workdps(DIGITS):
         return overhang_reference.root(mpmath.mpf(place), float(start))
 

@@ -12,7 +12,7 @@ import pytest
 from beam_motions import elastic_linkage, periodic_motion, rocking_bar
 from elastolink.runtime.periodic.periodic_motion import quiet_state
 from elastolink.runtime.recovery import BeamMotion, beam_energies, elastic_coupler_curve
-from elastolink.runtime.recovery.beam_forces import stations_of
+from elastolink.runtime.recovery.beam_forces import Recovered, stations_of
 from elastolink.runtime.recovery.finer_mesh import intervals_for, solved
 from elastolink.runtime.recovery.stresses import fibre_factors, largest_difference, stresses
 from honesty import over_scenes
@@ -54,7 +54,7 @@ def pairs_of(rng, kind, elements):
         q, qd = solved(true, speed, intervals, len(found.theta))
         motion = BeamMotion(theta=found.theta, q=q, qd=qd, speed=speed, period=2 * np.pi)
     factors = fibre_factors(true, stations_of(true.structure, PLACES))
-    exact = stresses(true, motion, PLACES, "equilibrium", factors)
+    exact = stresses(Recovered(true, motion, PLACES, "equilibrium"), factors)
     out = {
         "stress": (
             found.error,

@@ -11,7 +11,7 @@ from beam_motions import elastic_linkage, peaks, periodic_motion
 from elastolink.runtime.core.trigonometric import differentiated, even_angles, resampled
 from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.recovery import BeamMotion
-from elastolink.runtime.recovery.beam_forces import stations_of
+from elastolink.runtime.recovery.beam_forces import Recovered, stations_of
 from elastolink.runtime.recovery.stress_over_speed import Fibres
 from elastolink.runtime.recovery.stresses import fibre_factors, stresses
 from honesty import covers, over_scenes
@@ -65,7 +65,8 @@ def exact_maxima(system, speed, method, count=160, fine=1024):
     theta, qd = even_angles(system.period, fine), speed * differentiated(q, system.period)
     motion = BeamMotion(theta=theta, q=q, qd=qd, speed=speed, period=system.period)
     stations = stations_of(system.structure, STATIONS)
-    axial, bending = stresses(system, motion, STATIONS, method, fibre_factors(system, stations))
+    asked = Recovered(system, motion, STATIONS, method)
+    axial, bending = stresses(asked, fibre_factors(system, stations))
     fibres = np.concatenate([axial + bending, axial - bending], axis=1)
     top = peaks(fibres, 16 * fine)
     links = np.array([station.beam for station in stations] * 2)

@@ -11,7 +11,9 @@ from elastolink.derive.models import beam_elements as elements
 from elastolink.derive.models import beam_shapes
 from elastolink.derive.models.beam_shapes import t, u, v
 from elastolink.derive.variational import hamilton
-from elastolink.runtime.beams.elements import element_arrays, shape_functions
+from elastolink.generated import beam_shapes_cubic
+from elastolink.runtime.beams.elements import element_arrays
+from elastolink.runtime.core.families.emitted import array_function
 from elastolink.runtime.linkages import FourBar
 from scipy.integrate import solve_ivp
 from seed_ledger import Ledger, by_differences, hold, holds, point_by_point, quoted, same
@@ -295,8 +297,8 @@ def rotation(angle):
 
 def shapes(place):
     """Return N at a place, shape (2, 6)."""
-    found = shape_functions("cubic", np.array([place / LENGTH]), LENGTH)
-    return np.stack(found, axis=1)[0]
+    found = array_function(beam_shapes_cubic, "shapes")(place / LENGTH, LENGTH)
+    return np.concatenate([found["u"], found["v"]])
 
 
 def path(t):

@@ -1,13 +1,14 @@
 """Beam elements and layered sections over the range of doubles: right, or refused in words."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from beam_reference import rigid_field
 from elastolink.runtime.beams.elements import (
     KINDS,
     element_arrays,
-    section_rotation,
-    shape_functions,
+    shapes_of,
 )
 from elastolink.runtime.beams.layered import ElasticLayer, ViscoelasticLayer, sandwich_section
 from elastolink.runtime.core.errors import BadInput
@@ -65,17 +66,17 @@ def test_rigid_motions_and_mass_whatever_the_size(data, kind):
 @given(st.data(), st.sampled_from(KINDS), st.floats(0.0, 1.0), ANY)
 @SOME
 def test_shapes_anywhere(data, kind, place, length):
-    stiff = {"bending_stiffness": data.draw(ANY), "shear_stiffness": data.draw(ANY)}
+    section = SimpleNamespace(bending_stiffness=data.draw(ANY), shear_stiffness=data.draw(ANY))
+    placed = SimpleNamespace(length=length, beam=SimpleNamespace(kind=kind, section=section))
     try:
-        found = [shape_functions(kind, place, length, k, **stiff) for k in range(4)]
-        turned = section_rotation(kind, place, length, **stiff)
+        found = shapes_of(placed, np.array([place]))
     except BadInput as refusal:
         assert "\n" not in str(refusal)
         return
-    assert np.sum(found[0][0]) == pytest.approx(1.0, rel=1e-14)
+    assert np.sum(found["u"]) == pytest.approx(1.0, rel=1e-14)
     across = rigid_field(kind, (0.0, 1.0), (0.0, 1.0), 0.0)
-    assert (found[0][1] @ across)[0] == pytest.approx(1.0, rel=1e-12)
-    assert turned.shape == (1, len(across))
+    assert (found["v"] @ across)[0] == pytest.approx(1.0, rel=1e-12)
+    assert found["rotation"].shape == (1, len(across))
 
 
 def sandwich(drawn, name="frequency"):

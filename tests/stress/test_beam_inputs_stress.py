@@ -109,8 +109,6 @@ CALLS = (
         },
     ),
     (beams.element_arrays, {"kind": "cubic", **MEMBER}),
-    (beams.shape_functions, {"kind": "cubic", "xi": [0.1], "length": 1.0, "derivative": 0}),
-    (beams.section_rotation, {"kind": "cubic", "xi": [0.1], "length": 1.0, "derivative": 0}),
     (
         beams.sandwich_section,
         {"base": OUTER, "core": CORE, "cover": OUTER, "width": 0.02, "frequency": 100.0},

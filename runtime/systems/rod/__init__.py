@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from .free_free import FreeFreeModes as FreeFreeModes
     from .linear import rod_system as rod_system
     from .overhang import OverhangBasis as OverhangBasis
-    from .overhang import overhang_roots as overhang_roots
     from .polynomials import PolynomialBasis as PolynomialBasis
     from .polynomials import TwoSegmentBasis as TwoSegmentBasis
 
@@ -30,7 +29,7 @@ __all__ = on_first_use(
         "floating": "FreeFreeRod free_free_rod",
         "free_free": "FreeFreeBasis FreeFreeModes",
         "linear": "rod_system",
-        "overhang": "OverhangBasis overhang_roots",
+        "overhang": "OverhangBasis",
         "polynomials": "PolynomialBasis TwoSegmentBasis",
     },
 )

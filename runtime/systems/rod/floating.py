@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -64,13 +65,10 @@ class FreeFreeRod(Constrained):
         motion = self.linkage.motion(self.speed * np.asarray(t, dtype=float), self.speed)
         half = self.linkage.rod / 2.0
         sin, cos = np.sin(motion.theta4), np.cos(motion.theta4)
-        q = np.zeros((*motion.theta4.shape, self.size))
-        qd = np.zeros_like(q)
+        q, qd = np.zeros((2, *motion.theta4.shape, self.size))
         q[..., 0], q[..., 1], q[..., 2] = half * cos, half * sin, motion.theta4
-        qd[..., 0] = -half * sin * motion.omega4
-        qd[..., 1] = half * cos * motion.omega4
-        qd[..., 2] = motion.omega4
-        return q, qd
+        qd[..., 0], qd[..., 1], qd[..., 2] = -half * sin, half * cos, 1.0
+        return q, qd * np.asarray(motion.omega4)[..., None]
 
     def energy(self, q: Array, qd: Array, t: ArrayLike = 0.0) -> Array:
         """Return kinetic and strain energy [J], Beale & Scott (37) and (40); shape batch.
@@ -290,35 +288,26 @@ class _AtBlock:
     def __init__(self, modes: FreeFreeModes, linkage: QuickReturn, speed: float) -> None:
         self._modes, self._speed = modes, speed
         self._crank, self._frame = linkage.crank / linkage.rod, linkage.frame / linkage.rod
-        self._last: tuple[float, float, tuple[Array, ...]] | None = None
-        self._last_batch: tuple[object, tuple[Array, ...]] | None = None
+        self._last: tuple[object, tuple[Array, ...]] | None = None
 
     def modes(self, order: int) -> Callable[[Array, Array], ArrayLike]:
         """Return a derivative of the modes as a function of coordinates and time."""
+        return lambda q, t: self._rows(q, t)[order]
 
-        def values(q: Array, t: Array) -> ArrayLike:
-            if q.ndim == 1 and (isinstance(t, float) or t.ndim == 0):
-                return self._single(float(q[2]), float(t))[order]
-            return self._batch(q[..., 2], t)[order]
-
-        return values
-
-    def _single(self, gamma: float, t: float) -> tuple[Array, ...]:
-        last = self._last
-        if last is None or last[0] != gamma or last[1] != t:
+    def _rows(self, q: Array, t: Any) -> tuple[Array, ...]:
+        gamma: Any
+        key: tuple[object, ...]
+        single = q.ndim == 1 and (isinstance(t, float) or t.ndim == 0)
+        if single:
             # Plain floats are several times faster than arrays of no dimension.
-            turned = math.cos(gamma - t * self._speed)
-            rows = self._modes.at(self._crank * turned + self._frame * math.cos(gamma))
-            self._last = last = (gamma, t, rows)
-        return last[2]
-
-    def _batch(self, gamma: Array, t: Array) -> tuple[Array, ...]:
-        last = self._last_batch
-        # Bytes are compared several times faster than small arrays.
-        key = (gamma.shape, gamma.tobytes(), np.shape(t), np.asarray(t).tobytes())
-        if last is None or last[0] != key:
+            key = gamma, t = float(q[2]), float(t)
+        else:
+            # Bytes are compared several times faster than small arrays.
+            gamma = q[..., 2]
+            key = gamma.shape, gamma.tobytes(), np.shape(t), np.asarray(t).tobytes()
+        if self._last is None or self._last[0] != key:
             # The first part of the loop (44): the distance of the block from the pin.
-            turned = np.cos(gamma - t * self._speed)
-            rows = self._modes(self._crank * turned + self._frame * np.cos(gamma))
-            self._last_batch = last = (key, rows)
-        return last[1]
+            cos = math.cos if single else np.cos
+            place = self._crank * cos(gamma - t * self._speed) + self._frame * cos(gamma)
+            self._last = key, self._modes.at(place) if single else self._modes(place)
+        return self._last[1]

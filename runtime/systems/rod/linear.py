@@ -100,21 +100,19 @@ def rod_system(
         "damping": damping,
         "internal_damping": internal_damping,
     }
-    if not isinstance(basis, str) and not all(hasattr(basis, name) for name in ("array", "labels")):
+    shapes: MovingBasis
+    if isinstance(basis, str):
+        require_one_of("basis", basis, BASES)
+        module, kind = BASES[basis]
+        shapes = getattr(import_module(module, __package__), kind)(modes)
+    elif all(hasattr(basis, name) for name in ("array", "labels")):
+        shapes = basis
+    else:
         fix = f"choose one of {list(BASES)}"
         raise bad("basis", type(basis).__name__, "a name or a MovingBasis", fix)
-    shapes = moving_basis(basis, modes) if isinstance(basis, str) else basis
     dropped = require_drop(drop, DROPPED)
     spec = ModelSpec("quick_return", "moving_basis", flexible=("rod",), drop=dropped)
     return _assembled(shapes, parameters, find_module(spec), dict(provenance or {}), geometry)
-
-
-def moving_basis(name: str, modes: int) -> MovingBasis:
-    """Return the basis of a name with a number of shapes."""
-    require_one_of("basis", name, BASES)
-    module, kind = BASES[name]
-    basis: MovingBasis = getattr(import_module(module, __package__), kind)(modes)
-    return basis
 
 
 def _assembled(
@@ -137,17 +135,13 @@ def _assembled(
         drop=emitted.dropped,
         labels=basis.labels,
         reference_length=length,
-        provenance={**origin, **emitted.provenance},
-    )
-    return replace(
-        system,
         limits={name: "non-negative" if name in free else "positive" for name in parameters},
-        geometry=dict(geometry),
         rebuild=partial(_assembled, basis, parameters, emitted, origin),
         moving_shape=partial(_shapes, basis, linkage),
+        provenance={**origin, **emitted.provenance},
     )
+    return replace(system, geometry=dict(geometry))
 
 
 def _shapes(basis: MovingBasis, linkage: QuickReturn, x: Array, theta: Array) -> Array:
-    """Return the shapes at places x/L and crank angles, ``(nt, nx, n)``."""
     return basis.shapes(x, linkage.motion(theta).slide / linkage.rod)

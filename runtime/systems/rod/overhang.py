@@ -30,6 +30,16 @@ _pair_integrals: _Emitted = emitted.pair_integrals
 _OF_OWN, _OF_PAIR = (
     tuple(inspect.signature(function).parameters) for function in (_own_integrals, _pair_integrals)
 )
+# Functions up to the block and beyond it, and the values at the ends that they take.
+_Sides = tuple[tuple[_Emitted, tuple[str, ...]], ...]
+_SHAPES: _Sides = (
+    (emitted.modes_before, ("left_amplitude",)),
+    (emitted.modes_beyond, ("right_amplitude",)),
+)
+_DRIFT: _Sides = (
+    (emitted.drift_before, ("left_amplitude", "left_growth", "rate", "span_rate")),
+    (emitted.drift_beyond, ("right_amplitude", "right_growth", "rate", "hang_rate")),
+)
 _MOST = 1000
 _FEWER = "take fewer: the beam has long ceased to be slender for such modes"
 _OFFERED = "higher ones are not offered"
@@ -72,16 +82,10 @@ def _brackets(place: Array, modes: int) -> tuple[Array, Array]:
     return lower * (1 - 4 * _ROUND), upper * (1 + 4 * _ROUND)
 
 
-def overhang_roots(place: ArrayLike, modes: int) -> Array:
-    """Return the roots beta of the rod pinned at an end, held at the block and free at the tip.
-
-    For places xi = x1/L of the block, above 0, to 1, ``(nt,)`` or a number, and up to 1000 modes:
-    ``(nt, modes)``, ascending; mode n solves ``e'''' = beta_n^4 e``.  Each root lies alone in a
-    bracket (Wittrick and Williams' count with the two bays held at the block); Newton's method,
-    halving where it leaves the bracket, goes on to round-off.
-    """
-    modes = require_whole("modes", modes, 1, _MOST, _FEWER)
-    xi = require_places(place, alone=True)
+def _roots(xi: Array, modes: int) -> Array:
+    """Return the roots beta, ascending, ``(nt, modes)``; of mode n ``e'''' = beta_n^4 e``."""
+    # Each root lies alone in its bracket (Wittrick and Williams' count with the two bays held at
+    # the block); Newton's method, halving where it leaves the bracket, goes on to round-off.
     lower, upper = (bound.ravel() for bound in _brackets(xi, modes))
     where = np.repeat(xi, modes)
     # The residual is positive below the first root and changes its sign at each.
@@ -166,7 +170,7 @@ def _modes(size: int, places: bytes) -> dict[str, Array]:
     """Return what the emitted ``end_values`` gives, with places, a column, and roots ``beta``."""
     # All arrays are read-only.
     place = np.frombuffer(places)
-    column, roots = place[:, None], overhang_roots(place, size)
+    column, roots = place[:, None], _roots(place, size)
     values = _end_values(roots, column)
     ends = dict(zip(emitted.RETURNS["end_values"], values, strict=True))
     ends |= {"place": column, "beta": roots}
@@ -269,23 +273,16 @@ class OverhangBasis:
 
         At the block itself the third derivative is that on the side of the pin.
         """
-        derivative = require_whole("derivative", derivative, 0, 3, _OFFERED)
-        values = (("left_amplitude",), ("right_amplitude",))
-        both = (emitted.modes_before, emitted.modes_beyond)
-        return self._on_rod(x, place, both, values, derivative)
+        order = require_whole("derivative", derivative, 0, 3, _OFFERED)
+        return self._on_rod(_SHAPES, x, place, order)
 
     def drift(self, x: Array, place: Array, derivative: int = 0) -> Array:
         """Return the derivative of the shapes by the block's place xi ``(nt, nx, n)``.
 
         And its derivatives by eta, to the second; the places are those of :meth:`shapes`.
         """
-        derivative = require_whole("derivative", derivative, 0, 2, _OFFERED)
-        values = (
-            ("left_amplitude", "left_growth", "rate", "span_rate"),
-            ("right_amplitude", "right_growth", "rate", "hang_rate"),
-        )
-        both = (emitted.drift_before, emitted.drift_beyond)
-        return self._on_rod(x, place, both, values, derivative)
+        order = require_whole("derivative", derivative, 0, 2, _OFFERED)
+        return self._on_rod(_DRIFT, x, place, order)
 
     def array(self, name: str, place: Array) -> Array:
         """Return the integrals of one name at places xi; see :class:`MovingBasis`.
@@ -306,29 +303,20 @@ class OverhangBasis:
         """
         return _integrals(self.size, require_places(place).tobytes())["drift_rate"]
 
-    def _on_rod(
-        self,
-        x: Array,
-        place: Array,
-        both: tuple[Callable[..., tuple[Array, ...]], ...],
-        names: tuple[tuple[str, ...], ...],
-        which: int,
-    ) -> Array:
-        """Evaluate one function up to the block and another beyond it."""
+    def _on_rod(self, sides: _Sides, x: Array, place: Array, order: int) -> Array:
         modes = self._modes(place)
-        eta = require_points(x)
+        eta = require_points(x)[None, :, None]
         xi, beta = modes["place"][:, :, None], modes["beta"][:, None, :]
-        eta = eta[None, :, None]
-        sides = []
-        for function, point, wanted in zip(
-            both, (np.minimum(eta, xi), np.maximum(eta, xi)), names, strict=True
+        found = []
+        for (function, names), point in zip(
+            sides, (np.minimum(eta, xi), np.maximum(eta, xi)), strict=True
         ):
-            factors = (modes[name][:, None, :] for name in wanted)
+            factors = (modes[name][:, None, :] for name in names)
             # Far from the tip of a high mode the form that holds near it, which is not chosen
             # there, divides by an exponential that has underflowed.
             with np.errstate(divide="ignore", invalid="ignore"):
-                sides.append(function(beta, point, xi, *factors)[which])
-        return np.asarray(np.where(eta <= xi, *sides))
+                found.append(function(beta, point, xi, *factors)[order])
+        return np.asarray(np.where(eta <= xi, *found))
 
     def _modes(self, place: Array) -> dict[str, Array]:
         return _modes(self.size, require_places(place).tobytes())

@@ -31,16 +31,29 @@ _through_bay: _Kernel = emitted.through_bay
 _through_tail: _Kernel = emitted.through_tail
 
 LEFT, RIGHT = "left", "right"
-# Which two samples of the shapes an array multiplies, or which one a vector integrates.
-FACTORS: Mapping[str, tuple[str, ...]] = {
-    "overlap": ("value", "value"),
-    "drift": ("value", "drift"),
-    "drift_drift": ("drift", "drift"),
-    "bending": ("curvature", "curvature"),
-    "bending_drift": ("curvature", "drift_curvature"),
-    "tension": ("slope", "slope"),
-    "moment": ("value",),
-    "mean": ("value",),
+
+
+class Integral(NamedTuple):
+    """How an array is made of samples of the shapes."""
+
+    factors: tuple[str, ...]  # which two it multiplies, or which one a vector integrates
+    # Of one polynomial through the block the power of xi that divides it: what is left is a
+    # polynomial that does not vanish at xi = 0.
+    place: int
+    # Of two polynomials the power of either side's length: one from the integral, one from each
+    # factor, one back from each derivative; beyond the block the tension itself falls to zero.
+    sides: tuple[int, int]
+
+
+INTEGRALS: Mapping[str, Integral] = {
+    "overlap": Integral(("value", "value"), 2, (3, 3)),
+    "drift": Integral(("value", "drift"), 1, (2, 2)),
+    "drift_drift": Integral(("drift", "drift"), 0, (1, 1)),
+    "bending": Integral(("curvature", "curvature"), 1, (-1, -1)),
+    "bending_drift": Integral(("curvature", "drift_curvature"), 1, (-2, -2)),
+    "tension": Integral(("slope", "slope"), 2, (1, 2)),
+    "moment": Integral(("value",), 1, (2, 2)),
+    "mean": Integral(("value",), 1, (2, 2)),
 }
 
 
@@ -100,7 +113,7 @@ def integrals(
         elif name == "moment":
             weight = weight * eta
         samples = sampler(side, s, place[:, None])
-        first, *second = (getattr(samples, factor) for factor in FACTORS[name])
+        first, *second = (getattr(samples, factor) for factor in INTEGRALS[name].factors)
         weighted = first * weight[:, :, None]
         total += np.swapaxes(weighted, 1, 2) @ second[0] if second else weighted.sum(axis=1)
     return np.asarray(total)
@@ -218,18 +231,6 @@ def _table(basis: _TwoSided, name: str) -> Array:
 
 # One polynomial through the block -----------------------------------------------------------------
 
-# Power of xi that divides an array: what is left is a polynomial that does not vanish at xi = 0.
-_POWER_OF_PLACE = {
-    "overlap": 2,
-    "drift": 1,
-    "drift_drift": 0,
-    "bending": 1,
-    "bending_drift": 1,
-    "tension": 2,
-    "moment": 1,
-    "mean": 1,
-}
-
 
 @dataclass(frozen=True)
 class PolynomialBasis(_TwoSided):
@@ -263,7 +264,7 @@ class PolynomialBasis(_TwoSided):
         return 2 * self.size + 4, 2 * self.size + 4
 
     def _parts(self, name: str, xi: Array) -> list[tuple[tuple[str, ...], Array]]:
-        return [((LEFT, RIGHT), xi ** _POWER_OF_PLACE[name])]
+        return [((LEFT, RIGHT), xi ** INTEGRALS[name].place)]
 
     def _sampler(self, side: str, s: Array, place: Array) -> Samples:
         eta, gap, _ = on_side(side, s, place)
@@ -292,19 +293,6 @@ class PolynomialBasis(_TwoSided):
 _KERNELS: Mapping[str, tuple[_Kernel, _Kernel]] = {
     LEFT: (emitted.turn_bay, emitted.bubble_bay),
     RIGHT: (emitted.turn_tail, emitted.bubble_tail),
-}
-
-# Power of a side's length in an array: one from the integral, one from each factor, one back from
-# each derivative; beyond the block the tension itself falls to zero.
-_POWERS_OF_SIDES = {
-    "overlap": (3, 3),
-    "drift": (2, 2),
-    "drift_drift": (1, 1),
-    "bending": (-1, -1),
-    "bending_drift": (-2, -2),
-    "tension": (1, 2),
-    "moment": (2, 2),
-    "mean": (2, 2),
 }
 
 
@@ -348,7 +336,7 @@ class TwoSegmentBasis(_TwoSided):
         return {"tension": 2, "moment": 1}.get(name, 0), 2 * self.size + 8
 
     def _parts(self, name: str, xi: Array) -> list[tuple[tuple[str, ...], Array]]:
-        left, right = _POWERS_OF_SIDES[name]
+        left, right = INTEGRALS[name].sides
         return [((LEFT,), xi**left), ((RIGHT,), (1 - xi) ** right)]
 
     def _sampler(self, side: str, s: Array, place: Array) -> Samples:

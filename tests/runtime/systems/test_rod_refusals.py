@@ -59,7 +59,7 @@ def frequencies(place=0.5, **given):
 
 
 def roots(place=0.5, modes=2):
-    return rods.overhang_roots(place, modes)
+    return rods.OverhangBasis(modes).roots(np.array([place]))
 
 
 def deflection(places=1.0, size=5):

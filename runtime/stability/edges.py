@@ -390,7 +390,7 @@ def _combined(matrices: MatricesOverSpeed, events: Events, edges: Edges, *, held
     kind = np.where(signs[:, 0] == signs[:, 1], "sum", "difference")
     turn = np.exp(1j * np.abs(phase))
     return Regions(
-        edges.lower, edges.upper, edges.error, turn, pair, np.abs(harmonic), off, begin, end, kind
+        edges.lower, edges.upper, edges.error, turn, pair, harmonic, off, begin, end, kind
     )
 
 
@@ -410,12 +410,8 @@ def _principal(
     ends: Array, error: Array, real: Array, labels: tuple[Whole, Whole, Array], reach: Array
 ) -> Regions:
     """Return principal regions from ends and reach ``(2, k)``, multipliers +-1 and labels."""
-    mode, number, off = labels
-    turn, modes = real.astype(complex), np.stack([mode, mode], axis=1)
-    lower, upper = ends
-    begin, end = reach
     kind = np.full(len(real), "principal")
-    return Regions(lower, upper, error, turn, modes, number, off, begin, end, kind)
+    return Regions(*ends, error, real.astype(complex), *labels, *reach, kind)
 
 
 def _single(edges: Edges, index: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -440,15 +436,13 @@ def _bounded(
     """Return the regions between pairs of boundaries with multiplier +-1."""
     modes = averaged_modes(matrices, boundaries.speed)
     units = boundary_units(matrices, modes, boundaries)
-    ends, error, real = np.full((2, len(units)), np.nan), *np.zeros((2, len(units)))
-    for column, unit in enumerate(units):
-        for side, row in enumerate(unit):
-            if row >= 0:
-                ends[side, column] = boundaries.speed[row]
-                real[column] = boundaries.multiplier[row]
-                error[column] = max(error[column], boundaries.error[row])
-    reach = np.where(np.isfinite(ends), ends, np.array(span)[:, None])
+    ends, reach = (
+        np.where(units >= 0, boundaries.speed[units], other)
+        for other in (np.nan, np.array(span)[:, None])
+    )
+    error = np.max(np.where(units >= 0, boundaries.error[units], 0.0), axis=0)
     labels = unit_labels(modes, boundaries, units)
+    real = boundaries.multiplier[np.max(units, axis=0)]
     regions = _principal(ends, error, real, labels, reach)
     return joined(regions, _endless(matrices, boundaries, span))
 

@@ -7,7 +7,6 @@ all other modes at rest: where the periodic part is large its mean frequency is 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -24,7 +23,6 @@ from .meetings import generator
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
-Label = tuple[int, int, int]
 
 # How far from its whole number a label may be [turns in a period].
 _REACH = 2
@@ -118,74 +116,72 @@ def meeting_labels(
     The sum of the turns of the two is nearest to the harmonic, and their phases are nearest to
     those that meet; no two meetings get the same label.  0 where there is none.
     """
-    k, n = modes.turns.shape
-    options: dict[tuple[int, int, int], dict[int, float]] = {}
-    for row in range(k):
-        for i in range(n):
-            for j in range(i + 1, n):
-                total = modes.turns[row, i] + modes.turns[row, j]
-                if not np.isfinite(total):
-                    continue
-                phases = min(
-                    _apart(modes.turns[row, a], plus[row])
-                    + _apart(modes.turns[row, b], -minus[row])
-                    for a, b in ((i, j), (j, i))
-                )
-                lack = 0.0 if shares is None else 1.0 - float(shares[row, i] + shares[row, j])
-                middle = round(float(total))
-                for harmonic in range(middle - _REACH, middle + _REACH + 1):
-                    cost = abs(float(total) - harmonic) + 0.5 * phases + _LACK * lack
-                    options.setdefault((i + 1, j + 1, harmonic), {})[row] = cost
-    found = np.zeros((k, 2), dtype=np.int64)
-    chosen = np.zeros(k, dtype=np.int64)
-    off = np.full(k, np.nan)
-    for row, (i, j, number) in _assigned(k, options).items():
-        found[row], chosen[row] = (i, j), number
-        off[row] = abs(modes.turns[row, i - 1] + modes.turns[row, j - 1] - number)
-    return found, chosen, off
+    pairs = np.stack(np.triu_indices(modes.turns.shape[1], 1))
+    turns = modes.turns[:, pairs]
+    total = np.sum(turns, axis=1)
+    phases = [
+        _apart(turns[:, a], plus[:, None]) + _apart(turns[:, b], -minus[:, None])
+        for a, b in ((0, 1), (1, 0))
+    ]
+    cost = 0.5 * np.minimum(*phases)
+    if shares is not None:
+        cost = cost + _LACK * (1.0 - np.sum(shares[:, pairs], axis=1))
+    numbers = np.round(total)[:, :, None] + np.arange(-_REACH, _REACH + 1)
+    return _assigned(pairs, total, numbers, cost[:, :, None])
 
 
 def principal_labels(turns: Array, real: Array, lack: Array) -> tuple[Whole, Whole, Array]:
-    """Return mode from 1, number and how far off, of regions in which a mode meets itself.
+    """Return modes ``(k, 2)``, number and how far off, of regions in which a mode meets itself.
 
     Region n of mode j has 2 Omega_j = n, below zero for negative energy.  No two regions get the
     same label; 0 where none is left, or the averaged equation has no modes.  Given are the turns
     ``(k, n)``, the multiplier +1 or -1, and what the motion lacks of being of each mode ``(k, n)``.
     """
-    k, n = turns.shape
-    options: dict[Label, dict[int, float]] = {}
-    for row in range(k):
-        parity = 0 if real[row] > 0 else 1
-        for j in range(n):
-            total = 2 * float(turns[row, j])
-            if not np.isfinite(total):
-                continue
-            nearest = 2 * round((total - parity) / 2) + parity
-            for number in range(nearest - 6, nearest + 7, 2):
-                gap = abs(total - number)
-                # Beyond one turn rather another mode than another number.
-                cost = gap + _LACK * (float(lack[row, j]) + max(0.0, gap - 1.0))
-                options.setdefault((j + 1, number, parity), {})[row] = cost
-    mode, chosen = np.zeros((2, k), dtype=np.int64)
+    total, odd = 2 * turns, (real < 0)[:, None]
+    numbers = (2 * np.round((total - odd) / 2) + odd)[:, :, None] + np.arange(-6, 7, 2)
+    # Beyond one turn rather another mode than another number.
+    beyond = np.maximum(0.0, np.abs(total[:, :, None] - numbers) - 1.0)
+    pairs = np.tile(np.arange(turns.shape[1]), (2, 1))
+    return _assigned(pairs, total, numbers, _LACK * (lack[:, :, None] + beyond))
+
+
+def _assigned(
+    pairs: NDArray[np.intp], total: Array, numbers: Array, cost: Array
+) -> tuple[Whole, Whole, Array]:
+    """Give each row a pair of modes ``(2, p)`` and a number, a label of its own, at least cost.
+
+    It is that by which the turns of the pair in all, ``(k, p)``, are off the number, one of
+    ``(k, p, c)``, and a further ``cost`` of each.
+    """
+    from scipy.optimize import linear_sum_assignment
+
+    k = len(total)
+    row, pair, choice = np.nonzero(np.isfinite(numbers))
+    options = np.stack([pair, numbers[row, pair, choice].astype(np.int64)], axis=1)
+    labels, column = np.unique(options, axis=0, return_inverse=True)
+    table = np.full((k, len(labels)), _FORBIDDEN)
+    table[row, column.ravel()] = (np.abs(total[:, :, None] - numbers) + cost)[row, pair, choice]
+    rows, columns = linear_sum_assignment(table)
+    known = table[rows, columns] < _FORBIDDEN
+    rows, (pair, number) = rows[known], labels[columns[known]].T
+    modes, harmonic = np.zeros((k, 2), dtype=np.int64), np.zeros(k, dtype=np.int64)
     off = np.full(k, np.nan)
-    for row, (j, number, _) in _assigned(k, options).items():
-        mode[row], chosen[row] = j, abs(number)
-        off[row] = abs(2 * float(turns[row, j - 1]) - number)
-    return mode, chosen, off
+    modes[rows], harmonic[rows] = pairs[:, pair].T + 1, np.abs(number)
+    off[rows] = np.abs(total[rows, pair] - number)
+    return modes, harmonic, off
 
 
-Unit = tuple[int, int]
-
-
-def boundary_units(matrices: MatricesOverSpeed, modes: Modes, found: SpeedBoundaries) -> list[Unit]:
-    """Return the two boundaries of each principal region, lower first; -1 where one is missing."""
+def boundary_units(
+    matrices: MatricesOverSpeed, modes: Modes, found: SpeedBoundaries
+) -> NDArray[np.intp]:
+    """Return the lower and the upper boundary of each principal region; -1 where one is missing."""
     owner = np.argmax(_shares(modes, found), axis=-1) if len(found.speed) else np.zeros(0, int)
-    units: list[Unit] = []
+    units: list[tuple[int, int]] = []
     for sign in (1, -1):
         own = np.flatnonzero(found.multiplier == sign)
         if len(own):
             units.extend(_paired(found, own, owner, _beyond(matrices, found.speed[own], sign)))
-    return units
+    return np.array(units, dtype=np.intp).reshape(-1, 2).T
 
 
 def _beyond(matrices: MatricesOverSpeed, speed: Array, sign: int) -> list[int]:
@@ -200,12 +196,12 @@ def _beyond(matrices: MatricesOverSpeed, speed: Array, sign: int) -> list[int]:
 
 def _paired(
     found: SpeedBoundaries, own: NDArray[np.intp], owner: NDArray[np.intp], count: list[int]
-) -> list[Unit]:
+) -> list[tuple[int, int]]:
     """Pair boundaries so that as many regions cover each interval as multipliers are off there."""
     # A boundary behind which one more is off begins a region, another ends the last one begun,
     # rather one whose motion is mostly of the same mode.  Two that nearly coincide and change
     # nothing are a region of their own, or the end of one and the beginning of the next.
-    begun, units = [-1] * count[0], list[Unit]()
+    begun, units = [-1] * count[0], list[tuple[int, int]]()
 
     def same(row: int) -> list[int]:
         return [k for k, first in enumerate(begun) if first >= 0 and owner[first] == owner[row]]
@@ -246,22 +242,17 @@ def _paired(
 
 
 def unit_labels(
-    modes: Modes, found: SpeedBoundaries, units: list[Unit]
+    modes: Modes, found: SpeedBoundaries, units: NDArray[np.intp]
 ) -> tuple[Whole, Whole, Array]:
-    """Return mode, number and how far off, of regions between pairs of boundaries."""
-    n = modes.turns.shape[1]
-    turns, lack = np.full((2, len(units), n), np.nan)
-    real = np.zeros(len(units))
-    shares = _shares(modes, found) if units else np.zeros((0, n))
+    """Return modes, number and how far off, of regions between pairs of boundaries ``(2, k)``."""
+    known = units >= 0
+    # A missing end is about where the outermost boundaries are, or beyond.
+    turns = np.mean(modes.turns[np.where(known, units, [[0], [-1]])], axis=0)
+    shares = _shares(modes, found)
     shares = shares / np.maximum(np.sum(shares, axis=-1, keepdims=True), 1e-300)
-    for row, unit in enumerate(units):
-        known = [end for end in unit if end >= 0]
-        # A missing end is about where the outermost boundaries are, or beyond.
-        ends = [unit[0] if unit[0] >= 0 else 0, unit[1] if unit[1] >= 0 else -1]
-        turns[row] = np.mean(modes.turns[ends], axis=0)
-        lack[row] = 1.0 - np.mean(shares[known], axis=0)
-        real[row] = found.multiplier[known[0]]
-    return principal_labels(turns, real, lack)
+    lower, upper = np.where(known, units, units[::-1])
+    lack = 1.0 - 0.5 * (shares[lower] + shares[upper])
+    return principal_labels(turns, found.multiplier[upper], lack)
 
 
 def _shares(modes: Modes, found: SpeedBoundaries) -> Array:
@@ -279,25 +270,10 @@ def _shares(modes: Modes, found: SpeedBoundaries) -> Array:
     return np.asarray(np.sum(share / (1.0 + gap**2), axis=-1))
 
 
-def _apart(turns: float, phase: float) -> float:
+def _apart(turns: Array, phase: Array) -> Array:
     """Return the distance of two phases in turns."""
     gap = turns - phase / (2 * np.pi)
-    return float(abs(gap - np.round(gap)))
-
-
-def _assigned(rows: int, options: Mapping[Label, Mapping[int, float]]) -> dict[int, Label]:
-    """Give each row a label of its own at the least cost."""
-    from scipy.optimize import linear_sum_assignment
-
-    labels = sorted(options)
-    if not labels or not rows:
-        return {}
-    cost = np.full((rows, len(labels)), _FORBIDDEN)
-    for column, label in enumerate(labels):
-        for row, value in options[label].items():
-            cost[row, column] = value
-    chosen = zip(*linear_sum_assignment(cost), strict=True)
-    return {int(r): labels[c] for r, c in chosen if cost[r, c] < _FORBIDDEN}
+    return np.abs(gap - np.round(gap))
 
 
 # ---------------------------------------------------------------- modes with the crank held

@@ -49,21 +49,6 @@ class Levels(NamedTuple):
         return np.asarray(self.value > 2 * self.noise)
 
 
-class Span(NamedTuple):
-    """Speeds between which multipliers of one kind are outside the circle.
-
-    ``lower`` and ``upper`` are NaN where none crosses the circle; ``begin`` and ``end`` are then
-    the last speeds at which that kind was seen.
-    """
-
-    lower: float
-    upper: float
-    error: float
-    begin: float
-    end: float
-    multiplier: complex
-
-
 class _Crossing(NamedTuple):
     speed: float
     error: float
@@ -100,8 +85,8 @@ class Crossings:
             parts.append((*(np.take_along_axis(c, order, axis=-1) for c in columns), shift))
         return Levels(*(np.concatenate(c) for c in zip(*parts, strict=True)))
 
-    def spans(self) -> list[Span]:
-        """Return what is outside the circle, kind by kind, with the speeds between which."""
+    def regions(self) -> Regions:
+        """Return between which speeds multipliers of a kind are outside the circle, no labels."""
         found = self._crossings()
         for _ in range(6):
             # Between crossings the number outside must be what they make it.
@@ -118,7 +103,7 @@ class Crossings:
             found = self._crossings()
             if len(found) == before:
                 break
-        return self._spans(found)
+        return self._between(found)
 
     def _crossings(self) -> list[_Crossing]:
         """Return all crossings between neighbouring samples, by rising speed."""
@@ -192,28 +177,33 @@ class Crossings:
             turn = next(t for t in _kinds(self._levels, more) if _kind(t) == 2)
         return complex(turn.real, abs(turn.imag))
 
-    def _spans(self, found: list[_Crossing]) -> list[Span]:
+    def _between(self, found: list[_Crossing]) -> Regions:
         """Join crossings outwards with the next ones of their kind inwards."""
         begun = [_Crossing(np.nan, 0.0, True, turn) for turn in _kinds(self._levels, 0)]
-        made: list[Span] = []
-        for crossing in found:
-            if crossing.rising:
-                begun.append(crossing)
-                continue
-            kind = _kind(crossing.multiplier)
-            same = [i for i, other in enumerate(begun) if _kind(other.multiplier) == kind]
-            made.append(self._span(begun.pop(same[-1]) if same else None, crossing))
-        made.extend(self._span(other, None) for other in begun)
-        return made
+        rows: list[tuple[float, float, float, float, float]] = []
+        turns: list[complex] = []
 
-    def _span(self, first: _Crossing | None, last: _Crossing | None) -> Span:
-        known = [crossing for crossing in (first, last) if crossing is not None]
-        turn = known[0].multiplier / abs(known[0].multiplier)
-        lower = first.speed if first is not None else np.nan
-        upper = last.speed if last is not None else np.nan
-        begin = lower if np.isfinite(lower) else self._seen(upper, _kind(turn), -1)
-        end = upper if np.isfinite(upper) else self._seen(begin, _kind(turn), 1)
-        return Span(lower, upper, max(c.error for c in known), begin, end, turn)
+        def add(first: _Crossing, last: _Crossing) -> None:
+            kind = _kind(first.multiplier)
+            begin = first.speed if np.isfinite(first.speed) else self._seen(last.speed, kind, -1)
+            end = last.speed if np.isfinite(last.speed) else self._seen(begin, kind, 1)
+            rows.append((first.speed, last.speed, max(first.error, last.error), begin, end))
+            turns.append(first.multiplier / abs(first.multiplier))
+
+        for last in found:
+            if last.rising:
+                begun.append(last)
+                continue
+            kind = _kind(last.multiplier)
+            same = [i for i, other in enumerate(begun) if _kind(other.multiplier) == kind]
+            add(begun.pop(same[-1]) if same else last._replace(speed=np.nan), last)
+        for first in begun:
+            add(first, first._replace(speed=np.nan))
+        k, turn = len(rows), np.array(turns, dtype=complex)
+        lower, upper, error, begin, end = np.array(rows).reshape(k, 5).T
+        modes, harmonic = np.zeros((k, 2), dtype=np.int64), np.zeros(k, dtype=np.int64)
+        off, kinds = np.full(k, np.nan), np.where(turn.imag == 0.0, "principal", "sum")
+        return Regions(lower, upper, error, turn, modes, harmonic, off, begin, end, kinds)
 
     def _seen(self, start: float, kind: int, step: int) -> float:
         """Return the last sample from a speed on at which a kind is outside the circle."""
@@ -259,38 +249,33 @@ def damped_regions(
     more = more[(more > span[0]) & (more < span[1])]
     speed = phase_grid(matrices, span, more)
     speed[[0, -1]] = span
-    spans = Crossings(matrices, speed).spans()
-    return labelled([s for s in spans if not s.upper - s.lower <= 0.0], undamped)
+    found = Crossings(matrices, speed).regions()
+    return labelled(found.take(np.flatnonzero(~(found.upper - found.lower <= 0.0))), undamped)
 
 
-def labelled(spans: list[Span], undamped: Regions) -> Regions:
+def labelled(found: Regions, undamped: Regions) -> Regions:
     """Give each the label of the undamped region it is most like, none twice; 0 where none is."""
     from scipy.optimize import linear_sum_assignment
 
-    k = len(spans)
-    numbers = np.array([s[:5] for s in spans], dtype=float).reshape(k, 5)
-    lower, upper, error, begin, end = numbers.T.copy()
-    turn = np.array([s.multiplier for s in spans], dtype=complex)
+    begin, end = found.begin[:, None], found.end[:, None]
     lows, highs = undamped.begin, undamped.end
-    size = (end - begin)[:, None] + (highs - lows) + 1e-12 * end[:, None]
-    cost = np.abs((end + begin)[:, None] - (highs + lows)) / size
+    size = (end - begin) + (highs - lows) + 1e-12 * end
+    cost = np.abs((end + begin) - (highs + lows)) / size
     folded = undamped.multiplier.real + 1j * np.abs(undamped.multiplier.imag)
-    cost = cost + 2 * np.abs(np.angle(turn[:, None] / folded))
+    cost = cost + 2 * np.abs(np.angle(found.multiplier[:, None] / folded))
     # Of two that lie alike the one of like width, then that of the lower, stronger harmonic; never
     # one of another kind of multiplier.
-    ratio = np.log((end - begin + 1e-15 * end)[:, None] / (highs - lows + 1e-15 * highs))
+    ratio = np.log((end - begin + 1e-15 * end) / (highs - lows + 1e-15 * highs))
     cost = cost + 0.2 * np.abs(ratio) + 0.05 * undamped.harmonic
-    real = np.array([s.multiplier.imag == 0.0 for s in spans], dtype=bool)
-    cost = cost + 100.0 * (real[:, None] != (undamped.kind == "principal"))
-    pairs = [(r, c) for r, c in zip(*linear_sum_assignment(cost), strict=True) if cost[r, c] < 20.0]
-    modes, harmonic = np.zeros((k, 2), dtype=np.int64), np.zeros(k, dtype=np.int64)
-    detuning = np.full(k, np.nan)
-    kind = ["principal" if flag else "sum" for flag in real]
-    for row, column in pairs:
-        modes[row], harmonic[row] = undamped.modes[column], undamped.harmonic[column]
-        detuning[row], kind[row] = undamped.detuning[column], undamped.kind[column]
-    kinds = np.array(kind, dtype=np.str_)
-    return Regions(lower, upper, error, turn, modes, harmonic, detuning, begin, end, kinds)
+    real = (found.multiplier.imag == 0.0)[:, None]
+    cost = cost + 100.0 * (real != (undamped.kind == "principal"))
+    row, column = linear_sum_assignment(cost)
+    like = cost[row, column] < 20.0
+    source = len(lows) + np.arange(len(begin))
+    source[row[like]] = column[like]
+    both = joined(undamped, found).take(source)
+    named = {name: getattr(both, name) for name in ("modes", "harmonic", "detuning", "kind")}
+    return found._replace(**named)
 
 
 def _highest(matrices: MatricesOverSpeed, phase: Array, middle: Array, half: Array) -> Array:
@@ -336,26 +321,23 @@ def mended(
     ends = ends[(ends >= span[0]) & (ends <= span[1])]
     speed = phase_grid(matrices, span, 0.5 * (ends[1:] + ends[:-1]))
     speed[[0, -1]] = span
-    truth = [
-        s
-        for s in Crossings(matrices, speed, sharp=True).spans()
-        if s.multiplier.imag != 0.0 and not s.upper - s.lower <= 4 * s.error
-    ]
-    kept, new = np.array(usable), list[Span]()
-    own: set[int] = set()
-    for one in truth:
-        free = [int(i) for i in np.flatnonzero(usable) if int(i) not in own]
-        same = [i for i in free if _same(regions, i, one)]
-        own.update(same[:1])
-        if not same:
-            new.append(one)
-    for one in new:
-        over = (regions.begin < one.end) & (regions.end > one.begin)
-        kept &= ~over | np.isin(np.arange(len(kept)), list(own))
+    found = Crossings(matrices, speed, sharp=True).regions()
+    wide = ~(found.upper - found.lower <= 4 * found.error)
+    truth = found.take(np.flatnonzero(wide & (found.multiplier.imag != 0.0)))
+    alike = usable & _alike(truth, regions)
+    own, new = np.zeros(len(usable), dtype=bool), list[int]()
+    for row, fitting in enumerate(alike):
+        same = np.flatnonzero(fitting & ~own)[:1]
+        own[same] = True
+        if not len(same):
+            new.append(row)
     if not new:
-        return regions.take(np.flatnonzero(kept))
+        return regions.take(np.flatnonzero(usable))
+    fresh = truth.take(np.array(new))
+    over = (regions.begin < fresh.end[:, None]) & (regions.end > fresh.begin[:, None])
+    kept = usable & (own | ~np.any(over, axis=0))
     pool = regions.take(np.flatnonzero(~kept))
-    return joined(regions.take(np.flatnonzero(kept)), _named(matrices, labelled(new, pool)))
+    return joined(regions.take(np.flatnonzero(kept)), _named(matrices, labelled(fresh, pool)))
 
 
 def _named(matrices: MatricesOverSpeed, regions: Regions) -> Regions:
@@ -369,17 +351,20 @@ def _named(matrices: MatricesOverSpeed, regions: Regions) -> Regions:
     better = wrong | (regions.modes[:, 0] == 0)
     return regions._replace(
         modes=np.where(better[:, None], modes, regions.modes),
-        harmonic=np.where(better, np.abs(harmonic), regions.harmonic),
+        harmonic=np.where(better, harmonic, regions.harmonic),
         detuning=np.where(better, off, regions.detuning),
         kind=np.where(better, "sum", regions.kind),
     )
 
 
-def _same(regions: Regions, index: int, span: Span) -> bool:
-    """Return True where both ends agree within their errors."""
-    slack = float(regions.error[index]) + span.error
-    pairs = [(float(regions.lower[index]), span.lower), (float(regions.upper[index]), span.upper)]
-    return all(abs(a - b) <= slack or (np.isnan(a) and np.isnan(b)) for a, b in pairs)
+def _alike(first: Regions, second: Regions) -> NDArray[np.bool_]:
+    """Return which have both ends in common within their errors, or lack the same."""
+    slack = first.error[:, None] + second.error
+    agreed = np.ones(slack.shape, dtype=bool)
+    for a, b in ((first.lower, second.lower), (first.upper, second.upper)):
+        gap = np.abs(a[:, None] - b)
+        agreed &= (gap <= slack) | (np.isnan(a)[:, None] & np.isnan(b))
+    return agreed
 
 
 # Growth, over its error, from which a verdict tells.

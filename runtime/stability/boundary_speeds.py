@@ -121,10 +121,10 @@ def _entry(array: str, block: ComplexArray, left: Array, right: Array) -> Comple
     if array == "A":
         return 1j * (left * block - right * block.T)
     if array == "B":
-        return np.broadcast_to(-block, (len(left), *block.shape))
+        return -block
     if array == "C":
         return 1j * right * block
-    return np.broadcast_to(block, (len(left), *block.shape))
+    return block
 
 
 def _in_real_basis(total: ComplexArray) -> Array:
@@ -307,6 +307,17 @@ class _Roots:
     vectors: Array
     truncation: float = 0.0
 
+    def columns(self, size: int, harmonics: int) -> tuple[Array, ...]:
+        """Return speeds, errors, multipliers, and cosines and sines ``(k, harmonics + 1, n)``."""
+        blocks = self.vectors.reshape(len(self.speed), self.vectors.shape[1] // size, size)
+        first = 1 if self.multiplier == 1 else 0
+        last = first + (blocks.shape[1] - first) // 2
+        cosine, sine = np.zeros((2, len(blocks), harmonics + 1, size))
+        cosine[:, :first] = blocks[:, :first]
+        cosine[:, first:last] = np.sqrt(2) * blocks[:, first::2]
+        sine[:, first:last] = np.sqrt(2) * blocks[:, first + 1 :: 2]
+        return self.speed, self.error, np.full(len(blocks), self.multiplier), cosine, sine
+
 
 def _converged(
     matrices: Callable[[int], Matrices],
@@ -474,37 +485,14 @@ def _result(
     limit: float,
     parameters: Mapping[str, float],
 ) -> SpeedBoundaries:
-    n = system.size
     harmonics = max(part.harmonics for part in parts)
-    speed = np.concatenate([part.speed for part in parts])
+    columns = zip(*(part.columns(system.size, harmonics) for part in parts), strict=True)
+    speed, error, sign, cosine, sine = (np.concatenate(column) for column in columns)
     order = np.argsort(speed, kind="stable")
-    sign = np.concatenate([np.full(len(part.speed), part.multiplier) for part in parts])
-    cosine = np.zeros((len(speed), harmonics + 1, n))
-    sine = np.zeros_like(cosine)
-    done = 0
-    for part in parts:
-        rows = slice(done, done + len(part.speed))
-        done += len(part.speed)
-        blocks = part.vectors.reshape(len(part.speed), part.vectors.shape[1] // n, n)
-        first = 1 if part.multiplier == 1 else 0
-        cosine[rows, :first] = blocks[:, :first]
-        count = (blocks.shape[1] - first) // 2
-        cosine[rows, first : first + count] = np.sqrt(2) * blocks[:, first::2]
-        sine[rows, first : first + count] = np.sqrt(2) * blocks[:, first + 1 :: 2]
-    error = np.concatenate([part.error for part in parts])
-    found = [(part.multiplier, part.speed) for part in parts]
-    return SpeedBoundaries(
+    result = SpeedBoundaries(
         method="eigenvalues of the Fourier matrix",
         error=error[order],
         error_norm="absolute, of each speed [rad/s]",
-        checks=DeferredChecks(
-            partial(
-                _checks,
-                Check(max(part.truncation for part in parts), limit),
-                (system, found, span, dict(parameters)),
-                (speed[order], sign[order], error[order]),
-            )
-        ),
         provenance=provenance(system.changed_provenance(**parameters)),
         speed=speed[order],
         multiplier=sign[order],
@@ -513,42 +501,32 @@ def _result(
         harmonics=harmonics,
         period=system.period,
     )
+    truncation = Check(max(part.truncation for part in parts), limit)
+    found = [(part.multiplier, part.speed) for part in parts]
+    given = system, found, span, dict(parameters)
+    return replace(result, checks=DeferredChecks(partial(_checks, truncation, given, result)))
 
 
 def _checks(
     truncation: Check,
     given: tuple[LinearPeriodic, list[tuple[int, Array]], tuple[float, float], dict[str, float]],
-    boundaries: tuple[Array, NDArray[np.int64], Array],
+    boundaries: SpeedBoundaries,
 ) -> dict[str, Check]:
-    system, found, span, parameters = given
-    return {
-        "truncation": truncation,
-        "parity": parity(system, found, span, parameters),
-        **at_boundaries(system, *boundaries, parameters),
-    }
-
-
-def at_boundaries(
-    system: LinearPeriodic,
-    speed: Array,
-    sign: NDArray[np.int64],
-    error: Array,
-    parameters: Mapping[str, float],
-) -> dict[str, Check]:
-    """Compare with monodromy matrices, at the worst boundary against what its error allows."""
-    if not len(speed):
-        return {}
-    pick = np.unique(np.linspace(0, len(speed) - 1, 256).round().astype(int))
-    speed, sign, error = speed[pick], sign[pick], error[pick]
+    checks = {"truncation": truncation, "parity": parity(*given)}
+    if not len(boundaries.speed):
+        return checks
+    system, _, _, parameters = given
+    pick = np.unique(np.linspace(0, len(boundaries.speed) - 1, 256).round().astype(int))
+    speed, sign = boundaries.speed[pick], boundaries.multiplier[pick]
     matrices = monodromy(system, speed, **parameters)
     value = _smallest(matrices, sign)
     turning = 2 * equation_of(system, speed, parameters).rate() * system.period
     width = matrices.matrix.shape[-1]
-    limit = 8 * width * (matrices.error + (1 + turning) * error / speed)
+    limit = 8 * width * (matrices.error + (1 + turning) * boundaries.error[pick] / speed)
     # Most that a singular value, relative to the matrix, may be and still count as zero.
     limit = np.minimum(limit, 0.01)
     worst = int(np.argmax(value / limit))
-    return {"monodromy": Check(float(value[worst]), float(limit[worst]))}
+    return {**checks, "monodromy": Check(float(value[worst]), float(limit[worst]))}
 
 
 def parity(
@@ -567,8 +545,9 @@ def parity(
         rising = np.sort(boundaries)
         speed = _test_speeds(rising, span)
         matrices = monodromy(system, speed, **parameters)
-        signs = np.linalg.slogdet(_shifted(matrices, np.full(len(speed), sign)))[0]
-        sure = _smallest(matrices, np.full(len(speed), sign)) > 100 * matrices.error
+        shift = np.full(len(speed), sign)
+        signs = np.linalg.slogdet(_shifted(matrices, shift))[0]
+        sure = _smallest(matrices, shift) > 100 * matrices.error
         count = np.searchsorted(rising, speed)
         expected = np.where(count % 2 == 0, 1.0, -1.0)
         agreed = (signs * expected)[sure]

@@ -159,8 +159,14 @@ class StabilityChart(Result):
             (self.perturbation, "--", _NEAR, order),
         ):
             if curves is not None:
-                text = label if _reach_in(self, curves) else f"{label}: none here"
-                _draw_curves(ax, self, curves, style, colour, text)
+                along = self.x if curves.along == self.x_name else self.y
+                ends = np.concatenate([curves.lower, curves.upper])
+                with np.errstate(invalid="ignore"):
+                    here = np.any((ends >= along[0]) & (ends <= along[-1]))
+                text = label if here else f"{label}: none here"
+                for k, row in enumerate(ends):
+                    line = _placed(self, curves.along, row, curves.at)
+                    ax.plot(*line, style, color=colour, lw=1.0, label=None if k else text)
         if self.edges is not None:
             _draw_edges(ax, self, self.edges)
         ax.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
@@ -568,56 +574,39 @@ def _fill(
 def _draw_edges(ax: Axes, chart: StabilityChart, edges: EdgeCurves) -> None:
     """Draw the ends of traced regions between the rows at which they are known, with labels."""
     horizontal = chart.x_name == "speed"
-    at = _shown(chart.y_name if horizontal else chart.x_name, edges.at)
     seen: set[str] = set()
-    low, high = (RPM * v for v in ((chart.x if horizontal else chart.y)[[0, -1]]))
+    low, high = (chart.x if horizontal else chart.y)[[0, -1]]
     for i, kind in enumerate(edges.kind):
         with np.errstate(invalid="ignore"):
             # Such a region is drawn as a hair.
             narrow = not np.any(edges.upper[i] - edges.lower[i] > 1e-4 * edges.lower[i])
         for ends in (edges.lower[i], edges.upper[i]):
-            pair = (ends * RPM, at) if horizontal else (at, ends * RPM)
             label = None if kind in seen else f"{kind} regions, traced"
-            ax.plot(*pair, color=_EDGES[kind], lw=0.35 if narrow else 0.8, label=label)
+            line = _placed(chart, "speed", ends, edges.at)
+            ax.plot(*line, color=_EDGES[kind], lw=0.35 if narrow else 0.8, label=label)
             seen.add(kind)
         if kind == "principal":
             continue
         # Labels stand at the row nearest to the end of the axis where the region is in the chart.
-        known = np.flatnonzero((edges.lower[i] * RPM > low) & (edges.lower[i] * RPM < high))
+        known = np.flatnonzero((edges.lower[i] > low) & (edges.lower[i] < high))
         if len(known):
             first, second = edges.modes[i]
             text = f"{first}+{second}" if kind == "sum" else f"{second}-{first}"
-            place = (edges.lower[i, known[-1]] * RPM, at[known[-1]])
+            place = _placed(chart, "speed", edges.lower[i, known[-1]], edges.at[known[-1]])
             rotation, va = (90, "top") if horizontal else (0, "center")
             style: dict[str, Any] = {"color": _EDGES[kind], "rotation": rotation, "va": va}
-            at_end = place if horizontal else place[::-1]
-            ax.annotate(f"{text}, {edges.harmonic[i]}", at_end, fontsize=6, ha="right", **style)
+            ax.annotate(f"{text}, {edges.harmonic[i]}", place, fontsize=6, ha="right", **style)
+
+
+def _placed(chart: StabilityChart, along: str, values: Any, at: Any) -> tuple[Any, Any]:
+    """Return x and y, as shown, of values along one axis at values of the other one."""
+    horizontal = along == chart.x_name
+    pair = _shown(along, values), _shown(chart.y_name if horizontal else chart.x_name, at)
+    return pair if horizontal else pair[::-1]
 
 
 def _shown(name: str, values: Array) -> Array:
     return values * RPM if name == "speed" else values
-
-
-def _reach_in(chart: StabilityChart, curves: BoundaryCurves) -> bool:
-    values = chart.x if curves.along == chart.x_name else chart.y
-    ends = np.concatenate([curves.lower, curves.upper])
-    with np.errstate(invalid="ignore"):
-        return bool(np.any((ends >= values[0]) & (ends <= values[-1])))
-
-
-def _draw_curves(
-    ax: Axes, chart: StabilityChart, curves: BoundaryCurves, style: str, colour: str, label: str
-) -> None:
-    horizontal = curves.along == chart.x_name
-    other = chart.y_name if horizontal else chart.x_name
-    at = _shown(other, curves.at)
-    first = True
-    for ends in (curves.lower, curves.upper):
-        for row in ends:
-            values = _shown(curves.along, row)
-            pair = (values, at) if horizontal else (at, values)
-            ax.plot(*pair, style, color=colour, lw=1.0, label=label if first else None)
-            first = False
 
 
 def _draw_fractions(ax: Axes, chart: StabilityChart) -> None:

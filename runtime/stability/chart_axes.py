@@ -23,7 +23,7 @@ Axes = tuple[Array, Array]
 _PROBES = (1.0, 2.0, 5.0, 0.37)
 _ANGLES = np.linspace(0.0, 2.0 * np.pi, 17)
 
-PlainAxes = tuple[int, PeriodicFunction, Callable[[Array], Array], Callable[[Array], Array]]
+PlainAxes = tuple[int, PeriodicFunction, Callable[[Array], Array]]
 
 
 def axis_of_scene(scene: Scene, axis: str) -> tuple[str, Array] | None:
@@ -143,7 +143,10 @@ def _at_rest(system: LinearPeriodic, changes: Mapping[str, Any]) -> float:
 
 
 def plain_axes(form: HillForm, names: tuple[str, str], fixed: float) -> PlainAxes | None:
-    """Return how two axes amount to ``y'' + (lam2 + mu f) y = 0`` at a speed, where they do."""
+    """Return how two axes amount to ``y'' + (lam2 + mu f) y = 0`` at a speed, where they do.
+
+    That is which one is lam2's, f, and lam2 of its values; those of the other are mu.
+    """
     for which in (0, 1):
         along, other = names[which], names[1 - which]
         if other == "speed" or (along == "speed" and form.elastic):
@@ -161,9 +164,9 @@ def plain_axes(form: HillForm, names: tuple[str, str], fixed: float) -> PlainAxe
         if any(form.stiffness(**{other: v}) != stiffness for v in _PROBES):
             continue
         if along == "speed":
-            return which, unit, partial(_over_square, stiffness), np.asarray
+            return which, unit, partial(_over_square, stiffness)
         if is_stiffness(form, along):
-            return which, unit, partial(np.multiply, fixed**-2), np.asarray
+            return which, unit, partial(np.multiply, fixed**-2)
     return None
 
 

@@ -247,14 +247,12 @@ class Lines:
         """Whether the system is made anew at each point."""
         return self.names[self.inner] in self.system.geometry
 
-    def line(self, outer: float, values: Array | None = None, fineness: float = 1.0) -> Samples:
+    def line(self, outer: float, values: Array, fineness: float = 1.0) -> Samples:
         """Return the line at a value of the outer axis; of two geometries at given values alone."""
         inner_name, outer_name = self.names[self.inner], self.names[1 - self.inner]
         fixed = {outer_name: float(outer)}
         if not self.inner_is_geometry:
             return self._table(fixed, inner_name, self.ends, fineness)
-        if values is None:
-            raise ValueError("a line along geometry wants its values beforehand")
         points = [({**fixed, inner_name: float(v)}, float(v)) for v in values]
         return partial(_each, [self._table(at, None, (v, v), fineness) for at, v in points])
 
@@ -325,7 +323,7 @@ class HillLines:
         self._form, self._back, self._speed = form, sampler.back, sampler.speed
         self._along, self._outer = sampler.names[self.inner], sampler.names[1 - self.inner]
 
-    def line(self, outer: float, values: Array | None = None) -> Samples:
+    def line(self, outer: float, values: Array) -> Samples:
         """Return the line at a value of the outer axis."""
         return partial(self._half_traces, float(self._back(self._outer, np.asarray(outer))))
 
@@ -373,16 +371,12 @@ def invariants(sampler: Sampler, workers: Map, *, progress: bool) -> Series:
 
 
 def _plain_hill(
-    sampler: Sampler,
-    which: int,
-    f: PeriodicFunction,
-    lam2: Callable[[Array], Array],
-    factor: Callable[[Array], Array],
+    sampler: Sampler, which: int, f: PeriodicFunction, lam2: Callable[[Array], Array]
 ) -> Series:
     """Return half traces where the axes are lam2 and the factor of one function."""
     axes = sampler.axes
     order = np.argsort(lam2(axes[which]))
-    found = discriminant(f, lam2(axes[which])[order, None], factor(axes[1 - which]))
+    found = discriminant(f, lam2(axes[which])[order, None], axes[1 - which])
     values, error = np.empty_like(found.value), np.empty_like(found.value)
     values[order], error[order] = found.value, found.error
     if which == 0:
@@ -439,7 +433,10 @@ class _Surface:
             return
         self.sampler.allowed(2, len(self.wanted))
         self.count = _FIRST
-        self.ends = {float(outer): self.lines.line(float(outer)) for outer in self.across[[0, -1]]}
+        self.ends = {
+            float(outer): self.lines.line(float(outer), self.wanted)
+            for outer in self.across[[0, -1]]
+        }
         while self.count < 2 * len(self.wanted):
             found = [line(self.values)[0] for line in self.ends.values()]
             if any(self.too_wide(values) for values in found):

@@ -86,15 +86,21 @@ def _by_sums(z: NDArray[np.complex128], known: Array) -> Moduli:
     """Judge by the sums ``z = rho + 1/rho``."""
     off = root_uncertainty(z, known)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-        # Beyond 1e8 the square of z may overflow, and 4 is lost beside it.
-        # Sums rho + 1/rho beyond which they are rho itself to round-off.
-        far = np.abs(z) > 1e8
-        root = np.where(far, z / 2, np.sqrt(np.where(far, 0.0, z) ** 2 / 4 - 1 + 0j))
-        # Of the pair rho, 1/rho the one without cancellation.
-        modulus = np.maximum(np.maximum(np.abs(z / 2 + root), np.abs(z / 2 - root)), 1.0)
+        rho, root = _outer(z)
+        modulus = np.maximum(np.abs(rho), 1.0)
         # rho moves by rho dz / sqrt(z^2 - 4), and at z = +-2 by the square root.
         allowance = modulus * np.minimum(off / (2 * np.abs(root)), np.sqrt(off))
     return _judged(modulus, np.where(np.isnan(allowance), np.inf, allowance))
+
+
+def _outer(z: NDArray[np.complex128]) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+    """Return of each pair of ``z = rho + 1/rho`` the larger rho, and ``sqrt(z^2/4 - 1)``."""
+    # Beyond 1e8 the square of z may overflow, and 4 is lost beside it: root and rho are z/2 and z.
+    far = np.abs(z) > 1e8
+    root = np.where(far, z / 2, np.sqrt(np.where(far, 0.0, z) ** 2 / 4 - 1 + 0j))
+    # The one without cancellation.
+    rho = np.where(np.abs(z / 2 + root) >= np.abs(z / 2 - root), z / 2 + root, z / 2 - root)
+    return rho, root
 
 
 def _judged(modulus: Array, allowance: Array) -> Moduli:
@@ -120,12 +126,7 @@ def instability_kind(
     if hill or not len(chosen):
         out[~stable] = np.sign(chosen[..., 0]) if hill else 0
         return out
-    if reduced:
-        z = _roots(in_sum(chosen))
-        half = np.sqrt(z**2 / 4 - 1 + 0j)
-        rho = np.where(np.abs(z / 2 + half) >= np.abs(z / 2 - half), z / 2 + half, z / 2 - half)
-    else:
-        rho = _roots(chosen)
+    rho = _outer(_roots(in_sum(chosen)))[0] if reduced else _roots(chosen)
     top = np.take_along_axis(rho, np.argmax(np.abs(rho), axis=-1)[..., None], axis=-1)[..., 0]
     # Relative imaginary part up to which a multiplier counts as real: round-off at a double one.
     real = np.abs(top.imag) <= 1e-6 * np.abs(top)

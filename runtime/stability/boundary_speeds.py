@@ -31,24 +31,12 @@ from ..periodic.equation import SPEED_POWER, equation_of, sampled
 ComplexArray = NDArray[np.complex128]
 
 
-@dataclass(frozen=True)
-class Wave:
-    """Fourier coefficients of the terms of one array that carry one power of the speed.
-
-    Of shape ``(2 r + 1, n, n)``, for harmonics -r to r of the period.
-    """
-
-    array: str
-    exponent: int
-    coefficients: ComplexArray
-
-    @property
-    def reach(self) -> int:
-        """Highest harmonic r."""
-        return len(self.coefficients) // 2
+# Fourier coefficients ``(2 r + 1, n, n)``, for harmonics -r to r of the period, of the terms of one
+# array that carry one power of the speed.
+Waves = Mapping[tuple[str, int], ComplexArray]
 
 
-def waves(system: LinearPeriodic, parameters: Mapping[str, ArrayLike]) -> tuple[Wave, ...]:
+def waves(system: LinearPeriodic, parameters: Mapping[str, ArrayLike]) -> Waves:
     """Return the Fourier coefficients of the terms that act at constant speed without forcing.
 
     A parameter that is not one number is refused, and a term not smooth enough to have a series.
@@ -78,18 +66,18 @@ def waves(system: LinearPeriodic, parameters: Mapping[str, ArrayLike]) -> tuple[
         )
         total[0] += factor * series[0]
         total[1 : half + 1] += 0.5 * factor * (series[1 : half + 1] - 1j * series[half + 1 :])
-    found = []
-    for (array, exponent), total in sums.items():
+    found = {}
+    for key, total in sums.items():
         size = np.max(np.abs(total), axis=(1, 2))
         # Below this, over the largest, the last harmonics are round-off.
         reach = int(np.flatnonzero(size > 4e-16 * np.max(size))[-1]) if np.any(size) else 0
         upper = total[: reach + 1]
-        found.append(Wave(array, exponent, np.concatenate([np.conj(upper[:0:-1]), upper])))
-    return tuple(found)
+        found[key] = np.concatenate([np.conj(upper[:0:-1]), upper])
+    return found
 
 
 def real_matrices(
-    found: tuple[Wave, ...], size: int, period: float, harmonics: int, multiplier: int
+    found: Waves, size: int, period: float, harmonics: int, multiplier: int
 ) -> dict[int, Array]:
     """Return the matrices of the equation by power of the speed, in a real basis.
 
@@ -101,16 +89,14 @@ def real_matrices(
     rate: Array = 2 * np.pi / period * kappa
     count = len(kappa)
     totals: dict[int, ComplexArray] = {}
-    for wave in found:
-        total = totals.setdefault(
-            wave.exponent, np.zeros((count, size, count, size), dtype=complex)
-        )
-        for shift, block in enumerate(wave.coefficients, start=-wave.reach):
+    for (array, exponent), coefficients in found.items():
+        total = totals.setdefault(exponent, np.zeros((count, size, count, size), dtype=complex))
+        for shift, block in enumerate(coefficients, start=-(len(coefficients) // 2)):
             # Row k, column l = k - shift.
             rows = np.arange(max(0, shift), min(count, count + shift))
             columns = rows - shift
             left, right = (rate[index][:, None, None] for index in (rows, columns))
-            total[rows, :, columns, :] += _entry(wave.array, block, left, right)
+            total[rows, :, columns, :] += _entry(array, block, left, right)
     return {exponent: _in_real_basis(total) for exponent, total in totals.items()}
 
 
@@ -275,7 +261,7 @@ def speed_boundaries(
     require_between("rtol", rtol, 1e-14, 1.0, "choose 1e-11")
     rate = float(equation_of(system, low, parameters).rate()[0])
     found = waves(system, parameters)
-    reach = max(wave.reach for wave in found)
+    reach = max(len(coefficients) // 2 for coefficients in found.values())
     usual = ceil(rate * system.period / (2 * np.pi)) + reach + 6
     most = _MOST_ROWS // (2 * system.size)
 
@@ -356,7 +342,7 @@ def _roots(matrices: Matrices, sign: int, harmonics: int, span: tuple[float, flo
         np.max(np.abs(level - level.T)) <= 1e-13 * np.max(np.abs(level), initial=1e-300)
         for level in levels
     )
-    inverse, vectors = _inverse_roots(levels, symmetric)
+    inverse, vectors = inverse_roots(levels, symmetric)
     with np.errstate(divide="ignore", invalid="ignore"):
         # A pair so close to the real axis is a double real root.
         real = (np.abs(inverse.imag) <= 1e-6 * np.abs(inverse)) & (inverse.real > 0)
@@ -372,7 +358,7 @@ def _roots(matrices: Matrices, sign: int, harmonics: int, span: tuple[float, flo
     return _Roots(sign, harmonics, refined[order], (error + imaginary)[order], motions[order])
 
 
-def _inverse_roots(
+def inverse_roots(
     levels: list[Array], symmetric: bool
 ) -> tuple[NDArray[np.complex128], Array | None]:
     """Return all 1/x with ``sum_j levels[j] x^j`` singular, and vectors where symmetric."""

@@ -12,6 +12,7 @@ from ..core.periodic_function import PeriodicFunction
 from ..hill import HillForm, hill_boundaries, hill_form, perturbation_boundaries
 from ..hill.boundaries import near_tip
 from ..hill.fourier_matrix import by_parity, layout, stacked, truncation
+from .boundary_speeds import inverse_roots
 from .chart_axes import is_damped, is_stiffness, leaves_function_alone
 
 _EPS = float(np.finfo(float).eps)
@@ -171,10 +172,9 @@ def _damped_speeds(
 def _inverse_speeds(f: PeriodicFunction, odd: int, harmonic: int, ratio: float) -> Array:
     """Return all real s > 0 with a solution of one parity."""
     drag = -ratio * layout(odd, harmonic).slope
-    size = len(drag)
-    whole = stacked(f, odd, harmonic, np.ones(1))[0] - float(f.a[0]) * np.eye(size)
-    companion = np.block([[np.zeros((size, size)), np.eye(size)], [whole, drag]])
-    values = np.linalg.eigvals(companion)
+    unit = np.eye(len(drag))
+    whole = stacked(f, odd, harmonic, np.ones(1))[0] - float(f.a[0]) * unit
+    values, _ = inverse_roots([-unit, drag, whole], symmetric=False)
     return np.asarray(values.real[(values.imag == 0.0) & (values.real > 0.0)])
 
 

@@ -16,9 +16,8 @@ from ..core.trigonometric import even_angles
 from ..periodic import floquet_multipliers
 from ..periodic.equation import Equation, equation_of
 from ..periodic.over_speed import MatricesOverSpeed
-from ..periodic.signatures import form_matrix
 from .boundary_speeds import SpeedBoundaries
-from .meetings import generator
+from .meetings import mean_exponents
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -53,10 +52,8 @@ def averaged_modes(matrices: MatricesOverSpeed, speed: Array) -> Modes:
     if not len(speed):
         return Modes(np.zeros((0, n)), np.zeros((0, n, n), dtype=complex), np.zeros((0, n, n)))
     equation = equation_of(matrices.known, speed, matrices.parameters)
-    mass, gyro, push = (equation.mean(name) for name in ("mass", "gyroscopic", "stiffness"))
-    values, vectors = (part.astype(complex) for part in np.linalg.eig(generator(mass, gyro, push)))
-    sign = np.real(np.diagonal(form_matrix(vectors), axis1=-2, axis2=-1))
-    size = np.abs(values)
+    values, vectors, sign = mean_exponents(equation)
+    size, mass = np.abs(values), equation.mean("mass")
     own = (sign > 0) & (np.abs(values.real) <= 1e-7 * np.max(size, axis=1, keepdims=True))
     chosen = np.argsort(np.where(own, size, np.inf), axis=1, kind="stable")[:, :n]
     stable = np.flatnonzero(np.count_nonzero(own, axis=1) == n)
@@ -109,18 +106,19 @@ def _own_turns(equation: Equation, vectors: ComplexArray, duals: ComplexArray) -
 
 
 def meeting_labels(
-    modes: Modes, plus: Array, minus: Array, shares: Array | None = None
+    modes: Modes, phase: Array, shares: Array | None = None
 ) -> tuple[Whole, Whole, Array]:
     """Return modes ``(k, 2)`` from 1, the harmonic, and how far off, of meetings of two modes.
 
-    The sum of the turns of the two is nearest to the harmonic, and their phases are nearest to
-    those that meet; no two meetings get the same label.  0 where there is none.
+    The sum of the turns of the two is nearest to the harmonic, and their phases, of opposite signs,
+    are nearest to that at which they meet; no two meetings get the same label.  0 where there is
+    none.
     """
     pairs = np.stack(np.triu_indices(modes.turns.shape[1], 1))
     turns = modes.turns[:, pairs]
     total = np.sum(turns, axis=1)
     phases = [
-        _apart(turns[:, a], plus[:, None]) + _apart(turns[:, b], -minus[:, None])
+        _apart(turns[:, a], phase[:, None]) + _apart(turns[:, b], -phase[:, None])
         for a, b in ((0, 1), (1, 0))
     ]
     cost = 0.5 * np.minimum(*phases)

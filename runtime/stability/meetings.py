@@ -13,9 +13,10 @@ from ..core.errors import bad
 from ..core.families import DAMPING, Array, LinearPeriodic
 from ..core.inputs import is_whole, speed_span
 from ..core.maxima import bracketed_roots
-from ..periodic.equation import at_geometry, equation_of, sampled
+from ..periodic.equation import Equation, at_geometry, equation_of, sampled
 from ..periodic.signatures import form_matrix
 
+Complex = NDArray[np.complex128]
 Kind = Literal["principal", "sum", "difference"]
 # Kind, modes from 1, and harmonic.
 Condition = tuple[Kind, tuple[int, int], int]
@@ -82,14 +83,12 @@ class MeanSystem:
         Of modes that do not oscillate, the first ones, nu is not a number and the signature 0.
         """
         equation = equation_of(self._known, speed, self._parameters)
-        mean = (equation.mean(name) for name in ("mass", "gyroscopic", "stiffness"))
-        values, vectors = (part.astype(complex) for part in np.linalg.eig(generator(*mean)))
+        values, _, form = mean_exponents(equation)
         size = IMAGINARY * np.max(np.abs(values), axis=-1, keepdims=True)
         turning = (np.abs(values.real) <= size) & (values.imag > size)
         # Modes that do not oscillate are the lowest: the others keep their numbers.
         falling = np.where(turning, -values.imag, np.nan)
         rising = np.argsort(falling, axis=-1, kind="stable")[:, : self.system.size][:, ::-1]
-        form = np.sign(np.diagonal(form_matrix(vectors), axis1=-2, axis2=-1).real)
         signs = np.take_along_axis(np.where(turning, form, 0.0), rising, axis=-1)
         return -np.take_along_axis(falling, rising, axis=-1), signs.astype(np.int64)
 
@@ -138,11 +137,18 @@ class MeanSystem:
         )
 
 
-def generator(mass: Array, gyro: Array, push: Array) -> Array:
-    """Return L of y' = L y, y = (q, p), of mean M, A and B - K; shape ``(nb, 2n, 2n)``."""
+def mean_exponents(equation: Equation) -> tuple[Complex, Complex, Array]:
+    """Return exponents and vectors of the mean equation y' = L y, and signs of their Krein form.
+
+    y = (q, p) in the units of the equation; with its means M, A and B - K.
+    """
+    mass, gyro, push = (equation.mean(name) for name in ("mass", "gyroscopic", "stiffness"))
     flexibility = np.linalg.inv(mass)
     back = np.swapaxes(gyro, -1, -2) @ flexibility
-    return np.block([[-flexibility @ gyro, flexibility], [push - back @ gyro, back]])
+    generator = np.block([[-flexibility @ gyro, flexibility], [push - back @ gyro, back]])
+    values, vectors = (part.astype(complex) for part in np.linalg.eig(generator))
+    form = np.diagonal(form_matrix(vectors), axis1=-2, axis2=-1).real
+    return values, vectors, np.sign(form)
 
 
 def resonances(

@@ -173,7 +173,7 @@ class Line:
                 sums = 2.0 * mirrored_sums(matrices)
                 change = n + 4.0 * frobenius(matrices[:, :n, n:]) * frobenius(matrices[:, n:, :n])
                 found, weight = weighed_characteristic(sums, n, change)
-                found, weight = from_sum(found), weight @ sum_weights_back(n)
+                found, weight = from_sum(found), weight @ np.abs(sum_weights_back(n))
             else:
                 wanted = plain.shape[-1] // (2 if self.reduced else 1)
                 found, weight = weighed_characteristic(matrices, wanted)
@@ -335,16 +335,17 @@ class HillLines:
         speeds = np.array([p.pop("speed", self._speed) for p in points])
         lam2 = np.array([form.stiffness(**p) for p in points]) / speeds**2
         damping = np.array([form.damping(**p) for p in points]) / (2 * speeds)
-        if self._shared:
-            f = form.function(float(speeds[0]), **points[0])
-            found = discriminant(f, lam2, 1.0, damping)
-            return found.value[:, None], np.broadcast_to(found.error, found.value.shape)[:, None]
-        each = [
-            discriminant(form.function(float(w), **p), float(v), 1.0, float(k))
-            for w, p, v, k in zip(speeds, points, lam2, damping, strict=True)
+        # Points of one function go together.
+        runs = [slice(None)] if self._shared else [slice(i, i + 1) for i in range(len(speeds))]
+        found = [
+            discriminant(
+                form.function(float(speeds[run][0]), **points[run][0]), lam2[run], 1.0, damping[run]
+            )
+            for run in runs
         ]
-        value, error = ([float(getattr(one, name)) for one in each] for name in ("value", "error"))
-        return np.array(value)[:, None], np.array(error)[:, None]
+        value = np.concatenate([one.value for one in found])
+        error = np.concatenate([np.broadcast_to(one.error, one.value.shape) for one in found])
+        return value[:, None], error[:, None]
 
 
 def invariants(sampler: Sampler, workers: Map, *, progress: bool) -> Series:

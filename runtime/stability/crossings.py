@@ -70,8 +70,7 @@ class Crossings:
     def levels(self, speed: Array) -> Levels:
         """Return the log moduli at speeds of shape ``(k,)``."""
         m = 2 * self._matrices.system.size
-        none = np.zeros((0, m))
-        parts: list[tuple[Array, ...]] = [(none, none, none.astype(complex), np.zeros(0))]
+        parts: list[tuple[Array, ...]] = []
         for start in range(0, len(speed), TOGETHER):
             matrices, error = self._matrices(speed[start : start + TOGETHER])
             values, vectors = (part.astype(complex) for part in np.linalg.eig(matrices))
@@ -246,10 +245,7 @@ def damped_regions(
     highest = _highest(matrices, phase, middle, half)
     around = (middle[:, None] + half[:, None] * _PLACES).ravel()
     more = np.concatenate([highest, around, 0.5 * (ends[1:] + ends[:-1])])
-    more = more[(more > span[0]) & (more < span[1])]
-    speed = phase_grid(matrices, span, more)
-    speed[[0, -1]] = span
-    found = Crossings(matrices, speed).regions()
+    found = Crossings(matrices, phase_grid(matrices, span, more)).regions()
     return labelled(found.take(np.flatnonzero(~(found.upper - found.lower <= 0.0))), undamped)
 
 
@@ -320,7 +316,6 @@ def mended(
     ends = np.unique(np.concatenate([span, near[np.isfinite(near)]]))
     ends = ends[(ends >= span[0]) & (ends <= span[1])]
     speed = phase_grid(matrices, span, 0.5 * (ends[1:] + ends[:-1]))
-    speed[[0, -1]] = span
     found = Crossings(matrices, speed, sharp=True).regions()
     wide = ~(found.upper - found.lower <= 4 * found.error)
     truth = found.take(np.flatnonzero(wide & (found.multiplier.imag != 0.0)))
@@ -345,7 +340,7 @@ def _named(matrices: MatricesOverSpeed, regions: Regions) -> Regions:
     middle, turn = regions.middle, regions.multiplier
     held, phase = held_modes(matrices, middle), np.angle(turn)
     shares = pair_shares(matrices, held, middle, turn)
-    modes, harmonic, off = meeting_labels(held, phase, phase, shares)
+    modes, harmonic, off = meeting_labels(held, phase, shares)
     total = np.sum(np.take_along_axis(held.turns, regions.modes - 1, axis=1), axis=1)
     wrong = (2 * off < np.abs(total - regions.harmonic)) & (regions.kind == "sum")
     better = wrong | (regions.modes[:, 0] == 0)

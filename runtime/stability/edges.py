@@ -30,7 +30,7 @@ from .labels import (
     principal_labels,
     unit_labels,
 )
-from .pairs import Edges, Events, Samples, meetings, refined_edges, sampled_phases
+from .pairs import Edges, Events, meetings, refined_edges, sampled_phases
 
 ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
@@ -333,7 +333,12 @@ def _undamped(
     elif matrices.system.size == 1:
         return bounded, float(np.max(bounded.error, initial=0.0))
     else:
-        principal, samples = bounded, _samples_beside(matrices, bounded, span)
+        principal = bounded
+        with np.errstate(invalid="ignore"):
+            wide = ~(bounded.upper - bounded.lower <= _WIDE * bounded.middle)
+        beside = [bounded.lower[wide] * (1 - 0.1 * _WIDE), bounded.upper[wide] * (1 + 0.1 * _WIDE)]
+        # A missing end is NaN, which is in no range.
+        samples = sampled_phases(matrices, span, np.concatenate(beside))
     events = meetings(samples)
     edges = refined_edges(matrices, events)
     combined = _combined(matrices, events, edges, held=bounded is None)
@@ -346,19 +351,6 @@ def _undamped(
         combined = combined.take(np.flatnonzero(usable))
     least = np.concatenate([least, edges.least[usable]])
     return joined(principal, combined), float(np.max(least, initial=0.0))
-
-
-def _samples_beside(
-    matrices: MatricesOverSpeed, principal: Regions, span: tuple[float, float]
-) -> Samples:
-    """Return the phases over a range, sampled too on either side of principal regions."""
-    with np.errstate(invalid="ignore"):
-        wide = ~(principal.upper - principal.lower <= _WIDE * principal.middle)
-    beside = np.concatenate(
-        [principal.lower[wide] * (1 - 0.1 * _WIDE), principal.upper[wide] * (1 + 0.1 * _WIDE)]
-    )
-    # A missing end is NaN, which is in no range.
-    return sampled_phases(matrices, span, beside[(beside > span[0]) & (beside < span[1])])
 
 
 def _reached(edges: Edges, reach: Array) -> tuple[Array, Array, Array]:
@@ -384,7 +376,7 @@ def _combined(matrices: MatricesOverSpeed, events: Events, edges: Edges, *, held
         shares = pair_shares(matrices, modes, middle, np.exp(1j * phase))
     else:
         modes = averaged_modes(matrices, middle)
-    pair, harmonic, off = meeting_labels(modes, phase, phase, shares)
+    pair, harmonic, off = meeting_labels(modes, phase, shares)
     rows = np.arange(len(middle))[:, None]
     signs = np.sign(modes.turns[rows, pair - 1])
     kind = np.where(signs[:, 0] == signs[:, 1], "sum", "difference")

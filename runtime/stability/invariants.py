@@ -161,15 +161,14 @@ def in_sum(coefficients: Array) -> Array:
 
 def from_sum(polynomial: Array) -> Array:
     """Undo :func:`in_sum`."""
-    weights = _sum_weights(polynomial.shape[-1])
-    # Triangular with a diagonal of ones and whole entries: so is the inverse.
-    inverse = np.round(np.linalg.inv(weights[1:]))
-    return np.asarray((polynomial - weights[0]) @ inverse)
+    n = polynomial.shape[-1]
+    return np.asarray((polynomial - _sum_weights(n)[0]) @ sum_weights_back(n))
 
 
 def sum_weights_back(n: int) -> Array:
-    """Return how errors of ``a_1 ... a_n`` add to those of ``c_1 ... c_n``, shape ``(n, n)``."""
-    return np.abs(np.round(np.linalg.inv(_sum_weights(n)[1:])))
+    """Return what each of ``a_1 ... a_n`` adds to ``c_1 ... c_n``, shape ``(n, n)``."""
+    # Triangular with a diagonal of ones and whole entries: so is the inverse.
+    return np.round(np.linalg.inv(_sum_weights(n)[1:]))
 
 
 @lru_cache(maxsize=64)

@@ -11,6 +11,7 @@ speed, while their moduli start with a square root.  Near a narrow tongue it is 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -67,9 +68,9 @@ class Samples(NamedTuple):
 
 
 def phase_grid(matrices: MatricesOverSpeed, span: tuple[float, float], more: Array) -> Array:
-    """Return speeds from one to the next of which no mode turns far, and further ones, rising.
+    """Return speeds from one to the next of which no mode turns far, and ``more`` within, rising.
 
-    A range that needs more than 40 000 of them is refused.
+    The first and the last are the ends.  A range that needs more than 40 000 of them is refused.
     """
     low, high = span
     system = matrices.system
@@ -83,7 +84,8 @@ def phase_grid(matrices: MatricesOverSpeed, span: tuple[float, float], more: Arr
         raise bad("speed_range", found, f"at most {_MOST_SAMPLES}", fix)
     # Phases grow with the inverse speed.
     even = 1.0 / np.linspace(1 / low, 1 / high, max(count, 8))
-    return np.asarray(np.unique(np.concatenate([even, more])))
+    even[[0, -1]] = low, high
+    return np.asarray(np.unique(np.concatenate([even, more[(more > low) & (more < high)]])))
 
 
 def sampled_phases(matrices: MatricesOverSpeed, span: tuple[float, float], more: Array) -> Samples:
@@ -151,6 +153,8 @@ def meetings(samples: Samples, principal: bool = False) -> Events:
     n = samples.phase.shape[1]
     rows: list[tuple[float, float, float, Array, Array, Array]] = []
     real = samples.open & (np.abs(_wrapped(2 * samples.phase)) < _LOCKED)
+    # What is missing has the number -1.
+    speed = np.append(samples.speed, np.nan)
     for k in range(n):
         for other in (k,) if principal else range(k + 1, n):
             total = samples.phase[:, k] + samples.phase[:, other]
@@ -158,10 +162,10 @@ def meetings(samples: Samples, principal: bool = False) -> Events:
             locked &= np.abs(_wrapped(total)) < _LOCKED
             hidden = np.zeros_like(locked) if principal else real[:, k] | real[:, other]
             for first, last, run in _passages(total / _TURN_ROUND, locked & ~hidden, hidden):
-                inside = run[len(run) // 2] if run else None
-                low, high, middle = (_at(samples.speed, i) for i in (first, last, inside))
-                reach = samples.speed[[run[0], run[-1]]] if run else np.array([low, high])
-                kept = [i for i in (first, last) if i is not None] or [inside or 0]
+                inside = run[len(run) // 2] if run else -1
+                low, high, middle = speed[[first, last, inside]]
+                reach = speed[[run[0], run[-1]] if run else [first, last]]
+                kept = [i for i in (first, last) if i >= 0] or [inside]
                 at = [kept[0], kept[-1]]
                 plus, minus = samples.phase[at, k], -samples.phase[at, other]
                 rows.append((low, high, middle, reach, plus, minus))
@@ -171,30 +175,21 @@ def meetings(samples: Samples, principal: bool = False) -> Events:
     return Events(*ends, *angles)
 
 
-def _at(values: Array, index: int | None) -> float:
-    return float("nan") if index is None else float(values[index])
-
-
-Passage = tuple[int | None, int | None, list[int]]
-
-
-def _passages(turns: Array, locked: Flags, hidden: Flags) -> list[Passage]:
-    """Return samples before, after and those inside each passage of a whole number of turns."""
-    found: list[Passage] = []
-    before: int | None = None
-    run: list[int] = []
+def _passages(turns: Array, locked: Flags, hidden: Flags) -> Iterator[tuple[int, int, list[int]]]:
+    """Yield samples before, after and those inside each passage of a whole number of turns."""
+    before, run = -1, list[int]()
     for t in range(len(turns)):
         if locked[t]:
             run.append(t)
             continue
+        after = -1 if hidden[t] else t
         if run:
-            found.append((before, None if hidden[t] else t, run))
-        elif before is not None and not hidden[t] and np.floor(turns[t]) != np.floor(turns[before]):
-            found.append((before, t, []))
-        before, run = None if hidden[t] else t, []
+            yield before, after, run
+        elif min(before, after) >= 0 and np.floor(turns[t]) != np.floor(turns[before]):
+            yield before, t, []
+        before, run = after, []
     if run:
-        found.append((before, None, run))
-    return found
+        yield before, -1, run
 
 
 class Pair(NamedTuple):

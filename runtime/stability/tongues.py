@@ -76,13 +76,6 @@ def two_exponents(matrices: Complex, centre: float, lossless: bool | None) -> En
     unstable; else the condition of Routh and Hurwitz, ``4 m2^2 (m2^2 + D1) - D2^2 < 0`` with
     m2 = Im m, D = D1 + i D2.
     """
-    ends = _two_ends(matrices, centre, lossless)
-    if max(abs(ends.low), abs(ends.high)) > MOST_DETUNING:
-        return UNBOUNDED if ends.open else CLOSED
-    return ends
-
-
-def _two_ends(matrices: Complex, centre: float, lossless: bool | None) -> Ends:
     y = -1j * matrices
     centre = _middle((y[:, 0, 0] - y[:, 1, 1]).real, centre)
     y = _shifted(y, centre)
@@ -462,8 +455,8 @@ def tongue(
     }
     operators = tuple(made[value] for value in values.ravel().tolist())
     rows = [_ends(operator, resonance, order) for operator in operators]
-    columns = (np.array([row[i] for row in rows]) for i in range(4))
-    lower, upper, opened, error = (column.reshape(values.shape) for column in columns)
+    table = np.array(rows, dtype=float).reshape(*values.shape, 4)
+    lower, upper, opened, error = np.moveaxis(table, -1, 0)
     dimension = max((len(operator.modes) for operator in operators), default=2)
     result = Tongue(
         method=f"perturbation of order {order}, {dimension} exponents together",
@@ -550,6 +543,8 @@ def _detunings(
         matrices = operator.polynomials(degree, undamped=undamped)
         if len(operator.modes) == 2:
             ends = two_exponents(matrices, centre, lossless)
+            if max(abs(ends.low), abs(ends.high)) > MOST_DETUNING:
+                ends = UNBOUNDED if ends.open else CLOSED
             middle = (ends.low + ends.high).real / 2
             centre = middle if np.isfinite(middle) else centre
             out.append(ends)

@@ -25,7 +25,7 @@ from ..core.results import Check, Result
 from ..hill.form import is_hill
 from ..hill.perturbation import check_order
 from ..periodic import floquet_multipliers
-from .chart_axes import damping_rate, natural_frequency, on_grid
+from .chart_axes import natural_frequency, on_grid
 from .chart_boundaries import BoundaryCurves, boundary_curves
 from .chart_lines import Map, Sampler, Series, invariants, relative_error
 from .invariants import instability_kind, known_to, largest_modulus, root_uncertainty
@@ -429,9 +429,11 @@ def _level(sampler: Sampler, half: Array) -> Array:
     """Return the determinant of the monodromy matrices of one mode."""
     if not sampler.damped:
         return np.ones_like(half)
-    speed, _ = on_grid(sampler.names, sampler.axes, sampler.speed)
-    rate = damping_rate(sampler.system, sampler.names, sampler.axes)
-    return np.asarray(np.exp(-2 * np.pi * rate / speed) * np.ones_like(half))
+    speed, grid = on_grid(sampler.names, sampler.axes, sampler.speed)
+    values: dict[str, Any] = {**grid}
+    # Of one coordinate: what belongs to the points takes the place of rows and columns.
+    mass, drag = (sampler.system.array(name, 0.0, **values)[0] for name in ("M", "C"))
+    return np.asarray(np.exp(-2 * np.pi * drag / (mass * speed)) * np.ones_like(half))
 
 
 def _larger_root(half: Array, level: Array) -> Array:

@@ -107,17 +107,6 @@ def is_symplectic(system: LinearPeriodic, damped: bool) -> bool:
     return symmetric and not damped
 
 
-def damping_rate(system: LinearPeriodic, names: Names, axes: Axes) -> Array:
-    """Return c/m of one mode with constant mass and damping [1/s], shape ``(ny, nx)``."""
-    scales = system.scale_values(**on_grid(names, axes)[1])
-    total = {name: np.zeros((len(axes[1]), len(axes[0]))) for name in ("M", "C")}
-    for term in system.terms:
-        if term.array in total:
-            factor = 1.0 if term.scale is None else scales[term.scale]
-            total[term.array] = total[term.array] + factor * term(np.zeros(1))[0, 0, 0]
-    return np.asarray(total["C"] / total["M"])
-
-
 def natural_frequency(system: LinearPeriodic, names: Names, axes: Axes) -> float:
     """Return the lowest natural frequency at rest [rad/s]; NaN where it is not one number.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -268,9 +269,10 @@ def _functions(
 ) -> tuple[list[PeriodicFunction], list[Array]]:
     """Return functions and factors, one for each row, whose sum is the periodic part."""
     # Parts that change in proportion are one function.
-    scales = form.system.scale_values(**({} if other == "speed" else {other: rows}))
-    points = [{} if other == "speed" else {other: float(v)} for v in rows]
-    mass = np.array([form.system.array("M", 0.0, **p)[0, 0, 0] for p in points])
+    changes: dict[str, Any] = {} if other == "speed" else {other: rows}
+    scales = form.system.scale_values(**changes)
+    # Of one coordinate: what belongs to the rows takes the place of columns.
+    mass = form.system.array("M", 0.0, **changes)[0, 0]
     divisor = rows**2 if other == "speed" else np.ones_like(rows)
     functions: list[PeriodicFunction] = []
     factors: list[Array] = []

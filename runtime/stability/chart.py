@@ -270,7 +270,14 @@ def stability_chart(
     """
     require_system(system)
     names, axes = _axes(system, x, y)
-    _check_options(system, rtol, order, edges, names)
+    require_between("rtol", rtol, 1e-13, 1e-2, "choose 1e-9")
+    check_order(order)
+    if order != 1 and not is_hill(system):
+        expected = "one mode, which alone has boundaries by perturbation in a chart"
+        raise bad("order", order, expected, "leave it out; tongue has the series of several modes")
+    require_flag("edges", edges)
+    if edges and "speed" not in names:
+        raise bad("edges", edges, "a chart with the speed as an axis", "leave it out")
     require_flag("boundaries", boundaries)
     refuse(text_problems("stability_chart", frequency_name=frequency_name))
     if marks is not None:
@@ -317,19 +324,6 @@ def stability_chart(
     )
 
 
-def _check_options(
-    system: LinearPeriodic, rtol: float, order: int, edges: bool, names: tuple[str, str]
-) -> None:
-    require_between("rtol", rtol, 1e-13, 1e-2, "choose 1e-9")
-    check_order(order)
-    if order != 1 and not is_hill(system):
-        expected = "one mode, which alone has boundaries by perturbation in a chart"
-        raise bad("order", order, expected, "leave it out; tongue has the series of several modes")
-    require_flag("edges", edges)
-    if edges and "speed" not in names:
-        raise bad("edges", edges, "a chart with the speed as an axis", "leave it out")
-
-
 def _axes(system: LinearPeriodic, x: Axis, y: Axis) -> tuple[tuple[str, str], tuple[Array, Array]]:
     known = ["speed", *sorted({*system.parameters, *system.geometry})]
     found = []
@@ -367,8 +361,8 @@ def _edge_curves(
     keys = sorted({key for row in rows for key in row.names})
     ends = np.full((3, len(keys), len(rows)), np.nan)
     for column, row in enumerate(rows):
-        for i, key in enumerate(row.names):
-            ends[:, keys.index(key), column] = row.lower[i], row.upper[i], row.error[i]
+        places = [keys.index(key) for key in row.names]
+        ends[:, places, column] = row.lower, row.upper, row.error
     failed = sum(not check.passed for row in rows for check in row.checks.values())
     modes = np.array([key[1:3] for key in keys], dtype=np.int64).reshape(-1, 2)
     harmonic = np.array([key[3] for key in keys], dtype=np.int64)
@@ -620,13 +614,8 @@ def _draw_fractions(ax: Axes, chart: StabilityChart) -> None:
         speed = 2.0 * chart.natural_frequency / n * RPM
         if low <= speed <= high and (not ticks or ticks[-1] - speed > 0.045 * (high - low)):
             ticks.append(speed)
-            labels.append(_fraction(n))
+            whole = r"\Omega" if n == 2 else rf"\Omega/{n // 2}"
+            labels.append(f"${whole}$" if n % 2 == 0 else rf"$2\Omega/{n}$")
     top = ax.secondary_xaxis("top")
     top.set_xticks(ticks, labels, fontsize=8)
     top.set_xlabel(rf"fractions of the {chart.frequency_name} $\Omega$", fontsize=9)
-
-
-def _fraction(n: int) -> str:
-    if n == 2:
-        return r"$\Omega$"
-    return rf"$\Omega/{n // 2}$" if n % 2 == 0 else rf"$2\Omega/{n}$"

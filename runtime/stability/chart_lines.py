@@ -272,11 +272,7 @@ class Lines:
         return 3.0 * worst
 
     def _table(
-        self,
-        fixed: dict[str, float],
-        inner: str | None,
-        ends: tuple[float, float],
-        fineness: float,
+        self, fixed: dict[str, float], inner: str | None, ends: tuple[float, float], fineness: float
     ) -> Line:
         system, rest = at_geometry(self.system, fixed)
         known = sampled(system)

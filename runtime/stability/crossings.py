@@ -319,7 +319,12 @@ def mended(
     found = Crossings(matrices, speed, sharp=True).regions()
     wide = ~(found.upper - found.lower <= 4 * found.error)
     truth = found.take(np.flatnonzero(wide & (found.multiplier.imag != 0.0)))
-    alike = usable & _alike(truth, regions)
+    # Those whose ends agree within their errors, or that both lack.
+    slack = truth.error[:, None] + regions.error
+    alike = np.broadcast_to(usable, slack.shape)
+    for a, b in ((truth.lower, regions.lower), (truth.upper, regions.upper)):
+        gap = np.abs(a[:, None] - b)
+        alike = alike & ((gap <= slack) | (np.isnan(a)[:, None] & np.isnan(b)))
     own, new = np.zeros(len(usable), dtype=bool), list[int]()
     for row, fitting in enumerate(alike):
         same = np.flatnonzero(fitting & ~own)[:1]
@@ -350,16 +355,6 @@ def _named(matrices: MatricesOverSpeed, regions: Regions) -> Regions:
         detuning=np.where(better, off, regions.detuning),
         kind=np.where(better, "sum", regions.kind),
     )
-
-
-def _alike(first: Regions, second: Regions) -> NDArray[np.bool_]:
-    """Return which have both ends in common within their errors, or lack the same."""
-    slack = first.error[:, None] + second.error
-    agreed = np.ones(slack.shape, dtype=bool)
-    for a, b in ((first.lower, second.lower), (first.upper, second.upper)):
-        gap = np.abs(a[:, None] - b)
-        agreed &= (gap <= slack) | (np.isnan(a)[:, None] & np.isnan(b))
-    return agreed
 
 
 # Growth, over its error, from which a verdict tells.
@@ -475,9 +470,9 @@ def _counts(
     ends, slack = ends[order], slack[order]
     gap = np.diff(ends)
     spread = 4 * (slack[1:] + slack[:-1] + 16 * np.finfo(float).eps * ends[1:])
-    speeds = np.concatenate([(ends[:-1] + p * gap)[p * gap > spread] for p in (_BESIDE, 0.5)])
-    near = ends[1:] - _BESIDE * gap
-    speeds = np.unique(np.concatenate([speeds, near[_BESIDE * gap > spread]]))
+    shares = (_BESIDE, 0.5, 1.0 - _BESIDE)
+    inner = [(ends[:-1] + p * gap)[min(p, 1.0 - p) * gap > spread] for p in shares]
+    speeds = np.unique(np.concatenate(inner))
     if not len(speeds):
         return 0
     found = floquet_multipliers(system, speeds, **parameters)

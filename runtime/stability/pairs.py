@@ -100,18 +100,14 @@ def sampled_phases(matrices: MatricesOverSpeed, span: tuple[float, float], more:
         if not np.all(np.isfinite(scaled)):
             found = "growth beyond double precision within a turn"
             raise bad("speed_range", found, "speeds of moderate growth", "raise the lowest speed")
-        for values, signs in zip(*_signed(scaled, error), strict=True):
-            angle, undecided = _positive(np.angle(values), signs)
+        values, own, vectors = eigenvalues(scaled, perturbation_size(scaled, error))
+        # Signatures take for one what lies within ten errors.
+        signatures = signatures_of(vectors, values, 0.1 * own)
+        for angles, signs in zip(np.angle(values), signatures, strict=True):
+            angle, undecided = _positive(angles, signs)
             phases.append(angle)
             flags.append(undecided)
     return Samples(speed, *_followed(np.array(phases), np.array(flags)))
-
-
-def _signed(scaled: Array, error: Array) -> tuple[NDArray[np.complex128], NDArray[np.int8]]:
-    """Return the multipliers of symplectic matrices and their Krein signatures, ``(nb, 2n)``."""
-    values, own, vectors = eigenvalues(scaled, perturbation_size(scaled, error))
-    # signatures_of takes for one what lies within ten errors.
-    return values, signatures_of(vectors, values, 0.1 * own)
 
 
 def _positive(angle: Array, signs: NDArray[np.int8]) -> tuple[Array, Flags]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -76,10 +77,8 @@ def boundary_curves(
     regions, left_out = _regions(axes[which], along, points)
     exact = np.stack([point.ends(regions) for point in points], axis=2)
     near = _overlay(form, other, rows, points, regions, order)
-    return (
-        BoundaryCurves(along, regions, rows, *exact, left_out),
-        BoundaryCurves(along, regions, rows, *near, left_out),
-    )
+    curves = partial(BoundaryCurves, along, regions, rows, left_out=left_out)
+    return curves(*exact), curves(*near)
 
 
 @dataclass(frozen=True)

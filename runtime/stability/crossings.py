@@ -8,8 +8,8 @@ the kind: at +1, at -1, or with its conjugate elsewhere.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from typing import Any, Literal, NamedTuple
+from collections.abc import Mapping
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,7 @@ from ..frequencies.multiplier_maxima import refined_maxima
 from ..periodic import FloquetMultipliers, floquet_multipliers
 from ..periodic.multipliers import conditions
 from ..periodic.over_speed import MatricesOverSpeed
-from .labels import held_modes, meeting_labels, pair_shares
+from .labels import Regions, held_modes, joined, meeting_labels, pair_shares
 from .pairs import TOGETHER, perturbation_size, phase_grid
 
 ComplexArray = NDArray[np.complex128]
@@ -198,11 +198,8 @@ class Crossings:
             add(begun.pop(same[-1]) if same else last._replace(speed=np.nan), last)
         for first in begun:
             add(first, first._replace(speed=np.nan))
-        k, turn = len(rows), np.array(turns, dtype=complex)
-        lower, upper, error, begin, end = np.array(rows).reshape(k, 5).T
-        modes, harmonic = np.zeros((k, 2), dtype=np.int64), np.zeros(k, dtype=np.int64)
-        off, kinds = np.full(k, np.nan), np.where(turn.imag == 0.0, "principal", "sum")
-        return Regions(lower, upper, error, turn, modes, harmonic, off, begin, end, kinds)
+        numbers = np.array(rows).reshape(-1, 5).T
+        return Regions.unlabelled(numbers[:2], numbers[2], numbers[3:], np.array(turns))
 
     def _seen(self, start: float, kind: int, step: int) -> float:
         """Return the last sample from a speed on at which a kind is outside the circle."""
@@ -237,7 +234,7 @@ def damped_regions(
     Narrow ones are looked for where the ``undamped`` ones are, which lend their labels.
     """
     begin, end = np.maximum(undamped.begin, span[0]), np.minimum(undamped.end, span[1])
-    seen = np.flatnonzero(end - begin > 4 * undamped.error)
+    seen = end - begin > 4 * undamped.error
     undamped, begin, end = undamped.take(seen), begin[seen], end[seen]
     phase = np.angle(undamped.multiplier)
     middle, half = 0.5 * (begin + end), 0.5 * (end - begin)
@@ -246,10 +243,10 @@ def damped_regions(
     around = (middle[:, None] + half[:, None] * _PLACES).ravel()
     more = np.concatenate([highest, around, 0.5 * (ends[1:] + ends[:-1])])
     found = Crossings(matrices, phase_grid(matrices, span, more)).regions()
-    return labelled(found.take(np.flatnonzero(~(found.upper - found.lower <= 0.0))), undamped)
+    return named_after(found.take(~(found.upper - found.lower <= 0.0)), undamped)
 
 
-def labelled(found: Regions, undamped: Regions) -> Regions:
+def named_after(found: Regions, undamped: Regions) -> Regions:
     """Give each the label of the undamped region it is most like, none twice; 0 where none is."""
     from scipy.optimize import linear_sum_assignment
 
@@ -318,7 +315,7 @@ def mended(
     speed = phase_grid(matrices, span, 0.5 * (ends[1:] + ends[:-1]))
     found = Crossings(matrices, speed, sharp=True).regions()
     wide = ~(found.upper - found.lower <= 4 * found.error)
-    truth = found.take(np.flatnonzero(wide & (found.multiplier.imag != 0.0)))
+    truth = found.take(wide & (found.multiplier.imag != 0.0))
     # Those whose ends agree within their errors, or that both lack.
     slack = truth.error[:, None] + regions.error
     alike = np.broadcast_to(usable, slack.shape)
@@ -332,12 +329,11 @@ def mended(
         if not len(same):
             new.append(row)
     if not new:
-        return regions.take(np.flatnonzero(usable))
+        return regions.take(usable)
     fresh = truth.take(np.array(new))
     over = (regions.begin < fresh.end[:, None]) & (regions.end > fresh.begin[:, None])
     kept = usable & (own | ~np.any(over, axis=0))
-    pool = regions.take(np.flatnonzero(~kept))
-    return joined(regions.take(np.flatnonzero(kept)), _named(matrices, labelled(fresh, pool)))
+    return joined(regions.take(kept), _named(matrices, named_after(fresh, regions.take(~kept))))
 
 
 def _named(matrices: MatricesOverSpeed, regions: Regions) -> Regions:
@@ -361,48 +357,6 @@ def _named(matrices: MatricesOverSpeed, regions: Regions) -> Regions:
 _TELLING = 20.0
 # Share of the way to the next end at which an end is looked at.
 _BESIDE = 0.01
-
-
-class Regions(NamedTuple):
-    """Regions with their ends and labels, see :class:`~.edges.StabilityEdges`.
-
-    ``begin`` and ``end`` are as far as the region is known to reach: its ends where it has them,
-    else the last speed at which it was seen.
-    """
-
-    lower: Array
-    upper: Array
-    error: Array
-    multiplier: NDArray[np.complex128]
-    modes: NDArray[np.int64]
-    harmonic: NDArray[np.int64]
-    detuning: Array
-    begin: Array
-    end: Array
-    kind: NDArray[np.str_]
-
-    @property
-    def middle(self) -> Array:
-        """Middle of each, or the one end that there is, or of where it was seen."""
-        low = np.where(np.isfinite(self.lower), self.lower, self.upper)
-        high = np.where(np.isfinite(self.upper), self.upper, self.lower)
-        seen = 0.5 * (self.begin + self.end)
-        return np.asarray(np.where(np.isfinite(low + high), 0.5 * (low + high), seen))
-
-    def take(self, index: NDArray[np.intp]) -> Regions:
-        """Return some of the regions, in the order given."""
-        columns: Sequence[Any] = self
-        return Regions(*(values[index] for values in columns))
-
-    def overlapping(self, low: float, high: float) -> Regions:
-        """Return those that reach into a range, by rising speed."""
-        kept = np.flatnonzero((self.end >= low) & (self.begin <= high))
-        return self.take(kept[np.argsort(self.middle[kept], kind="stable")])
-
-
-def joined(first: Regions, second: Regions) -> Regions:
-    """Return the regions of both."""
-    return Regions(*(np.concatenate(both) for both in zip(first, second, strict=True)))
 
 
 # ---------------------------------------------------------------- checks
@@ -432,25 +386,20 @@ def edge_checks(
 def _narrow(system: LinearPeriodic, regions: Regions, parameters: Mapping[str, float]) -> int:
     """Return how many regions do not grow in the middle as much as their width promises."""
     with np.errstate(invalid="ignore"):
-        whole = np.flatnonzero(regions.upper - regions.lower > 4 * regions.error)
-    if not len(whole):
+        whole = regions.take(regions.upper - regions.lower > 4 * regions.error)
+    if not len(whole.error):
         return 0
-    low, high = regions.lower[whole], regions.upper[whole]
-    middle: Array = 0.5 * (low + high)
-    inside = floquet_multipliers(system, middle, **parameters)
-    expected = _expected_growth(regions, whole)
+    inside = floquet_multipliers(system, 0.5 * (whole.lower + whole.upper), **parameters)
+    expected = _expected_growth(whole)
     told = expected > _TELLING * np.max(inside.error, axis=-1)
-    grown = np.max(inside.exponents.real, axis=-1)
-    if _damped(inside):
-        expected = np.zeros_like(expected)
-    return int(np.sum(told & (grown <= 0.1 * expected)))
+    least = 0.0 if _damped(inside) else 0.1 * expected
+    return int(np.sum(told & (np.max(inside.exponents.real, axis=-1) <= least)))
 
 
-def _expected_growth(regions: Regions, index: NDArray[np.intp]) -> Array:
+def _expected_growth(regions: Regions) -> Array:
     """Return the growth in a period at the middle of regions, n pi b / (2 w) at a width b."""
-    width = (regions.end - regions.begin)[index]
-    value: Array = 0.5 * np.pi * np.maximum(regions.harmonic[index], 1) * width
-    return value / regions.end[index]
+    width = regions.end - regions.begin
+    return 0.5 * np.pi * np.maximum(regions.harmonic, 1) * width / regions.end
 
 
 def _counts(
@@ -462,10 +411,10 @@ def _counts(
     """Return at how many places between ends not as many multipliers grow as regions cover."""
     # The places are beside each end and in the middle between each two.  A principal region stands
     # for one multiplier, any other for two, which holds too where four meet off the circle.
-    wide = np.flatnonzero(regions.end - regions.begin > 4 * regions.error)
-    begin, end, error = regions.begin[wide], regions.end[wide], regions.error[wide]
+    wide = regions.take(regions.end - regions.begin > 4 * regions.error)
+    begin, end = wide.begin, wide.end
     ends = np.concatenate([span, begin, end])
-    slack = np.concatenate([np.zeros(2), error, error])
+    slack = np.concatenate([np.zeros(2), wide.error, wide.error])
     order = np.argsort(ends, kind="stable")
     ends, slack = ends[order], slack[order]
     gap = np.diff(ends)
@@ -478,15 +427,14 @@ def _counts(
     found = floquet_multipliers(system, speeds, **parameters)
     modulus, blur = np.abs(found.multipliers), np.max(found.error, axis=-1)
     covers = (speeds[:, None] > begin) & (speeds[:, None] < end)
-    weight = np.where(regions.kind[wide] == "principal", 1, 2)
-    expected = covers.astype(int) @ weight
+    expected = covers.astype(int) @ np.where(wide.kind == "principal", 1, 2)
     fewest = np.sum(modulus > 1.0 + 4 * found.error, axis=-1)
     most = np.sum(modulus > 1.0 - 4 * found.error, axis=-1)
     if not _damped(found):
         # All that is not off the circle lies on it: only what should grow by more is missed.
         with np.errstate(divide="ignore", invalid="ignore"):
             part = (speeds[:, None] - begin) / (end - begin)
-            rate = _expected_growth(regions, wide) * 2 * np.sqrt(np.maximum(part * (1 - part), 0.0))
+            rate = _expected_growth(wide) * 2 * np.sqrt(np.maximum(part * (1 - part), 0.0))
         least = np.min(np.where(covers, rate, np.inf), axis=1, initial=np.inf)
         most = np.where(least > _TELLING * blur, fewest, np.maximum(fewest, expected))
     no_begin = np.isnan(regions.lower) & (regions.begin > span[0])

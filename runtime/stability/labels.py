@@ -7,7 +7,8 @@ all other modes at rest: where the periodic part is large its mean frequency is 
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +47,65 @@ class Modes(NamedTuple):
     mass: Array
 
 
+class Regions(NamedTuple):
+    """Regions with their ends and labels, see :class:`~.edges.StabilityEdges`.
+
+    ``begin`` and ``end`` are as far as the region is known to reach: its ends where it has them,
+    else the last speed at which it was seen.
+    """
+
+    lower: Array
+    upper: Array
+    error: Array
+    begin: Array
+    end: Array
+    multiplier: ComplexArray
+    modes: Whole
+    harmonic: Whole
+    detuning: Array
+    kind: NDArray[np.str_]
+
+    @classmethod
+    def unlabelled(cls, ends: Array, error: Array, reach: Array, multiplier: Array) -> Regions:
+        """Return regions without modes, principal ones where the multiplier is real.
+
+        ``ends`` and ``reach``, from begin to end, are of shape ``(2, k)``.
+        """
+        k, turn = len(error), multiplier.astype(complex)
+        modes, harmonic = np.zeros((k, 2), dtype=np.int64), np.zeros(k, dtype=np.int64)
+        kind = np.where(turn.imag == 0.0, "principal", "sum")
+        off = np.full(k, np.nan)
+        (lower, upper), (begin, end) = ends, reach
+        return cls(lower, upper, error, begin, end, turn, modes, harmonic, off, kind)
+
+    def labelled(self, modes: Whole, harmonic: Whole, detuning: Array) -> Regions:
+        """Return the same with labels."""
+        return self._replace(modes=modes, harmonic=harmonic, detuning=detuning)
+
+    @property
+    def middle(self) -> Array:
+        """Middle of each, or the one end that there is, or of where it was seen."""
+        low = np.where(np.isfinite(self.lower), self.lower, self.upper)
+        high = np.where(np.isfinite(self.upper), self.upper, self.lower)
+        seen = 0.5 * (self.begin + self.end)
+        return np.asarray(np.where(np.isfinite(low + high), 0.5 * (low + high), seen))
+
+    def take(self, which: NDArray[Any]) -> Regions:
+        """Return some of the regions, by their numbers, in the order given, or by a mask."""
+        columns: Sequence[Any] = self
+        return Regions(*(values[which] for values in columns))
+
+    def overlapping(self, low: float, high: float) -> Regions:
+        """Return those that reach into a range, by rising speed."""
+        kept = np.flatnonzero((self.end >= low) & (self.begin <= high))
+        return self.take(kept[np.argsort(self.middle[kept], kind="stable")])
+
+
+def joined(first: Regions, second: Regions) -> Regions:
+    """Return the regions of both."""
+    return Regions(*(np.concatenate(both) for both in zip(first, second, strict=True)))
+
+
 def averaged_modes(matrices: MatricesOverSpeed, speed: Array) -> Modes:
     """Return the modes of the averaged equation at speeds of shape ``(k,)``."""
     n = matrices.system.size
@@ -59,7 +119,7 @@ def averaged_modes(matrices: MatricesOverSpeed, speed: Array) -> Modes:
     stable = np.flatnonzero(np.count_nonzero(own, axis=1) == n)
     turns, shapes = np.full((len(speed), n), np.nan), np.zeros((len(speed), n, n), dtype=complex)
     vectors, chosen = vectors[stable], chosen[stable]
-    duals = np.take_along_axis(np.linalg.inv(vectors), chosen[:, :, None], axis=1)
+    duals = np.take_along_axis(np.linalg.inv(vectors), chosen[:, :, None], axis=1).astype(complex)
     vectors = np.take_along_axis(vectors, chosen[:, None], axis=2)
     turns[stable] = _own_turns(equation.take(stable), vectors, duals)
     rows = np.swapaxes(vectors[:, :n], 1, 2)

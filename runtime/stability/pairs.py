@@ -23,6 +23,7 @@ from ..periodic.equation import equation_of
 from ..periodic.multipliers import conditions, eigenvalues
 from ..periodic.over_speed import MatricesOverSpeed
 from ..periodic.signatures import form_matrix, signatures_of
+from .labels import Regions
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -251,26 +252,13 @@ def _wrapped(angle: Array) -> Array:
     return np.asarray(np.mod(angle + np.pi, 2 * np.pi) - np.pi)
 
 
-class Edges(NamedTuple):
-    """Edges of tongues, each array of shape ``(k,)``.
+def refined_edges(matrices: MatricesOverSpeed, events: Events) -> tuple[Regions, Array, Array]:
+    """Return the tongues in which pairs meet, without labels, their middles, and least widths.
 
-    ``lower`` and ``upper`` [rad/s] are equal where the tongue is too narrow to be told from none,
-    NaN where the range ended first; ``error`` is that of either, ``least`` the width below which
-    the tongue would not be told from none, ``phase`` the argument of the multiplier there [rad].
-    """
-
-    lower: Array
-    upper: Array
-    error: Array
-    least: Array
-    phase: Array
-
-
-def refined_edges(matrices: MatricesOverSpeed, events: Events) -> Edges:
-    """Return the edges of the tongues in which pairs meet.
-
-    A parabola through three values of g leads to its least value; where that is negative beyond
-    its error, both zeros are bracketed and solved for.
+    Ends are equal where the tongue is too narrow to be told from none, that is below this width,
+    and NaN where the range ended first; the middle is then that of where the pair was seen.  A
+    parabola through three values of g leads to its least value; where that is negative beyond its
+    error, both zeros are bracketed and solved for.
     """
     search = _Search(matrices, events)
     search.run()
@@ -279,13 +267,16 @@ def refined_edges(matrices: MatricesOverSpeed, events: Events) -> Edges:
     phase = np.array(search.phase)
     for side, outer in enumerate((events.low, events.high)):
         known = np.flatnonzero(search.found & np.isfinite(outer))
-        roots, error, at = search.edge(known, side)
-        ends[side, known], errors[side, known] = roots, error
-        phase[known] = at
+        ends[side, known], errors[side, known], phase[known] = search.edge(known, side)
     closed = ~search.found
     ends[:, closed] = search.bottom[closed]
     errors[:, closed] = 0.5 * search.least[closed]
-    return Edges(ends[0], ends[1], np.max(errors, axis=0), search.least, phase)
+    reach = np.where(np.isfinite(ends), ends, events.reach.T)
+    centre, seen = 0.5 * (ends[0] + ends[1]), np.mean(events.reach, axis=1)
+    middle = np.where(np.isfinite(centre), centre, seen)
+    turn = np.exp(1j * np.abs(phase))
+    found = Regions.unlabelled(ends, np.max(errors, axis=0), reach, turn)
+    return found, middle, search.least
 
 
 class _Search:

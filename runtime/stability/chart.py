@@ -385,49 +385,46 @@ class Judged(NamedTuple):
 
 
 def judged(sampler: Sampler, series: Series, workers: Map) -> Judged:
-    """Return what is told of each point, some rows at a time, which bounds the memory."""
+    """Return what is told of each point."""
+    if sampler.hill:
+        return _judged_hill(sampler, series)
     rows, points = series.values.shape[:2]
-    # Points that are judged together.
+    # So many points are judged together, which bounds the memory.
     together = max(1, 250_000 // max(1, points))
     parts = [slice(start, start + together) for start in range(0, rows, together)]
-    # Of one mode the verdict is quicker than the way to another process and back.
-    run = map if sampler.hill else workers
-    blocks = run(partial(_judge, sampler), ((part, series.rows(part)) for part in parts))
+    error = series.error if series.errors is None else series.errors
+    judge = partial(_judged_rows, sampler.reduced)
+    blocks = workers(judge, ((series.values[part], error[part]) for part in parts))
     return Judged(*(np.concatenate(columns) for columns in zip(*blocks, strict=True)))
 
 
-def _judge(sampler: Sampler, item: tuple[slice, Series]) -> Judged:
-    """Return what is told of the points of some rows."""
-    part, series = item
-    rows = sampler.rows(part)
-    if rows.hill:
-        half = np.abs(series.values[..., 0])
-        level = _level(rows, half)
-        largest = _larger_root(half, level)
-        # An error of the half trace moves the boundary, where it is (1 + W) / 2.
-        edge = 0.5 * (1.0 + level)
-        slack = _larger_root(edge + series.error, level) - 1.0
-        stable = half <= edge + series.error
-        undecided = np.abs(half - edge) <= series.error
-    else:
-        error = series.error if series.errors is None else series.errors
-        largest, stable, slack = largest_modulus(series.values, reduced=rows.reduced, error=error)
-        # Unstable is only what some multiplier proves beyond its own error.
-        doubtful = slack > 0.0 if rows.reduced else largest + slack >= 1.0
-        undecided = np.isnan(largest) | (stable & doubtful)
-    kind = instability_kind(series.values, stable, hill=rows.hill, reduced=rows.reduced)
-    return Judged(largest, stable, slack, undecided, kind)
+def _judged_rows(reduced: bool, item: tuple[Array, Array]) -> Judged:
+    """Return what polynomials and the errors of their coefficients tell."""
+    values, error = item
+    largest, stable, slack = largest_modulus(values, reduced=reduced, error=error)
+    # Unstable is only what some multiplier proves beyond its own error.
+    doubtful = slack > 0.0 if reduced else largest + slack >= 1.0
+    undecided = np.isnan(largest) | (stable & doubtful)
+    return Judged(largest, stable, slack, undecided, instability_kind(values, stable, reduced))
 
 
-def _level(sampler: Sampler, half: Array) -> Array:
-    """Return the determinant of the monodromy matrices of one mode."""
-    if not sampler.damped:
-        return np.ones_like(half)
-    speed, grid = on_grid(sampler.names, sampler.axes, sampler.speed)
-    values: dict[str, Any] = {**grid}
-    # Of one coordinate: what belongs to the points takes the place of rows and columns.
-    mass, drag = (sampler.system.array(name, 0.0, **values)[0] for name in ("M", "C"))
-    return np.asarray(np.exp(-2 * np.pi * drag / (mass * speed)) * np.ones_like(half))
+def _judged_hill(sampler: Sampler, series: Series) -> Judged:
+    """Return what half traces X and the determinants W of the monodromy matrices tell."""
+    trace, level = series.values[..., 0], np.ones_like(series.error)
+    if sampler.damped:
+        speed, grid = on_grid(sampler.names, sampler.axes, sampler.speed)
+        values: dict[str, Any] = {**grid}
+        # Of one coordinate: what belongs to the points takes the place of rows and columns.
+        mass, drag = (sampler.system.array(name, 0.0, **values)[0] for name in ("M", "C"))
+        level = level * np.exp(-2 * np.pi * drag / (mass * speed))
+    half = np.abs(trace)
+    # An error of the half trace moves the boundary, where it is (1 + W) / 2.
+    edge = 0.5 * (1.0 + level)
+    slack = _larger_root(edge + series.error, level) - 1.0
+    stable = half <= edge + series.error
+    undecided = np.abs(half - edge) <= series.error
+    kind = np.where(stable | np.isnan(trace), 0.0, np.sign(trace)).astype(np.int8)
+    return Judged(_larger_root(half, level), stable, slack, undecided, kind)
 
 
 def _larger_root(half: Array, level: Array) -> Array:

@@ -7,7 +7,6 @@ the function of Hill's equation where the inner axis leaves that alone.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from copy import copy
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, NamedTuple
@@ -57,11 +56,6 @@ class Series:
     method: str
     errors: Array | None = None
 
-    def rows(self, part: slice) -> Series:
-        """Return the same of some rows of the chart."""
-        errors = None if self.errors is None else self.errors[part]
-        return replace(self, values=self.values[part], error=self.error[part], errors=errors)
-
 
 class Sampler:
     """What is asked of a chart at a fixed speed [rad/s], or with the speed as an axis."""
@@ -79,12 +73,6 @@ class Sampler:
         self.plain = (
             None if self.form is None or self.damped else plain_axes(self.form, names, self.speed)
         )
-
-    def rows(self, part: slice) -> Sampler:
-        """Return the sampler of some rows of the chart."""
-        found = copy(self)
-        found.axes = (self.axes[0], self.axes[1][part])
-        return found
 
     def transform(self, name: str, values: Array) -> Array:
         """Return the variable in which the invariants are entire."""

@@ -109,7 +109,7 @@ def _judged(modulus: Array, allowance: Array) -> Moduli:
 
 
 def instability_kind(
-    coefficients: Array, stable: NDArray[np.bool_], *, hill: bool, reduced: bool
+    coefficients: Array, stable: NDArray[np.bool_], reduced: bool
 ) -> NDArray[np.int8]:
     """Return 1 or -1 where the largest multiplier is real, 2 where complex, 0 where stable.
 
@@ -119,12 +119,11 @@ def instability_kind(
     grown = ~np.all(np.isfinite(coefficients), axis=-1)
     if np.any(grown):
         # Overflowed: the sum of the multipliers tells the sign of the largest.
-        sign = np.where(np.isinf(coefficients[..., 0]), np.sign(coefficients[..., 0]), 0.0)
-        out[grown] = (sign if hill else -sign)[grown]
+        first = coefficients[grown, 0]
+        out[grown] = np.where(np.isinf(first), -np.sign(first), 0.0)
         stable = stable | grown
     chosen = coefficients[~stable]
-    if hill or not len(chosen):
-        out[~stable] = np.sign(chosen[..., 0]) if hill else 0
+    if not len(chosen):
         return out
     rho = _outer(_roots(in_sum(chosen)))[0] if reduced else _roots(chosen)
     top = np.take_along_axis(rho, np.argmax(np.abs(rho), axis=-1)[..., None], axis=-1)[..., 0]

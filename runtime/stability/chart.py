@@ -289,8 +289,7 @@ def stability_chart(
     series = invariants(sampler, workers, progress=progress)
     found = judged(sampler, series, workers)
     exact = near = rows = None
-    shaped = any(name in system.geometry for name in names)
-    if boundaries and is_hill(system) and not shaped and sampler.speed == 1.0:
+    if boundaries and is_hill(system) and not sampler.shaped and sampler.speed == 1.0:
         exact, near = boundary_curves(system, names, axes, int(order))
     checks = {
         "error of samples": Check(series.sample_error, max(1e-8, 1e3 * rtol)),

@@ -67,8 +67,9 @@ class Sampler:
         self.system, self.names, self.axes, self.rtol = system, names, axes, rtol
         self.damped = is_damped(system, names, axes)
         self.reduced = is_symplectic(system, self.damped)
-        shaped = any(name in system.geometry for name in names)
-        self.hill = is_hill(system) and not shaped and not (system.has("Kg") and "speed" in names)
+        self.shaped = any(name in system.geometry for name in names)
+        turned = system.has("Kg") and "speed" in names
+        self.hill = is_hill(system) and not self.shaped and not turned
         self.form = hill_form(system) if self.hill else None
         self.plain = (
             None if self.form is None or self.damped else plain_axes(self.form, names, self.speed)

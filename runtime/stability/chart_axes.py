@@ -91,12 +91,6 @@ def _turned(system: LinearPeriodic, names: Names) -> bool:
     return resisting and moving
 
 
-def is_damped(system: LinearPeriodic, names: Names, axes: Axes) -> bool:
-    """Return True where some damping term acts at some angle, somewhere on the chart."""
-    grid = on_grid(names, axes)[1]
-    return system.is_damped(**{k: v for k, v in grid.items() if k not in system.geometry})
-
-
 def is_symplectic(system: LinearPeriodic, damped: bool) -> bool:
     """Return True where multipliers come in reciprocal pairs: undamped, symmetric B, K and Kg."""
     angles = np.linspace(0.0, system.period, 65)[:-1]

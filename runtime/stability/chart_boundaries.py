@@ -15,7 +15,7 @@ from ..hill import HillForm, hill_boundaries, hill_form, perturbation_boundaries
 from ..hill.boundaries import near_tip
 from ..hill.fourier_matrix import by_parity, layout, stacked, truncation
 from .boundary_speeds import inverse_roots
-from .chart_axes import is_damped, is_stiffness, leaves_function_alone
+from .chart_axes import is_stiffness, leaves_function_alone, on_grid
 
 _EPS = float(np.finfo(float).eps)
 Ends = tuple[Array, Array, Array]
@@ -68,7 +68,7 @@ def boundary_curves(
     which = suited.index(True)
     along, other = names[which], names[1 - which]
     rows = axes[1 - which]
-    sharp = not is_damped(system, names, axes)
+    sharp = not system.is_damped(**on_grid(names, axes)[1])
     # Rows between which a curve is drawn straight; a damped one takes some ten times as long.
     most = 121 if sharp else 41
     if len(rows) > most:

@@ -27,9 +27,9 @@ from .chart_axes import (
     Axes,
     Names,
     fixed_speed,
-    is_damped,
     is_symplectic,
     leaves_function_alone,
+    on_grid,
     plain_axes,
 )
 from .invariants import frobenius, from_sum, sum_weights_back, weighed_characteristic
@@ -65,7 +65,9 @@ class Sampler:
     ) -> None:
         self.speed = fixed_speed(system, names, speed)
         self.system, self.names, self.axes, self.rtol = system, names, axes, rtol
-        self.damped = is_damped(system, names, axes)
+        grid = on_grid(names, axes)[1]
+        # Whether some damping term acts at some angle, somewhere on the chart.
+        self.damped = system.is_damped(**{k: grid[k] for k in grid if k not in system.geometry})
         self.reduced = is_symplectic(system, self.damped)
         self.shaped = any(name in system.geometry for name in names)
         turned = system.has("Kg") and "speed" in names

@@ -15,7 +15,6 @@ from ..core.families import DAMPING, Array, LinearPeriodic
 from ..core.inputs import is_finite, numbers, require_between, speed_span
 from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.results import Check, Result, provenance
-from ..periodic import floquet_multipliers
 from ..periodic.equation import at_geometry, equation_of
 from ..periodic.lowest_modes import LowestModes
 from ..periodic.over_speed import MatricesOverSpeed
@@ -30,6 +29,7 @@ from .labels import (
     meeting_labels,
     pair_shares,
     principal_labels,
+    real_beyond,
     unit_labels,
 )
 from .pairs import meetings, refined_edges, sampled_phases
@@ -420,11 +420,9 @@ def _endless(
 ) -> Regions:
     """Return principal regions in which all of the range lies, for multipliers without boundary."""
     middle = np.array([0.5 * (span[0] + span[1])])
-    values = floquet_multipliers(matrices.system, middle, **matrices.parameters)
-    multipliers, error = values.multipliers[0], values.error[0]
-    outside = (np.abs(multipliers.imag) <= 4 * error) & (np.abs(multipliers.real) > 1 + 4 * error)
-    real = np.sign(multipliers.real[outside])
-    real = np.sort(real[~np.isin(real, boundaries.multiplier)])[::-1]
+    missing = [sign for sign in (1, -1) if sign not in boundaries.multiplier]
+    counts = [real_beyond(matrices, middle, sign)[0] for sign in missing]
+    real = np.repeat(np.array(missing, dtype=float), np.array(counts, dtype=int))
     k = len(real)
     turns = np.repeat(averaged_modes(matrices, middle).turns, k, axis=0)
     labels = principal_labels(turns, real, np.zeros_like(turns))

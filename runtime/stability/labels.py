@@ -238,15 +238,17 @@ def boundary_units(
     for sign in (1, -1):
         own = np.flatnonzero(found.multiplier == sign)
         if len(own):
-            units.extend(_paired(found, own, owner, _beyond(matrices, found.speed[own], sign)))
+            # Before, between and behind the boundaries.
+            speed = found.speed[own]
+            ends = [speed[:1] * (1 - _BESIDE), speed[-1:] * (1 + _BESIDE)]
+            places = np.concatenate([ends[0], 0.5 * (speed[1:] + speed[:-1]), ends[1]])
+            units.extend(_paired(found, own, owner, real_beyond(matrices, places, sign)))
     return np.array(units, dtype=np.intp).reshape(-1, 2).T
 
 
-def _beyond(matrices: MatricesOverSpeed, speed: Array, sign: int) -> list[int]:
-    """Return how many real multipliers are off the circle before, between and behind boundaries."""
-    ends = speed[0] * (1 - _BESIDE), speed[-1] * (1 + _BESIDE)
-    middle = np.concatenate([ends[:1], 0.5 * (speed[1:] + speed[:-1]), ends[1:]])
-    values = floquet_multipliers(matrices.system, middle, **matrices.parameters)
+def real_beyond(matrices: MatricesOverSpeed, speed: Array, sign: int) -> list[int]:
+    """Return how many real multipliers of a sign are off the circle at some speeds."""
+    values = floquet_multipliers(matrices.system, speed, **matrices.parameters)
     real = np.abs(values.multipliers.imag) <= 4 * values.error
     beyond = sign * values.multipliers.real > 1.0 + 4 * values.error
     return [int(number) for number in np.sum(real & beyond, axis=-1)]

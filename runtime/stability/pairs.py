@@ -148,7 +148,7 @@ def meetings(samples: Samples, principal: bool = False) -> Events:
     the circle at +-1 are none: it is not there to be met.
     """
     n = samples.phase.shape[1]
-    rows: list[tuple[float, float, float, Array, Array, Array]] = []
+    rows: list[tuple[float, ...]] = []
     real = samples.open & (np.abs(_wrapped(2 * samples.phase)) < _LOCKED)
     # What is missing has the number -1.
     speed = np.append(samples.speed, np.nan)
@@ -165,11 +165,10 @@ def meetings(samples: Samples, principal: bool = False) -> Events:
                 kept = [i for i in (first, last) if i >= 0] or [inside]
                 at = [kept[0], kept[-1]]
                 plus, minus = samples.phase[at, k], -samples.phase[at, other]
-                rows.append((low, high, middle, reach, plus, minus))
-    columns = list(zip(*rows, strict=True)) if rows else [()] * 6
-    ends = [np.array(column, dtype=float) for column in columns[:3]]
-    angles = [np.array(column, dtype=float).reshape(-1, 2) for column in columns[3:]]
-    return Events(*ends, *angles)
+                rows.append((low, high, middle, *reach, *plus, *minus))
+    table = np.array(rows, dtype=float).reshape(-1, 9)
+    reach, plus, minus = (table[:, i : i + 2] for i in (3, 5, 7))
+    return Events(table[:, 0], table[:, 1], table[:, 2], reach, plus, minus)
 
 
 def _passages(turns: Array, locked: Flags, hidden: Flags) -> Iterator[tuple[int, int, list[int]]]:

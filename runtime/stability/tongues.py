@@ -242,7 +242,7 @@ class Several:
         values = np.linalg.eigvals(self._at(sigma))
         if self.lossless:
             return np.diff(np.sort(values.real, axis=-1), axis=-1)
-        return np.min(values.imag, axis=-1, keepdims=True)
+        return np.asarray(np.min(values.imag, axis=-1, keepdims=True))
 
     def _belongs(self, sigma: float) -> bool:
         """Return True where the growing motion is that of the resonance's modes."""

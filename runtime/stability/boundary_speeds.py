@@ -31,24 +31,12 @@ from ..periodic.equation import SPEED_POWER, equation_of, sampled
 ComplexArray = NDArray[np.complex128]
 
 
-@dataclass(frozen=True)
-class Wave:
-    """Fourier coefficients of the terms of one array that carry one power of the speed.
-
-    Of shape ``(2 r + 1, n, n)``, for harmonics -r to r of the period.
-    """
-
-    array: str
-    exponent: int
-    coefficients: ComplexArray
-
-    @property
-    def reach(self) -> int:
-        """Highest harmonic r."""
-        return len(self.coefficients) // 2
+# Fourier coefficients ``(2 r + 1, n, n)``, for harmonics -r to r of the period, of the terms of one
+# array that carry one power of the speed.
+Waves = Mapping[tuple[str, int], ComplexArray]
 
 
-def waves(system: LinearPeriodic, parameters: Mapping[str, ArrayLike]) -> tuple[Wave, ...]:
+def waves(system: LinearPeriodic, parameters: Mapping[str, ArrayLike]) -> Waves:
     """Return the Fourier coefficients of the terms that act at constant speed without forcing.
 
     A parameter that is not one number is refused, and a term not smooth enough to have a series.
@@ -78,18 +66,18 @@ def waves(system: LinearPeriodic, parameters: Mapping[str, ArrayLike]) -> tuple[
         )
         total[0] += factor * series[0]
         total[1 : half + 1] += 0.5 * factor * (series[1 : half + 1] - 1j * series[half + 1 :])
-    found = []
-    for (array, exponent), total in sums.items():
+    found = {}
+    for key, total in sums.items():
         size = np.max(np.abs(total), axis=(1, 2))
         # Below this, over the largest, the last harmonics are round-off.
         reach = int(np.flatnonzero(size > 4e-16 * np.max(size))[-1]) if np.any(size) else 0
         upper = total[: reach + 1]
-        found.append(Wave(array, exponent, np.concatenate([np.conj(upper[:0:-1]), upper])))
-    return tuple(found)
+        found[key] = np.concatenate([np.conj(upper[:0:-1]), upper])
+    return found
 
 
 def real_matrices(
-    found: tuple[Wave, ...], size: int, period: float, harmonics: int, multiplier: int
+    found: Waves, size: int, period: float, harmonics: int, multiplier: int
 ) -> dict[int, Array]:
     """Return the matrices of the equation by power of the speed, in a real basis.
 
@@ -101,16 +89,14 @@ def real_matrices(
     rate: Array = 2 * np.pi / period * kappa
     count = len(kappa)
     totals: dict[int, ComplexArray] = {}
-    for wave in found:
-        total = totals.setdefault(
-            wave.exponent, np.zeros((count, size, count, size), dtype=complex)
-        )
-        for shift, block in enumerate(wave.coefficients, start=-wave.reach):
+    for (array, exponent), coefficients in found.items():
+        total = totals.setdefault(exponent, np.zeros((count, size, count, size), dtype=complex))
+        for shift, block in enumerate(coefficients, start=-(len(coefficients) // 2)):
             # Row k, column l = k - shift.
             rows = np.arange(max(0, shift), min(count, count + shift))
             columns = rows - shift
             left, right = (rate[index][:, None, None] for index in (rows, columns))
-            total[rows, :, columns, :] += _entry(wave.array, block, left, right)
+            total[rows, :, columns, :] += _entry(array, block, left, right)
     return {exponent: _in_real_basis(total) for exponent, total in totals.items()}
 
 
@@ -121,10 +107,10 @@ def _entry(array: str, block: ComplexArray, left: Array, right: Array) -> Comple
     if array == "A":
         return 1j * (left * block - right * block.T)
     if array == "B":
-        return np.broadcast_to(-block, (len(left), *block.shape))
+        return -block
     if array == "C":
         return 1j * right * block
-    return np.broadcast_to(block, (len(left), *block.shape))
+    return block
 
 
 def _in_real_basis(total: ComplexArray) -> Array:
@@ -275,7 +261,7 @@ def speed_boundaries(
     require_between("rtol", rtol, 1e-14, 1.0, "choose 1e-11")
     rate = float(equation_of(system, low, parameters).rate()[0])
     found = waves(system, parameters)
-    reach = max(wave.reach for wave in found)
+    reach = max(len(coefficients) // 2 for coefficients in found.values())
     usual = ceil(rate * system.period / (2 * np.pi)) + reach + 6
     most = _MOST_ROWS // (2 * system.size)
 
@@ -306,6 +292,17 @@ class _Roots:
     error: Array
     vectors: Array
     truncation: float = 0.0
+
+    def columns(self, size: int, harmonics: int) -> tuple[Array, ...]:
+        """Return speeds, errors, multipliers, and cosines and sines ``(k, harmonics + 1, n)``."""
+        blocks = self.vectors.reshape(len(self.speed), self.vectors.shape[1] // size, size)
+        first = 1 if self.multiplier == 1 else 0
+        last = first + (blocks.shape[1] - first) // 2
+        cosine, sine = np.zeros((2, len(blocks), harmonics + 1, size))
+        cosine[:, :first] = blocks[:, :first]
+        cosine[:, first:last] = np.sqrt(2) * blocks[:, first::2]
+        sine[:, first:last] = np.sqrt(2) * blocks[:, first + 1 :: 2]
+        return self.speed, self.error, np.full(len(blocks), self.multiplier), cosine, sine
 
 
 def _converged(
@@ -345,7 +342,7 @@ def _roots(matrices: Matrices, sign: int, harmonics: int, span: tuple[float, flo
         np.max(np.abs(level - level.T)) <= 1e-13 * np.max(np.abs(level), initial=1e-300)
         for level in levels
     )
-    inverse, vectors = _inverse_roots(levels, symmetric)
+    inverse, vectors = inverse_roots(levels, symmetric)
     with np.errstate(divide="ignore", invalid="ignore"):
         # A pair so close to the real axis is a double real root.
         real = (np.abs(inverse.imag) <= 1e-6 * np.abs(inverse)) & (inverse.real > 0)
@@ -361,7 +358,7 @@ def _roots(matrices: Matrices, sign: int, harmonics: int, span: tuple[float, flo
     return _Roots(sign, harmonics, refined[order], (error + imaginary)[order], motions[order])
 
 
-def _inverse_roots(
+def inverse_roots(
     levels: list[Array], symmetric: bool
 ) -> tuple[NDArray[np.complex128], Array | None]:
     """Return all 1/x with ``sum_j levels[j] x^j`` singular, and vectors where symmetric."""
@@ -474,37 +471,14 @@ def _result(
     limit: float,
     parameters: Mapping[str, float],
 ) -> SpeedBoundaries:
-    n = system.size
     harmonics = max(part.harmonics for part in parts)
-    speed = np.concatenate([part.speed for part in parts])
+    columns = zip(*(part.columns(system.size, harmonics) for part in parts), strict=True)
+    speed, error, sign, cosine, sine = (np.concatenate(column) for column in columns)
     order = np.argsort(speed, kind="stable")
-    sign = np.concatenate([np.full(len(part.speed), part.multiplier) for part in parts])
-    cosine = np.zeros((len(speed), harmonics + 1, n))
-    sine = np.zeros_like(cosine)
-    done = 0
-    for part in parts:
-        rows = slice(done, done + len(part.speed))
-        done += len(part.speed)
-        blocks = part.vectors.reshape(len(part.speed), part.vectors.shape[1] // n, n)
-        first = 1 if part.multiplier == 1 else 0
-        cosine[rows, :first] = blocks[:, :first]
-        count = (blocks.shape[1] - first) // 2
-        cosine[rows, first : first + count] = np.sqrt(2) * blocks[:, first::2]
-        sine[rows, first : first + count] = np.sqrt(2) * blocks[:, first + 1 :: 2]
-    error = np.concatenate([part.error for part in parts])
-    found = [(part.multiplier, part.speed) for part in parts]
-    return SpeedBoundaries(
+    result = SpeedBoundaries(
         method="eigenvalues of the Fourier matrix",
         error=error[order],
         error_norm="absolute, of each speed [rad/s]",
-        checks=DeferredChecks(
-            partial(
-                _checks,
-                Check(max(part.truncation for part in parts), limit),
-                (system, found, span, dict(parameters)),
-                (speed[order], sign[order], error[order]),
-            )
-        ),
         provenance=provenance(system.changed_provenance(**parameters)),
         speed=speed[order],
         multiplier=sign[order],
@@ -513,42 +487,32 @@ def _result(
         harmonics=harmonics,
         period=system.period,
     )
+    truncation = Check(max(part.truncation for part in parts), limit)
+    found = [(part.multiplier, part.speed) for part in parts]
+    given = system, found, span, dict(parameters)
+    return replace(result, checks=DeferredChecks(partial(_checks, truncation, given, result)))
 
 
 def _checks(
     truncation: Check,
     given: tuple[LinearPeriodic, list[tuple[int, Array]], tuple[float, float], dict[str, float]],
-    boundaries: tuple[Array, NDArray[np.int64], Array],
+    boundaries: SpeedBoundaries,
 ) -> dict[str, Check]:
-    system, found, span, parameters = given
-    return {
-        "truncation": truncation,
-        "parity": parity(system, found, span, parameters),
-        **at_boundaries(system, *boundaries, parameters),
-    }
-
-
-def at_boundaries(
-    system: LinearPeriodic,
-    speed: Array,
-    sign: NDArray[np.int64],
-    error: Array,
-    parameters: Mapping[str, float],
-) -> dict[str, Check]:
-    """Compare with monodromy matrices, at the worst boundary against what its error allows."""
-    if not len(speed):
-        return {}
-    pick = np.unique(np.linspace(0, len(speed) - 1, 256).round().astype(int))
-    speed, sign, error = speed[pick], sign[pick], error[pick]
+    checks = {"truncation": truncation, "parity": parity(*given)}
+    if not len(boundaries.speed):
+        return checks
+    system, _, _, parameters = given
+    pick = np.unique(np.linspace(0, len(boundaries.speed) - 1, 256).round().astype(int))
+    speed, sign = boundaries.speed[pick], boundaries.multiplier[pick]
     matrices = monodromy(system, speed, **parameters)
     value = _smallest(matrices, sign)
     turning = 2 * equation_of(system, speed, parameters).rate() * system.period
     width = matrices.matrix.shape[-1]
-    limit = 8 * width * (matrices.error + (1 + turning) * error / speed)
+    limit = 8 * width * (matrices.error + (1 + turning) * boundaries.error[pick] / speed)
     # Most that a singular value, relative to the matrix, may be and still count as zero.
     limit = np.minimum(limit, 0.01)
     worst = int(np.argmax(value / limit))
-    return {"monodromy": Check(float(value[worst]), float(limit[worst]))}
+    return {**checks, "monodromy": Check(float(value[worst]), float(limit[worst]))}
 
 
 def parity(
@@ -567,8 +531,9 @@ def parity(
         rising = np.sort(boundaries)
         speed = _test_speeds(rising, span)
         matrices = monodromy(system, speed, **parameters)
-        signs = np.linalg.slogdet(_shifted(matrices, np.full(len(speed), sign)))[0]
-        sure = _smallest(matrices, np.full(len(speed), sign)) > 100 * matrices.error
+        shift = np.full(len(speed), sign)
+        signs = np.linalg.slogdet(_shifted(matrices, shift))[0]
+        sure = _smallest(matrices, shift) > 100 * matrices.error
         count = np.searchsorted(rising, speed)
         expected = np.where(count % 2 == 0, 1.0, -1.0)
         agreed = (signs * expected)[sure]

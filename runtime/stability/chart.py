@@ -25,7 +25,7 @@ from ..core.results import Check, Result
 from ..hill.form import is_hill
 from ..hill.perturbation import check_order
 from ..periodic import floquet_multipliers
-from .chart_axes import damping_rate, natural_frequency, on_grid
+from .chart_axes import natural_frequency, on_grid
 from .chart_boundaries import BoundaryCurves, boundary_curves
 from .chart_lines import Map, Sampler, Series, invariants, relative_error
 from .invariants import instability_kind, known_to, largest_modulus, root_uncertainty
@@ -159,8 +159,14 @@ class StabilityChart(Result):
             (self.perturbation, "--", _NEAR, order),
         ):
             if curves is not None:
-                text = label if _reach_in(self, curves) else f"{label}: none here"
-                _draw_curves(ax, self, curves, style, colour, text)
+                along = self.x if curves.along == self.x_name else self.y
+                ends = np.concatenate([curves.lower, curves.upper])
+                with np.errstate(invalid="ignore"):
+                    here = np.any((ends >= along[0]) & (ends <= along[-1]))
+                text = label if here else f"{label}: none here"
+                for k, row in enumerate(ends):
+                    line = _placed(self, curves.along, row, curves.at)
+                    ax.plot(*line, style, color=colour, lw=1.0, label=None if k else text)
         if self.edges is not None:
             _draw_edges(ax, self, self.edges)
         ax.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
@@ -264,7 +270,14 @@ def stability_chart(
     """
     require_system(system)
     names, axes = _axes(system, x, y)
-    _check_options(system, rtol, order, edges, names)
+    require_between("rtol", rtol, 1e-13, 1e-2, "choose 1e-9")
+    check_order(order)
+    if order != 1 and not is_hill(system):
+        expected = "one mode, which alone has boundaries by perturbation in a chart"
+        raise bad("order", order, expected, "leave it out; tongue has the series of several modes")
+    require_flag("edges", edges)
+    if edges and "speed" not in names:
+        raise bad("edges", edges, "a chart with the speed as an axis", "leave it out")
     require_flag("boundaries", boundaries)
     refuse(text_problems("stability_chart", frequency_name=frequency_name))
     if marks is not None:
@@ -276,8 +289,7 @@ def stability_chart(
     series = invariants(sampler, workers, progress=progress)
     found = judged(sampler, series, workers)
     exact = near = rows = None
-    shaped = any(name in system.geometry for name in names)
-    if boundaries and is_hill(system) and not shaped and sampler.speed == 1.0:
+    if boundaries and is_hill(system) and not sampler.shaped and sampler.speed == 1.0:
         exact, near = boundary_curves(system, names, axes, int(order))
     checks = {
         "error of samples": Check(series.sample_error, max(1e-8, 1e3 * rtol)),
@@ -309,19 +321,6 @@ def stability_chart(
         nodes=series.nodes,
         speed=float("nan") if "speed" in names else sampler.speed,
     )
-
-
-def _check_options(
-    system: LinearPeriodic, rtol: float, order: int, edges: bool, names: tuple[str, str]
-) -> None:
-    require_between("rtol", rtol, 1e-13, 1e-2, "choose 1e-9")
-    check_order(order)
-    if order != 1 and not is_hill(system):
-        expected = "one mode, which alone has boundaries by perturbation in a chart"
-        raise bad("order", order, expected, "leave it out; tongue has the series of several modes")
-    require_flag("edges", edges)
-    if edges and "speed" not in names:
-        raise bad("edges", edges, "a chart with the speed as an axis", "leave it out")
 
 
 def _axes(system: LinearPeriodic, x: Axis, y: Axis) -> tuple[tuple[str, str], tuple[Array, Array]]:
@@ -361,8 +360,8 @@ def _edge_curves(
     keys = sorted({key for row in rows for key in row.names})
     ends = np.full((3, len(keys), len(rows)), np.nan)
     for column, row in enumerate(rows):
-        for i, key in enumerate(row.names):
-            ends[:, keys.index(key), column] = row.lower[i], row.upper[i], row.error[i]
+        places = [keys.index(key) for key in row.names]
+        ends[:, places, column] = row.lower, row.upper, row.error
     failed = sum(not check.passed for row in rows for check in row.checks.values())
     modes = np.array([key[1:3] for key in keys], dtype=np.int64).reshape(-1, 2)
     harmonic = np.array([key[3] for key in keys], dtype=np.int64)
@@ -385,47 +384,46 @@ class Judged(NamedTuple):
 
 
 def judged(sampler: Sampler, series: Series, workers: Map) -> Judged:
-    """Return what is told of each point, some rows at a time, which bounds the memory."""
+    """Return what is told of each point."""
+    if sampler.hill:
+        return _judged_hill(sampler, series)
     rows, points = series.values.shape[:2]
-    # Points that are judged together.
+    # So many points are judged together, which bounds the memory.
     together = max(1, 250_000 // max(1, points))
     parts = [slice(start, start + together) for start in range(0, rows, together)]
-    # Of one mode the verdict is quicker than the way to another process and back.
-    run = map if sampler.hill else workers
-    blocks = run(partial(_judge, sampler), ((part, series.rows(part)) for part in parts))
+    error = series.error if series.errors is None else series.errors
+    judge = partial(_judged_rows, sampler.reduced)
+    blocks = workers(judge, ((series.values[part], error[part]) for part in parts))
     return Judged(*(np.concatenate(columns) for columns in zip(*blocks, strict=True)))
 
 
-def _judge(sampler: Sampler, item: tuple[slice, Series]) -> Judged:
-    """Return what is told of the points of some rows."""
-    part, series = item
-    rows = sampler.rows(part)
-    if rows.hill:
-        half = np.abs(series.values[..., 0])
-        level = _level(rows, half)
-        largest = _larger_root(half, level)
-        # An error of the half trace moves the boundary, where it is (1 + W) / 2.
-        edge = 0.5 * (1.0 + level)
-        slack = _larger_root(edge + series.error, level) - 1.0
-        stable = half <= edge + series.error
-        undecided = np.abs(half - edge) <= series.error
-    else:
-        error = series.error if series.errors is None else series.errors
-        largest, stable, slack = largest_modulus(series.values, reduced=rows.reduced, error=error)
-        # Unstable is only what some multiplier proves beyond its own error.
-        doubtful = slack > 0.0 if rows.reduced else largest + slack >= 1.0
-        undecided = np.isnan(largest) | (stable & doubtful)
-    kind = instability_kind(series.values, stable, hill=rows.hill, reduced=rows.reduced)
-    return Judged(largest, stable, slack, undecided, kind)
+def _judged_rows(reduced: bool, item: tuple[Array, Array]) -> Judged:
+    """Return what polynomials and the errors of their coefficients tell."""
+    values, error = item
+    largest, stable, slack = largest_modulus(values, reduced=reduced, error=error)
+    # Unstable is only what some multiplier proves beyond its own error.
+    doubtful = slack > 0.0 if reduced else largest + slack >= 1.0
+    undecided = np.isnan(largest) | (stable & doubtful)
+    return Judged(largest, stable, slack, undecided, instability_kind(values, stable, reduced))
 
 
-def _level(sampler: Sampler, half: Array) -> Array:
-    """Return the determinant of the monodromy matrices of one mode."""
-    if not sampler.damped:
-        return np.ones_like(half)
-    speed, _ = on_grid(sampler.names, sampler.axes, sampler.speed)
-    rate = damping_rate(sampler.system, sampler.names, sampler.axes)
-    return np.asarray(np.exp(-2 * np.pi * rate / speed) * np.ones_like(half))
+def _judged_hill(sampler: Sampler, series: Series) -> Judged:
+    """Return what half traces X and the determinants W of the monodromy matrices tell."""
+    trace, level = series.values[..., 0], np.ones_like(series.error)
+    if sampler.damped:
+        speed, grid = on_grid(sampler.names, sampler.axes, sampler.speed)
+        values: dict[str, Any] = {**grid}
+        # Of one coordinate: what belongs to the points takes the place of rows and columns.
+        mass, drag = (sampler.system.array(name, 0.0, **values)[0] for name in ("M", "C"))
+        level = level * np.exp(-2 * np.pi * drag / (mass * speed))
+    half = np.abs(trace)
+    # An error of the half trace moves the boundary, where it is (1 + W) / 2.
+    edge = 0.5 * (1.0 + level)
+    slack = _larger_root(edge + series.error, level) - 1.0
+    stable = half <= edge + series.error
+    undecided = np.abs(half - edge) <= series.error
+    kind = np.where(stable | np.isnan(trace), 0.0, np.sign(trace)).astype(np.int8)
+    return Judged(_larger_root(half, level), stable, slack, undecided, kind)
 
 
 def _larger_root(half: Array, level: Array) -> Array:
@@ -568,56 +566,39 @@ def _fill(
 def _draw_edges(ax: Axes, chart: StabilityChart, edges: EdgeCurves) -> None:
     """Draw the ends of traced regions between the rows at which they are known, with labels."""
     horizontal = chart.x_name == "speed"
-    at = _shown(chart.y_name if horizontal else chart.x_name, edges.at)
     seen: set[str] = set()
-    low, high = (RPM * v for v in ((chart.x if horizontal else chart.y)[[0, -1]]))
+    low, high = (chart.x if horizontal else chart.y)[[0, -1]]
     for i, kind in enumerate(edges.kind):
         with np.errstate(invalid="ignore"):
             # Such a region is drawn as a hair.
             narrow = not np.any(edges.upper[i] - edges.lower[i] > 1e-4 * edges.lower[i])
         for ends in (edges.lower[i], edges.upper[i]):
-            pair = (ends * RPM, at) if horizontal else (at, ends * RPM)
             label = None if kind in seen else f"{kind} regions, traced"
-            ax.plot(*pair, color=_EDGES[kind], lw=0.35 if narrow else 0.8, label=label)
+            line = _placed(chart, "speed", ends, edges.at)
+            ax.plot(*line, color=_EDGES[kind], lw=0.35 if narrow else 0.8, label=label)
             seen.add(kind)
         if kind == "principal":
             continue
         # Labels stand at the row nearest to the end of the axis where the region is in the chart.
-        known = np.flatnonzero((edges.lower[i] * RPM > low) & (edges.lower[i] * RPM < high))
+        known = np.flatnonzero((edges.lower[i] > low) & (edges.lower[i] < high))
         if len(known):
             first, second = edges.modes[i]
             text = f"{first}+{second}" if kind == "sum" else f"{second}-{first}"
-            place = (edges.lower[i, known[-1]] * RPM, at[known[-1]])
+            place = _placed(chart, "speed", edges.lower[i, known[-1]], edges.at[known[-1]])
             rotation, va = (90, "top") if horizontal else (0, "center")
             style: dict[str, Any] = {"color": _EDGES[kind], "rotation": rotation, "va": va}
-            at_end = place if horizontal else place[::-1]
-            ax.annotate(f"{text}, {edges.harmonic[i]}", at_end, fontsize=6, ha="right", **style)
+            ax.annotate(f"{text}, {edges.harmonic[i]}", place, fontsize=6, ha="right", **style)
+
+
+def _placed(chart: StabilityChart, along: str, values: Any, at: Any) -> tuple[Any, Any]:
+    """Return x and y, as shown, of values along one axis at values of the other one."""
+    horizontal = along == chart.x_name
+    pair = _shown(along, values), _shown(chart.y_name if horizontal else chart.x_name, at)
+    return pair if horizontal else pair[::-1]
 
 
 def _shown(name: str, values: Array) -> Array:
     return values * RPM if name == "speed" else values
-
-
-def _reach_in(chart: StabilityChart, curves: BoundaryCurves) -> bool:
-    values = chart.x if curves.along == chart.x_name else chart.y
-    ends = np.concatenate([curves.lower, curves.upper])
-    with np.errstate(invalid="ignore"):
-        return bool(np.any((ends >= values[0]) & (ends <= values[-1])))
-
-
-def _draw_curves(
-    ax: Axes, chart: StabilityChart, curves: BoundaryCurves, style: str, colour: str, label: str
-) -> None:
-    horizontal = curves.along == chart.x_name
-    other = chart.y_name if horizontal else chart.x_name
-    at = _shown(other, curves.at)
-    first = True
-    for ends in (curves.lower, curves.upper):
-        for row in ends:
-            values = _shown(curves.along, row)
-            pair = (values, at) if horizontal else (at, values)
-            ax.plot(*pair, style, color=colour, lw=1.0, label=label if first else None)
-            first = False
 
 
 def _draw_fractions(ax: Axes, chart: StabilityChart) -> None:
@@ -629,13 +610,8 @@ def _draw_fractions(ax: Axes, chart: StabilityChart) -> None:
         speed = 2.0 * chart.natural_frequency / n * RPM
         if low <= speed <= high and (not ticks or ticks[-1] - speed > 0.045 * (high - low)):
             ticks.append(speed)
-            labels.append(_fraction(n))
+            whole = r"\Omega" if n == 2 else rf"\Omega/{n // 2}"
+            labels.append(f"${whole}$" if n % 2 == 0 else rf"$2\Omega/{n}$")
     top = ax.secondary_xaxis("top")
     top.set_xticks(ticks, labels, fontsize=8)
     top.set_xlabel(rf"fractions of the {chart.frequency_name} $\Omega$", fontsize=9)
-
-
-def _fraction(n: int) -> str:
-    if n == 2:
-        return r"$\Omega$"
-    return rf"$\Omega/{n // 2}$" if n % 2 == 0 else rf"$2\Omega/{n}$"

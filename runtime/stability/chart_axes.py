@@ -23,7 +23,7 @@ Axes = tuple[Array, Array]
 _PROBES = (1.0, 2.0, 5.0, 0.37)
 _ANGLES = np.linspace(0.0, 2.0 * np.pi, 17)
 
-PlainAxes = tuple[int, PeriodicFunction, Callable[[Array], Array], Callable[[Array], Array]]
+PlainAxes = tuple[int, PeriodicFunction, Callable[[Array], Array]]
 
 
 def axis_of_scene(scene: Scene, axis: str) -> tuple[str, Array] | None:
@@ -91,12 +91,6 @@ def _turned(system: LinearPeriodic, names: Names) -> bool:
     return resisting and moving
 
 
-def is_damped(system: LinearPeriodic, names: Names, axes: Axes) -> bool:
-    """Return True where some damping term acts at some angle, somewhere on the chart."""
-    grid = on_grid(names, axes)[1]
-    return system.is_damped(**{k: v for k, v in grid.items() if k not in system.geometry})
-
-
 def is_symplectic(system: LinearPeriodic, damped: bool) -> bool:
     """Return True where multipliers come in reciprocal pairs: undamped, symmetric B, K and Kg."""
     angles = np.linspace(0.0, system.period, 65)[:-1]
@@ -105,17 +99,6 @@ def is_symplectic(system: LinearPeriodic, damped: bool) -> bool:
         for value in (term(angles) for term in system.terms if term.array in {"B", "K", "Kg"})
     )
     return symmetric and not damped
-
-
-def damping_rate(system: LinearPeriodic, names: Names, axes: Axes) -> Array:
-    """Return c/m of one mode with constant mass and damping [1/s], shape ``(ny, nx)``."""
-    scales = system.scale_values(**on_grid(names, axes)[1])
-    total = {name: np.zeros((len(axes[1]), len(axes[0]))) for name in ("M", "C")}
-    for term in system.terms:
-        if term.array in total:
-            factor = 1.0 if term.scale is None else scales[term.scale]
-            total[term.array] = total[term.array] + factor * term(np.zeros(1))[0, 0, 0]
-    return np.asarray(total["C"] / total["M"])
 
 
 def natural_frequency(system: LinearPeriodic, names: Names, axes: Axes) -> float:
@@ -143,7 +126,10 @@ def _at_rest(system: LinearPeriodic, changes: Mapping[str, Any]) -> float:
 
 
 def plain_axes(form: HillForm, names: tuple[str, str], fixed: float) -> PlainAxes | None:
-    """Return how two axes amount to ``y'' + (lam2 + mu f) y = 0`` at a speed, where they do."""
+    """Return how two axes amount to ``y'' + (lam2 + mu f) y = 0`` at a speed, where they do.
+
+    That is which one is lam2's, f, and lam2 of its values; those of the other are mu.
+    """
     for which in (0, 1):
         along, other = names[which], names[1 - which]
         if other == "speed" or (along == "speed" and form.elastic):
@@ -161,9 +147,9 @@ def plain_axes(form: HillForm, names: tuple[str, str], fixed: float) -> PlainAxe
         if any(form.stiffness(**{other: v}) != stiffness for v in _PROBES):
             continue
         if along == "speed":
-            return which, unit, partial(_over_square, stiffness), np.asarray
+            return which, unit, partial(_over_square, stiffness)
         if is_stiffness(form, along):
-            return which, unit, partial(np.multiply, fixed**-2), np.asarray
+            return which, unit, partial(np.multiply, fixed**-2)
     return None
 
 

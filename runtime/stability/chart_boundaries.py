@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +14,8 @@ from ..core.periodic_function import PeriodicFunction
 from ..hill import HillForm, hill_boundaries, hill_form, perturbation_boundaries
 from ..hill.boundaries import near_tip
 from ..hill.fourier_matrix import by_parity, layout, stacked, truncation
-from .chart_axes import is_damped, is_stiffness, leaves_function_alone
+from .boundary_speeds import inverse_roots
+from .chart_axes import is_stiffness, leaves_function_alone, on_grid
 
 _EPS = float(np.finfo(float).eps)
 Ends = tuple[Array, Array, Array]
@@ -56,27 +59,26 @@ def boundary_curves(
     An axis suits where it is the speed, or a parameter that is the constant stiffness itself.
     """
     form = hill_form(system)
-    which = next((i for i in (0, 1) if _suits(form, names[i])), None)
-    if which is None:
+    suited = [
+        leaves_function_alone(form, name) if name == "speed" else is_stiffness(form, name)
+        for name in names
+    ]
+    if not any(suited):
         return None, None
+    which = suited.index(True)
     along, other = names[which], names[1 - which]
     rows = axes[1 - which]
-    sharp = not is_damped(system, names, axes)
+    sharp = not system.is_damped(**on_grid(names, axes)[1])
     # Rows between which a curve is drawn straight; a damped one takes some ten times as long.
     most = 121 if sharp else 41
     if len(rows) > most:
         rows = np.linspace(rows[0], rows[-1], most)
     points = [_Point.of(form, along, other, float(value)) for value in rows]
     regions, left_out = _regions(axes[which], along, points)
-    exact = np.full((3, len(regions), len(rows)), np.nan)
-    for j, point in enumerate(points):
-        exact[:, :, j] = point.ends(regions)
+    exact = np.stack([point.ends(regions) for point in points], axis=2)
     near = _overlay(form, other, rows, points, regions, order)
-    tables = (
-        BoundaryCurves(along, regions, rows, ends[0], ends[1], ends[2], left_out)
-        for ends in (exact, near)
-    )
-    return next(tables), next(tables)
+    curves = partial(BoundaryCurves, along, regions, rows, left_out=left_out)
+    return curves(*exact), curves(*near)
 
 
 @dataclass(frozen=True)
@@ -114,10 +116,6 @@ class _Point:
             speeds = np.sqrt(np.where(lam2 > 0, self.stiffness / lam2, np.nan))
             error = found.error * np.max(speeds / (2 * np.abs(lam2)), axis=0)
         return np.stack([speeds[0], speeds[1], error])
-
-
-def _suits(form: HillForm, name: str) -> bool:
-    return leaves_function_alone(form, name) if name == "speed" else is_stiffness(form, name)
 
 
 def _regions(ends: Array, along: str, points: list[_Point]) -> tuple[tuple[int, ...], int]:
@@ -174,10 +172,9 @@ def _damped_speeds(
 def _inverse_speeds(f: PeriodicFunction, odd: int, harmonic: int, ratio: float) -> Array:
     """Return all real s > 0 with a solution of one parity."""
     drag = -ratio * layout(odd, harmonic).slope
-    size = len(drag)
-    whole = stacked(f, odd, harmonic, np.ones(1))[0] - float(f.a[0]) * np.eye(size)
-    companion = np.block([[np.zeros((size, size)), np.eye(size)], [whole, drag]])
-    values = np.linalg.eigvals(companion)
+    unit = np.eye(len(drag))
+    whole = stacked(f, odd, harmonic, np.ones(1))[0] - float(f.a[0]) * unit
+    values, _ = inverse_roots([-unit, drag, whole], symmetric=False)
     return np.asarray(values.real[(values.imag == 0.0) & (values.real > 0.0)])
 
 
@@ -195,14 +192,14 @@ def _overlay(
         for name in ("speed", "stiffness", "damping")
     )
     solve = _solver(form, other, rows, points, order)
-    out = np.full((3, len(regions), len(rows)), np.nan)
-    for i, n in enumerate(regions):
-        if points[0].along != "speed":
-            found = np.stack(solve(n, damping / (2 * speed))) * speed**2
-            out[:, i] = np.where(np.isfinite(found), found, np.nan)
-            continue
-        out[:, i] = _along_speed(solve, n, stiffness, damping)
-    return out
+
+    def ends(n: int) -> Array:
+        if points[0].along == "speed":
+            return _along_speed(solve, n, stiffness, damping)
+        found = np.stack(solve(n, damping / (2 * speed))) * speed**2
+        return np.where(np.isfinite(found), found, np.nan)
+
+    return np.stack([ends(n) for n in regions], axis=1)
 
 
 def _along_speed(solve: Solve, n: int, stiffness: Array, damping: Array) -> Array:
@@ -258,12 +255,10 @@ def _solver(form: HillForm, other: str, rows: Array, points: Sequence[_Point], o
         return together
 
     def apart(n: int, damping: Array) -> Ends:
-        found = [
-            perturbation_boundaries(point.function, 1.0, (n,), order, float(k))
-            for point, k in zip(points, damping, strict=True)
-        ]
-        ends = np.array([[r.lower[0], r.upper[0], r.error[0]] for r in found], dtype=float)
-        return ends[:, 0], ends[:, 1], ends[:, 2]
+        rows = zip(points, damping.tolist(), strict=True)
+        found = [perturbation_boundaries(p.function, 1.0, (n,), order, k) for p, k in rows]
+        lower, upper, error = np.array([[r.lower[0], r.upper[0], r.error[0]] for r in found]).T
+        return lower, upper, error
 
     return apart
 
@@ -273,27 +268,28 @@ def _functions(
 ) -> tuple[list[PeriodicFunction], list[Array]]:
     """Return functions and factors, one for each row, whose sum is the periodic part."""
     # Parts that change in proportion are one function.
-    scales = form.system.scale_values(**({} if other == "speed" else {other: rows}))
-    points = [{} if other == "speed" else {other: float(v)} for v in rows]
-    mass = np.array([form.system.array("M", 0.0, **p)[0, 0, 0] for p in points])
+    changes: dict[str, Any] = {} if other == "speed" else {other: rows}
+    scales = form.system.scale_values(**changes)
+    # Of one coordinate: what belongs to the rows takes the place of columns.
+    mass = form.system.array("M", 0.0, **changes)[0, 0]
     divisor = rows**2 if other == "speed" else np.ones_like(rows)
     functions: list[PeriodicFunction] = []
     factors: list[Array] = []
-    for parts, over in ((form.inertial, np.ones_like(rows)), (form.elastic, divisor)):
-        for scale, part in parts:
-            value = 1.0 if scale is None else np.asarray(scales[scale], dtype=float)
-            factor = np.broadcast_to(value, rows.shape) / (over * mass)
-            size = float(np.max(np.abs(factor), initial=0.0))
-            if size == 0.0:
-                continue
-            unit = factor / size
-            for i, known in enumerate(factors):
-                if np.max(np.abs(unit - known)) <= 1e-15:
-                    functions[i] = functions[i] + part * size
-                    break
-            else:
-                functions.append(part * size)
-                factors.append(unit)
+    inertial = ((scale, part, mass) for scale, part in form.inertial)
+    elastic = ((scale, part, divisor * mass) for scale, part in form.elastic)
+    for scale, part, over in (*inertial, *elastic):
+        value = 1.0 if scale is None else np.asarray(scales[scale], dtype=float)
+        factor = np.broadcast_to(value, rows.shape) / over
+        size = float(np.max(np.abs(factor), initial=0.0))
+        if size == 0.0:
+            continue
+        unit = factor / size
+        like = [i for i, known in enumerate(factors) if np.max(np.abs(unit - known)) <= 1e-15]
+        if like:
+            functions[like[0]] = functions[like[0]] + part * size
+        else:
+            functions.append(part * size)
+            factors.append(unit)
     if not functions:
         return [PeriodicFunction()], [np.zeros_like(rows)]
     return functions, factors

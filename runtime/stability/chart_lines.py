@@ -7,7 +7,6 @@ the function of Hill's equation where the inner axis leaves that alone.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from copy import copy
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, NamedTuple
@@ -28,9 +27,9 @@ from .chart_axes import (
     Axes,
     Names,
     fixed_speed,
-    is_damped,
     is_symplectic,
     leaves_function_alone,
+    on_grid,
     plain_axes,
 )
 from .invariants import frobenius, from_sum, sum_weights_back, weighed_characteristic
@@ -57,11 +56,6 @@ class Series:
     method: str
     errors: Array | None = None
 
-    def rows(self, part: slice) -> Series:
-        """Return the same of some rows of the chart."""
-        errors = None if self.errors is None else self.errors[part]
-        return replace(self, values=self.values[part], error=self.error[part], errors=errors)
-
 
 class Sampler:
     """What is asked of a chart at a fixed speed [rad/s], or with the speed as an axis."""
@@ -71,20 +65,17 @@ class Sampler:
     ) -> None:
         self.speed = fixed_speed(system, names, speed)
         self.system, self.names, self.axes, self.rtol = system, names, axes, rtol
-        self.damped = is_damped(system, names, axes)
+        grid = on_grid(names, axes)[1]
+        # Whether some damping term acts at some angle, somewhere on the chart.
+        self.damped = system.is_damped(**{k: grid[k] for k in grid if k not in system.geometry})
         self.reduced = is_symplectic(system, self.damped)
-        shaped = any(name in system.geometry for name in names)
-        self.hill = is_hill(system) and not shaped and not (system.has("Kg") and "speed" in names)
+        self.shaped = any(name in system.geometry for name in names)
+        turned = system.has("Kg") and "speed" in names
+        self.hill = is_hill(system) and not self.shaped and not turned
         self.form = hill_form(system) if self.hill else None
         self.plain = (
             None if self.form is None or self.damped else plain_axes(self.form, names, self.speed)
         )
-
-    def rows(self, part: slice) -> Sampler:
-        """Return the sampler of some rows of the chart."""
-        found = copy(self)
-        found.axes = (self.axes[0], self.axes[1][part])
-        return found
 
     def transform(self, name: str, values: Array) -> Array:
         """Return the variable in which the invariants are entire."""
@@ -102,12 +93,9 @@ class Sampler:
         """Refuse a chart whose lines, and nodes on each, would take more than an hour or so."""
         if self.hill:
             return
+        ends = zip(self.names, self.axes, ([0, 0, -1, -1], [0, -1, 0, -1]), strict=True)
         corner: dict[str, Any] = {
-            name: np.asarray([a[i] for i in pick], dtype=float)
-            for name, a, pick in zip(
-                self.names, self.axes, ((0, 0, -1, -1), (0, -1) * 2), strict=True
-            )
-            if name not in self.system.geometry
+            name: axis[pick] for name, axis, pick in ends if name not in self.system.geometry
         }
         speed = corner.pop("speed", np.full(4, self.speed))
         rate = float(np.max(equation_of(self.system, speed, corner).rate()))
@@ -152,8 +140,6 @@ _NEARLY_ALL = 0.8
 # Invariants at values of the inner variable, and the weights of their errors.
 Samples = Callable[[Array], tuple[Array, Array]]
 Tick = Callable[[int], None]
-# Value of the outer axis, ends and values of the variable of the inner one.
-_Place = tuple[float, float, float, Array]
 
 
 @dataclass(frozen=True)
@@ -178,7 +164,7 @@ class Line:
                 sums = 2.0 * mirrored_sums(matrices)
                 change = n + 4.0 * frobenius(matrices[:, :n, n:]) * frobenius(matrices[:, n:, :n])
                 found, weight = weighed_characteristic(sums, n, change)
-                found, weight = from_sum(found), weight @ sum_weights_back(n)
+                found, weight = from_sum(found), weight @ np.abs(sum_weights_back(n))
             else:
                 wanted = plain.shape[-1] // (2 if self.reduced else 1)
                 found, weight = weighed_characteristic(matrices, wanted)
@@ -244,37 +230,32 @@ class Lines:
         if self.names[self.inner] in self.system.geometry:
             self.inner = 1
         self.speed = sampler.speed
+        variable = sampler.transform(self.names[self.inner], sampler.axes[self.inner])
+        self.ends = float(variable.min()), float(variable.max())
 
     @property
     def inner_is_geometry(self) -> bool:
         """Whether the system is made anew at each point."""
         return self.names[self.inner] in self.system.geometry
 
-    def line(
-        self,
-        outer: float,
-        low: float,
-        high: float,
-        values: Array | None = None,
-        fineness: float = 1.0,
-    ) -> Samples:
+    def line(self, outer: float, values: Array, fineness: float = 1.0) -> Samples:
         """Return the line at a value of the outer axis; of two geometries at given values alone."""
         inner_name, outer_name = self.names[self.inner], self.names[1 - self.inner]
         fixed = {outer_name: float(outer)}
         if not self.inner_is_geometry:
-            return self._table(fixed, inner_name, low, high, fineness)
-        if values is None:
-            raise ValueError("a line along geometry wants its values beforehand")
+            return self._table(fixed, inner_name, self.ends, fineness)
         points = [({**fixed, inner_name: float(v)}, float(v)) for v in values]
-        return partial(_each, [self._table(at, None, v, v, fineness) for at, v in points])
+        return partial(_each, [self._table(at, None, (v, v), fineness) for at, v in points])
 
-    def error(self, outer: float, low: float, high: float, values: Array, found: Array) -> Array:
+    def error(self, values: Array, known: tuple[float, Array]) -> Array:
         """Return by how much another solution differs from invariants, over the weight of errors.
 
-        One number per value; 0 where either overflows, infinite where either is NaN.
+        Known are the place of a line and what was found there.  One number per value; 0 where
+        either overflows, infinite where either is NaN.
         """
+        outer, found = known
         # Another number of segments gives another solution: thrice the difference is the error.
-        again, weight = self.line(outer, low, high, values, 1.37)(values)
+        again, weight = self.line(outer, values, 1.37)(values)
         grown = np.isinf(again) | np.isinf(found)
         with np.errstate(invalid="ignore"):
             gap = np.where(grown, 0.0, np.abs(again - found) / weight)
@@ -282,7 +263,7 @@ class Lines:
         return 3.0 * worst
 
     def _table(
-        self, fixed: dict[str, float], inner: str | None, low: float, high: float, fineness: float
+        self, fixed: dict[str, float], inner: str | None, ends: tuple[float, float], fineness: float
     ) -> Line:
         system, rest = at_geometry(self.system, fixed)
         known = sampled(system)
@@ -295,7 +276,7 @@ class Lines:
             return equation_of(known, speed, point)
 
         # To begin with: at most lines of the scenes' charts twelve nodes are enough.
-        ends, nodes = (low, high), 12 if high > low else 1
+        nodes = 12 if ends[1] > ends[0] else 1
         judged = plain(places(ends, nodes))
         unit = judged.scale[len(judged.scale) // 2]
         # A bound of what modes that no segment resolves make of waves doubles a chart's time, for
@@ -329,7 +310,7 @@ class HillLines:
         self._form, self._back, self._speed = form, sampler.back, sampler.speed
         self._along, self._outer = sampler.names[self.inner], sampler.names[1 - self.inner]
 
-    def line(self, outer: float, low: float, high: float, values: Array | None = None) -> Samples:
+    def line(self, outer: float, values: Array) -> Samples:
         """Return the line at a value of the outer axis."""
         return partial(self._half_traces, float(self._back(self._outer, np.asarray(outer))))
 
@@ -341,16 +322,17 @@ class HillLines:
         speeds = np.array([p.pop("speed", self._speed) for p in points])
         lam2 = np.array([form.stiffness(**p) for p in points]) / speeds**2
         damping = np.array([form.damping(**p) for p in points]) / (2 * speeds)
-        if self._shared:
-            f = form.function(float(speeds[0]), **points[0])
-            found = discriminant(f, lam2, 1.0, damping)
-            return found.value[:, None], np.broadcast_to(found.error, found.value.shape)[:, None]
-        each = [
-            discriminant(form.function(float(w), **p), float(v), 1.0, float(k))
-            for w, p, v, k in zip(speeds, points, lam2, damping, strict=True)
+        # Points of one function go together.
+        runs = [slice(None)] if self._shared else [slice(i, i + 1) for i in range(len(speeds))]
+        found = [
+            discriminant(
+                form.function(float(speeds[run][0]), **points[run][0]), lam2[run], 1.0, damping[run]
+            )
+            for run in runs
         ]
-        value, error = ([float(getattr(one, name)) for one in each] for name in ("value", "error"))
-        return np.array(value)[:, None], np.array(error)[:, None]
+        value = np.concatenate([one.value for one in found])
+        error = np.concatenate([np.broadcast_to(one.error, one.value.shape) for one in found])
+        return value[:, None], error[:, None]
 
 
 def invariants(sampler: Sampler, workers: Map, *, progress: bool) -> Series:
@@ -370,23 +352,19 @@ def invariants(sampler: Sampler, workers: Map, *, progress: bool) -> Series:
             surface.set_count(len(surface.wanted))
             lines = 0
             continue
-        grown = surface.next_lines(found, lines)
-        if grown == lines and not surface.grow_inner(found):
+        wanted = surface.refined(found, lines)
+        if wanted is None:
             return surface.series(found)
-        lines = grown
+        lines = wanted
 
 
 def _plain_hill(
-    sampler: Sampler,
-    which: int,
-    f: PeriodicFunction,
-    lam2: Callable[[Array], Array],
-    factor: Callable[[Array], Array],
+    sampler: Sampler, which: int, f: PeriodicFunction, lam2: Callable[[Array], Array]
 ) -> Series:
     """Return half traces where the axes are lam2 and the factor of one function."""
     axes = sampler.axes
     order = np.argsort(lam2(axes[which]))
-    found = discriminant(f, lam2(axes[which])[order, None], factor(axes[1 - which]))
+    found = discriminant(f, lam2(axes[which])[order, None], axes[1 - which])
     values, error = np.empty_like(found.value), np.empty_like(found.value)
     values[order], error[order] = found.value, found.error
     if which == 0:
@@ -418,7 +396,7 @@ class _Surface:
         self.count = 0
         self.ends: dict[float, Samples] = {}
         # Tails before the last refinement: round-off, where it has not halved them.
-        self.before = (np.inf, np.inf)
+        self.before = {"inner": np.inf, "outer": np.inf}
         self.kept: dict[float, tuple[Array, Array]] = {}
 
     @property
@@ -444,7 +422,7 @@ class _Surface:
         self.sampler.allowed(2, len(self.wanted))
         self.count = _FIRST
         self.ends = {
-            float(outer): self.lines.line(float(outer), self.low, self.high)
+            float(outer): self.lines.line(float(outer), self.wanted)
             for outer in self.across[[0, -1]]
         }
         while self.count < 2 * len(self.wanted):
@@ -492,14 +470,10 @@ class _Surface:
         for place in [place for place in wanted if place in self.ends]:
             self.kept[place] = self.ends[place](values)
         left = [place for place in wanted if place not in self.ends]
-        done = len(places) - len(left)
-        items = [(place, self.low, self.high, values) for place in left]
-        for place, found in zip(
-            left, self.workers(partial(_on_line, self.lines), items), strict=True
-        ):
+        solved = self.workers(partial(_on_line, self.lines, values), left)
+        for done, (place, found) in enumerate(zip(left, solved, strict=True), start=1):
             self.kept[place] = found
-            done += 1
-            tick(done)
+            tick(len(places) - len(left) + done)
         rows = [self.kept[float(place)] for place in places]
         return _Found(
             places, np.stack([r[0] for r in rows]), np.stack([r[1] for r in rows]), not lines
@@ -521,28 +495,20 @@ class _Surface:
         outer = 0.0 if found.direct else _tail(np.max(table, axis=(1, 2)))
         return inner, outer, max(1.0, float(np.max(table)))
 
-    def next_lines(self, found: _Found, lines: int) -> int:
-        """Return how many lines are wanted next; the same number where the tail is small."""
-        _, outer, size = self.tails(found)
-        settled = self._settled(outer, self.before[0], size)
-        self.before = (outer, self.before[1])
-        if not lines or settled:
+    def refined(self, found: _Found, lines: int) -> int | None:
+        """Return how many lines are wanted next, where need be of more nodes; None when settled."""
+        inner, outer, size = self.tails(found)
+        if not self._settled("outer", outer, size) and lines:
+            more = 2 * lines - 1
+            return 0 if more > _NEARLY_ALL * len(self.across) else more
+        if not self._settled("inner", inner, size) and self.count:
+            self.set_count(self.count + self.count // 3)
             return lines
-        more = 2 * lines - 1
-        return 0 if more > _NEARLY_ALL * len(self.across) else more
+        return None
 
-    def grow_inner(self, found: _Found) -> bool:
-        """Take more nodes where the lines inside the chart need them; return whether so."""
-        inner, _, size = self.tails(found)
-        settled = self._settled(inner, self.before[1], size)
-        self.before = (self.before[0], inner)
-        if not self.count or settled:
-            return False
-        self.set_count(self.count + self.count // 3)
-        return True
-
-    def _settled(self, tail: float, before: float, size: float) -> bool:
+    def _settled(self, axis: str, tail: float, size: float) -> bool:
         """Return whether a tail is small, or no more than round-off, which more nodes keep."""
+        before, self.before[axis] = self.before[axis], tail
         # Tails beyond this are no round-off.
         return tail <= self.limit(size) or 0.5 * before < tail <= 1e-8 * size
 
@@ -552,6 +518,7 @@ class _Surface:
             errors = self.solution_error(found)[:, None] * found.weight
         error = np.max(errors, axis=-1)
         sample = relative_error(error, found.values)
+        what = "half trace" if self.sampler.hill else "characteristic polynomial"
         nodes = [0, 0]
         nodes[self.lines.inner] = self.count
         nodes[1 - self.lines.inner] = 0 if found.direct else len(found.outer)
@@ -559,7 +526,7 @@ class _Surface:
             values = found.values
             if self.lines.inner == 1:
                 values, error, errors = (np.swapaxes(a, 0, 1) for a in (values, error, errors))
-            return Series(values, error, sample, (0, 0), self._method(nodes), errors)
+            return Series(values, error, sample, (0, 0), f"{what} at each point", errors)
         inner, outer, size = self.tails(found)
         table = self.table(found)
         if self.count:
@@ -575,13 +542,8 @@ class _Surface:
         error = np.full(table.shape[:2], total)
         if self.lines.inner == 1:
             table, error = np.swapaxes(table, 0, 1), error.T
-        return Series(table, error, sample, (nodes[0], nodes[1]), self._method(nodes))
-
-    def _method(self, nodes: list[int]) -> str:
-        what = "half trace" if self.sampler.hill else "characteristic polynomial"
-        if not any(nodes):
-            return f"{what} at each point"
-        return f"{what} at Chebyshev nodes, spectral interpolation"
+        method = f"{what} at Chebyshev nodes, spectral interpolation"
+        return Series(table, error, sample, (nodes[0], nodes[1]), method)
 
     def solution_error(self, found: _Found) -> Array:
         """Return the relative error of samples at each value, from other solutions on four lines.
@@ -594,21 +556,14 @@ class _Surface:
         with np.errstate(invalid="ignore"):
             grown = int(np.argmax(np.max(found.weight, axis=(1, 2))))
         picked = sorted({0, len(found.outer) // 2, len(found.outer) - 1, grown})
-        values = self.values
-        items = [
-            (float(found.outer[i]), self.low, self.high, values, found.values[i]) for i in picked
-        ]
-        gaps = self.workers(partial(_gap_on_line, self.lines), items)
+        items = [(float(found.outer[i]), found.values[i]) for i in picked]
+        gaps = self.workers(partial(self.lines.error, self.values), items)
         gap = np.pad(np.max(list(gaps), axis=0), 1, mode="edge")
         return np.asarray(np.maximum(np.maximum(gap[:-2], gap[1:-1]), gap[2:]) + 64 * _EPS)
 
 
-def _on_line(lines: Lines | HillLines, place: _Place) -> tuple[Array, Array]:
-    return lines.line(*place)(place[3])
-
-
-def _gap_on_line(lines: Lines, item: tuple[float, float, float, Array, Array]) -> Array:
-    return lines.error(*item)
+def _on_line(lines: Lines | HillLines, values: Array, outer: float) -> tuple[Array, Array]:
+    return lines.line(outer, values)(values)
 
 
 def _tail(sizes: Array) -> float:

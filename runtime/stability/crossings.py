@@ -8,8 +8,8 @@ the kind: at +1, at -1, or with its conjugate elsewhere.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from typing import Any, Literal, NamedTuple
+from collections.abc import Mapping
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,7 @@ from ..frequencies.multiplier_maxima import refined_maxima
 from ..periodic import FloquetMultipliers, floquet_multipliers
 from ..periodic.multipliers import conditions
 from ..periodic.over_speed import MatricesOverSpeed
-from .labels import held_modes, meeting_labels, pair_shares
+from .labels import Regions, held_modes, joined, meeting_labels, pair_shares
 from .pairs import TOGETHER, perturbation_size, phase_grid
 
 ComplexArray = NDArray[np.complex128]
@@ -49,21 +49,6 @@ class Levels(NamedTuple):
         return np.asarray(self.value > 2 * self.noise)
 
 
-class Span(NamedTuple):
-    """Speeds between which multipliers of one kind are outside the circle.
-
-    ``lower`` and ``upper`` are NaN where none crosses the circle; ``begin`` and ``end`` are then
-    the last speeds at which that kind was seen.
-    """
-
-    lower: float
-    upper: float
-    error: float
-    begin: float
-    end: float
-    multiplier: complex
-
-
 class _Crossing(NamedTuple):
     speed: float
     error: float
@@ -85,8 +70,7 @@ class Crossings:
     def levels(self, speed: Array) -> Levels:
         """Return the log moduli at speeds of shape ``(k,)``."""
         m = 2 * self._matrices.system.size
-        none = np.zeros((0, m))
-        parts: list[tuple[Array, ...]] = [(none, none, none.astype(complex), np.zeros(0))]
+        parts: list[tuple[Array, ...]] = []
         for start in range(0, len(speed), TOGETHER):
             matrices, error = self._matrices(speed[start : start + TOGETHER])
             values, vectors = (part.astype(complex) for part in np.linalg.eig(matrices))
@@ -100,8 +84,8 @@ class Crossings:
             parts.append((*(np.take_along_axis(c, order, axis=-1) for c in columns), shift))
         return Levels(*(np.concatenate(c) for c in zip(*parts, strict=True)))
 
-    def spans(self) -> list[Span]:
-        """Return what is outside the circle, kind by kind, with the speeds between which."""
+    def regions(self) -> Regions:
+        """Return between which speeds multipliers of a kind are outside the circle, no labels."""
         found = self._crossings()
         for _ in range(6):
             # Between crossings the number outside must be what they make it.
@@ -118,7 +102,7 @@ class Crossings:
             found = self._crossings()
             if len(found) == before:
                 break
-        return self._spans(found)
+        return self._between(found)
 
     def _crossings(self) -> list[_Crossing]:
         """Return all crossings between neighbouring samples, by rising speed."""
@@ -192,28 +176,30 @@ class Crossings:
             turn = next(t for t in _kinds(self._levels, more) if _kind(t) == 2)
         return complex(turn.real, abs(turn.imag))
 
-    def _spans(self, found: list[_Crossing]) -> list[Span]:
+    def _between(self, found: list[_Crossing]) -> Regions:
         """Join crossings outwards with the next ones of their kind inwards."""
         begun = [_Crossing(np.nan, 0.0, True, turn) for turn in _kinds(self._levels, 0)]
-        made: list[Span] = []
-        for crossing in found:
-            if crossing.rising:
-                begun.append(crossing)
-                continue
-            kind = _kind(crossing.multiplier)
-            same = [i for i, other in enumerate(begun) if _kind(other.multiplier) == kind]
-            made.append(self._span(begun.pop(same[-1]) if same else None, crossing))
-        made.extend(self._span(other, None) for other in begun)
-        return made
+        rows: list[tuple[float, float, float, float, float]] = []
+        turns: list[complex] = []
 
-    def _span(self, first: _Crossing | None, last: _Crossing | None) -> Span:
-        known = [crossing for crossing in (first, last) if crossing is not None]
-        turn = known[0].multiplier / abs(known[0].multiplier)
-        lower = first.speed if first is not None else np.nan
-        upper = last.speed if last is not None else np.nan
-        begin = lower if np.isfinite(lower) else self._seen(upper, _kind(turn), -1)
-        end = upper if np.isfinite(upper) else self._seen(begin, _kind(turn), 1)
-        return Span(lower, upper, max(c.error for c in known), begin, end, turn)
+        def add(first: _Crossing, last: _Crossing) -> None:
+            kind = _kind(first.multiplier)
+            begin = first.speed if np.isfinite(first.speed) else self._seen(last.speed, kind, -1)
+            end = last.speed if np.isfinite(last.speed) else self._seen(begin, kind, 1)
+            rows.append((first.speed, last.speed, max(first.error, last.error), begin, end))
+            turns.append(first.multiplier / abs(first.multiplier))
+
+        for last in found:
+            if last.rising:
+                begun.append(last)
+                continue
+            kind = _kind(last.multiplier)
+            same = [i for i, other in enumerate(begun) if _kind(other.multiplier) == kind]
+            add(begun.pop(same[-1]) if same else last._replace(speed=np.nan), last)
+        for first in begun:
+            add(first, first._replace(speed=np.nan))
+        numbers = np.array(rows).reshape(-1, 5).T
+        return Regions.unlabelled(numbers[:2], numbers[2], numbers[3:], np.array(turns))
 
     def _seen(self, start: float, kind: int, step: int) -> float:
         """Return the last sample from a speed on at which a kind is outside the circle."""
@@ -248,7 +234,7 @@ def damped_regions(
     Narrow ones are looked for where the ``undamped`` ones are, which lend their labels.
     """
     begin, end = np.maximum(undamped.begin, span[0]), np.minimum(undamped.end, span[1])
-    seen = np.flatnonzero(end - begin > 4 * undamped.error)
+    seen = end - begin > 4 * undamped.error
     undamped, begin, end = undamped.take(seen), begin[seen], end[seen]
     phase = np.angle(undamped.multiplier)
     middle, half = 0.5 * (begin + end), 0.5 * (end - begin)
@@ -256,41 +242,33 @@ def damped_regions(
     highest = _highest(matrices, phase, middle, half)
     around = (middle[:, None] + half[:, None] * _PLACES).ravel()
     more = np.concatenate([highest, around, 0.5 * (ends[1:] + ends[:-1])])
-    more = more[(more > span[0]) & (more < span[1])]
-    speed = phase_grid(matrices, span, more)
-    speed[[0, -1]] = span
-    spans = Crossings(matrices, speed).spans()
-    return labelled([s for s in spans if not s.upper - s.lower <= 0.0], undamped)
+    found = Crossings(matrices, phase_grid(matrices, span, more)).regions()
+    return named_after(found.take(~(found.upper - found.lower <= 0.0)), undamped)
 
 
-def labelled(spans: list[Span], undamped: Regions) -> Regions:
+def named_after(found: Regions, undamped: Regions) -> Regions:
     """Give each the label of the undamped region it is most like, none twice; 0 where none is."""
     from scipy.optimize import linear_sum_assignment
 
-    k = len(spans)
-    numbers = np.array([s[:5] for s in spans], dtype=float).reshape(k, 5)
-    lower, upper, error, begin, end = numbers.T.copy()
-    turn = np.array([s.multiplier for s in spans], dtype=complex)
+    begin, end = found.begin[:, None], found.end[:, None]
     lows, highs = undamped.begin, undamped.end
-    size = (end - begin)[:, None] + (highs - lows) + 1e-12 * end[:, None]
-    cost = np.abs((end + begin)[:, None] - (highs + lows)) / size
+    size = (end - begin) + (highs - lows) + 1e-12 * end
+    cost = np.abs((end + begin) - (highs + lows)) / size
     folded = undamped.multiplier.real + 1j * np.abs(undamped.multiplier.imag)
-    cost = cost + 2 * np.abs(np.angle(turn[:, None] / folded))
+    cost = cost + 2 * np.abs(np.angle(found.multiplier[:, None] / folded))
     # Of two that lie alike the one of like width, then that of the lower, stronger harmonic; never
     # one of another kind of multiplier.
-    ratio = np.log((end - begin + 1e-15 * end)[:, None] / (highs - lows + 1e-15 * highs))
+    ratio = np.log((end - begin + 1e-15 * end) / (highs - lows + 1e-15 * highs))
     cost = cost + 0.2 * np.abs(ratio) + 0.05 * undamped.harmonic
-    real = np.array([s.multiplier.imag == 0.0 for s in spans], dtype=bool)
-    cost = cost + 100.0 * (real[:, None] != (undamped.kind == "principal"))
-    pairs = [(r, c) for r, c in zip(*linear_sum_assignment(cost), strict=True) if cost[r, c] < 20.0]
-    modes, harmonic = np.zeros((k, 2), dtype=np.int64), np.zeros(k, dtype=np.int64)
-    detuning = np.full(k, np.nan)
-    kind = ["principal" if flag else "sum" for flag in real]
-    for row, column in pairs:
-        modes[row], harmonic[row] = undamped.modes[column], undamped.harmonic[column]
-        detuning[row], kind[row] = undamped.detuning[column], undamped.kind[column]
-    kinds = np.array(kind, dtype=np.str_)
-    return Regions(lower, upper, error, turn, modes, harmonic, detuning, begin, end, kinds)
+    real = (found.multiplier.imag == 0.0)[:, None]
+    cost = cost + 100.0 * (real != (undamped.kind == "principal"))
+    row, column = linear_sum_assignment(cost)
+    like = cost[row, column] < 20.0
+    source = len(lows) + np.arange(len(begin))
+    source[row[like]] = column[like]
+    both = joined(undamped, found).take(source)
+    named = {name: getattr(both, name) for name in ("modes", "harmonic", "detuning", "kind")}
+    return found._replace(**named)
 
 
 def _highest(matrices: MatricesOverSpeed, phase: Array, middle: Array, half: Array) -> Array:
@@ -335,27 +313,27 @@ def mended(
     ends = np.unique(np.concatenate([span, near[np.isfinite(near)]]))
     ends = ends[(ends >= span[0]) & (ends <= span[1])]
     speed = phase_grid(matrices, span, 0.5 * (ends[1:] + ends[:-1]))
-    speed[[0, -1]] = span
-    truth = [
-        s
-        for s in Crossings(matrices, speed, sharp=True).spans()
-        if s.multiplier.imag != 0.0 and not s.upper - s.lower <= 4 * s.error
-    ]
-    kept, new = np.array(usable), list[Span]()
-    own: set[int] = set()
-    for one in truth:
-        free = [int(i) for i in np.flatnonzero(usable) if int(i) not in own]
-        same = [i for i in free if _same(regions, i, one)]
-        own.update(same[:1])
-        if not same:
-            new.append(one)
-    for one in new:
-        over = (regions.begin < one.end) & (regions.end > one.begin)
-        kept &= ~over | np.isin(np.arange(len(kept)), list(own))
+    found = Crossings(matrices, speed, sharp=True).regions()
+    wide = ~(found.upper - found.lower <= 4 * found.error)
+    truth = found.take(wide & (found.multiplier.imag != 0.0))
+    # Those whose ends agree within their errors, or that both lack.
+    slack = truth.error[:, None] + regions.error
+    alike = np.broadcast_to(usable, slack.shape)
+    for a, b in ((truth.lower, regions.lower), (truth.upper, regions.upper)):
+        gap = np.abs(a[:, None] - b)
+        alike = alike & ((gap <= slack) | (np.isnan(a)[:, None] & np.isnan(b)))
+    own, new = np.zeros(len(usable), dtype=bool), list[int]()
+    for row, fitting in enumerate(alike):
+        same = np.flatnonzero(fitting & ~own)[:1]
+        own[same] = True
+        if not len(same):
+            new.append(row)
     if not new:
-        return regions.take(np.flatnonzero(kept))
-    pool = regions.take(np.flatnonzero(~kept))
-    return joined(regions.take(np.flatnonzero(kept)), _named(matrices, labelled(new, pool)))
+        return regions.take(usable)
+    fresh = truth.take(np.array(new))
+    over = (regions.begin < fresh.end[:, None]) & (regions.end > fresh.begin[:, None])
+    kept = usable & (own | ~np.any(over, axis=0))
+    return joined(regions.take(kept), _named(matrices, named_after(fresh, regions.take(~kept))))
 
 
 def _named(matrices: MatricesOverSpeed, regions: Regions) -> Regions:
@@ -363,71 +341,22 @@ def _named(matrices: MatricesOverSpeed, regions: Regions) -> Regions:
     middle, turn = regions.middle, regions.multiplier
     held, phase = held_modes(matrices, middle), np.angle(turn)
     shares = pair_shares(matrices, held, middle, turn)
-    modes, harmonic, off = meeting_labels(held, phase, phase, shares)
+    modes, harmonic, off = meeting_labels(held, phase, shares)
     total = np.sum(np.take_along_axis(held.turns, regions.modes - 1, axis=1), axis=1)
     wrong = (2 * off < np.abs(total - regions.harmonic)) & (regions.kind == "sum")
     better = wrong | (regions.modes[:, 0] == 0)
     return regions._replace(
         modes=np.where(better[:, None], modes, regions.modes),
-        harmonic=np.where(better, np.abs(harmonic), regions.harmonic),
+        harmonic=np.where(better, harmonic, regions.harmonic),
         detuning=np.where(better, off, regions.detuning),
         kind=np.where(better, "sum", regions.kind),
     )
-
-
-def _same(regions: Regions, index: int, span: Span) -> bool:
-    """Return True where both ends agree within their errors."""
-    slack = float(regions.error[index]) + span.error
-    pairs = [(float(regions.lower[index]), span.lower), (float(regions.upper[index]), span.upper)]
-    return all(abs(a - b) <= slack or (np.isnan(a) and np.isnan(b)) for a, b in pairs)
 
 
 # Growth, over its error, from which a verdict tells.
 _TELLING = 20.0
 # Share of the way to the next end at which an end is looked at.
 _BESIDE = 0.01
-
-
-class Regions(NamedTuple):
-    """Regions with their ends and labels, see :class:`~.edges.StabilityEdges`.
-
-    ``begin`` and ``end`` are as far as the region is known to reach: its ends where it has them,
-    else the last speed at which it was seen.
-    """
-
-    lower: Array
-    upper: Array
-    error: Array
-    multiplier: NDArray[np.complex128]
-    modes: NDArray[np.int64]
-    harmonic: NDArray[np.int64]
-    detuning: Array
-    begin: Array
-    end: Array
-    kind: NDArray[np.str_]
-
-    @property
-    def middle(self) -> Array:
-        """Middle of each, or the one end that there is, or of where it was seen."""
-        low = np.where(np.isfinite(self.lower), self.lower, self.upper)
-        high = np.where(np.isfinite(self.upper), self.upper, self.lower)
-        seen = 0.5 * (self.begin + self.end)
-        return np.asarray(np.where(np.isfinite(low + high), 0.5 * (low + high), seen))
-
-    def take(self, index: NDArray[np.intp]) -> Regions:
-        """Return some of the regions, in the order given."""
-        columns: Sequence[Any] = self
-        return Regions(*(values[index] for values in columns))
-
-    def overlapping(self, low: float, high: float) -> Regions:
-        """Return those that reach into a range, by rising speed."""
-        kept = np.flatnonzero((self.end >= low) & (self.begin <= high))
-        return self.take(kept[np.argsort(self.middle[kept], kind="stable")])
-
-
-def joined(first: Regions, second: Regions) -> Regions:
-    """Return the regions of both."""
-    return Regions(*(np.concatenate(both) for both in zip(first, second, strict=True)))
 
 
 # ---------------------------------------------------------------- checks
@@ -457,25 +386,20 @@ def edge_checks(
 def _narrow(system: LinearPeriodic, regions: Regions, parameters: Mapping[str, float]) -> int:
     """Return how many regions do not grow in the middle as much as their width promises."""
     with np.errstate(invalid="ignore"):
-        whole = np.flatnonzero(regions.upper - regions.lower > 4 * regions.error)
-    if not len(whole):
+        whole = regions.take(regions.upper - regions.lower > 4 * regions.error)
+    if not len(whole.error):
         return 0
-    low, high = regions.lower[whole], regions.upper[whole]
-    middle: Array = 0.5 * (low + high)
-    inside = floquet_multipliers(system, middle, **parameters)
-    expected = _expected_growth(regions, whole)
+    inside = floquet_multipliers(system, 0.5 * (whole.lower + whole.upper), **parameters)
+    expected = _expected_growth(whole)
     told = expected > _TELLING * np.max(inside.error, axis=-1)
-    grown = np.max(inside.exponents.real, axis=-1)
-    if _damped(inside):
-        expected = np.zeros_like(expected)
-    return int(np.sum(told & (grown <= 0.1 * expected)))
+    least = 0.0 if _damped(inside) else 0.1 * expected
+    return int(np.sum(told & (np.max(inside.exponents.real, axis=-1) <= least)))
 
 
-def _expected_growth(regions: Regions, index: NDArray[np.intp]) -> Array:
+def _expected_growth(regions: Regions) -> Array:
     """Return the growth in a period at the middle of regions, n pi b / (2 w) at a width b."""
-    width = (regions.end - regions.begin)[index]
-    value: Array = 0.5 * np.pi * np.maximum(regions.harmonic[index], 1) * width
-    return value / regions.end[index]
+    width = regions.end - regions.begin
+    return 0.5 * np.pi * np.maximum(regions.harmonic, 1) * width / regions.end
 
 
 def _counts(
@@ -487,31 +411,30 @@ def _counts(
     """Return at how many places between ends not as many multipliers grow as regions cover."""
     # The places are beside each end and in the middle between each two.  A principal region stands
     # for one multiplier, any other for two, which holds too where four meet off the circle.
-    wide = np.flatnonzero(regions.end - regions.begin > 4 * regions.error)
-    begin, end, error = regions.begin[wide], regions.end[wide], regions.error[wide]
+    wide = regions.take(regions.end - regions.begin > 4 * regions.error)
+    begin, end = wide.begin, wide.end
     ends = np.concatenate([span, begin, end])
-    slack = np.concatenate([np.zeros(2), error, error])
+    slack = np.concatenate([np.zeros(2), wide.error, wide.error])
     order = np.argsort(ends, kind="stable")
     ends, slack = ends[order], slack[order]
     gap = np.diff(ends)
     spread = 4 * (slack[1:] + slack[:-1] + 16 * np.finfo(float).eps * ends[1:])
-    speeds = np.concatenate([(ends[:-1] + p * gap)[p * gap > spread] for p in (_BESIDE, 0.5)])
-    near = ends[1:] - _BESIDE * gap
-    speeds = np.unique(np.concatenate([speeds, near[_BESIDE * gap > spread]]))
+    shares = (_BESIDE, 0.5, 1.0 - _BESIDE)
+    inner = [(ends[:-1] + p * gap)[min(p, 1.0 - p) * gap > spread] for p in shares]
+    speeds = np.unique(np.concatenate(inner))
     if not len(speeds):
         return 0
     found = floquet_multipliers(system, speeds, **parameters)
     modulus, blur = np.abs(found.multipliers), np.max(found.error, axis=-1)
     covers = (speeds[:, None] > begin) & (speeds[:, None] < end)
-    weight = np.where(regions.kind[wide] == "principal", 1, 2)
-    expected = covers.astype(int) @ weight
+    expected = covers.astype(int) @ np.where(wide.kind == "principal", 1, 2)
     fewest = np.sum(modulus > 1.0 + 4 * found.error, axis=-1)
     most = np.sum(modulus > 1.0 - 4 * found.error, axis=-1)
     if not _damped(found):
         # All that is not off the circle lies on it: only what should grow by more is missed.
         with np.errstate(divide="ignore", invalid="ignore"):
             part = (speeds[:, None] - begin) / (end - begin)
-            rate = _expected_growth(regions, wide) * 2 * np.sqrt(np.maximum(part * (1 - part), 0.0))
+            rate = _expected_growth(wide) * 2 * np.sqrt(np.maximum(part * (1 - part), 0.0))
         least = np.min(np.where(covers, rate, np.inf), axis=1, initial=np.inf)
         most = np.where(least > _TELLING * blur, fewest, np.maximum(fewest, expected))
     no_begin = np.isnan(regions.lower) & (regions.begin > span[0])

@@ -15,22 +15,24 @@ from ..core.families import DAMPING, Array, LinearPeriodic
 from ..core.inputs import is_finite, numbers, require_between, speed_span
 from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.results import Check, Result, provenance
-from ..periodic import floquet_multipliers
 from ..periodic.equation import at_geometry, equation_of
 from ..periodic.lowest_modes import LowestModes
 from ..periodic.over_speed import MatricesOverSpeed
 from .boundary_speeds import SpeedBoundaries, speed_boundaries
-from .crossings import Regions, damped_regions, edge_checks, joined, mended
+from .crossings import damped_regions, edge_checks, mended
 from .labels import (
+    Regions,
     averaged_modes,
     boundary_units,
     held_modes,
+    joined,
     meeting_labels,
     pair_shares,
     principal_labels,
+    real_beyond,
     unit_labels,
 )
-from .pairs import Edges, Events, Samples, meetings, refined_edges, sampled_phases
+from .pairs import meetings, refined_edges, sampled_phases
 
 ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
@@ -327,107 +329,69 @@ def _undamped(
     least = np.zeros(0)
     if bounded is None:
         samples = sampled_phases(matrices, span, np.zeros(0))
-        events = meetings(samples, principal=True)
-        edges = refined_edges(matrices, events)
-        principal, least = _met(matrices, events, edges), edges.least
+        met, middle, least = refined_edges(matrices, meetings(samples, principal=True))
+        principal = _met(matrices, met, middle)
     elif matrices.system.size == 1:
         return bounded, float(np.max(bounded.error, initial=0.0))
     else:
-        principal, samples = bounded, _samples_beside(matrices, bounded, span)
+        principal = bounded
+        with np.errstate(invalid="ignore"):
+            wide = ~(bounded.upper - bounded.lower <= _WIDE * bounded.middle)
+        beside = [bounded.lower[wide] * (1 - 0.1 * _WIDE), bounded.upper[wide] * (1 + 0.1 * _WIDE)]
+        # A missing end is NaN, which is in no range.
+        samples = sampled_phases(matrices, span, np.concatenate(beside))
     events = meetings(samples)
-    edges = refined_edges(matrices, events)
-    combined = _combined(matrices, events, edges, held=bounded is None)
+    found, middle, width = refined_edges(matrices, events)
+    combined = _combined(matrices, found, middle, held=bounded is None)
     # A pair that leaves the circle at +-1 belongs to a principal region.
-    usable = np.abs(np.sin(edges.phase)) > _REAL
+    usable = found.multiplier.imag > _REAL
     if whole:
-        near = [principal.lower, principal.upper, edges.lower, edges.upper, events.inside]
+        near = [principal.lower, principal.upper, found.lower, found.upper, events.inside]
         combined = mended(matrices, combined, usable, span, np.concatenate(near))
     else:
-        combined = combined.take(np.flatnonzero(usable))
-    least = np.concatenate([least, edges.least[usable]])
+        combined = combined.take(usable)
+    least = np.concatenate([least, width[usable]])
     return joined(principal, combined), float(np.max(least, initial=0.0))
 
 
-def _samples_beside(
-    matrices: MatricesOverSpeed, principal: Regions, span: tuple[float, float]
-) -> Samples:
-    """Return the phases over a range, sampled too on either side of principal regions."""
-    with np.errstate(invalid="ignore"):
-        wide = ~(principal.upper - principal.lower <= _WIDE * principal.middle)
-    beside = np.concatenate(
-        [principal.lower[wide] * (1 - 0.1 * _WIDE), principal.upper[wide] * (1 + 0.1 * _WIDE)]
-    )
-    # A missing end is NaN, which is in no range.
-    return sampled_phases(matrices, span, beside[(beside > span[0]) & (beside < span[1])])
-
-
-def _reached(edges: Edges, reach: Array) -> tuple[Array, Array, Array]:
-    """Return the middle of each region, and how far it is known to reach."""
-    lower, upper = edges.lower, edges.upper
-    inner = np.mean(reach, axis=1)
-    return (
-        np.where(np.isfinite(lower + upper), 0.5 * (lower + upper), inner),
-        np.where(np.isfinite(lower), lower, reach[:, 0]),
-        np.where(np.isfinite(upper), upper, reach[:, 1]),
-    )
-
-
-def _combined(matrices: MatricesOverSpeed, events: Events, edges: Edges, *, held: bool) -> Regions:
+def _combined(matrices: MatricesOverSpeed, found: Regions, middle: Array, *, held: bool) -> Regions:
     """Return the combination regions in which pairs meet, with labels."""
     # With `held` from modes with the crank held and how much of the motion each has; else from
     # frequencies and phases of the averaged equation alone.
-    middle, begin, end = _reached(edges, events.reach)
-    phase = edges.phase
-    shares: Array | None = None
+    shares = None
     if held:
         modes = held_modes(matrices, middle)
-        shares = pair_shares(matrices, modes, middle, np.exp(1j * phase))
+        shares = pair_shares(matrices, modes, middle, found.multiplier)
     else:
         modes = averaged_modes(matrices, middle)
-    pair, harmonic, off = meeting_labels(modes, phase, phase, shares)
-    rows = np.arange(len(middle))[:, None]
-    signs = np.sign(modes.turns[rows, pair - 1])
+    labels = meeting_labels(modes, np.angle(found.multiplier), shares)
+    signs = np.sign(np.take_along_axis(modes.turns, labels[0] - 1, axis=1))
     kind = np.where(signs[:, 0] == signs[:, 1], "sum", "difference")
-    turn = np.exp(1j * np.abs(phase))
-    return Regions(
-        edges.lower, edges.upper, edges.error, turn, pair, np.abs(harmonic), off, begin, end, kind
-    )
+    return found.labelled(*labels)._replace(kind=kind)
 
 
-def _met(matrices: MatricesOverSpeed, events: Events, edges: Edges) -> Regions:
+def _met(matrices: MatricesOverSpeed, found: Regions, middle: Array) -> Regions:
     """Return the principal regions, in which a mode's own two multipliers meet, with labels."""
-    kept = _single(edges, np.flatnonzero(np.abs(np.sin(edges.phase)) <= np.sqrt(_REAL)))
-    middle, *reach = (values[kept] for values in _reached(edges, events.reach))
-    real = np.where(np.cos(edges.phase[kept]) > 0, 1.0, -1.0)
+    kept = _single(found, np.flatnonzero(found.multiplier.imag <= np.sqrt(_REAL)))
+    found, middle = found.take(kept), middle[kept]
+    real = np.where(found.multiplier.real > 0, 1.0, -1.0)
     modes = held_modes(matrices, middle)
     lack = 1.0 - pair_shares(matrices, modes, middle, real.astype(complex))
-    ends = np.stack([edges.lower[kept], edges.upper[kept]])
     labels = principal_labels(modes.turns, real, lack)
-    return _principal(ends, edges.error[kept], real, labels, np.stack(reach))
-
-
-def _principal(
-    ends: Array, error: Array, real: Array, labels: tuple[Whole, Whole, Array], reach: Array
-) -> Regions:
-    """Return principal regions from ends and reach ``(2, k)``, multipliers +-1 and labels."""
-    mode, number, off = labels
-    turn, modes = real.astype(complex), np.stack([mode, mode], axis=1)
-    lower, upper = ends
-    begin, end = reach
     kind = np.full(len(real), "principal")
-    return Regions(lower, upper, error, turn, modes, number, off, begin, end, kind)
+    return found.labelled(*labels)._replace(multiplier=real.astype(complex), kind=kind)
 
 
-def _single(edges: Edges, index: NDArray[np.intp]) -> NDArray[np.intp]:
+def _single(regions: Regions, index: NDArray[np.intp]) -> NDArray[np.intp]:
     """Return the numbers of regions without those open ones that another event has led to too."""
     kept: list[int] = []
     for row in index.tolist():
-        ends = edges.lower[row], edges.upper[row]
-        slack = 4 * (edges.error[row] + np.finfo(float).eps * edges.upper[row])
+        ends = regions.lower[row], regions.upper[row]
+        slack = 4 * (regions.error[row] + np.finfo(float).eps * regions.upper[row])
         same = [
             i
             for i in kept
-            if abs(edges.lower[i] - ends[0]) <= slack and abs(edges.upper[i] - ends[1]) <= slack
+            if abs(regions.lower[i] - ends[0]) <= slack and abs(regions.upper[i] - ends[1]) <= slack
         ]
         if not same or not ends[1] - ends[0] > 2 * slack:
             kept.append(row)
@@ -440,16 +404,14 @@ def _bounded(
     """Return the regions between pairs of boundaries with multiplier +-1."""
     modes = averaged_modes(matrices, boundaries.speed)
     units = boundary_units(matrices, modes, boundaries)
-    ends, error, real = np.full((2, len(units)), np.nan), *np.zeros((2, len(units)))
-    for column, unit in enumerate(units):
-        for side, row in enumerate(unit):
-            if row >= 0:
-                ends[side, column] = boundaries.speed[row]
-                real[column] = boundaries.multiplier[row]
-                error[column] = max(error[column], boundaries.error[row])
-    reach = np.where(np.isfinite(ends), ends, np.array(span)[:, None])
-    labels = unit_labels(modes, boundaries, units)
-    regions = _principal(ends, error, real, labels, reach)
+    ends, reach = (
+        np.where(units >= 0, boundaries.speed[units], other)
+        for other in (np.nan, np.array(span)[:, None])
+    )
+    error = np.max(np.where(units >= 0, boundaries.error[units], 0.0), axis=0)
+    real = boundaries.multiplier[np.max(units, axis=0)]
+    regions = Regions.unlabelled(ends, error, reach, real)
+    regions = regions.labelled(*unit_labels(modes, boundaries, units))
     return joined(regions, _endless(matrices, boundaries, span))
 
 
@@ -458,13 +420,12 @@ def _endless(
 ) -> Regions:
     """Return principal regions in which all of the range lies, for multipliers without boundary."""
     middle = np.array([0.5 * (span[0] + span[1])])
-    values = floquet_multipliers(matrices.system, middle, **matrices.parameters)
-    multipliers, error = values.multipliers[0], values.error[0]
-    outside = (np.abs(multipliers.imag) <= 4 * error) & (np.abs(multipliers.real) > 1 + 4 * error)
-    real = np.sign(multipliers.real[outside])
-    real = np.sort(real[~np.isin(real, boundaries.multiplier)])[::-1]
+    missing = [sign for sign in (1, -1) if sign not in boundaries.multiplier]
+    counts = [real_beyond(matrices, middle, sign)[0] for sign in missing]
+    real = np.repeat(np.array(missing, dtype=float), np.array(counts, dtype=int))
     k = len(real)
     turns = np.repeat(averaged_modes(matrices, middle).turns, k, axis=0)
     labels = principal_labels(turns, real, np.zeros_like(turns))
     reach = np.repeat(np.array(span)[:, None], k, axis=1)
-    return _principal(np.full((2, k), np.nan), np.zeros(k), real, labels, reach)
+    regions = Regions.unlabelled(np.full((2, k), np.nan), np.zeros(k), reach, real)
+    return regions.labelled(*labels)

@@ -179,26 +179,26 @@ def tongue_curves(
                 ends[:, place, column] = one
     with np.errstate(invalid="ignore"):
         seen = np.any((ends[1] >= low) & (ends[0] <= high), axis=1)
-    kept = np.flatnonzero(seen)
-    lower, upper, error, growth = ends[:, kept]
+    feet = [foot for foot, reached in zip(feet, seen, strict=True) if reached]
+    lower, upper, error, growth = ends[:, seen]
     return TongueCurves(
         method=f"stability_edges at each value, by label; {edges.method}",
         error=error,
         error_norm="absolute, of either end [rad/s]",
         checks={
-            "lost": Check(float(np.sum(np.isnan(lower[:, -1]))), float(len(kept))),
+            "lost": Check(float(np.sum(np.isnan(lower[:, -1]))), float(len(feet))),
             "edges": Check(float(failed), 0.0),
         },
         provenance=provenance(system.changed_provenance(**{name: at})),
         name=name,
         at=at,
-        foot=np.array([feet[i].speed for i in kept]),
+        foot=np.array([foot.speed for foot in feet]),
         lower=lower,
         upper=upper,
         growth=growth,
-        modes=np.array([feet[i].modes for i in kept], dtype=np.int64).reshape(-1, 2),
-        harmonic=np.array([feet[i].harmonic for i in kept], dtype=np.int64),
-        labels=tuple(feet[i].label for i in kept),
+        modes=np.array([foot.modes for foot in feet], dtype=np.int64).reshape(-1, 2),
+        harmonic=np.array([foot.harmonic for foot in feet], dtype=np.int64),
+        labels=tuple(foot.label for foot in feet),
     )
 
 

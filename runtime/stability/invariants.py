@@ -86,15 +86,21 @@ def _by_sums(z: NDArray[np.complex128], known: Array) -> Moduli:
     """Judge by the sums ``z = rho + 1/rho``."""
     off = root_uncertainty(z, known)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-        # Beyond 1e8 the square of z may overflow, and 4 is lost beside it.
-        # Sums rho + 1/rho beyond which they are rho itself to round-off.
-        far = np.abs(z) > 1e8
-        root = np.where(far, z / 2, np.sqrt(np.where(far, 0.0, z) ** 2 / 4 - 1 + 0j))
-        # Of the pair rho, 1/rho the one without cancellation.
-        modulus = np.maximum(np.maximum(np.abs(z / 2 + root), np.abs(z / 2 - root)), 1.0)
+        rho, root = _outer(z)
+        modulus = np.maximum(np.abs(rho), 1.0)
         # rho moves by rho dz / sqrt(z^2 - 4), and at z = +-2 by the square root.
         allowance = modulus * np.minimum(off / (2 * np.abs(root)), np.sqrt(off))
     return _judged(modulus, np.where(np.isnan(allowance), np.inf, allowance))
+
+
+def _outer(z: NDArray[np.complex128]) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+    """Return of each pair of ``z = rho + 1/rho`` the larger rho, and ``sqrt(z^2/4 - 1)``."""
+    # Beyond 1e8 the square of z may overflow, and 4 is lost beside it: root and rho are z/2 and z.
+    far = np.abs(z) > 1e8
+    root = np.where(far, z / 2, np.sqrt(np.where(far, 0.0, z) ** 2 / 4 - 1 + 0j))
+    # The one without cancellation.
+    rho = np.where(np.abs(z / 2 + root) >= np.abs(z / 2 - root), z / 2 + root, z / 2 - root)
+    return rho, root
 
 
 def _judged(modulus: Array, allowance: Array) -> Moduli:
@@ -103,7 +109,7 @@ def _judged(modulus: Array, allowance: Array) -> Moduli:
 
 
 def instability_kind(
-    coefficients: Array, stable: NDArray[np.bool_], *, hill: bool, reduced: bool
+    coefficients: Array, stable: NDArray[np.bool_], reduced: bool
 ) -> NDArray[np.int8]:
     """Return 1 or -1 where the largest multiplier is real, 2 where complex, 0 where stable.
 
@@ -113,19 +119,13 @@ def instability_kind(
     grown = ~np.all(np.isfinite(coefficients), axis=-1)
     if np.any(grown):
         # Overflowed: the sum of the multipliers tells the sign of the largest.
-        sign = np.where(np.isinf(coefficients[..., 0]), np.sign(coefficients[..., 0]), 0.0)
-        out[grown] = (sign if hill else -sign)[grown]
+        first = coefficients[grown, 0]
+        out[grown] = np.where(np.isinf(first), -np.sign(first), 0.0)
         stable = stable | grown
     chosen = coefficients[~stable]
-    if hill or not len(chosen):
-        out[~stable] = np.sign(chosen[..., 0]) if hill else 0
+    if not len(chosen):
         return out
-    if reduced:
-        z = _roots(in_sum(chosen))
-        half = np.sqrt(z**2 / 4 - 1 + 0j)
-        rho = np.where(np.abs(z / 2 + half) >= np.abs(z / 2 - half), z / 2 + half, z / 2 - half)
-    else:
-        rho = _roots(chosen)
+    rho = _outer(_roots(in_sum(chosen)))[0] if reduced else _roots(chosen)
     top = np.take_along_axis(rho, np.argmax(np.abs(rho), axis=-1)[..., None], axis=-1)[..., 0]
     # Relative imaginary part up to which a multiplier counts as real: round-off at a double one.
     real = np.abs(top.imag) <= 1e-6 * np.abs(top)
@@ -160,15 +160,14 @@ def in_sum(coefficients: Array) -> Array:
 
 def from_sum(polynomial: Array) -> Array:
     """Undo :func:`in_sum`."""
-    weights = _sum_weights(polynomial.shape[-1])
-    # Triangular with a diagonal of ones and whole entries: so is the inverse.
-    inverse = np.round(np.linalg.inv(weights[1:]))
-    return np.asarray((polynomial - weights[0]) @ inverse)
+    n = polynomial.shape[-1]
+    return np.asarray((polynomial - _sum_weights(n)[0]) @ sum_weights_back(n))
 
 
 def sum_weights_back(n: int) -> Array:
-    """Return how errors of ``a_1 ... a_n`` add to those of ``c_1 ... c_n``, shape ``(n, n)``."""
-    return np.abs(np.round(np.linalg.inv(_sum_weights(n)[1:])))
+    """Return what each of ``a_1 ... a_n`` adds to ``c_1 ... c_n``, shape ``(n, n)``."""
+    # Triangular with a diagonal of ones and whole entries: so is the inverse.
+    return np.round(np.linalg.inv(_sum_weights(n)[1:]))
 
 
 @lru_cache(maxsize=64)

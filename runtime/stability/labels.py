@@ -7,8 +7,8 @@ all other modes at rest: where the periodic part is large its mean frequency is 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,14 +17,12 @@ from ..core.trigonometric import even_angles
 from ..periodic import floquet_multipliers
 from ..periodic.equation import Equation, equation_of
 from ..periodic.over_speed import MatricesOverSpeed
-from ..periodic.signatures import form_matrix
 from .boundary_speeds import SpeedBoundaries
-from .meetings import generator
+from .meetings import mean_exponents
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
-Label = tuple[int, int, int]
 
 # How far from its whole number a label may be [turns in a period].
 _REACH = 2
@@ -49,22 +47,79 @@ class Modes(NamedTuple):
     mass: Array
 
 
+class Regions(NamedTuple):
+    """Regions with their ends and labels, see :class:`~.edges.StabilityEdges`.
+
+    ``begin`` and ``end`` are as far as the region is known to reach: its ends where it has them,
+    else the last speed at which it was seen.
+    """
+
+    lower: Array
+    upper: Array
+    error: Array
+    begin: Array
+    end: Array
+    multiplier: ComplexArray
+    modes: Whole
+    harmonic: Whole
+    detuning: Array
+    kind: NDArray[np.str_]
+
+    @classmethod
+    def unlabelled(cls, ends: Array, error: Array, reach: Array, multiplier: Array) -> Regions:
+        """Return regions without modes, principal ones where the multiplier is real.
+
+        ``ends`` and ``reach``, from begin to end, are of shape ``(2, k)``.
+        """
+        k, turn = len(error), multiplier.astype(complex)
+        modes, harmonic = np.zeros((k, 2), dtype=np.int64), np.zeros(k, dtype=np.int64)
+        kind = np.where(turn.imag == 0.0, "principal", "sum")
+        off = np.full(k, np.nan)
+        (lower, upper), (begin, end) = ends, reach
+        return cls(lower, upper, error, begin, end, turn, modes, harmonic, off, kind)
+
+    def labelled(self, modes: Whole, harmonic: Whole, detuning: Array) -> Regions:
+        """Return the same with labels."""
+        return self._replace(modes=modes, harmonic=harmonic, detuning=detuning)
+
+    @property
+    def middle(self) -> Array:
+        """Middle of each, or the one end that there is, or of where it was seen."""
+        low = np.where(np.isfinite(self.lower), self.lower, self.upper)
+        high = np.where(np.isfinite(self.upper), self.upper, self.lower)
+        seen = 0.5 * (self.begin + self.end)
+        return np.asarray(np.where(np.isfinite(low + high), 0.5 * (low + high), seen))
+
+    def take(self, which: NDArray[Any]) -> Regions:
+        """Return some of the regions, by their numbers, in the order given, or by a mask."""
+        columns: Sequence[Any] = self
+        return Regions(*(values[which] for values in columns))
+
+    def overlapping(self, low: float, high: float) -> Regions:
+        """Return those that reach into a range, by rising speed."""
+        kept = np.flatnonzero((self.end >= low) & (self.begin <= high))
+        return self.take(kept[np.argsort(self.middle[kept], kind="stable")])
+
+
+def joined(first: Regions, second: Regions) -> Regions:
+    """Return the regions of both."""
+    return Regions(*(np.concatenate(both) for both in zip(first, second, strict=True)))
+
+
 def averaged_modes(matrices: MatricesOverSpeed, speed: Array) -> Modes:
     """Return the modes of the averaged equation at speeds of shape ``(k,)``."""
     n = matrices.system.size
     if not len(speed):
         return Modes(np.zeros((0, n)), np.zeros((0, n, n), dtype=complex), np.zeros((0, n, n)))
     equation = equation_of(matrices.known, speed, matrices.parameters)
-    mass, gyro, push = (equation.mean(name) for name in ("mass", "gyroscopic", "stiffness"))
-    values, vectors = (part.astype(complex) for part in np.linalg.eig(generator(mass, gyro, push)))
-    sign = np.real(np.diagonal(form_matrix(vectors), axis1=-2, axis2=-1))
-    size = np.abs(values)
+    values, vectors, sign = mean_exponents(equation)
+    size, mass = np.abs(values), equation.mean("mass")
     own = (sign > 0) & (np.abs(values.real) <= 1e-7 * np.max(size, axis=1, keepdims=True))
     chosen = np.argsort(np.where(own, size, np.inf), axis=1, kind="stable")[:, :n]
     stable = np.flatnonzero(np.count_nonzero(own, axis=1) == n)
     turns, shapes = np.full((len(speed), n), np.nan), np.zeros((len(speed), n, n), dtype=complex)
     vectors, chosen = vectors[stable], chosen[stable]
-    duals = np.take_along_axis(np.linalg.inv(vectors), chosen[:, :, None], axis=1)
+    duals = np.take_along_axis(np.linalg.inv(vectors), chosen[:, :, None], axis=1).astype(complex)
     vectors = np.take_along_axis(vectors, chosen[:, None], axis=2)
     turns[stable] = _own_turns(equation.take(stable), vectors, duals)
     rows = np.swapaxes(vectors[:, :n], 1, 2)
@@ -111,88 +166,89 @@ def _own_turns(equation: Equation, vectors: ComplexArray, duals: ComplexArray) -
 
 
 def meeting_labels(
-    modes: Modes, plus: Array, minus: Array, shares: Array | None = None
+    modes: Modes, phase: Array, shares: Array | None = None
 ) -> tuple[Whole, Whole, Array]:
     """Return modes ``(k, 2)`` from 1, the harmonic, and how far off, of meetings of two modes.
 
-    The sum of the turns of the two is nearest to the harmonic, and their phases are nearest to
-    those that meet; no two meetings get the same label.  0 where there is none.
+    The sum of the turns of the two is nearest to the harmonic, and their phases, of opposite signs,
+    are nearest to that at which they meet; no two meetings get the same label.  0 where there is
+    none.
     """
-    k, n = modes.turns.shape
-    options: dict[tuple[int, int, int], dict[int, float]] = {}
-    for row in range(k):
-        for i in range(n):
-            for j in range(i + 1, n):
-                total = modes.turns[row, i] + modes.turns[row, j]
-                if not np.isfinite(total):
-                    continue
-                phases = min(
-                    _apart(modes.turns[row, a], plus[row])
-                    + _apart(modes.turns[row, b], -minus[row])
-                    for a, b in ((i, j), (j, i))
-                )
-                lack = 0.0 if shares is None else 1.0 - float(shares[row, i] + shares[row, j])
-                middle = round(float(total))
-                for harmonic in range(middle - _REACH, middle + _REACH + 1):
-                    cost = abs(float(total) - harmonic) + 0.5 * phases + _LACK * lack
-                    options.setdefault((i + 1, j + 1, harmonic), {})[row] = cost
-    found = np.zeros((k, 2), dtype=np.int64)
-    chosen = np.zeros(k, dtype=np.int64)
-    off = np.full(k, np.nan)
-    for row, (i, j, number) in _assigned(k, options).items():
-        found[row], chosen[row] = (i, j), number
-        off[row] = abs(modes.turns[row, i - 1] + modes.turns[row, j - 1] - number)
-    return found, chosen, off
+    pairs = np.stack(np.triu_indices(modes.turns.shape[1], 1))
+    turns = modes.turns[:, pairs]
+    total = np.sum(turns, axis=1)
+    phases = [
+        _apart(turns[:, a], phase[:, None]) + _apart(turns[:, b], -phase[:, None])
+        for a, b in ((0, 1), (1, 0))
+    ]
+    cost = 0.5 * np.minimum(*phases)
+    if shares is not None:
+        cost = cost + _LACK * (1.0 - np.sum(shares[:, pairs], axis=1))
+    numbers = np.round(total)[:, :, None] + np.arange(-_REACH, _REACH + 1)
+    return _assigned(pairs, total, numbers, cost[:, :, None])
 
 
 def principal_labels(turns: Array, real: Array, lack: Array) -> tuple[Whole, Whole, Array]:
-    """Return mode from 1, number and how far off, of regions in which a mode meets itself.
+    """Return modes ``(k, 2)``, number and how far off, of regions in which a mode meets itself.
 
     Region n of mode j has 2 Omega_j = n, below zero for negative energy.  No two regions get the
     same label; 0 where none is left, or the averaged equation has no modes.  Given are the turns
     ``(k, n)``, the multiplier +1 or -1, and what the motion lacks of being of each mode ``(k, n)``.
     """
-    k, n = turns.shape
-    options: dict[Label, dict[int, float]] = {}
-    for row in range(k):
-        parity = 0 if real[row] > 0 else 1
-        for j in range(n):
-            total = 2 * float(turns[row, j])
-            if not np.isfinite(total):
-                continue
-            nearest = 2 * round((total - parity) / 2) + parity
-            for number in range(nearest - 6, nearest + 7, 2):
-                gap = abs(total - number)
-                # Beyond one turn rather another mode than another number.
-                cost = gap + _LACK * (float(lack[row, j]) + max(0.0, gap - 1.0))
-                options.setdefault((j + 1, number, parity), {})[row] = cost
-    mode, chosen = np.zeros((2, k), dtype=np.int64)
+    total, odd = 2 * turns, (real < 0)[:, None]
+    numbers = (2 * np.round((total - odd) / 2) + odd)[:, :, None] + np.arange(-6, 7, 2)
+    # Beyond one turn rather another mode than another number.
+    beyond = np.maximum(0.0, np.abs(total[:, :, None] - numbers) - 1.0)
+    pairs = np.tile(np.arange(turns.shape[1]), (2, 1))
+    return _assigned(pairs, total, numbers, _LACK * (lack[:, :, None] + beyond))
+
+
+def _assigned(
+    pairs: NDArray[np.intp], total: Array, numbers: Array, cost: Array
+) -> tuple[Whole, Whole, Array]:
+    """Give each row a pair of modes ``(2, p)`` and a number, a label of its own, at least cost.
+
+    It is that by which the turns of the pair in all, ``(k, p)``, are off the number, one of
+    ``(k, p, c)``, and a further ``cost`` of each.
+    """
+    from scipy.optimize import linear_sum_assignment
+
+    k = len(total)
+    row, pair, choice = np.nonzero(np.isfinite(numbers))
+    options = np.stack([pair, numbers[row, pair, choice].astype(np.int64)], axis=1)
+    labels, column = np.unique(options, axis=0, return_inverse=True)
+    table = np.full((k, len(labels)), _FORBIDDEN)
+    table[row, column.ravel()] = (np.abs(total[:, :, None] - numbers) + cost)[row, pair, choice]
+    rows, columns = linear_sum_assignment(table)
+    known = table[rows, columns] < _FORBIDDEN
+    rows, (pair, number) = rows[known], labels[columns[known]].T
+    modes, harmonic = np.zeros((k, 2), dtype=np.int64), np.zeros(k, dtype=np.int64)
     off = np.full(k, np.nan)
-    for row, (j, number, _) in _assigned(k, options).items():
-        mode[row], chosen[row] = j, abs(number)
-        off[row] = abs(2 * float(turns[row, j - 1]) - number)
-    return mode, chosen, off
+    modes[rows], harmonic[rows] = pairs[:, pair].T + 1, np.abs(number)
+    off[rows] = np.abs(total[rows, pair] - number)
+    return modes, harmonic, off
 
 
-Unit = tuple[int, int]
-
-
-def boundary_units(matrices: MatricesOverSpeed, modes: Modes, found: SpeedBoundaries) -> list[Unit]:
-    """Return the two boundaries of each principal region, lower first; -1 where one is missing."""
+def boundary_units(
+    matrices: MatricesOverSpeed, modes: Modes, found: SpeedBoundaries
+) -> NDArray[np.intp]:
+    """Return the lower and the upper boundary of each principal region; -1 where one is missing."""
     owner = np.argmax(_shares(modes, found), axis=-1) if len(found.speed) else np.zeros(0, int)
-    units: list[Unit] = []
+    units: list[tuple[int, int]] = []
     for sign in (1, -1):
         own = np.flatnonzero(found.multiplier == sign)
         if len(own):
-            units.extend(_paired(found, own, owner, _beyond(matrices, found.speed[own], sign)))
-    return units
+            # Before, between and behind the boundaries.
+            speed = found.speed[own]
+            ends = [speed[:1] * (1 - _BESIDE), speed[-1:] * (1 + _BESIDE)]
+            places = np.concatenate([ends[0], 0.5 * (speed[1:] + speed[:-1]), ends[1]])
+            units.extend(_paired(found, own, owner, real_beyond(matrices, places, sign)))
+    return np.array(units, dtype=np.intp).reshape(-1, 2).T
 
 
-def _beyond(matrices: MatricesOverSpeed, speed: Array, sign: int) -> list[int]:
-    """Return how many real multipliers are off the circle before, between and behind boundaries."""
-    ends = speed[0] * (1 - _BESIDE), speed[-1] * (1 + _BESIDE)
-    middle = np.concatenate([ends[:1], 0.5 * (speed[1:] + speed[:-1]), ends[1:]])
-    values = floquet_multipliers(matrices.system, middle, **matrices.parameters)
+def real_beyond(matrices: MatricesOverSpeed, speed: Array, sign: int) -> list[int]:
+    """Return how many real multipliers of a sign are off the circle at some speeds."""
+    values = floquet_multipliers(matrices.system, speed, **matrices.parameters)
     real = np.abs(values.multipliers.imag) <= 4 * values.error
     beyond = sign * values.multipliers.real > 1.0 + 4 * values.error
     return [int(number) for number in np.sum(real & beyond, axis=-1)]
@@ -200,12 +256,12 @@ def _beyond(matrices: MatricesOverSpeed, speed: Array, sign: int) -> list[int]:
 
 def _paired(
     found: SpeedBoundaries, own: NDArray[np.intp], owner: NDArray[np.intp], count: list[int]
-) -> list[Unit]:
+) -> list[tuple[int, int]]:
     """Pair boundaries so that as many regions cover each interval as multipliers are off there."""
     # A boundary behind which one more is off begins a region, another ends the last one begun,
     # rather one whose motion is mostly of the same mode.  Two that nearly coincide and change
     # nothing are a region of their own, or the end of one and the beginning of the next.
-    begun, units = [-1] * count[0], list[Unit]()
+    begun, units = [-1] * count[0], list[tuple[int, int]]()
 
     def same(row: int) -> list[int]:
         return [k for k, first in enumerate(begun) if first >= 0 and owner[first] == owner[row]]
@@ -246,22 +302,17 @@ def _paired(
 
 
 def unit_labels(
-    modes: Modes, found: SpeedBoundaries, units: list[Unit]
+    modes: Modes, found: SpeedBoundaries, units: NDArray[np.intp]
 ) -> tuple[Whole, Whole, Array]:
-    """Return mode, number and how far off, of regions between pairs of boundaries."""
-    n = modes.turns.shape[1]
-    turns, lack = np.full((2, len(units), n), np.nan)
-    real = np.zeros(len(units))
-    shares = _shares(modes, found) if units else np.zeros((0, n))
+    """Return modes, number and how far off, of regions between pairs of boundaries ``(2, k)``."""
+    known = units >= 0
+    # A missing end is about where the outermost boundaries are, or beyond.
+    turns = np.mean(modes.turns[np.where(known, units, [[0], [-1]])], axis=0)
+    shares = _shares(modes, found)
     shares = shares / np.maximum(np.sum(shares, axis=-1, keepdims=True), 1e-300)
-    for row, unit in enumerate(units):
-        known = [end for end in unit if end >= 0]
-        # A missing end is about where the outermost boundaries are, or beyond.
-        ends = [unit[0] if unit[0] >= 0 else 0, unit[1] if unit[1] >= 0 else -1]
-        turns[row] = np.mean(modes.turns[ends], axis=0)
-        lack[row] = 1.0 - np.mean(shares[known], axis=0)
-        real[row] = found.multiplier[known[0]]
-    return principal_labels(turns, real, lack)
+    lower, upper = np.where(known, units, units[::-1])
+    lack = 1.0 - 0.5 * (shares[lower] + shares[upper])
+    return principal_labels(turns, found.multiplier[upper], lack)
 
 
 def _shares(modes: Modes, found: SpeedBoundaries) -> Array:
@@ -279,25 +330,10 @@ def _shares(modes: Modes, found: SpeedBoundaries) -> Array:
     return np.asarray(np.sum(share / (1.0 + gap**2), axis=-1))
 
 
-def _apart(turns: float, phase: float) -> float:
+def _apart(turns: Array, phase: Array) -> Array:
     """Return the distance of two phases in turns."""
     gap = turns - phase / (2 * np.pi)
-    return float(abs(gap - np.round(gap)))
-
-
-def _assigned(rows: int, options: Mapping[Label, Mapping[int, float]]) -> dict[int, Label]:
-    """Give each row a label of its own at the least cost."""
-    from scipy.optimize import linear_sum_assignment
-
-    labels = sorted(options)
-    if not labels or not rows:
-        return {}
-    cost = np.full((rows, len(labels)), _FORBIDDEN)
-    for column, label in enumerate(labels):
-        for row, value in options[label].items():
-            cost[row, column] = value
-    chosen = zip(*linear_sum_assignment(cost), strict=True)
-    return {int(r): labels[c] for r, c in chosen if cost[r, c] < _FORBIDDEN}
+    return np.abs(gap - np.round(gap))
 
 
 # ---------------------------------------------------------------- modes with the crank held

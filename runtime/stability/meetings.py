@@ -13,9 +13,10 @@ from ..core.errors import bad
 from ..core.families import DAMPING, Array, LinearPeriodic
 from ..core.inputs import is_whole, speed_span
 from ..core.maxima import bracketed_roots
-from ..periodic.equation import at_geometry, equation_of, sampled
+from ..periodic.equation import Equation, at_geometry, equation_of, sampled
 from ..periodic.signatures import form_matrix
 
+Complex = NDArray[np.complex128]
 Kind = Literal["principal", "sum", "difference"]
 # Kind, modes from 1, and harmonic.
 Condition = tuple[Kind, tuple[int, int], int]
@@ -76,33 +77,20 @@ class MeanSystem:
         self.system, self._parameters = system, parameters
         self._known = sampled(system.without(*DAMPING))
 
-    def _generator(self, speed: Array) -> Array:
-        """Return L at crank speeds ``(nb,)`` [rad/s], shape ``(nb, 2n, 2n)``."""
-        equation = equation_of(self._known, speed, self._parameters)
-        return generator(*(equation.mean(name) for name in ("mass", "gyroscopic", "stiffness")))
+    def modes(self, speed: Array) -> tuple[Array, NDArray[np.int64]]:
+        """Return frequencies and Krein signatures of exp(i nu theta), ``(nb, n)``, nu rising.
 
-    def frequencies(self, speed: Array) -> Array:
-        """Return frequencies in radians per radian of crank angle, rising; ``(nb, n)``.
-
-        Not a number for modes that do not oscillate, the first ones.
+        Of modes that do not oscillate, the first ones, nu is not a number and the signature 0.
         """
-        if not len(speed):
-            return np.zeros((0, self.system.size))
-        values = np.linalg.eigvals(self._generator(speed)).astype(complex)
-        upper = np.where(_turning(values), values.imag, np.nan)
+        equation = equation_of(self._known, speed, self._parameters)
+        values, _, form = mean_exponents(equation)
+        size = IMAGINARY * np.max(np.abs(values), axis=-1, keepdims=True)
+        turning = (np.abs(values.real) <= size) & (values.imag > size)
         # Modes that do not oscillate are the lowest: the others keep their numbers.
-        return np.asarray(-np.sort(-upper, axis=-1)[:, : self.system.size][:, ::-1])
-
-    def modes(self, speed: float) -> tuple[Array, NDArray[np.int64]]:
-        """Return frequencies and Krein signatures of exp(i nu theta) at one speed, ``(n,)``."""
-        n = self.system.size
-        values, vectors = np.linalg.eig(self._generator(np.array([speed]))[0])
-        kept = np.flatnonzero(_turning(values))
-        kept = kept[np.argsort(values.imag[kept], kind="stable")]
-        form = np.diagonal(form_matrix(vectors[:, kept].astype(complex))).real
-        nu, signs = np.full(n, np.nan), np.zeros(n, dtype=np.int64)
-        nu[n - len(kept) :], signs[n - len(kept) :] = values.imag[kept], np.sign(form)
-        return nu, signs
+        falling = np.where(turning, -values.imag, np.nan)
+        rising = np.argsort(falling, axis=-1, kind="stable")[:, : self.system.size][:, ::-1]
+        signs = np.take_along_axis(np.where(turning, form, 0.0), rising, axis=-1)
+        return -np.take_along_axis(falling, rising, axis=-1), signs.astype(np.int64)
 
     def meetings(self, span: tuple[float, float], conditions: Sequence[Condition]) -> list[Array]:
         """Return all speeds in a span at which the two exponents of each condition meet, rising."""
@@ -112,14 +100,16 @@ class MeanSystem:
         ]
         first, second, minus, turns = (np.array(column) for column in zip(*rows, strict=True))
         grid = np.geomspace(*span, 400)
-        nu = self.frequencies(grid)
+        nu, _ = self.modes(grid)
         value = nu[:, first] + np.where(minus, -1.0, 1.0) * nu[:, second] - turns
         with np.errstate(invalid="ignore"):
             passing = (value[:-1] * value[1:] <= 0) & (value[1:] != 0)
         which, change = np.nonzero(passing.T)
+        if not len(which):
+            return [np.zeros(0)] * len(conditions)
 
         def distance(index: NDArray[np.intp], at: Array) -> tuple[Array, float]:
-            nu, rows, condition = self.frequencies(at), np.arange(len(at)), which[index]
+            (nu, _), rows, condition = self.modes(at), np.arange(len(at)), which[index]
             other = nu[rows, second[condition]]
             both = nu[rows, first[condition]] + np.where(minus[condition], -other, other)
             return np.asarray(both - turns[condition]), 0.0
@@ -134,7 +124,7 @@ class MeanSystem:
         self, kind: Kind, modes: tuple[int, int], harmonic: int, speed: float, conservative: bool
     ) -> Resonance:
         """Return the record of one meeting, with frequencies and signatures."""
-        nu, signs = self.modes(speed)
+        (nu,), (signs,) = self.modes(np.array([speed]))
         i, j = modes[0] - 1, modes[1] - 1
         second = int(signs[j]) if kind == "difference" else -int(signs[j])
         return Resonance(
@@ -147,17 +137,18 @@ class MeanSystem:
         )
 
 
-def generator(mass: Array, gyro: Array, push: Array) -> Array:
-    """Return L of y' = L y, y = (q, p), of mean M, A and B - K; shape ``(nb, 2n, 2n)``."""
+def mean_exponents(equation: Equation) -> tuple[Complex, Complex, Array]:
+    """Return exponents and vectors of the mean equation y' = L y, and signs of their Krein form.
+
+    y = (q, p) in the units of the equation; with its means M, A and B - K.
+    """
+    mass, gyro, push = (equation.mean(name) for name in ("mass", "gyroscopic", "stiffness"))
     flexibility = np.linalg.inv(mass)
     back = np.swapaxes(gyro, -1, -2) @ flexibility
-    return np.block([[-flexibility @ gyro, flexibility], [push - back @ gyro, back]])
-
-
-def _turning(values: NDArray[np.complex128]) -> NDArray[np.bool_]:
-    """Return True for exponents i nu with nu > 0, of eigenvalues along the last axis."""
-    size = IMAGINARY * np.max(np.abs(values), axis=-1, keepdims=True)
-    return np.asarray((np.abs(values.real) <= size) & (values.imag > size))
+    generator = np.block([[-flexibility @ gyro, flexibility], [push - back @ gyro, back]])
+    values, vectors = (part.astype(complex) for part in np.linalg.eig(generator))
+    form = np.diagonal(form_matrix(vectors), axis1=-2, axis2=-1).real
+    return values, vectors, np.sign(form)
 
 
 def resonances(

@@ -14,8 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import product
-from math import comb
+from itertools import accumulate, product
 from typing import NamedTuple
 
 import numpy as np
@@ -137,16 +136,14 @@ def _arrays(
             enumerate(_binomial(-power, order)), enumerate(parts)
         ):
             degree = j + extra + (term.array in DAMPING)
-            if degree <= order:
+            if degree <= order and factor:
                 out[name] = _sum(out[name], {(degree, j): speed**power * factor * part})
     return out
 
 
 def _binomial(power: int, order: int) -> list[float]:
-    """Return the coefficients of (1 + sigma)**power."""
-    if power >= 0:
-        return [float(comb(power, k)) for k in range(min(power, order) + 1)]
-    return [float((-1) ** k * comb(-power + k - 1, k)) for k in range(order + 1)]
+    """Return the coefficients of (1 + sigma)**power, zeros where it has ended."""
+    return list(accumulate(range(order), lambda c, k: c * (power - k) / (k + 1), initial=1.0))
 
 
 # ---------------------------------------------------------------- the effective operator

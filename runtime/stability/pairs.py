@@ -11,6 +11,7 @@ speed, while their moduli start with a square root.  Near a narrow tongue it is 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +23,7 @@ from ..periodic.equation import equation_of
 from ..periodic.multipliers import conditions, eigenvalues
 from ..periodic.over_speed import MatricesOverSpeed
 from ..periodic.signatures import form_matrix, signatures_of
+from .labels import Regions
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -67,9 +69,9 @@ class Samples(NamedTuple):
 
 
 def phase_grid(matrices: MatricesOverSpeed, span: tuple[float, float], more: Array) -> Array:
-    """Return speeds from one to the next of which no mode turns far, and further ones, rising.
+    """Return speeds from one to the next of which no mode turns far, and ``more`` within, rising.
 
-    A range that needs more than 40 000 of them is refused.
+    The first and the last are the ends.  A range that needs more than 40 000 of them is refused.
     """
     low, high = span
     system = matrices.system
@@ -83,7 +85,8 @@ def phase_grid(matrices: MatricesOverSpeed, span: tuple[float, float], more: Arr
         raise bad("speed_range", found, f"at most {_MOST_SAMPLES}", fix)
     # Phases grow with the inverse speed.
     even = 1.0 / np.linspace(1 / low, 1 / high, max(count, 8))
-    return np.asarray(np.unique(np.concatenate([even, more])))
+    even[[0, -1]] = low, high
+    return np.asarray(np.unique(np.concatenate([even, more[(more > low) & (more < high)]])))
 
 
 def sampled_phases(matrices: MatricesOverSpeed, span: tuple[float, float], more: Array) -> Samples:
@@ -98,18 +101,14 @@ def sampled_phases(matrices: MatricesOverSpeed, span: tuple[float, float], more:
         if not np.all(np.isfinite(scaled)):
             found = "growth beyond double precision within a turn"
             raise bad("speed_range", found, "speeds of moderate growth", "raise the lowest speed")
-        for values, signs in zip(*_signed(scaled, error), strict=True):
-            angle, undecided = _positive(np.angle(values), signs)
+        values, own, vectors = eigenvalues(scaled, perturbation_size(scaled, error))
+        # Signatures take for one what lies within ten errors.
+        signatures = signatures_of(vectors, values, 0.1 * own)
+        for angles, signs in zip(np.angle(values), signatures, strict=True):
+            angle, undecided = _positive(angles, signs)
             phases.append(angle)
             flags.append(undecided)
     return Samples(speed, *_followed(np.array(phases), np.array(flags)))
-
-
-def _signed(scaled: Array, error: Array) -> tuple[NDArray[np.complex128], NDArray[np.int8]]:
-    """Return the multipliers of symplectic matrices and their Krein signatures, ``(nb, 2n)``."""
-    values, own, vectors = eigenvalues(scaled, perturbation_size(scaled, error))
-    # signatures_of takes for one what lies within ten errors.
-    return values, signatures_of(vectors, values, 0.1 * own)
 
 
 def _positive(angle: Array, signs: NDArray[np.int8]) -> tuple[Array, Flags]:
@@ -149,8 +148,10 @@ def meetings(samples: Samples, principal: bool = False) -> Events:
     the circle at +-1 are none: it is not there to be met.
     """
     n = samples.phase.shape[1]
-    rows: list[tuple[float, float, float, Array, Array, Array]] = []
+    rows: list[tuple[float, ...]] = []
     real = samples.open & (np.abs(_wrapped(2 * samples.phase)) < _LOCKED)
+    # What is missing has the number -1.
+    speed = np.append(samples.speed, np.nan)
     for k in range(n):
         for other in (k,) if principal else range(k + 1, n):
             total = samples.phase[:, k] + samples.phase[:, other]
@@ -158,43 +159,33 @@ def meetings(samples: Samples, principal: bool = False) -> Events:
             locked &= np.abs(_wrapped(total)) < _LOCKED
             hidden = np.zeros_like(locked) if principal else real[:, k] | real[:, other]
             for first, last, run in _passages(total / _TURN_ROUND, locked & ~hidden, hidden):
-                inside = run[len(run) // 2] if run else None
-                low, high, middle = (_at(samples.speed, i) for i in (first, last, inside))
-                reach = samples.speed[[run[0], run[-1]]] if run else np.array([low, high])
-                kept = [i for i in (first, last) if i is not None] or [inside or 0]
+                inside = run[len(run) // 2] if run else -1
+                low, high, middle = speed[[first, last, inside]]
+                reach = speed[[run[0], run[-1]] if run else [first, last]]
+                kept = [i for i in (first, last) if i >= 0] or [inside]
                 at = [kept[0], kept[-1]]
                 plus, minus = samples.phase[at, k], -samples.phase[at, other]
-                rows.append((low, high, middle, reach, plus, minus))
-    columns = list(zip(*rows, strict=True)) if rows else [()] * 6
-    ends = [np.array(column, dtype=float) for column in columns[:3]]
-    angles = [np.array(column, dtype=float).reshape(-1, 2) for column in columns[3:]]
-    return Events(*ends, *angles)
+                rows.append((low, high, middle, *reach, *plus, *minus))
+    table = np.array(rows, dtype=float).reshape(-1, 9)
+    reach, plus, minus = (table[:, i : i + 2] for i in (3, 5, 7))
+    return Events(table[:, 0], table[:, 1], table[:, 2], reach, plus, minus)
 
 
-def _at(values: Array, index: int | None) -> float:
-    return float("nan") if index is None else float(values[index])
-
-
-Passage = tuple[int | None, int | None, list[int]]
-
-
-def _passages(turns: Array, locked: Flags, hidden: Flags) -> list[Passage]:
-    """Return samples before, after and those inside each passage of a whole number of turns."""
-    found: list[Passage] = []
-    before: int | None = None
-    run: list[int] = []
+def _passages(turns: Array, locked: Flags, hidden: Flags) -> Iterator[tuple[int, int, list[int]]]:
+    """Yield samples before, after and those inside each passage of a whole number of turns."""
+    before, run = -1, list[int]()
     for t in range(len(turns)):
         if locked[t]:
             run.append(t)
             continue
+        after = -1 if hidden[t] else t
         if run:
-            found.append((before, None if hidden[t] else t, run))
-        elif before is not None and not hidden[t] and np.floor(turns[t]) != np.floor(turns[before]):
-            found.append((before, t, []))
-        before, run = None if hidden[t] else t, []
+            yield before, after, run
+        elif min(before, after) >= 0 and np.floor(turns[t]) != np.floor(turns[before]):
+            yield before, t, []
+        before, run = after, []
     if run:
-        found.append((before, None, run))
-    return found
+        yield before, -1, run
 
 
 class Pair(NamedTuple):
@@ -260,26 +251,13 @@ def _wrapped(angle: Array) -> Array:
     return np.asarray(np.mod(angle + np.pi, 2 * np.pi) - np.pi)
 
 
-class Edges(NamedTuple):
-    """Edges of tongues, each array of shape ``(k,)``.
+def refined_edges(matrices: MatricesOverSpeed, events: Events) -> tuple[Regions, Array, Array]:
+    """Return the tongues in which pairs meet, without labels, their middles, and least widths.
 
-    ``lower`` and ``upper`` [rad/s] are equal where the tongue is too narrow to be told from none,
-    NaN where the range ended first; ``error`` is that of either, ``least`` the width below which
-    the tongue would not be told from none, ``phase`` the argument of the multiplier there [rad].
-    """
-
-    lower: Array
-    upper: Array
-    error: Array
-    least: Array
-    phase: Array
-
-
-def refined_edges(matrices: MatricesOverSpeed, events: Events) -> Edges:
-    """Return the edges of the tongues in which pairs meet.
-
-    A parabola through three values of g leads to its least value; where that is negative beyond
-    its error, both zeros are bracketed and solved for.
+    Ends are equal where the tongue is too narrow to be told from none, that is below this width,
+    and NaN where the range ended first; the middle is then that of where the pair was seen.  A
+    parabola through three values of g leads to its least value; where that is negative beyond its
+    error, both zeros are bracketed and solved for.
     """
     search = _Search(matrices, events)
     search.run()
@@ -288,13 +266,16 @@ def refined_edges(matrices: MatricesOverSpeed, events: Events) -> Edges:
     phase = np.array(search.phase)
     for side, outer in enumerate((events.low, events.high)):
         known = np.flatnonzero(search.found & np.isfinite(outer))
-        roots, error, at = search.edge(known, side)
-        ends[side, known], errors[side, known] = roots, error
-        phase[known] = at
+        ends[side, known], errors[side, known], phase[known] = search.edge(known, side)
     closed = ~search.found
     ends[:, closed] = search.bottom[closed]
     errors[:, closed] = 0.5 * search.least[closed]
-    return Edges(ends[0], ends[1], np.max(errors, axis=0), search.least, phase)
+    reach = np.where(np.isfinite(ends), ends, events.reach.T)
+    centre, seen = 0.5 * (ends[0] + ends[1]), np.mean(events.reach, axis=1)
+    middle = np.where(np.isfinite(centre), centre, seen)
+    turn = np.exp(1j * np.abs(phase))
+    found = Regions.unlabelled(ends, np.max(errors, axis=0), reach, turn)
+    return found, middle, search.least
 
 
 class _Search:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -76,13 +75,6 @@ def two_exponents(matrices: Complex, centre: float, lossless: bool | None) -> En
     unstable; else the condition of Routh and Hurwitz, ``4 m2^2 (m2^2 + D1) - D2^2 < 0`` with
     m2 = Im m, D = D1 + i D2.
     """
-    ends = _two_ends(matrices, centre, lossless)
-    if max(abs(ends.low), abs(ends.high)) > MOST_DETUNING:
-        return UNBOUNDED if ends.open else CLOSED
-    return ends
-
-
-def _two_ends(matrices: Complex, centre: float, lossless: bool | None) -> Ends:
     y = -1j * matrices
     centre = _middle((y[:, 0, 0] - y[:, 1, 1]).real, centre)
     y = _shifted(y, centre)
@@ -242,10 +234,15 @@ class Several:
         """Return the largest real part of an exponent, ``(nb,)``."""
         return np.asarray(np.max(-np.linalg.eigvals(self._at(sigma)).imag, axis=-1))
 
-    def _distances(self, sigma: Array, column: int | slice = slice(None)) -> Array:
-        """Return the distances of the turnings of neighbouring exponents, ``(nb, r - 1)``."""
-        turning = np.sort(np.linalg.eigvals(self._at(sigma)).real, axis=-1)
-        return np.asarray(np.diff(turning, axis=-1)[:, column])
+    def _hidden(self, sigma: Array) -> Array:
+        """Return what is low where a narrow range may be hidden, ``(nb, c)``.
+
+        The distances of the turnings of neighbouring exponents; with losses the decay of the least.
+        """
+        values = np.linalg.eigvals(self._at(sigma))
+        if self.lossless:
+            return np.diff(np.sort(values.real, axis=-1), axis=-1)
+        return np.asarray(np.min(values.imag, axis=-1, keepdims=True))
 
     def _belongs(self, sigma: float) -> bool:
         """Return True where the growing motion is that of the resonance's modes."""
@@ -272,32 +269,23 @@ class Several:
         spread = np.linspace(-1.0, 1.0, 401)
         dense = fine * np.sinh(spread * np.arcsinh(reach / fine))
         sigma = np.unique(centre + np.concatenate([dense, reach * spread]))
-        parts = [sigma]
-        if not self.lossless:
-            # A narrow range between two points shows as a high of the growth.
-            growth = self._growth(sigma)
-            for high in local_maxima(growth).tolist():
-                if growth[high] <= self._limit:
-                    parts += self._zoomed(sigma, high, lambda x: -self._growth(x))
-            return np.unique(np.concatenate(parts))
-        # Or as a low of the distance of neighbouring exponents.
-        distance = self._distances(sigma)
-        for column in range(distance.shape[1]):
-            gap = distance[:, column]
-            for low in local_maxima(-gap).tolist():
-                # Exponents that coincide all along differ by round-off alone.
-                if gap[low] > 1e-12 * np.max(gap):
-                    parts += self._zoomed(sigma, low, partial(self._distances, column=column))
+        parts, values = [sigma], self._hidden(sigma)
+        # Exponents that coincide all along differ by round-off alone; growth that shows is enough.
+        least = 1e-12 * np.max(values, axis=0) if self.lossless else [-self._limit]
+        for column, row in enumerate(values.T):
+            for low in local_maxima(-row).tolist():
+                if row[low] > least[column]:
+                    parts += self._zoomed(sigma, low, column)
         return np.unique(np.concatenate(parts))
 
-    def _zoomed(self, sigma: Array, place: int, function: Callable[[Array], Array]) -> list[Array]:
-        """Return points that close in on a low of a function, until the growth there is seen."""
+    def _zoomed(self, sigma: Array, place: int, column: int) -> list[Array]:
+        """Return points that close in on a low of what is hidden, until growth is seen there."""
         left, right = float(sigma[place - 1]), float(sigma[place + 1])
         parts = []
         for _ in range(12):
             inner = np.linspace(left, right, 17)
             parts.append(inner)
-            best = int(np.argmin(function(inner)))
+            best = int(np.argmin(self._hidden(inner)[:, column]))
             if self._growth(inner[best : best + 1])[0] > self._limit:
                 break
             left, right = float(inner[max(best - 1, 0)]), float(inner[min(best + 1, 16)])
@@ -462,8 +450,8 @@ def tongue(
     }
     operators = tuple(made[value] for value in values.ravel().tolist())
     rows = [_ends(operator, resonance, order) for operator in operators]
-    columns = (np.array([row[i] for row in rows]) for i in range(4))
-    lower, upper, opened, error = (column.reshape(values.shape) for column in columns)
+    table = np.array(rows, dtype=float).reshape(*values.shape, 4)
+    lower, upper, opened, error = np.moveaxis(table, -1, 0)
     dimension = max((len(operator.modes) for operator in operators), default=2)
     result = Tongue(
         method=f"perturbation of order {order}, {dimension} exponents together",
@@ -550,6 +538,8 @@ def _detunings(
         matrices = operator.polynomials(degree, undamped=undamped)
         if len(operator.modes) == 2:
             ends = two_exponents(matrices, centre, lossless)
+            if max(abs(ends.low), abs(ends.high)) > MOST_DETUNING:
+                ends = UNBOUNDED if ends.open else CLOSED
             middle = (ends.low + ends.high).real / 2
             centre = middle if np.isfinite(middle) else centre
             out.append(ends)

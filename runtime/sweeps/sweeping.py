@@ -353,7 +353,9 @@ def sweep(
     if store is None:
         found = _in_memory(plan, executor, progress)
     else:
-        found = _through_store(plan, executor, _place(store), progress)
+        if not isinstance(store, str | os.PathLike):
+            raise bad("store", repr(store), "a path", "give a folder or a .npz file")
+        found = _through_store(plan, executor, Path(store), progress)
     if "linear range" in found.checks:
         warn_of_large_deflection(found.checks["linear range"].value)
     return found
@@ -430,13 +432,6 @@ def _check_axes(
     elif "speed" not in (*grid.names, *told):
         fix = "make it an axis, or give options={'speed': ...} in rad/s"
         raise bad(task.name, "no speed", "a crank speed", fix)
-
-
-def _place(store: str | os.PathLike[str]) -> Path:
-    try:
-        return Path(store)
-    except TypeError:
-        raise bad("store", repr(store), "a path", "give a folder or a .npz file") from None
 
 
 def _pieces(
@@ -642,7 +637,9 @@ def estimate_sweep(
     if not already:
         tracemalloc.start()
     try:
-        for number in _from_the_middle(plan.grid.pieces):
+        # The middle one first, then those beside it.
+        for step in range(plan.grid.pieces):
+            number = plan.grid.pieces // 2 + (step + 1) // 2 * (-1) ** step
             before = tracemalloc.get_traced_memory()[0]
             tracemalloc.reset_peak()
             piece = plan.piece(number)
@@ -669,13 +666,3 @@ def estimate_sweep(
         piece_bytes=int(peak),
         workers=workers,
     )
-
-
-def _from_the_middle(count: int) -> Iterator[int]:
-    """Yield the numbers of pieces, the middle one first, then those beside it."""
-    middle = count // 2
-    yield middle
-    for step in range(1, middle + 1):
-        yield middle - step
-        if middle + step < count:
-            yield middle + step

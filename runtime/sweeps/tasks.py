@@ -61,13 +61,13 @@ class Piece:
         return cls(arrays, *told, dict(about.get("failures", ())))
 
     @classmethod
-    def joined(cls, arrays: Mapping[str, AnyArray], parts: Sequence[Piece]) -> Piece:
+    def joined(cls, arrays: Mapping[str, AnyArray], parts: Sequence[Piece | Result]) -> Piece:
         """Return what holds for all parts, failures excepted, with the arrays of all."""
         methods = dict.fromkeys(m for part in parts for m in part.method.split("; ") if m)
         return cls(
             arrays,
             "; ".join(methods),
-            _largest([part.error for part in parts]),
+            _largest([_largest(part.error) for part in parts]),
             next((part.error_norm for part in parts if part.error_norm), ""),
             worst_checks(part.checks for part in parts),
         )
@@ -119,15 +119,8 @@ def _told(error: Exception) -> str:
 
 
 def _of_result(arrays: Mapping[str, AnyArray], *results: Result) -> Piece:
-    if not results:
-        return Piece(arrays, "", float("nan"), "", {})
-    return Piece(
-        arrays,
-        results[0].method,
-        _largest([_largest(result.error) for result in results]),
-        results[0].error_norm,
-        worst_checks(result.checks for result in results),
-    )
+    joined = Piece.joined(arrays, results)
+    return replace(joined, method=results[0].method) if results else joined
 
 
 def _chart(
@@ -137,7 +130,8 @@ def _chart(
     try:
         return _of_result(*_block(system, axes, options, outputs))
     except _FAILURES:
-        failures = _not_built(system, axes)
+        # Points whose values make no system.
+        failures = _each(lambda made, **speed: 0.0, system, axes, {}, None).failures
         if not failures:
             raise
     built = np.ones(tuple(map(len, axes.values())), bool)
@@ -172,19 +166,6 @@ def _block(
     }
     flat = {k: v.reshape(-1, *v.shape[2:]) for k, v in arrays.items()}
     return _wanted(flat, outputs), chart
-
-
-def _not_built(system: LinearPeriodic, axes: Mapping[str, Array]) -> dict[int, str]:
-    """Return by place the errors of the points whose values make no system."""
-    failures = {}
-    for place, row in enumerate(zip(*(v.tolist() for v in _points(axes).values()), strict=True)):
-        values = dict(zip(axes, row, strict=True))
-        values.pop("speed", None)
-        try:
-            _moved(system, values)
-        except _FAILURES as error:
-            failures[place] = _told(error)
-    return failures
 
 
 def _blocks(built: NDArray[np.bool_]) -> list[tuple[slice, slice]]:

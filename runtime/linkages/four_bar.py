@@ -6,14 +6,13 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from types import ModuleType
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...generated import four_bar_kinematics
-from ..core.errors import Problem, bad, refuse
+from ..core.errors import Problem, bad
 from .linkage import (
     ROUND_OFFS,
     ROUNDED,
@@ -25,8 +24,6 @@ from .linkage import (
     LinkMotion,
     Motion,
     Terms,
-    assembly_problems,
-    length_problems,
     turning,
     units_of,
 )
@@ -96,8 +93,8 @@ class FourBarMotion(Motion):
     transmission_angle: Array
 
     places, rates = units_of(four_bar_kinematics)
-    norm: ClassVar[str] = "worse of theta3 and theta4 [rad]"
-    drawn: ClassVar[tuple[str, ...]] = ("theta4", "omega4", "alpha4", "omega3")
+    norm = "worse of theta3 and theta4 [rad]"
+    drawn = ("theta4", "omega4", "alpha4", "omega3")
 
     def _other_link(self, name: str) -> LinkMotion:
         if name == "coupler":
@@ -135,33 +132,24 @@ class FourBar(Linkage):
     follower: float
     assembly: Assembly = "open"
 
-    mechanism: ClassVar[str] = "four_bar"
-    moves: ClassVar[type[Motion]] = FourBarMotion
-    kinematics: ClassVar[ModuleType] = four_bar_kinematics
-    names: ClassVar[tuple[str, ...]] = ("frame", "crank", "coupler", "follower")
-    links: ClassVar[tuple[str, str, str]] = ("crank", "coupler", "follower")
-    bars: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "crank": ("A", "B"),
-        "coupler": ("B", "C"),
-        "follower": ("D", "C"),
-    }
+    mechanism = "four_bar"
+    moves = FourBarMotion
+    kinematics: ClassVar = four_bar_kinematics
+    names = ("frame", "crank", "coupler", "follower")
+    links = ("crank", "coupler", "follower")
+    bars: ClassVar = {"crank": ("A", "B"), "coupler": ("B", "C"), "follower": ("D", "C")}
 
-    def __post_init__(self) -> None:
-        problems = length_problems("FourBar", self.lengths)
-        problems += assembly_problems("FourBar", self.assembly)
-        if not problems:
-            longest = max(self.lengths, key=lambda name: self.lengths[name])
-            rest = sum(self.lengths.values()) - self.lengths[longest]
-            # Exact, as the class is: a sum in floats may close what cannot close.
-            exact = LoopSums.of((Fraction(float(size)) for size in self.lengths.values()), sum)
-            spare = min(exact.less)
-            why = "cannot close" if spare < 0 else "is stretched and cannot move"
-            if spare <= 0:
-                where, found = f"FourBar.{longest}", f"{self.lengths[longest]:g}"
-                expected = f"less than {rest:g}, the sum of the other three"
-                fix = f"the linkage {why}; shorten this link or lengthen another"
-                problems.append(Problem(where, found, expected, fix))
-        refuse(problems)
+    def _gaping(self) -> list[Problem]:
+        # Exact, as the class is: a sum in floats may close what cannot close.
+        spare = min(LoopSums.of(map(Fraction, map(float, self.lengths.values())), sum).less)
+        if spare > 0:
+            return []
+        longest = max(self.lengths, key=lambda name: self.lengths[name])
+        rest = sum(self.lengths.values()) - self.lengths[longest]
+        why = "cannot close" if spare < 0 else "is stretched and cannot move"
+        expected = f"less than {rest:g}, the sum of the other three"
+        fix = f"the linkage {why}; shorten this link or lengthen another"
+        return [Problem(f"FourBar.{longest}", f"{self.lengths[longest]:g}", expected, fix)]
 
     @property
     def reach(self) -> tuple[float, float]:

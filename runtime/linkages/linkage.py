@@ -14,7 +14,7 @@ from typing import Any, ClassVar, Literal, Self, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.errors import Problem, bad
+from ..core.errors import Problem, bad, refuse
 from ..core.inputs import is_finite, is_one_of, numbers, require_kind, require_one_of
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Deferred, DeferredChecks, DeferredField, Result, provenance
@@ -377,6 +377,23 @@ class Linkage(ABC):
     bars: ClassVar[Mapping[str, tuple[str, ...]]]
     fold_axis: ClassVar[float] = 0.0
 
+    def __post_init__(self) -> None:
+        owner, problems = type(self).__name__, []
+        for name, size in self.lengths.items():
+            signed = name == "offset"
+            if not (is_finite(size) and (signed or size > 0.0)):
+                expected = "a finite length" if signed else "a positive finite length"
+                problems.append(Problem(f"{owner}.{name}", repr(size), expected, "correct it"))
+        assembly = getattr(self, "assembly", "open")
+        if not is_one_of(assembly, ("open", "crossed")):
+            where, expected = f"{owner}.assembly", "'open' or 'crossed'"
+            problems.append(Problem(where, repr(assembly), expected, "choose one"))
+        refuse(problems or self._gaping())
+
+    @abstractmethod
+    def _gaping(self) -> list[Problem]:
+        """Return why lengths, good ones by themselves, cannot close."""
+
     @property
     def lengths(self) -> Mapping[str, float]:
         """Lengths by name."""
@@ -671,22 +688,6 @@ def finite_array(name: str, value: ArrayLike, meaning: str) -> Array:
 def over(part: Array, whole: Array) -> Array:
     """Return a quotient, zero where there is nothing to divide by."""
     return np.asarray(np.divide(part, whole, out=np.zeros(np.shape(whole)), where=whole > 0.0))
-
-
-def length_problems(owner: str, lengths: Mapping[str, Any]) -> list[Problem]:
-    """Return what is wrong with lengths that must be positive."""
-    return [
-        Problem(f"{owner}.{name}", repr(value), "a positive finite length", "correct it")
-        for name, value in lengths.items()
-        if not (is_finite(value) and value > 0.0)
-    ]
-
-
-def assembly_problems(owner: str, assembly: object) -> list[Problem]:
-    """Return what is wrong with the name of an assembly."""
-    if is_one_of(assembly, ("open", "crossed")):
-        return []
-    return [Problem(f"{owner}.assembly", repr(assembly), "'open' or 'crossed'", "choose one")]
 
 
 def turning(size: ArrayLike, angle: Array, speed: ArrayLike, change: ArrayLike) -> list[Any]:

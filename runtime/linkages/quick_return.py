@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import ModuleType
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...generated import quick_return_kinematics
-from ..core.errors import Problem, bad, refuse
+from ..core.errors import Problem, bad
 from .linkage import (
     ROUND_OFFS,
     ROUNDED,
@@ -24,7 +23,6 @@ from .linkage import (
     LinkMotion,
     Motion,
     Terms,
-    length_problems,
     turning,
     units_of,
 )
@@ -60,8 +58,8 @@ class QuickReturnMotion(Motion):
     slide_acceleration: Array
 
     places, rates = units_of(quick_return_kinematics)
-    norm: ClassVar[str] = "worse of theta4 [rad] and slide over its greatest value"
-    drawn: ClassVar[tuple[str, ...]] = ("theta4", "omega4", "alpha4")
+    norm = "worse of theta4 [rad] and slide over its greatest value"
+    drawn = ("theta4", "omega4", "alpha4")
 
     def _other_link(self, name: str) -> LinkMotion:
         if name == "block":
@@ -101,24 +99,19 @@ class QuickReturn(Linkage):
     crank: float
     rod: float
 
-    mechanism: ClassVar[str] = "quick_return"
-    moves: ClassVar[type[Motion]] = QuickReturnMotion
-    kinematics: ClassVar[ModuleType] = quick_return_kinematics
-    names: ClassVar[tuple[str, ...]] = ("frame", "crank", "rod")
-    links: ClassVar[tuple[str, str, str]] = ("crank", "block", "rod")
-    bars: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "crank": ("A", "B"),
-        "block": ("B",),
-        "rod": ("D", "C"),
-    }
+    mechanism = "quick_return"
+    moves = QuickReturnMotion
+    kinematics: ClassVar = quick_return_kinematics
+    names = ("frame", "crank", "rod")
+    links = ("crank", "block", "rod")
+    bars: ClassVar = {"crank": ("A", "B"), "block": ("B",), "rod": ("D", "C")}
 
-    def __post_init__(self) -> None:
-        problems = length_problems("QuickReturn", self.lengths)
-        if not problems and self._ends[0] <= 0.0:
-            expected = f"more than {abs(self.frame - self.crank):g}, the least distance DB"
-            fix = "the rod never reaches the block; lengthen it"
-            problems.append(Problem("QuickReturn.rod", f"{self.rod:g}", expected, fix))
-        refuse(problems)
+    def _gaping(self) -> list[Problem]:
+        if self._ends[0] > 0.0:
+            return []
+        expected = f"more than {abs(self.frame - self.crank):g}, the least distance DB"
+        fix = "the rod never reaches the block; lengthen it"
+        return [Problem("QuickReturn.rod", f"{self.rod:g}", expected, fix)]
 
     @property
     def eps(self) -> float:

@@ -5,15 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import ModuleType
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...generated import slider_crank_kinematics
-from ..core.errors import Problem, bad, refuse
-from ..core.inputs import is_finite
+from ..core.errors import Problem, bad
 from .linkage import (
     ROUND_OFFS,
     ROUNDED,
@@ -26,8 +24,6 @@ from .linkage import (
     LinkMotion,
     Motion,
     Terms,
-    assembly_problems,
-    length_problems,
     pair,
     turning,
     units_of,
@@ -69,8 +65,8 @@ class SliderCrankMotion(Motion):
     transmission_angle: Array
 
     places, rates = units_of(slider_crank_kinematics)
-    norm: ClassVar[str] = "worse of theta3 [rad] and position over the longest length"
-    drawn: ClassVar[tuple[str, ...]] = ("position", "slider_velocity", "slider_acceleration")
+    norm = "worse of theta3 [rad] and position over the longest length"
+    drawn = ("position", "slider_velocity", "slider_acceleration")
 
     def _other_link(self, name: str) -> LinkMotion:
         if name == "coupler":
@@ -112,31 +108,21 @@ class SliderCrank(Linkage):
     offset: float = 0.0
     assembly: Assembly = "open"
 
-    mechanism: ClassVar[str] = "slider_crank"
-    moves: ClassVar[type[Motion]] = SliderCrankMotion
-    kinematics: ClassVar[ModuleType] = slider_crank_kinematics
-    names: ClassVar[tuple[str, ...]] = ("crank", "coupler", "offset")
-    links: ClassVar[tuple[str, str, str]] = ("crank", "coupler", "slider")
-    bars: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "crank": ("A", "B"),
-        "coupler": ("B", "C"),
-        "slider": ("C",),
-    }
-    fold_axis: ClassVar[float] = -np.pi / 2.0
+    mechanism = "slider_crank"
+    moves = SliderCrankMotion
+    kinematics: ClassVar = slider_crank_kinematics
+    names = ("crank", "coupler", "offset")
+    links = ("crank", "coupler", "slider")
+    bars: ClassVar = {"crank": ("A", "B"), "coupler": ("B", "C"), "slider": ("C",)}
+    fold_axis = -np.pi / 2.0
 
-    def __post_init__(self) -> None:
-        positive = {"crank": self.crank, "coupler": self.coupler}
-        problems = length_problems("SliderCrank", positive)
-        if not is_finite(self.offset):
-            found = repr(self.offset)
-            problems.append(Problem("SliderCrank.offset", found, "a finite length", "correct it"))
-        problems += assembly_problems("SliderCrank", self.assembly)
+    def _gaping(self) -> list[Problem]:
         # Each factor is zero where the links just reach the guide, correctly rounded.
-        if not problems and min(self.limits.one_less_q1, self.limits.q2) <= 0.0:
-            expected = f"less than {self.crank + self.coupler:g} in magnitude, crank and coupler"
-            fix = "they cannot reach the guide; bring it nearer or lengthen one of them"
-            problems.append(Problem("SliderCrank.offset", f"{self.offset:g}", expected, fix))
-        refuse(problems)
+        if min(self.limits.one_less_q1, self.limits.q2) > 0.0:
+            return []
+        expected = f"less than {self.crank + self.coupler:g} in magnitude, crank and coupler"
+        fix = "they cannot reach the guide; bring it nearer or lengthen one of them"
+        return [Problem("SliderCrank.offset", f"{self.offset:g}", expected, fix)]
 
     @property
     def limits(self) -> Limits:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from types import ModuleType
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -134,7 +135,7 @@ class FourBar(Linkage):
 
     mechanism = "four_bar"
     moves = FourBarMotion
-    kinematics: ClassVar = four_bar_kinematics
+    kinematics: ClassVar[ModuleType] = four_bar_kinematics
     names = ("frame", "crank", "coupler", "follower")
     links = ("crank", "coupler", "follower")
     bars: ClassVar = {"crank": ("A", "B"), "coupler": ("B", "C"), "follower": ("D", "C")}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import ModuleType
 from typing import ClassVar
 
 import numpy as np
@@ -101,7 +102,7 @@ class QuickReturn(Linkage):
 
     mechanism = "quick_return"
     moves = QuickReturnMotion
-    kinematics: ClassVar = quick_return_kinematics
+    kinematics: ClassVar[ModuleType] = quick_return_kinematics
     names = ("frame", "crank", "rod")
     links = ("crank", "block", "rod")
     bars: ClassVar = {"crank": ("A", "B"), "block": ("B",), "rod": ("D", "C")}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import ModuleType
 from typing import ClassVar
 
 import numpy as np
@@ -110,7 +111,7 @@ class SliderCrank(Linkage):
 
     mechanism = "slider_crank"
     moves = SliderCrankMotion
-    kinematics: ClassVar = slider_crank_kinematics
+    kinematics: ClassVar[ModuleType] = slider_crank_kinematics
     names = ("crank", "coupler", "offset")
     links = ("crank", "coupler", "slider")
     bars: ClassVar = {"crank": ("A", "B"), "coupler": ("B", "C"), "slider": ("C",)}

@@ -13,7 +13,7 @@ from ..core.errors import BadInput, bad
 from ..core.inputs import names_in_a_row, require_mapping, require_one_of, require_whole
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
-from ..linkages.linkage import Array, finite_array
+from ..linkages.linkage import Array
 from .counterweights import (
     CASES,
     Bounds,
@@ -254,13 +254,10 @@ def _searched(
         raise bad("weights", "no weight above zero", "at least one", "give --weights torque=1")
     chosen = _links(machine, links)
     masses, lengths, stiffness = _units(machine, chosen, bounds)
-    basis = ForceBasis(machine, chosen, speed, acceleration, masses, lengths)
-    design = Design(stiffness)
-    theta, whole = _angles(basis, angles, measure)
-    # A mean over the samples has no peaks between them.
-    between = whole and measure == "peak"
-    peaks, _ = _sizes(basis, theta, np.zeros(design.count), between, measure)
-    search = Search(basis, theta, between, peaks, design, wanted, tops, measure, whole)
+    basis = ForceBasis(machine, chosen, speed, acceleration, masses, lengths, measure)
+    basis, design = basis.sampled(angles), Design(stiffness)
+    peaks, _ = _sizes(basis, np.zeros(design.count))
+    search = Search(basis, peaks, design, wanted, tops)
     zero = _zero_forces(peaks)
     for term in search.terms:
         if term in zero:
@@ -271,7 +268,7 @@ def _searched(
 
 def _described(search: Search, best: Candidate) -> Balancing:
     added, p = _counterweights(search, best.x), search.design.parameters(best.x)
-    balanced, where = _sizes(search.basis, search.theta, p, search.between, search.measure)
+    balanced, where = _sizes(search.basis, p)
     relative = _relative(balanced, search.unbalanced)
     gap = (best.value - best.bound) / search.unit
     # Of forces that have limits the last digits count by what the limits are worth.
@@ -282,7 +279,7 @@ def _described(search: Search, best: Candidate) -> Balancing:
         "gap or KKT residual": Check(min(gap, best.residual), _OPTIMAL),
         "limits passed, relative": Check(max(over, 0.0), 1e-7),
     }
-    if search.measure == "rms":
+    if search.basis.measure == "rms":
         checks["samples"] = Check(sampling, _SAMPLED)
     return Balancing(
         counterweights=added,
@@ -292,7 +289,7 @@ def _described(search: Search, best: Candidate) -> Balancing:
         value=best.value,
         lower_bound=best.bound,
         unbalanced=search.unbalanced,
-        measure=search.measure,
+        measure=search.basis.measure,
         relative=relative,
         peak_angles=where,
         method="second-order cone programme over the convex hull, SLSQP within",
@@ -311,7 +308,7 @@ def _rounding(search: Search, p: Array) -> float:
     values = []
     for linkage in _all_but_equal(search.basis.machine.linkage):
         machine = replace(search.basis.machine, linkage=linkage)
-        values.append(_weighted(search, replace(search.basis, machine=machine), search.theta, p))
+        values.append(_weighted(search, replace(search.basis, machine=machine), p))
     return float(np.ptp(values)) + _DIGITS * search.unit
 
 
@@ -321,30 +318,26 @@ def _sampling(search: Search, p: Array) -> float:
     Samples between the given ones are off by as much to the other side where they resolve the
     motion; where they do not, no two of four rows of samples agree.
     """
-    if not search.whole or search.measure != "rms":
+    basis = search.basis
+    if not basis.whole or basis.measure != "rms":
         return 0.0
-    step = float(search.theta[1] - search.theta[0])
-    rows = [search.theta + share * step for share in (0.0, 0.25, 0.5, 0.75)]
-    return float(np.ptp([_weighted(search, search.basis, theta, p) for theta in rows]))
+    step = float(basis.theta[1] - basis.theta[0])
+    rows = [basis.theta + share * step for share in (0.0, 0.25, 0.5, 0.75)]
+    return float(np.ptp([_weighted(search, replace(basis, theta=theta), p) for theta in rows]))
 
 
-def _weighted(search: Search, basis: ForceBasis, theta: Array, p: Array) -> float:
-    """Return the weighted sum of relative sizes at angles, both sizes with the same basis."""
-    before, after = (
-        basis.sizes(theta, masses, search.between, search.measure, tuple(search.weights))
-        for masses in (np.zeros_like(p), p)
-    )
+def _weighted(search: Search, basis: ForceBasis, p: Array) -> float:
+    """Return the weighted sum of relative sizes, both sizes with the same basis."""
+    before, after = (basis.sizes(each, tuple(search.weights)) for each in (np.zeros_like(p), p))
     return sum(
         weight * float(after[name][1].max()) / float(before[name][1].max())
         for name, weight in search.weights.items()
     )
 
 
-def _sizes(
-    basis: ForceBasis, theta: Array, p: Array, between: bool, measure: Measure
-) -> tuple[dict[str, float], dict[str, float]]:
+def _sizes(basis: ForceBasis, p: Array) -> tuple[dict[str, float], dict[str, float]]:
     """Return the peak or root mean square of each force, and the angle of the peak."""
-    sizes = basis.sizes(theta, p, between, measure)
+    sizes = basis.sizes(p)
     where = {term: float(at[int(np.argmax(size))]) for term, (at, size) in sizes.items()}
     return {term: float(size.max()) for term, (_, size) in sizes.items()}, where
 
@@ -354,9 +347,8 @@ def _turn_peaks(
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Return peak and its angle for every force of a machine as it is."""
     speed, acceleration = finite_number(speed, "speed"), finite_number(acceleration, "acceleration")
-    basis = ForceBasis(machine, (), speed, acceleration, np.zeros(0), np.zeros(0))
-    theta, between = _angles(basis, angles)
-    return _sizes(basis, theta, np.zeros(0), between, "peak")
+    none = np.zeros(0)
+    return _sizes(ForceBasis(machine, (), speed, acceleration, none, none).sampled(angles), none)
 
 
 def _relative(after: Mapping[str, float], before: Mapping[str, float]) -> dict[str, float]:
@@ -439,21 +431,6 @@ def _units(
         rows.append((mass, offset, stiffness))
     masses, offsets, stiff = np.array(rows).T
     return masses, offsets, stiff
-
-
-def _angles(
-    basis: ForceBasis, angles: ArrayLike | None, measure: Measure = "peak"
-) -> tuple[Array, bool]:
-    """Return the angles that count, and whether they stand for a whole turn."""
-    if angles is not None:
-        theta = finite_array("angles", angles, "angles [rad]").ravel()
-        if theta.size == 0:
-            raise bad("angles", "none", "finite angles [rad]", "give one or more")
-        return theta, False
-    if not basis.machine.linkage.crank_turns:
-        fix = "give angles that the crank can reach"
-        raise bad("angles", "a crank that cannot turn fully", "angles [rad]", fix)
-    return basis.grid(measure), True
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -291,10 +291,7 @@ class Motion(Result, ABC):
         return bool(np.all(self.omega2 == 1.0) and np.all(self.alpha2 == 0.0))
 
     def unit(self, name: str) -> str:
-        """Return the unit of a place or rate; that of the defaults is per radian of the crank.
-
-        Of an angle it is 1 then.
-        """
+        """Return the unit of a place or rate; relative ones are per radian, and 1 of an angle."""
         return self.unit_of(name, self.relative)
 
     def _own_units(self) -> dict[str, str]:
@@ -565,15 +562,11 @@ class Linkage(ABC):
         """Count the folds strictly between the least and the greatest angle, each end once."""
         if self.crank_turns or theta.size == 0:
             return 0
-        low, high = float(theta.min()), float(theta.max())
-        folds: list[float] = []
-        for end in (end for span in self.crank_ranges() for end in span):
-            # The first one beyond the least angle is enough to know.
-            first = end + TURN * (np.floor((low - end) / TURN) + 1.0)
-            new = all(abs(first - other) > 1e-9 for other in folds)
-            if low < first < high and new:
-                folds.append(float(first))
-        return len(folds)
+        low, ends = theta.min(), np.ravel(self.crank_ranges())
+        # Of each end the first one beyond the least angle is enough to know.
+        first = np.sort(ends + TURN * (np.floor((low - ends) / TURN) + 1.0))
+        within = first[(low < first) & (first < theta.max())]
+        return int(np.count_nonzero(np.diff(within, prepend=-np.inf) > 1e-9))
 
 
 def emitted(
@@ -637,7 +630,6 @@ def _checks(linkage: Linkage, m: Mapping[str, Array]) -> dict[str, Check]:
         "folds within the angles": Check(float(linkage._folds(m["theta2"])), 0.0),
     }
     # Round-off of the rates is judged at the angles at which the position is known worst.
-    # Rates are judged at these angles.
     judged = np.argsort(np.ravel(error))[-64:]
     exact = _without_rounding(linkage, np.ravel(m["theta2"])[judged])
     for name, terms in zip(_RATES, rates, strict=True):

@@ -250,28 +250,27 @@ def _four_bar(machine: Machine, case: Case, place: _Place) -> dict[str, Counterw
     coupler = machine.mass("coupler")
     crank, follower = _moment(machine, "crank"), _moment(machine, "follower")
     if case == "c":
-        middle = place({"coupler": -_moment(machine, "coupler")})
-        at_pin = coupler.mass + sum(weight.mass for weight in middle.values())
-        crank += at_pin * lengths["crank"]
-    else:
-        # The coupler's momentum is that of masses at B and C: mu/l3 at C, the rest at B.
-        at_c = _moment(machine, "coupler") / lengths["coupler"]
-        crank += (coupler.mass - at_c) * lengths["crank"]
-        follower += at_c * lengths["follower"]
-        middle = {}
-    return {**place({"crank": -crank}), **middle, **place({"follower": -follower})}
+        return _balanced_at_pin(machine, place, 0.0) | place({"follower": -follower})
+    # The coupler's momentum is that of masses at B and C: mu/l3 at C, the rest at B.
+    at_c = _moment(machine, "coupler") / lengths["coupler"]
+    crank += (coupler.mass - at_c) * lengths["crank"]
+    return place({"crank": -crank, "follower": -follower - at_c * lengths["follower"]})
 
 
 def _slider_crank(machine: Machine, case: Case, place: _Place) -> dict[str, Counterweight]:
     if case == "d":
         fix = "use case 'c', or 'reciprocating' for a crank counterweight alone"
         raise bad("case", "'d' for a slider-crank", "case b, c or reciprocating", fix)
-    lengths = machine.linkage.lengths
-    slider, coupler = machine.mass("slider"), machine.mass("coupler")
     # The slider does not turn: wherever its centre is, it moves as a point mass at C.
-    middle = place({"coupler": -_moment(machine, "coupler") - slider.mass * lengths["coupler"]})
-    at_pin = slider.mass + coupler.mass + sum(weight.mass for weight in middle.values())
-    return {**place({"crank": -_moment(machine, "crank") - at_pin * lengths["crank"]}), **middle}
+    return _balanced_at_pin(machine, place, machine.mass("slider").mass)
+
+
+def _balanced_at_pin(machine: Machine, place: _Place, at_c: float) -> dict[str, Counterweight]:
+    """Balance the coupler, with a mass at C, on the crank's pin, and the crank with all of them."""
+    lengths = machine.linkage.lengths
+    middle = place({"coupler": -_moment(machine, "coupler") - at_c * lengths["coupler"]})
+    at_pin = at_c + machine.mass("coupler").mass + sum(weight.mass for weight in middle.values())
+    return place({"crank": -_moment(machine, "crank") - at_pin * lengths["crank"]}) | middle
 
 
 def _quick_return(machine: Machine, case: Case, place: _Place) -> dict[str, Counterweight]:

@@ -17,7 +17,6 @@ from .equations import (
     Linearised,
     NoConvergence,
     State,
-    Step,
     StoppedEarly,
     Tolerance,
 )
@@ -235,6 +234,15 @@ class _Astray:
         """Return what the window itself adds by its end, relative."""
         return window.units.of(*_gain(window.h, self.local))
 
+    def along(self, window: _Window) -> Array:
+        """Return the largest error of the coordinates in the window, ``(n,)``."""
+        h, points = window.h, window.points
+        error = np.abs(
+            self.x + h * points.all[:, None] * self.v + h * h * (points.terms_twice @ self.carried)
+        )
+        error += np.abs(h * h * (points.terms_twice @ self.local))
+        return np.asarray(np.max(error, axis=0) + window.left * window.units.place)
+
     def at_end(
         self, equations: Equations, window: _Window, after: State
     ) -> tuple[Array, Array] | None:
@@ -255,23 +263,26 @@ class _Astray:
         return x - after.x, v - after.v
 
 
-def _step(window: _Window, after: State, astray: _Astray | None) -> Step:
-    before, h, points = window.before, window.h, window.points
+@dataclass(frozen=True)
+class Step:
+    """One accepted window of a motion, scaled."""
 
-    def at(t: Array) -> tuple[Array, Array]:
+    window: _Window
+    after: State  # its end, on the constraints
+    error: Array  # (n,): largest error estimate of the coordinates inside
+
+    @property
+    def inner(self) -> Array:
+        """Times inside at which to look for what stops a motion."""
+        return np.asarray(self.window.before.t + self.window.h * self.window.points.c[2:-1:3])
+
+    def at(self, t: Array) -> tuple[Array, Array]:
+        """Return coordinates and velocities at times inside, not yet on the constraints."""
+        before, h, terms = self.window.before, self.window.h, self.window.terms
         part = (t - before.t) / h
-        values = at_places(part, len(window.terms)) @ window.terms
+        values = at_places(part, len(terms)) @ terms
         twice, once = values[:, 0], values[:, 1]
         return before.x + h * part[:, None] * before.v + h * h * twice, before.v + h * once
-
-    error = np.full_like(before.x, np.inf)
-    if astray is not None:
-        along = astray.x + h * points.all[:, None] * astray.v
-        along = np.abs(along + h * h * (points.terms_twice @ astray.carried))
-        along += np.abs(h * h * (points.terms_twice @ astray.local))
-        error = np.max(along, axis=0) + window.left * window.units.place
-    inner = before.t + h * points.c[2:-1:3]  # what may stop a motion is looked at there
-    return Step(before, after, at, window.units.place, inner, error)
 
 
 def _solved(
@@ -284,8 +295,7 @@ def _solved(
     near: float,
 ) -> _Window:
     """Return a window of collocation, its accelerations at the nodes by Newton's iteration."""
-    # Within `near` of the solution the derivatives are kept.  The last correction goes with an
-    # evaluation between the nodes.
+    # Within `near` of the solution the derivatives are kept.
     t, rtol = before.t + h * points.c, tolerance.rtol
     a, last = guess, np.inf
     slopes: Linearised | None = None
@@ -310,45 +320,30 @@ def _solved(
             break
         part = min(10.0 * size if fresh else size / last, 1.0)
         tail, fall = _tail(points.series @ a, h, units)
+        # The terms that are not there fall on as those before them.
+        over = tail * fall / rtol
         # Before its last correction the iteration may leave this part of the tolerance.
         if (part < 0.5 and size * part <= 0.1 * rtol) or (size <= 1e-9 and part >= 0.25):
-            # The terms that are not there fall on as those before them.
-            if tail * fall > rtol:
-                raise _TooLong(tail * fall / rtol, points.series @ a)
-            a, defect, change = _between(equations, before, h, points, a, unwind)
+            if over > 1.0:
+                raise _TooLong(over, points.series @ a)
+            # What is wrong at the nodes goes with the last correction, between them too.
+            x = before.x + h * (points.all[:, None] * before.v + h * (points.all_twice @ a))
+            v = before.v + h * (points.all_once @ a)
+            exact = equations.accelerations(before.t + h * points.all, x, v)[0]
+            defect = exact - points.values @ exact[: len(a)]
+            change = unwind(exact[: len(a)] - a)
+            terms = points.series @ (a + change)
             left = min(part * units.of(h * h * change, h * change), size)
-            over = tail * fall / rtol
-            return _Window(
-                before, h, points, points.series @ a, defect, over, left, units, slopes, unwind
-            )
+            return _Window(before, h, points, terms, defect, over, left, units, slopes, unwind)
         # What the iteration has not settled yet is no sign of a window that is too long.
         if tail * fall > max(30.0 * rtol, size if size < 1e-2 else 0.1):
-            raise _TooLong(tail * fall / rtol, None)
+            raise _TooLong(over, None)
         if size > 2.0 * last and last < 1e-2 and fresh:
             break
         if size > near or (part > 0.2 and not fresh):
             slopes = None
         last = size
     raise NoConvergence("the window does not converge")
-
-
-def _between(
-    equations: Equations,
-    before: State,
-    h: float,
-    points: Nodes,
-    a: Array,
-    unwind: Callable[[Array], Array],
-) -> tuple[Array, Array, Array]:
-    """Evaluate at and between the nodes; return accelerations, defect between, and correction."""
-    s = len(a)
-    x = before.x + h * (points.all[:, None] * before.v + h * (points.all_twice @ a))
-    v = before.v + h * (points.all_once @ a)
-    exact = equations.accelerations(before.t + h * points.all, x, v)[0]
-    # What is wrong at the nodes goes with the correction, between them too.
-    defect = exact - points.values @ exact[:s]
-    change = unwind(exact[:s] - a)
-    return a + change, defect, change
 
 
 def _tail(terms: Array, h: float, units: _Units) -> tuple[float, float]:
@@ -436,7 +431,8 @@ def collocation(
         except NoConvergence:
             h, guess = h * _SHORTER, None
             continue
-        yield _step(window, after, astray if begin is not None else None)
+        error = np.full_like(state.x, np.inf) if begin is None else astray.along(window)
+        yield Step(window, after, error)
         if t >= end:
             return
         begin = None if begin is None else astray.at_end(equations, window, after)

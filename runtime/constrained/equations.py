@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -37,21 +37,6 @@ class State:
     x: Array
     v: Array
     a: Array
-
-
-@dataclass(frozen=True)
-class Step:
-    """One accepted step of a motion, scaled."""
-
-    # before, after: its ends
-    before: State
-    after: State
-    # times inside, ``(nt,)``, to predicted coordinates and velocities ``(nt, n)``, not yet on the
-    # constraints
-    at: Callable[[Array], tuple[Array, Array]]
-    reach: Array  # (n,): largest size of the coordinates inside
-    inner: Array  # times inside at which to look for what stops a motion
-    error: Array  # (n,): largest error estimate of the coordinates inside
 
 
 @dataclass(frozen=True)

@@ -204,10 +204,12 @@ class _Turn:
 
     @classmethod
     def of(cls, shooting: Shooting, shot: Shot) -> _Turn:
-        ring, maps, meeting = shot.ring, shot.sweep.maps, shooting.junctions(shot.ring)
+        maps, meeting = shot.sweep.maps, shooting.junctions(shot.ring)
         carried = maps @ meeting.along
-        steps = np.swapaxes(ring.following(meeting.along), -1, -2) @ carried
-        leak = np.swapaxes(ring.following(meeting.across), -1, -2) @ carried
+        steps, leak = (
+            np.swapaxes(np.roll(basis, -1, axis=0), -1, -2) @ carried
+            for basis in (meeting.along, meeting.across)
+        )
         sign, logarithm = np.linalg.slogdet(steps)
         whole, reduced = np.eye(maps.shape[-1]), np.eye(steps.shape[-1])
         for one, inner in zip(maps, steps, strict=True):

@@ -242,7 +242,11 @@ class Circuit:
         pin = size["crank"] * crank
         placed = {"crank": Placed(zero, crank)}
         if kind == "quick_return":
-            return placed | self._rod(cosine, sine, pin)
+            near, far = size["frame"] - size["crank"], size["frame"] + size["crank"]
+            square = far**2 * (cosine * cosine) + near**2 * (sine * sine)
+            along = far * (cosine * cosine) + near * (sine * sine)
+            rod = (along + 1j * _imag(pin)) / square.sqrt()
+            return placed | {"block": Placed(pin, rod), "rod": Placed(zero - size["frame"], rod)}
         if kind == "slider_crank":
             c, m, e = size["crank"], size["coupler"], size["offset"]
             raised = e - c * (sine * sine - cosine * cosine)
@@ -262,14 +266,6 @@ class Circuit:
         placed["coupler"] = Placed(pin, to_pivot * (middle + 1j * beside) / (m * square))
         placed["follower"] = Placed(zero + f, to_pivot * (1j * beside - opposite) / (n * square))
         return placed
-
-    def _rod(self, cosine: Taylor, sine: Taylor, pin: Taylor) -> dict[str, Placed]:
-        f, c = self.sizes["frame"], self.sizes["crank"]
-        near, far = f - c, f + c
-        square = far**2 * (cosine * cosine) + near**2 * (sine * sine)
-        from_pivot = (far * (cosine * cosine) + near * (sine * sine)) + 1j * _imag(pin)
-        rod = from_pivot / square.sqrt()
-        return {"block": Placed(pin, rod), "rod": Placed(Taylor(0 * pin.c) - f, rod)}
 
     def path(self, s: Array, link: str, place: complex, order: int) -> Taylor:
         """Return the path of a point of a link, ``place`` in the link's frame over ``scale``."""

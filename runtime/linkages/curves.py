@@ -227,7 +227,8 @@ def coupler_curve(
     require_whole("points", points, 16, 10**6)
     motion.check()
     trace = _Trace(motion, link, place / motion.scale)
-    trace.require_motion()
+    if np.max(trace.speed(np.linspace(0.1, 6.2, 64))) <= 8 * EPS * trace.size:
+        raise bad("along, across", "the pivot of the link", "a point that moves", "choose another")
     # Dead centres lie at +-pi/2; with this part of a step none is met for any number of points.
     shift = 0.0 if motion.turns else 0.375
     s: Array = (np.arange(float(points)) + shift) * (TURN / points)
@@ -297,11 +298,6 @@ class _Trace:
     @property
     def size(self) -> float:
         return float(sum(map(abs, self.motion.sizes.values())) + abs(self.place))
-
-    def require_motion(self) -> None:
-        if np.max(self.speed(np.linspace(0.1, 6.2, 64))) <= 8 * EPS * self.size:
-            found = "the pivot of the link"
-            raise bad("along, across", found, "a point that moves", "choose another")
 
     @cached_property
     def slowest(self) -> tuple[Array, Array]:

@@ -7,10 +7,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.results import Check
-from ..linkages.linkage import EPS, Array, Linkage, Motion, over
+from ..linkages.linkage import EPS, Array, Linkage, over
 from ..linkages.parametric import ANGLE
 from .evaluation import BLOCK, COUPLES, ParametricMachine
 from .loads import Load, Spring, Wrench, at_first_joint, frozen
@@ -111,9 +110,7 @@ def _step(linkage: Linkage, name: str, value: float) -> float:
     return abs(value) + (linkage.lengths["crank"] + linkage.lengths["coupler"]) / 4.0
 
 
-def _pulls(
-    machine: Machine, loads: tuple[_FrozenLoad, ...], longest: float, motion: Motion
-) -> Array:
+def _pulls(machine: Machine, loads: tuple[_FrozenLoad, ...], longest: float, motion: Any) -> Array:
     """Return how large the parts of loads and springs are, seen in the joints [N]."""
     total: Array = np.zeros(motion.theta2.shape)
     if not (loads or machine.springs):
@@ -130,18 +127,13 @@ def _pulls(
         moving = (link for link in spring.links if link in machine.linkage.links)
         turned = sum(np.abs(motion.link(link).angle) for link in moving)
         total = total + spring.stiffness * (turned + abs(spring.free_angle)) + abs(spring.preload)
-    return np.asarray(total / _shortest_arm(machine.linkage.lengths, motion))
-
-
-def _shortest_arm(lengths: Mapping[str, float], motion: Any) -> Array:
-    """Return the shortest arm by which a force in a joint balances a moment."""
-    # The coupler's length seen across the follower or across the guide, the follower's across the
-    # coupler, or the slide of a block along its rod.
+    # The shortest arm by which a force in a joint balances a moment: the coupler's length seen
+    # across the follower or across the guide, the follower's across the coupler, or the slide.
     if hasattr(motion, "slide"):
-        return np.asarray(motion.slide)
-    sine = np.abs(np.sin(motion.transmission_angle))
+        return np.asarray(total / motion.slide)
+    lengths = machine.linkage.lengths
     bars = (lengths[name] for name in ("coupler", "follower") if name in lengths)
-    return np.asarray(min(bars) * sine)
+    return np.asarray(total / (min(bars) * np.abs(np.sin(motion.transmission_angle))))
 
 
 def checks(
@@ -156,7 +148,10 @@ def checks(
     if int(np.prod(batch, dtype=int)) == 0:
         return {}
     flat = {name: np.ravel(value) for name, value in values.items()}
-    chosen = _places(flat)
+    # Places all over, and those at which each of the values is largest.
+    spread = np.linspace(0, len(next(iter(flat.values()))) - 1, 24).astype(int)
+    peaks = [int(np.argmax(np.abs(value))) for value in flat.values()]
+    chosen = np.unique(np.concatenate([spread, peaks]))
     given = [
         np.ravel(np.broadcast_to(item, batch))[chosen] for item in (theta, speed, acceleration)
     ]
@@ -174,15 +169,6 @@ def checks(
             f"{name} over its error": Check(float(np.max(np.abs(gap) / allowed)), 1.0)
             for name, gap in gaps.items()
         }
-
-
-def _places(values: Mapping[str, Array]) -> NDArray[np.intp]:
-    """Return places all over, and those at which each of the values is largest."""
-    size = next(iter(values.values())).size
-    # Places at which the checks are made, beside those where a force is largest.
-    spread = np.linspace(0, size - 1, 24).astype(int)
-    peaks = [int(np.argmax(np.abs(value))) for value in values.values()]
-    return np.unique(np.concatenate([spread, np.array(peaks, dtype=int)]))
 
 
 class _Balance:

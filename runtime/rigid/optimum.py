@@ -587,10 +587,16 @@ def _mean_square(cone: Cones) -> Cones:
 def best_counterweights(search: Search) -> Candidate:
     """Return the best counterweights that are known, and the proof of how good they are."""
     problem, p, bound = _hull(search)
-    design, unfelt = search.design, _unfelt(problem)
+    design = search.design
+    # Of some links' counterweights nothing but the first moments matters.
+    felt = np.max([np.max(np.abs(cone.basis), axis=(0, 1)) for cone in problem.cones], axis=0)
+    unfelt = [bool(max(link[0], link[3]) < 1e-9) for link in felt.reshape(-1, PER_LINK)]
     candidates = [_descended(search, problem, bound, design.realised(p, unfelt))]
     if candidates[0].value - candidates[0].bound > _GAP * search.unit:
-        candidates += [_descended(search, problem, bound, x) for x in _starts(design)]
+        # Further starts, the same ones each time: nothing, and four directions.
+        for u, v in ((0.0, 0.0), (-0.7, 0.0), (0.7, 0.0), (0.0, 0.7), (0.0, -0.7)):
+            start = np.tile([0.5 if u or v else 0.0, u, v], len(design.stiffness))
+            candidates.append(_descended(search, problem, bound, start))
     chosen = min(candidates, key=lambda each: each.value)
     bound = max(each.bound for each in candidates)
     x = _lightened(search, problem, chosen, unfelt)
@@ -626,23 +632,14 @@ def _out_of_reach(search: Search, problem: PeakProblem) -> BadInput:
             break
     times = max(1.0, 1.0 + search.broken(search.peaks(p)))
     names = ", ".join(f"{term} {top:g}" for term, top in limits.items())
-    # Rounded up: what is named can be given.
-    least = [f"{term} at least {_rounded_up(times * top)}" for term, top in limits.items()]
+    least = []
+    for term, top in limits.items():
+        # In four digits, rounded up: what is named can be given.
+        unit = 10.0 ** (math.floor(math.log10(times * top)) - 3)
+        least.append(f"{term} at least {math.ceil(times * top / unit) * unit:.4g}")
     together = "" if len(limits) == 1 else " where all are raised alike"
     fix = "raise a limit, or allow more mass or offset"
     return bad("limits", names, ", ".join(least) + together, fix)
-
-
-def _rounded_up(value: float) -> str:
-    """Return a number in four digits, none below it."""
-    unit = 10.0 ** (math.floor(math.log10(value)) - 3)
-    return f"{math.ceil(value / unit) * unit:.4g}"
-
-
-def _starts(design: Design) -> list[Array]:
-    """Return further starts, the same ones each time: nothing, and four directions."""
-    starts = [(0.0, 0.0, 0.0), (0.5, -0.7, 0.0), (0.5, 0.7, 0.0), (0.5, 0.0, 0.7), (0.5, 0.0, -0.7)]
-    return [np.tile(each, len(design.stiffness)) for each in starts]
 
 
 def _descended(search: Search, problem: PeakProblem, bound: float, start: Array) -> Candidate:
@@ -666,12 +663,6 @@ def _descended(search: Search, problem: PeakProblem, bound: float, start: Array)
                 value, best = least, other
     residual, proved, slope = epigraph.proof(best)
     return Candidate(best, value, max(bound, proved), residual, slope)
-
-
-def _unfelt(problem: PeakProblem) -> list[bool]:
-    """Return for each link whether nothing but the first moments of its counterweight matters."""
-    felt = np.max([np.max(np.abs(cone.basis), axis=(0, 1)) for cone in problem.cones], axis=0)
-    return [bool(max(link[0], link[3]) < 1e-9) for link in felt.reshape(-1, PER_LINK)]
 
 
 def _lightened(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
@@ -183,25 +183,20 @@ def balance(
     added = case_counterweights(
         machine, case, offsets, density=density, thickness=thickness, fraction=fraction
     )
-    return _compared(machine, case, added, speed, acceleration, angles)
+    speed, acceleration = finite_number(speed, "speed"), finite_number(acceleration, "acceleration")
+    return _compared(ForceBasis(machine, speed, acceleration), case, added, angles)
 
 
 def _compared(
-    machine: Machine,
-    case: Case,
-    added: Mapping[str, Counterweight],
-    speed: float,
-    acceleration: float,
-    angles: ArrayLike | None,
+    plain: ForceBasis, case: Case, added: Mapping[str, Counterweight], angles: ArrayLike | None
 ) -> Balancing:
-    balanced = with_counterweights(machine, added.values())
-    unbalanced, _ = _turn_peaks(machine, speed, acceleration, angles)
-    after, where = _turn_peaks(balanced, speed, acceleration, angles)
+    balanced = replace(plain, machine=with_counterweights(plain.machine, added.values()))
+    unbalanced, _ = _sizes(plain.sampled(angles))
+    after, where = _sizes(balanced.sampled(angles))
     relative = _relative(after, unbalanced)
     moved = []
-    for linkage in _all_but_equal(machine.linkage):
-        pair = (replace(each, linkage=linkage) for each in (machine, balanced))
-        before, then = (_turn_peaks(each, speed, acceleration, angles)[0] for each in pair)
+    for pair in zip(_all_but_equal(plain), _all_but_equal(balanced), strict=True):
+        before, then = (_sizes(each.sampled(angles))[0] for each in pair)
         moved.append([then[term] / before[term] for term in relative])
     checks = {}
     if case in ("c", "d") and "shaking_force" in relative:
@@ -209,7 +204,7 @@ def _compared(
     spread = float(np.max(np.ptp(moved, axis=0), initial=0.0))
     return Balancing(
         counterweights=added,
-        machine=balanced,
+        machine=balanced.machine,
         unbalanced=unbalanced,
         relative=relative,
         peak_angles=where,
@@ -217,20 +212,20 @@ def _compared(
         error=spread / max(relative.values(), default=1.0) + _DIGITS,
         error_norm="relative peaks, over the largest of them",
         checks=checks,
-        provenance=provenance({"speed": repr(float(speed))}),
+        provenance=provenance({"speed": repr(plain.speed)}),
     )
 
 
-def _all_but_equal(linkage: Any) -> list[Any]:
-    """Return linkages whose lengths are a few last digits away from one's."""
-    made = []
+def _all_but_equal(basis: ForceBasis) -> Iterator[ForceBasis]:
+    """Yield machines whose lengths are a few last digits away from one's."""
+    linkage: Any = basis.machine.linkage
     for signs in _SIGNS:
         moved = {
-            name: getattr(linkage, name) * (1.0 + 0.5 * sign * _DIGITS)
-            for name, sign in zip(linkage.names, signs, strict=False)
+            name: length * (1.0 + 0.5 * sign * _DIGITS)
+            for (name, length), sign in zip(linkage.lengths.items(), signs, strict=False)
         }
-        made.append(replace(linkage, **moved))
-    return made
+        machine = replace(basis.machine, linkage=replace(linkage, **moved))
+        yield replace(basis, machine=machine)
 
 
 def _searched(
@@ -254,10 +249,10 @@ def _searched(
         raise bad("weights", "no weight above zero", "at least one", "give --weights torque=1")
     chosen = _links(machine, links)
     masses, lengths, stiffness = _units(machine, chosen, bounds)
-    basis = ForceBasis(machine, chosen, speed, acceleration, masses, lengths, measure)
-    basis, design = basis.sampled(angles), Design(stiffness)
-    peaks, _ = _sizes(basis, np.zeros(design.count))
-    search = Search(basis, peaks, design, wanted, tops)
+    basis = ForceBasis(machine, speed, acceleration, chosen, masses, lengths, measure)
+    basis = basis.sampled(angles)
+    peaks, _ = _sizes(basis)
+    search = Search(basis, peaks, Design(stiffness), wanted, tops)
     zero = _zero_forces(peaks)
     for term in search.terms:
         if term in zero:
@@ -271,8 +266,10 @@ def _described(search: Search, best: Candidate) -> Balancing:
     balanced, where = _sizes(search.basis, p)
     relative = _relative(balanced, search.unbalanced)
     gap = (best.value - best.bound) / search.unit
-    # Of forces that have limits the last digits count by what the limits are worth.
-    rounding = (_rounding(search, p) + _DIGITS * best.slope) / search.unit
+    # Some last digits, of forces that have limits by what the limits are worth; and near a change
+    # point, where forces hang on the last digits of the lengths, what some of these change.
+    rounded = [_weighted(search, basis, p) for basis in _all_but_equal(search.basis)]
+    rounding = (float(np.ptp(rounded)) + _DIGITS * best.slope) / search.unit + _DIGITS
     over = max((relative[term] / top - 1.0 for term, top in search.limits.items()), default=0.0)
     sampling = _sampling(search, p) / search.unit
     checks = {
@@ -301,17 +298,6 @@ def _described(search: Search, best: Candidate) -> Balancing:
     )
 
 
-def _rounding(search: Search, p: Array) -> float:
-    """Return what round-off does to the weighted sum of the relative peaks."""
-    # Some last digits; and near a change point, where forces hang on the last digits of the
-    # lengths, what some of these change.
-    values = []
-    for linkage in _all_but_equal(search.basis.machine.linkage):
-        machine = replace(search.basis.machine, linkage=linkage)
-        values.append(_weighted(search, replace(search.basis, machine=machine), p))
-    return float(np.ptp(values)) + _DIGITS * search.unit
-
-
 def _sampling(search: Search, p: Array) -> float:
     """Return what the weighted sum of root mean squares of a turn hangs on where its samples lie.
 
@@ -328,27 +314,18 @@ def _sampling(search: Search, p: Array) -> float:
 
 def _weighted(search: Search, basis: ForceBasis, p: Array) -> float:
     """Return the weighted sum of relative sizes, both sizes with the same basis."""
-    before, after = (basis.sizes(each, tuple(search.weights)) for each in (np.zeros_like(p), p))
+    before, after = (basis.sizes(each, tuple(search.weights)) for each in (None, p))
     return sum(
         weight * float(after[name][1].max()) / float(before[name][1].max())
         for name, weight in search.weights.items()
     )
 
 
-def _sizes(basis: ForceBasis, p: Array) -> tuple[dict[str, float], dict[str, float]]:
+def _sizes(basis: ForceBasis, p: Array | None = None) -> tuple[dict[str, float], dict[str, float]]:
     """Return the peak or root mean square of each force, and the angle of the peak."""
     sizes = basis.sizes(p)
     where = {term: float(at[int(np.argmax(size))]) for term, (at, size) in sizes.items()}
     return {term: float(size.max()) for term, (_, size) in sizes.items()}, where
-
-
-def _turn_peaks(
-    machine: Machine, speed: float, acceleration: float, angles: ArrayLike | None
-) -> tuple[dict[str, float], dict[str, float]]:
-    """Return peak and its angle for every force of a machine as it is."""
-    speed, acceleration = finite_number(speed, "speed"), finite_number(acceleration, "acceleration")
-    none = np.zeros(0)
-    return _sizes(ForceBasis(machine, (), speed, acceleration, none, none).sampled(angles), none)
 
 
 def _relative(after: Mapping[str, float], before: Mapping[str, float]) -> dict[str, float]:
@@ -564,7 +541,7 @@ def trade_off(
         first_values=values[0],
         second_values=values[1],
         points=results,
-        cases=_cases(machine, search.basis.speed, acceleration, offsets, angles, (first, second)),
+        cases=_cases(search.basis, offsets, angles, (first, second)),
         method="limits to the first peak; second-order cone programmes, SLSQP within",
         # Of points on which both peaks count: the second has the weight 1, and is relative already.
         error=np.array([search.unit * one.error for one in results]) + beyond,
@@ -583,22 +560,17 @@ def _end(search: Search, term: str, other: str) -> tuple[Candidate, float]:
 
 
 def _cases(
-    machine: Machine,
-    speed: float,
-    acceleration: float,
-    offsets: Offsets,
-    angles: ArrayLike | None,
-    terms: tuple[str, str],
+    basis: ForceBasis, offsets: Offsets, angles: ArrayLike | None, terms: tuple[str, str]
 ) -> dict[str, tuple[float, float]]:
     peaks: dict[str, tuple[float, float]] = {}
     for case in CASES:
         try:
-            added = case_counterweights(machine, case, offsets)
+            added = case_counterweights(basis.machine, case, offsets)
         except BadInput:
             if offsets is not None and case != "d":
                 raise
             # A slider-crank has no case (d), and a link without a length no default offset.
             continue
-        relative = _compared(machine, case, added, speed, acceleration, angles).relative
+        relative = _compared(basis, case, added, angles).relative
         peaks[case] = relative[terms[0]], relative[terms[1]]
     return peaks

@@ -17,6 +17,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -396,16 +397,16 @@ class ForceBasis:
     """A machine at one speed: the forces at any angle, and what each unit of mass adds."""
 
     machine: Machine  # without the counterweights
-    links: Sequence[str]  # links that carry counterweights
     # speed, acceleration: of the crank [rad/s, rad/s^2]
     speed: float
     acceleration: float
+    links: Sequence[str] = ()  # links that carry counterweights
     # masses, lengths: units of mass [kg] and length [m] of each link's parameters
-    masses: Array
-    lengths: Array
+    masses: Array = field(default_factory=partial(np.zeros, 0))
+    lengths: Array = field(default_factory=partial(np.zeros, 0))
     # what counts of each force: its peak, or its root mean square over the sampled angles
     measure: Measure = "peak"
-    theta: Array = field(default_factory=lambda: np.zeros(0))  # sampled angles
+    theta: Array = field(default_factory=partial(np.zeros, 0))  # sampled angles
     whole: bool = False  # True where they stand for a whole turn
 
     def sampled(self, angles: ArrayLike | None) -> ForceBasis:
@@ -466,7 +467,9 @@ class ForceBasis:
                 parts += [ring[term] - mass[term]]
         return {term: np.stack(parts, axis=-1) for term, parts in columns.items()}
 
-    def sizes(self, p: Array, terms: Sequence[str] = TERMS) -> dict[str, tuple[Array, Array]]:
+    def sizes(
+        self, p: Array | None = None, terms: Sequence[str] = TERMS
+    ) -> dict[str, tuple[Array, Array]]:
         """Return angles and sizes of the highest peaks of each term with parameters p [N; N m].
 
         The root mean square counts as one peak, at the highest of the samples.

@@ -201,25 +201,23 @@ def _triangle(
     """Return the play of the angle at D between DB and DC; BC is ``other`` give or take."""
     d, r, _ = _together(diagonal, radius, guide)
     scale = np.maximum(4.0 * d * side, _TINY)
-    least, nominal, greatest = (
-        _opened(d, side, other, change, scale) for change in (-r, np.zeros_like(r), r)
-    )
+
+    def opened(change: Array) -> _Half:
+        """Return the angle between ``d`` and ``side``, opposite to ``other + change``."""
+        excess, around = (other - side) + change, (other + side) + change
+        sine2 = (around - d) * (d + excess) / scale
+        cosine2 = (d - excess) * (around + d) / scale
+        # A side below zero sets no limit, whatever the signs of the factors.
+        none = other + change <= 0.0
+        return _Half.of(np.where(none, -1.0, sine2), np.where(none, 1.0, cosine2))
+
+    least, nominal, greatest = (opened(change) for change in (-r, np.zeros_like(r), r))
     rises = r * (2.0 * other - r) / scale, r * (2.0 * other + r) / scale
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         small = (r / d) * (other / side) / (nominal.sine * nominal.cosine)
     small = np.where(r == 0.0, 0.0, small)
     margin = np.minimum((other + side) - d, d - abs(other - side))
     return _of_angles((least, nominal, greatest), rises, small, margin)
-
-
-def _opened(d: Array, side: float, other: float, change: Array, scale: Array) -> _Half:
-    """Return the angle between two sides, ``d`` and ``side``, opposite to ``other + change``."""
-    excess, around = (other - side) + change, (other + side) + change
-    sine2 = (around - d) * (d + excess) / scale
-    cosine2 = (d - excess) * (around + d) / scale
-    # A side below zero sets no limit, whatever the signs of the factors.
-    none = other + change <= 0.0
-    return _Half.of(np.where(none, -1.0, sine2), np.where(none, 1.0, cosine2))
 
 
 def _slider_crank(linkage: SliderCrank, link: str) -> Route:
@@ -229,14 +227,12 @@ def _slider_crank(linkage: SliderCrank, link: str) -> Route:
 
     def position(theta: Array) -> CrankPosition:
         gap = offset - crank * np.sin(theta)
-        sum_error = EPS * (abs(offset) + 2.0 * crank)
-        margin_error = EPS * (coupler + np.abs(gap) + crank * np.abs(theta)) + 2.0 * sum_error
+        start = crank * np.cos(theta) if along else np.full_like(gap, np.pi / 2.0)
+        sum_error, size = EPS * (abs(offset) + 2.0 * crank), coupler + np.abs(gap)
+        margin_error = EPS * (size + crank * np.abs(theta)) + 2.0 * sum_error
         # Of the gap, and of the lengths that it is compared with.
-        error = sum_error + 2.0 * EPS * (coupler + np.abs(gap))
-        if along:
-            start = crank * np.cos(theta)
-            return CrankPosition(gap, error, start, 2.0 * EPS * np.abs(start), margin_error)
-        return CrankPosition(gap, error, np.full_like(gap, np.pi / 2.0), EPS * np.pi, margin_error)
+        error = sum_error + 2.0 * EPS * size
+        return CrankPosition(gap, error, start, 2.0 * EPS * np.abs(start), margin_error)
 
     def candidates(radius: float, guide: float) -> tuple[float, ...]:
         edge = coupler - radius - guide
@@ -541,7 +537,7 @@ def clearance_range(
     angles = finite_array("theta", theta, "angles [rad]")
     task = _Task(linkage, link, route(linkage, link), slack, angles)
     play = task.play
-    errors = DeferredGroup(partial(_errors, task))
+    errors = DeferredGroup(task.errors)
     nominal, below, above, small = (
         task.in_units(part) for part in (play.nominal, play.below, play.above, play.small)
     )
@@ -599,6 +595,11 @@ class _Task:
         self.linkage.require(reached, self.theta)
         return play
 
+    def errors(self) -> dict[str, Array]:
+        """Return the errors as fields of the result."""
+        error, nominal = self.route.errors(self.position, *self.slack, self.play)
+        return {"error": self.in_units(2.0 * error), "nominal_error": self.in_units(nominal)}
+
     def in_units(self, value: Array | float) -> Array:
         """Return places in the linkage's unit: those of a slider are lengths."""
         return np.asarray(np.ldexp(value, -self.linkage.scale if self.link == "slider" else 0))
@@ -654,11 +655,6 @@ def _extremes(task: _Task) -> tuple[WidthExtreme, WidthExtreme]:
     return least, greatest
 
 
-def _errors(task: _Task) -> dict[str, Array]:
-    error, nominal_error = task.route.errors(task.position, *task.slack, task.play)
-    return {"error": task.in_units(2.0 * error), "nominal_error": task.in_units(nominal_error)}
-
-
 def _checks(task: _Task) -> dict[str, Check]:
     return {
         "loop closure at both ends over its round-off": Check(_gap(task), 1.0),
@@ -668,22 +664,19 @@ def _checks(task: _Task) -> dict[str, Check]:
 
 def _gap(task: _Task) -> float:
     """Return how far the loop with all clearance taken up stays open, over its round-off."""
-    play, sizes = task.play, task.linkage.unit_lengths
+    play = task.play
     error = np.add(*task.route.errors(task.position, *task.slack, play))
-    longest = max(abs(size) for size in sizes.values())
+    longest = max(abs(size) for size in task.linkage.unit_lengths.values())
     limit = 64.0 * EPS * longest * np.maximum(np.abs(task.theta), 1.0)
-    blur = limit + longest * error
-    pin = sizes["crank"] * np.exp(1j * task.theta)
-    worst = 0.0
-    for end in (play.nominal - play.below, play.nominal + play.above):
-        missing = np.where(play.free, 0.0, _missing(task, sizes, pin, end))
-        worst = max(worst, float(np.max(np.abs(missing) / blur, initial=0.0)))
-    return worst
+    ends = (play.nominal - play.below, play.nominal + play.above)
+    missing = [np.where(play.free, 0.0, _missing(task, end)) for end in ends]
+    return float(np.max(np.abs(missing) / (limit + longest * error), initial=0.0))
 
 
-def _missing(task: _Task, sizes: Mapping[str, float], pin: Any, end: Array) -> Array:
+def _missing(task: _Task, end: Array) -> Array:
     """Return by how much the loop at an end of the range leaves or exceeds the play."""
-    play, guide = task.slack
+    (play, guide), sizes = task.slack, task.linkage.unit_lengths
+    pin = sizes["crank"] * np.exp(1j * task.theta)
     if isinstance(task.linkage, QuickReturn):
         away = np.abs(((pin + sizes["frame"]) * np.exp(-1j * end)).imag)
         return np.asarray(away - (play + guide))

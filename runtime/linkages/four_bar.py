@@ -6,28 +6,14 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from types import ModuleType
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...generated import four_bar_kinematics
 from ..core.errors import Problem, bad
-from .linkage import (
-    ROUND_OFFS,
-    ROUNDED,
-    TINY,
-    Array,
-    Assembly,
-    Limits,
-    Linkage,
-    LinkMotion,
-    Motion,
-    Terms,
-    turning,
-    units_of,
-)
+from .linkage import ROUNDED, TINY, Array, Limits, Linkage, LinkMotion, Motion, Terms, turning
 
 
 class LoopSums(NamedTuple):
@@ -66,7 +52,7 @@ class LoopSums(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class FourBarMotion(Motion):
+class FourBarMotion(Motion, kinematics=four_bar_kinematics):
     """Motion of a four-bar linkage at given crank angles; every array has their shape.
 
     ``error`` has it too: that of the worse of theta3 and theta4 [rad], from the round-off of crank
@@ -93,7 +79,6 @@ class FourBarMotion(Motion):
     alpha4: Array
     transmission_angle: Array
 
-    places, rates = units_of(four_bar_kinematics)
     norm = "worse of theta3 and theta4 [rad]"
     drawn = ("theta4", "omega4", "alpha4", "omega3")
 
@@ -131,11 +116,10 @@ class FourBar(Linkage):
     crank: float
     coupler: float
     follower: float
-    assembly: Assembly = "open"
+    assembly: Literal["open", "crossed"] = "open"
 
     mechanism = "four_bar"
     moves = FourBarMotion
-    kinematics: ClassVar[ModuleType] = four_bar_kinematics
     names = ("frame", "crank", "coupler", "follower")
     links = ("crank", "coupler", "follower")
     bars: ClassVar = {"crank": ("A", "B"), "coupler": ("B", "C"), "follower": ("D", "C")}
@@ -210,7 +194,6 @@ class FourBar(Linkage):
         return f"a diagonal BD between {shortest:g} and {longest:g}, {super().reachable}"
 
     def _error(self, m: Mapping[str, Array]) -> Array:
-        """Return what a unit round-off of the angle and of each length does, three times."""
         # A change of a length moves the closure along that link; seen along coupler or follower it
         # turns the other one, the more the closer the two are to one line.  The triangle BCD comes
         # from the square of BD: its round-off moves C, seen from a short link most.
@@ -233,7 +216,7 @@ class FourBar(Linkage):
             moved += length * aligned + opposite + 2.0 * (leaning + opposite * lying)
             turned = np.abs(theta2 * m["omega" + link]) + np.abs(m["theta" + link])
             errors.append(turned + moved / (length * sine))
-        return np.asarray(ROUND_OFFS * np.maximum(*errors))
+        return np.asarray(np.maximum(*errors))
 
     def _loop(self, m: Mapping[str, Array]) -> Terms:
         frame, crank, coupler, follower = self.unit_lengths.values()

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from inspect import signature
 from types import ModuleType
-from typing import Any, ClassVar, Literal, Self, TypeAlias, TypeVar
+from typing import Any, ClassVar, Self, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,7 +21,6 @@ from ..core.results import Check, Deferred, DeferredChecks, DeferredField, Resul
 from ..core.twofold import Twofold
 
 Array: TypeAlias = NDArray[np.float64]
-Assembly: TypeAlias = Literal["open", "crossed"]
 Terms: TypeAlias = tuple[list[Any], list[Any], list[Any]]
 
 TURN = 2.0 * np.pi
@@ -102,18 +101,6 @@ class LinkMotion:
         return cos * u - sin * v, sin * u + cos * v
 
 
-def units_of(kinematics: ModuleType) -> tuple[dict[str, str], dict[str, str]]:
-    """Return the units of places and of rates that an emitted motion returns, by name."""
-    kinds = {"velocity": "m/s", "acceleration": "m/s^2", "omega": "rad/s", "alpha": "rad/s^2"}
-    kinds |= {"position": "m", "slide": "m", "": "rad"}
-    units: dict[str, str] = {
-        name: next(unit for kind, unit in kinds.items() if kind in name)
-        for name in kinematics.RETURNS["motion"]
-    }
-    places = {name: unit for name, unit in units.items() if "/" not in unit}
-    return places, {name: unit for name, unit in units.items() if name not in places}
-
-
 def pair(x: ArrayLike, y: ArrayLike) -> Array:
     """Return two components as one array, shape (..., 2)."""
     x, y = np.asarray(x), np.asarray(y)
@@ -145,12 +132,23 @@ class Motion(Result, ABC):
     alpha2: Array
     error: Any = _LATER
 
+    kinematics: ClassVar[ModuleType]  # the emitted module
     # What moves, by name, with its unit: angles and places, then rates.
     places: ClassVar[Mapping[str, str]] = {}
     rates: ClassVar[Mapping[str, str]] = {}
     norm: ClassVar[str] = ""
     # What is drawn against the crank angle.
     drawn: ClassVar[tuple[str, ...]] = ()
+
+    def __init_subclass__(cls, kinematics: ModuleType, **given: Any) -> None:
+        """Take what moves from an emitted module."""
+        super().__init_subclass__(**given)
+        kinds = {"velocity": "m/s", "acceleration": "m/s^2", "omega": "rad/s", "alpha": "rad/s^2"}
+        kinds |= {"position": "m", "slide": "m", "": "rad"}
+        cls.kinematics, cls.places, cls.rates = kinematics, {}, {}
+        for name in kinematics.RETURNS["motion"]:
+            unit = next(unit for kind, unit in kinds.items() if kind in name)
+            (cls.rates if "/" in unit else cls.places)[name] = unit
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the motion of the output against the crank angle.
@@ -367,7 +365,6 @@ class Linkage(ABC):
     """
 
     mechanism: ClassVar[str]
-    kinematics: ClassVar[ModuleType]
     moves: ClassVar[type[Motion]]
     names: ClassVar[tuple[str, ...]]
     links: ClassVar[tuple[str, str, str]]
@@ -475,10 +472,10 @@ class Linkage(ABC):
         angles, speeds, changes, shape = checked_drive(theta, speed, acceleration)
         drive = [np.array(np.broadcast_to(item, shape)) for item in (speeds, changes)]
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            moved = emitted(self, self.kinematics, "motion", angles, self.unit_lengths)
+            moved = emitted(self, kind.kinematics, "motion", angles, self.unit_lengths)
         m = {"theta2": angles, **{name: np.asarray(value) for name, value in moved.items()}}
         reached = np.logical_and.reduce([np.isfinite(value) for value in m.values()])
-        self.require(reached & self._decided(m), angles)
+        self.require(reached & (ROUND_OFFS * self._blur(m) < UNDECIDED), angles)
         fields: dict[str, Any] = {}
         with np.errstate(over="ignore", invalid="ignore"):
             moved = driven(m, *drive)
@@ -543,13 +540,16 @@ class Linkage(ABC):
             fix = "this linkage cannot reach the angle, or folds there; keep theta inside its range"
             raise bad("theta", f"{first:.6g} rad", self.reachable, fix)
 
-    def _decided(self, m: Mapping[str, Array]) -> NDArray[np.bool_]:
-        """Return where the position is one that the lengths decide, and within the links' ends."""
-        return np.ones(np.shape(m["theta2"]), dtype=bool)
+    def _blur(self, m: Mapping[str, Array]) -> Array:
+        """Return what round-offs of the lengths do to the position [rad], in round-offs.
+
+        Infinite where it is beyond the links' ends.
+        """
+        return np.zeros(np.shape(m["theta2"]))
 
     @abstractmethod
     def _error(self, m: Mapping[str, Array]) -> Array:
-        """Return what a unit round-off of the angle and of each length does, three times."""
+        """Return what round-offs of the angle and of the lengths do, in round-offs."""
 
     @abstractmethod
     def _loop(self, m: Mapping[str, Array]) -> Terms:
@@ -592,7 +592,7 @@ def _without_rounding(linkage: Linkage, theta: Array) -> dict[str, Any]:
     known: dict[str, Any] = {name: Twofold(value) for name, value in lengths.items()}
     known["winding"] = float(lengths["crank"] > lengths.get("frame", np.inf))
     with np.errstate(all="ignore"):
-        return emitted(linkage, linkage.kinematics, "motion", Twofold(theta), known)
+        return emitted(linkage, linkage.moves.kinematics, "motion", Twofold(theta), known)
 
 
 @cache
@@ -614,12 +614,12 @@ def driven(m: Mapping[str, Any], speed: Any, acceleration: Any) -> dict[str, Any
 
 def _error(linkage: Linkage, m: Mapping[str, Array], shape: tuple[int, ...]) -> Array:
     """Return the error at the places of a result."""
-    return np.array(np.broadcast_to(linkage._error(m), shape))
+    return np.array(np.broadcast_to(ROUND_OFFS * linkage._error(m), shape))
 
 
 def _checks(linkage: Linkage, m: Mapping[str, Array]) -> dict[str, Check]:
     """Close the loop, and its first and second derivative."""
-    error = linkage._error(m)
+    error = ROUND_OFFS * linkage._error(m)
     places, *rates = linkage._loop(m)
     longest = max(abs(value) for value in linkage.unit_lengths.values())
     closure = float(np.max(np.abs(sum(places)), initial=0.0) / longest)

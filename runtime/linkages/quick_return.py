@@ -5,32 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import ModuleType
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...generated import quick_return_kinematics
 from ..core.errors import Problem, bad
-from .linkage import (
-    ROUND_OFFS,
-    ROUNDED,
-    TINY,
-    UNDECIDED,
-    Array,
-    Limits,
-    Linkage,
-    LinkMotion,
-    Motion,
-    Terms,
-    turning,
-    units_of,
-)
+from .linkage import ROUNDED, TINY, Array, Limits, Linkage, LinkMotion, Motion, Terms, turning
 
 
 @dataclass(frozen=True, kw_only=True)
-class QuickReturnMotion(Motion):
+class QuickReturnMotion(Motion, kinematics=quick_return_kinematics):
     """Motion of a quick-return at given crank angles; every array has their shape.
 
     ``error`` has it too: that of the worse of theta4 [rad] and of the slide over its
@@ -58,7 +44,6 @@ class QuickReturnMotion(Motion):
     slide_velocity: Array
     slide_acceleration: Array
 
-    places, rates = units_of(quick_return_kinematics)
     norm = "worse of theta4 [rad] and slide over its greatest value"
     drawn = ("theta4", "omega4", "alpha4")
 
@@ -102,7 +87,6 @@ class QuickReturn(Linkage):
 
     mechanism = "quick_return"
     moves = QuickReturnMotion
-    kinematics: ClassVar[ModuleType] = quick_return_kinematics
     names = ("frame", "crank", "rod")
     links = ("crank", "block", "rod")
     bars: ClassVar = {"crank": ("A", "B"), "block": ("B",), "rod": ("D", "C")}
@@ -168,24 +152,19 @@ class QuickReturn(Linkage):
         """Return the motion of rod and block; see :meth:`Linkage.motion`."""
         return self._moved(QuickReturnMotion, theta, speed, acceleration)
 
-    def _decided(self, m: Mapping[str, Array]) -> NDArray[np.bool_]:
-        rod = self.unit_lengths["rod"]
-        return np.asarray((m["slide"] <= rod * (1.0 + ROUNDED)) & (self._blur(m) < UNDECIDED))
-
     def _blur(self, m: Mapping[str, Array]) -> Array:
-        """Return what a unit round-off of each length does to theta4 [rad], three times."""
-        frame, crank, _ = self.unit_lengths.values()
+        frame, crank, rod = self.unit_lengths.values()
         moved = frame * np.abs(np.sin(m["theta4"]))
         moved = moved + crank * np.abs(np.sin(m["theta2"] - m["theta4"]))
-        return np.asarray(ROUND_OFFS * moved / m["slide"])
+        return np.where(m["slide"] <= rod * (1.0 + ROUNDED), moved / m["slide"], np.inf)
 
     def _error(self, m: Mapping[str, Array]) -> Array:
         frame, crank, _ = self.unit_lengths.values()
         theta2, theta4 = m["theta2"], m["theta4"]
-        turned = ROUND_OFFS * (np.abs(theta2 * m["omega4"]) + np.abs(theta4)) + self._blur(m)
+        turned = np.abs(theta2 * m["omega4"]) + np.abs(theta4) + self._blur(m)
         moved = np.abs(theta2 * m["slide_velocity"]) + m["slide"] + frame * np.abs(np.cos(theta4))
         moved = moved + crank * np.abs(np.cos(theta2 - theta4))
-        return np.asarray(np.maximum(turned, ROUND_OFFS * moved / (frame + crank)))
+        return np.asarray(np.maximum(turned, moved / (frame + crank)))
 
     def _loop(self, m: Mapping[str, Array]) -> Terms:
         frame, crank, _ = self.unit_lengths.values()

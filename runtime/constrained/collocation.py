@@ -10,16 +10,7 @@ import numpy as np
 
 from ..core.collocation import gauss_tableau
 from ..core.errors import bad
-from .equations import (
-    SMALL,
-    Array,
-    Equations,
-    Linearised,
-    NoConvergence,
-    State,
-    StoppedEarly,
-    Tolerance,
-)
+from .equations import SMALL, Array, Equations, Linearised, NoConvergence, State
 
 # Terms at the end of the series of the accelerations whose size and fall decide a window's length.
 _TAIL = 2
@@ -140,6 +131,20 @@ def _by_chebyshev(count: int) -> Array:
         lambda x: np.polynomial.legendre.legvander(x, count + 1) @ terms, count + 1
     )
     return found
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """How exact the steps are to be."""
+
+    rtol: float  # relative tolerance of the error of one step
+    # place, speed: sizes of scaled coordinates and velocities that are added to their own ones
+    place: float
+    speed: float
+
+
+class StoppedEarly(ArithmeticError):  # noqa: N818 - reads as what it is
+    """The integration cannot go on; the message says why."""
 
 
 @dataclass(frozen=True)

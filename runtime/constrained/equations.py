@@ -40,20 +40,6 @@ class State:
 
 
 @dataclass(frozen=True)
-class Tolerance:
-    """How exact the steps are to be."""
-
-    rtol: float  # relative tolerance of the error of one step
-    # place, speed: sizes of scaled coordinates and velocities that are added to their own ones
-    place: float
-    speed: float
-
-
-class StoppedEarly(ArithmeticError):  # noqa: N818 - reads as what it is
-    """An integrator cannot go on; the message says why."""
-
-
-@dataclass(frozen=True)
 class Linearised:
     """Accelerations at states, and how they vary: ``da = by_x dx + by_v dv``; scaled.
 

@@ -17,19 +17,8 @@ from ..core.families.multipliers import check_rank, scaling
 from ..core.inputs import numbers, require_between, require_kind
 from ..core.plotting import Axes, draw_coordinates
 from ..core.results import FAIR, Check, Result, provenance
-from .collocation import Step, collocation
-from .equations import (
-    EPS,
-    LEVELS,
-    SMALL,
-    Array,
-    Equations,
-    NoConvergence,
-    State,
-    StoppedEarly,
-    Tolerance,
-    constraint_norms,
-)
+from .collocation import Step, StoppedEarly, Tolerance, collocation
+from .equations import EPS, LEVELS, SMALL, Array, Equations, NoConvergence, State, constraint_norms
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -490,6 +490,10 @@ def _result(
     if system.watch is not None:
         checks["linear range"] = linear_range(system.watch, inside[0], times)
         deflection = checks["linear range"].value
+    given = source.shooting.state(guess.q / columns, guess.qd / columns)
+    with np.errstate(all="ignore"):
+        reached = source.shooting.state(*ring.at(guess.times))
+    size = max(float(np.max(np.abs(state))) for state in (given, reached))
     q, qd = ring.x * columns, ring.v * columns
     pick = slice(None, None, max(len(q) // _SAMPLES, 1))
     for margin, reason in system.guards:
@@ -512,22 +516,12 @@ def _result(
         residual=shot.residual,
         iterations=iterations,
         deflection=deflection,
-        moved=_moved(source.shooting, guess, ring),
+        moved=float(np.max(np.abs(reached - given))) / size if size > 0 else 0.0,
         message=shot.reason,
         labels=system.labels,
         source=source,
         **largest,
     )
-
-
-def _moved(shooting: Shooting, guess: _Guess, ring: Ring) -> float:
-    """Return the largest distance of the motion from its guess, over the larger one."""
-    columns = shooting.equations.columns
-    given = shooting.state(guess.q / columns, guess.qd / columns)
-    with np.errstate(all="ignore"):
-        reached = shooting.state(*ring.at(guess.times))
-    size = max(float(np.max(np.abs(state))) for state in (given, reached))
-    return float(np.max(np.abs(reached - given))) / size if size > 0 else 0.0
 
 
 # From a guess to a first ring ---------------------------------------------------------------------

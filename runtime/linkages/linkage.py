@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from inspect import signature
 from types import ModuleType
-from typing import Any, ClassVar, Self, TypeAlias, TypeVar
+from typing import Any, ClassVar, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -249,7 +249,10 @@ class Motion(Result, ABC):
         self.point(link, along, across)  # refuses what is no place
         still = dict.fromkeys((*self.errors, "theta2", "omega2", "alpha2"), np.zeros(()))
         still = {name: np.broadcast_to(zero, np.shape(self.theta2)) for name, zero in still.items()}
-        rest, off = (self._with(values).link(link) for values in (still, {**still, **self.errors}))
+        shifted = copy(self), copy(self)  # what is deferred in them is not computed
+        for other, values in zip(shifted, (still, {**still, **self.errors}), strict=True):
+            vars(other).update(values)
+        rest, off = (other.link(link) for other in shifted)
         reach = np.hypot(along, across)[..., np.newaxis]
         # Sines, products and sums: five halves of a unit in the last place of the largest.
         tilt, slip = off.angle + 3.0 * EPS, 3.0 * EPS
@@ -266,12 +269,6 @@ class Motion(Result, ABC):
             error(off.velocity, own.velocity, turned[1]),
             error(off.acceleration, own.acceleration, bent),
         )
-
-    def _with(self, values: Mapping[str, Array]) -> Self:
-        """Return the motion with other numbers; what is deferred in it is not computed for that."""
-        other = copy(self)
-        vars(other).update(values)
-        return other
 
     @property
     def joints(self) -> Mapping[str, Array]:

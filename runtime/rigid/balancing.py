@@ -262,13 +262,21 @@ def _searched(
 
 
 def _described(search: Search, best: Candidate) -> Balancing:
-    added, p = _counterweights(search, best.x), search.design.parameters(best.x)
-    balanced, where = _sizes(search.basis, p)
+    basis, p, added = search.basis, search.design.parameters(best.x), {}
+    units = zip(basis.links, basis.masses, basis.lengths, search.design.stiffness, strict=True)
+    for unit, (m, u, v) in zip(units, best.x.reshape(-1, 3), strict=True):
+        link, mass, length, stiffness = unit
+        # Inertia about the centre over mass is half the square of the radius.
+        radius = length * np.sqrt(2.0 * stiffness * m)
+        body = (m * mass, u * length, v * length, radius)
+        if m > 0.0:
+            added[link] = Counterweight(link, *map(float, body))
+    balanced, where = _sizes(basis, p)
     relative = _relative(balanced, search.unbalanced)
     gap = (best.value - best.bound) / search.unit
     # Some last digits, of forces that have limits by what the limits are worth; and near a change
     # point, where forces hang on the last digits of the lengths, what some of these change.
-    rounded = [_weighted(search, basis, p) for basis in _all_but_equal(search.basis)]
+    rounded = [_weighted(search, each, p) for each in _all_but_equal(basis)]
     rounding = (float(np.ptp(rounded)) + _DIGITS * best.slope) / search.unit + _DIGITS
     over = max((relative[term] / top - 1.0 for term, top in search.limits.items()), default=0.0)
     sampling = _sampling(search, p) / search.unit
@@ -276,17 +284,17 @@ def _described(search: Search, best: Candidate) -> Balancing:
         "gap or KKT residual": Check(min(gap, best.residual), _OPTIMAL),
         "limits passed, relative": Check(max(over, 0.0), 1e-7),
     }
-    if search.basis.measure == "rms":
+    if basis.measure == "rms":
         checks["samples"] = Check(sampling, _SAMPLED)
     return Balancing(
         counterweights=added,
-        machine=with_counterweights(search.basis.machine, added.values()),
+        machine=with_counterweights(basis.machine, added.values()),
         weights=dict(search.weights),
         limits=dict(search.limits),
         value=best.value,
         lower_bound=best.bound,
         unbalanced=search.unbalanced,
-        measure=search.basis.measure,
+        measure=basis.measure,
         relative=relative,
         peak_angles=where,
         method="second-order cone programme over the convex hull, SLSQP within",
@@ -294,7 +302,7 @@ def _described(search: Search, best: Candidate) -> Balancing:
         error_norm="weighted sum above the least possible one, over the unbalanced linkage's",
         error_kind="bound",
         checks=checks,
-        provenance=provenance({"speed": repr(search.basis.speed)}),
+        provenance=provenance({"speed": repr(basis.speed)}),
     )
 
 
@@ -341,19 +349,6 @@ def _zero_forces(peaks: Mapping[str, float]) -> set[str]:
     most |= dict.fromkeys(moments, max(peaks[term] for term in moments))
     # A force below this, over the largest of its kind, is no force to compare with.
     return {term for term in TERMS if not peaks[term] > 1e-12 * most[term]}
-
-
-def _counterweights(search: Search, x: Array) -> dict[str, Counterweight]:
-    """Return the counterweights of design variables; none where the mass is zero."""
-    basis, added = search.basis, {}
-    units = zip(basis.links, basis.masses, basis.lengths, search.design.stiffness, strict=True)
-    for (link, mass, length, stiffness), (m, u, v) in zip(units, x.reshape(-1, 3), strict=True):
-        # Inertia about the centre over mass is half the square of the radius.
-        radius = length * np.sqrt(2.0 * stiffness * m)
-        body = (m * mass, u * length, v * length, radius)
-        if m > 0.0:
-            added[link] = Counterweight(link, *map(float, body))
-    return added
 
 
 def _terms(given: Mapping[str, float], where: str, *, zero: bool) -> dict[str, float]:

@@ -565,31 +565,25 @@ class TorqueLine:
 
 
 def torque_law(torque: object) -> TorqueLaw:
-    """Return a motor torque as a function of speed, angle and time."""
+    """Return a motor torque by speed, angle and time, which refuses what is no finite number."""
     if isinstance(torque, Real) and not isinstance(torque, bool):
         value = finite_number(torque, "torque")
         return lambda speed, angle, time: value
     if not callable(torque) or isinstance(torque, type):
         raise bad("torque", shown(torque), "a number or a callable", "give a TorqueLine")
     law: Any = torque
-    try:
-        parameters = inspect.signature(law).parameters.values()
-    except (TypeError, ValueError):  # some built-in callables tell nothing
-        return _checked(law)
-    if any(item.kind is inspect.Parameter.VAR_POSITIONAL for item in parameters):
-        return _checked(law)
     kinds = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
-    count = min(sum(item.kind in kinds for item in parameters), 3)
+    try:
+        given = [item.kind for item in inspect.signature(law).parameters.values()]
+    except (TypeError, ValueError):  # some built-in callables tell nothing
+        given = [inspect.Parameter.VAR_POSITIONAL]
+    whole = inspect.Parameter.VAR_POSITIONAL in given
+    count = 3 if whole else min(sum(kind in kinds for kind in given), 3)
     if count == 0:
         raise bad("torque", "a callable without arguments", "torque(speed, ...)", "take the speed")
-    return _checked(lambda speed, angle, time: law(*(speed, angle, time)[:count]))
 
-
-def _checked(law: TorqueLaw) -> TorqueLaw:
-    """Return a torque law that refuses what is no finite number."""
-
-    def torque(speed: float, angle: float, time: float) -> float:
-        value = law(speed, angle, time)
+    def checked(speed: float, angle: float, time: float) -> float:
+        value = law(*(speed, angle, time)[:count])
         number = isinstance(value, Real) and not isinstance(value, bool)
         if not number and isinstance(value, np.ndarray) and value.size == 1:
             value, number = value.item(), value.dtype.kind in "fiu"
@@ -599,4 +593,4 @@ def _checked(law: TorqueLaw) -> TorqueLaw:
             raise bad("torque", found, "a finite number [N m]", "correct the torque law")
         return float(value)
 
-    return torque
+    return checked

@@ -200,24 +200,27 @@ def _gain(h: float, terms: Array) -> tuple[Array, Array]:
 
 
 @dataclass(frozen=True)
-class _Astray:
-    """The error along a window, linearised about its motion; scaled.
+class Step:
+    """One window of a motion, and the error along it, linearised about the motion; scaled.
 
-    It begins with that of the windows before and is driven by what the series of the accelerations
-    lacks, measured at the ends and between the nodes: forces that jump show there too.
+    The error begins with that of the windows before and is driven by what the series of the
+    accelerations lacks, measured at the ends and between the nodes: forces that jump show there
+    too.
     """
 
-    # x, v: (n,): at the beginning
-    x: Array
-    v: Array
-    # carried, local: (s + 2, n): Legendre terms of the accelerations that this brings, and
+    window: _Window
+    after: State  # its end, on the constraints
+    begin: tuple[Array, Array] | None  # errors at the beginning, (n,) each, where they are known
+    # carried, local: (s + 2, n): Legendre terms of the accelerations that these bring, and
     # those that the window adds
     carried: Array
     local: Array
 
     @classmethod
-    def of(cls, window: _Window, after: State, x: Array, v: Array) -> _Astray:
+    def of(cls, window: _Window, after: State, begin: tuple[Array, Array] | None) -> Step:
+        """Return a window with the error along it."""
         points, slopes, h, terms = window.points, window.slopes, window.h, window.terms
+        x, v = begin or (np.zeros_like(after.x), np.zeros_like(after.x))
         defect = window.defect.copy()
         defect[len(terms)] = window.before.a - (-1.0) ** np.arange(len(terms)) @ terms
         defect[-1] = after.a - np.sum(terms, axis=0)
@@ -233,48 +236,44 @@ class _Astray:
         both = np.tensordot(points.series, window.unwind(np.stack([carried, local], -1)), axes=1)
         carried, local = np.moveaxis(both, -1, 0)
         lacking[:-2] += local
-        return cls(x, v, np.concatenate([carried, np.zeros((2, len(x)))]), lacking)
+        return cls(window, after, begin, np.concatenate([carried, np.zeros((2, len(x)))]), lacking)
 
-    def added(self, window: _Window) -> float:
-        """Return what the window itself adds by its end, relative."""
-        return window.units.of(*_gain(window.h, self.local))
+    @property
+    def added(self) -> float:
+        """What the window itself adds to the error by its end, relative."""
+        return self.window.units.of(*_gain(self.window.h, self.local))
 
-    def along(self, window: _Window) -> Array:
-        """Return the largest error of the coordinates in the window, ``(n,)``."""
-        h, points = window.h, window.points
+    @property
+    def error(self) -> Array:
+        """Largest error estimate of the coordinates inside, ``(n,)``."""
+        h, points, units = self.window.h, self.window.points, self.window.units
+        if self.begin is None:
+            return np.full_like(self.after.x, np.inf)
+        x, v = self.begin
         error = np.abs(
-            self.x + h * points.all[:, None] * self.v + h * h * (points.terms_twice @ self.carried)
+            x + h * points.all[:, None] * v + h * h * (points.terms_twice @ self.carried)
         )
         error += np.abs(h * h * (points.terms_twice @ self.local))
-        return np.asarray(np.max(error, axis=0) + window.left * window.units.place)
+        return np.asarray(np.max(error, axis=0) + self.window.left * units.place)
 
-    def at_end(
-        self, equations: Equations, window: _Window, after: State
-    ) -> tuple[Array, Array] | None:
-        """Return the error at the end, on the constraints; None where there is no such state.
+    def error_at_end(self, equations: Equations) -> tuple[Array, Array] | None:
+        """Return the error at the end, on the constraints; None where it is not known.
 
         Where a force jumps the sign of what a window adds is not known, nor that of what its
         iteration left: all is taken to go one way.
         """
-        (x, v), local = _gain(window.h, self.carried), _gain(window.h, self.local)
-        units = window.units
-        x, v = self.x + window.h * self.v + x, self.v + v
-        x = x + np.copysign(np.abs(local[0]) + window.left * units.place, x)
-        v = v + np.copysign(np.abs(local[1]) + window.left * units.speed, v)
+        if self.begin is None:
+            return None
+        h, left, units, after = self.window.h, self.window.left, self.window.units, self.after
+        (x, v), local = _gain(h, self.carried), _gain(h, self.local)
+        x, v = self.begin[0] + h * self.begin[1] + x, self.begin[1] + v
+        x = x + np.copysign(np.abs(local[0]) + left * units.place, x)
+        v = v + np.copysign(np.abs(local[1]) + left * units.speed, v)
         try:
             x, v = equations.nearest(after.t, after.x + x, after.v + v)
         except NoConvergence:
             return None
         return x - after.x, v - after.v
-
-
-@dataclass(frozen=True)
-class Step:
-    """One accepted window of a motion, scaled."""
-
-    window: _Window
-    after: State  # its end, on the constraints
-    error: Array  # (n,): largest error estimate of the coordinates inside
 
     @property
     def inner(self) -> Array:
@@ -423,9 +422,8 @@ def collocation(
             # it is less where there are more than the next number.
             near = 1e-3 * min(1.0, 30.0 * h / (end - start.t))
             window = _solved(equations, state, h, points, first, tolerance, near)
-            after = equations.state(t, *window.end())
-            astray = _Astray.of(window, after, *(begin or (0.0 * state.x, 0.0 * state.x)))
-            if astray.added(window) > rtol:
+            step = Step.of(window, equations.state(t, *window.end()), begin)
+            if step.added > rtol:
                 # How much shorter a window becomes in which a force jumps.
                 raise _TooLong(2.0**s, window.terms)
         except _TooLong as reason:
@@ -436,12 +434,10 @@ def collocation(
         except NoConvergence:
             h, guess = h * _SHORTER, None
             continue
-        error = np.full_like(state.x, np.inf) if begin is None else astray.along(window)
-        yield Step(window, after, error)
+        yield step
         if t >= end:
             return
-        begin = None if begin is None else astray.at_end(equations, window, after)
-        state, guess = after, None
+        begin, state, guess = step.error_at_end(equations), step.after, None
         h *= min(_LONGER, _CAUTION * max(window.size, 1e-300) ** (-1.0 / s))
     raise StoppedEarly(f"{_MOST_WINDOWS} steps were not enough: shorten the span")
 

@@ -250,10 +250,10 @@ class Step:
         if self.begin is None:
             return np.full_like(self.after.x, np.inf)
         x, v = self.begin
-        error = np.abs(
-            x + h * points.all[:, None] * v + h * h * (points.terms_twice @ self.carried)
+        carried, local = (
+            h * h * (points.terms_twice @ part) for part in (self.carried, self.local)
         )
-        error += np.abs(h * h * (points.terms_twice @ self.local))
+        error = np.abs(x + h * points.all[:, None] * v + carried) + np.abs(local)
         return np.asarray(np.max(error, axis=0) + self.window.left * units.place)
 
     def error_at_end(self, equations: Equations) -> tuple[Array, Array] | None:

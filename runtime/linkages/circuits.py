@@ -146,24 +146,19 @@ class Circuit:
         """True where the crank turns fully."""
         return not any(self.swings)
 
-    @property
-    def count(self) -> int:
-        """How many circuits the linkage has: one or two."""
-        if self.linkage.mechanism == "quick_return":
-            return 1
-        return 1 if self.swings[0] != self.swings[1] else 2
-
     def check(self) -> None:
         """Raise BadInput for a change point or a circuit that the linkage has not."""
+        last = int(self.swings[0] == self.swings[1])
         if self.linkage.mechanism == "quick_return":
-            # A block that leaves the rod has no closed motion.
+            # A block that leaves the rod has no closed motion; there is one assembly.
             self.linkage.require_full_turn()
+            last = 0
         if self.limits.q1 == 0 or self.limits.one_less_q2 == 0:
             kind, fix = type(self.linkage).__name__, "change a length by a little"
             found = "a change point: the links come into one line and may leave it two ways"
             raise bad(kind, found, "a linkage whose circuits do not meet", fix)
-        if not is_whole(self.number, 0, self.count - 1):
-            has = f"0 to {self.count - 1}" if self.count > 1 else "0, the only one"
+        if not is_whole(self.number, 0, last):
+            has = "0 to 1" if last else "0, the only one"
             raise bad("circuit", shown(self.number), has, "choose another circuit")
 
     @property

@@ -183,22 +183,17 @@ class ParametricMachine(Parametric):
         """Names of the forces."""
         return tuple(force_kernels(self.linkage.mechanism).RETURNS["forces"])
 
-    def evaluate(self, numbers: Mapping[str, Any]) -> dict[str, Any]:
-        """Return every output of the numbers; what cannot close is not finite."""
-        theta = self._angle(numbers)
-        with np.errstate(all="ignore"):
-            moved = self._moved(theta, numbers)
-            return moved | self._forces(theta, numbers, moved)
-
     def _size(self, name: str) -> float:
         if "." not in name:
             return super()._size(name)
         kind = name.partition(".")[2]
         return max(abs(getattr(mass, kind)) for mass in self.machine.masses.values()) or 1.0
 
-    def _forces(
-        self, theta: Any, numbers: Mapping[str, Any], moved: Mapping[str, Any]
-    ) -> dict[str, Any]:
+    @np.errstate(all="ignore")
+    def evaluate(self, numbers: Mapping[str, Any]) -> dict[str, Any]:
+        """Return every output of the numbers; what cannot close is not finite."""
+        theta = self._angle(numbers)
+        moved = self._moved(theta, numbers)
         kernels, links = force_kernels(self.linkage.mechanism), self.linkage.links
         # In a unit of length in which the longest link is near 1, their powers are safe.
         size = 2.0**self.linkage.scale
@@ -223,4 +218,5 @@ class ParametricMachine(Parametric):
             for names, pushed in pushes(acting, motion, self.speed, [*forces], size):
                 more = emitted(self.linkage, kernels, "load_forces", theta, {**lengths, **pushed})
                 forces |= {name: forces[name] + more[name] for name in names}
-        return {k: value / size if k.startswith(COUPLES) else value for k, value in forces.items()}
+        moments = {k: value / size for k, value in forces.items() if k.startswith(COUPLES)}
+        return moved | forces | moments

@@ -61,15 +61,12 @@ class CrankPosition:
     margin_error: Array
 
 
-# Play at values of the variable: (variable, radius, guide).
-Kernel = Callable[[ArrayLike, ArrayLike, ArrayLike], Play]
-
-
 @dataclass(frozen=True)
 class Route:
     """One output of one linkage."""
 
-    measure: Kernel
+    # play at values of the variable: (variable, radius, guide)
+    measure: Callable[[ArrayLike, ArrayLike, ArrayLike], Play]
     position: Callable[[Array], CrankPosition]  # at crank angles
     turn: float  # +1 where the output falls as the place of ``measure`` rises, else -1
     interval: tuple[float, float]  # ends of the variable

@@ -293,6 +293,7 @@ def _four_bar(linkage: FourBar, band: tuple[float, float]) -> TransmissionAngle:
     # Transmission angle 0 or pi at the folds, else from the diagonal frame -+ crank.
     inner, outer = linkage.limits.ends
     turns = not inner and outer in (None, pi)
+    far = _angle((s.less_coupler, s.less_follower), (s.two, s.total)) if outer is None else pi
     # Where crank and coupler lie in one line.  Open, C lies to the left of the line from B to D:
     # above the frame when extended, and when folded above it if the coupler is the longer one.
     centres, outputs = {}, {}
@@ -318,9 +319,7 @@ def _four_bar(linkage: FourBar, band: tuple[float, float]) -> TransmissionAngle:
         linkage,
         band,
         least=0.0 if inner is not None else _angle((s.three, s.four), (s.less_frame, s.less_crank)),
-        greatest=pi
-        if outer is not None
-        else _angle((s.less_coupler, s.less_follower), (s.two, s.total)),
+        greatest=far,
         at_least=_mirrored(0.0, -(inner or 0.0)),
         at_greatest=_mirrored(0.0, -pi if outer is None else -outer),
         dead_centres=centres,

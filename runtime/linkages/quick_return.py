@@ -110,14 +110,11 @@ class QuickReturn(Linkage):
         longer, shorter = self._ends
         across, along = (2.0 * max(size, TINY) for size in (frame, crank))
         apart = (frame - crank) / across * ((frame - crank) / along)
-        if self._long_enough:
-            return Limits(-1.0, 2.0, 1.0 + apart, -apart)
-        return Limits(
-            shorter / across * ((frame + crank + rod) / along),
-            longer / across * ((rod + abs(frame - crank)) / along),
-            1.0 + apart,
-            -apart,
-        )
+        lower = -1.0, 2.0
+        if not self._long_enough:
+            most, least = (frame + crank + rod) / along, (rod + abs(frame - crank)) / along
+            lower = shorter / across * most, longer / across * least
+        return Limits(*lower, 1.0 + apart, -apart)
 
     @property
     def _long_enough(self) -> bool:

@@ -317,10 +317,10 @@ def _angle_of(sine2: float, cosine2: float) -> float:
 
 # Of a kind of linkage the links that can be ranged, the output first; the joint that slides and
 # does not turn: its clearance is across its guide; and what makes the route to the play of a link.
-_OUTPUTS: Mapping[type, tuple[tuple[str, ...], str, Callable[[Any, str], Route]]] = {
-    FourBar: (("follower", "coupler"), "", _four_bar),
-    SliderCrank: (("slider", "coupler"), "41", _slider_crank),
-    QuickReturn: (("rod",), "34", _quick_return),
+_OUTPUTS: Mapping[str, tuple[tuple[str, ...], str, Callable[[Any, str], Route]]] = {
+    "four_bar": (("follower", "coupler"), "", _four_bar),
+    "slider_crank": (("slider", "coupler"), "41", _slider_crank),
+    "quick_return": (("rod",), "34", _quick_return),
 }
 
 
@@ -520,7 +520,7 @@ def clearance_range(
     0.0503 0.0503
     """
     require_linkage(linkage)
-    links, sliding, route = next(of for kind, of in _OUTPUTS.items() if isinstance(linkage, kind))
+    links, sliding, _ = _OUTPUTS[linkage.mechanism]
     link = links[0] if link is None else link
     require_one_of("link", link, links)
     plays = _checked(linkage, clearances, joint)
@@ -532,7 +532,7 @@ def clearance_range(
     guide = halves.pop(sliding, 0.0)
     slack = math.fsum(halves.values()), guide
     angles = finite_array("theta", theta, "angles [rad]")
-    task = _Task(linkage, link, route(linkage, link), slack, angles)
+    task = _Task(linkage, link, slack, angles)
     play = task.play
     errors = DeferredGroup(task.errors)
     nominal, below, above, small = (
@@ -572,9 +572,13 @@ class _Task:
 
     linkage: FourBar | SliderCrank | QuickReturn
     link: str
-    route: Route  # to the play of this output
     slack: tuple[float, float]  # radius of the play of all pins, half the clearance of the guide
     theta: Array
+
+    @property
+    def route(self) -> Route:
+        """The way to the play of this output, made anew: its functions bear no pickling."""
+        return _OUTPUTS[self.linkage.mechanism][2](self.linkage, self.link)
 
     @cached_property
     def position(self) -> CrankPosition:

@@ -187,7 +187,9 @@ def _four_bar(linkage: FourBar, link: str) -> Route:
         sine2 = (diagonal - short) * (diagonal + short)
         return _angle_of(sine2, (long - diagonal) * (long + diagonal))
 
-    ends = (max(short, abs(side - other)), min(long, side + other))
+    greatest = min(long, side + other)
+    # A diagonal of no length has no angle.
+    ends = (max(short, abs(side - other), 64.0 * EPS * greatest), greatest)
     triangle = partial(_triangle, side=side, other=other)
     return Route(triangle, position, turn, ends, candidates, crank_at)
 
@@ -638,9 +640,6 @@ def _extremes(task: _Task) -> tuple[WidthExtreme, WidthExtreme]:
     # where its derivative vanishes, where the play begins to fold, and at the ends.
     route = task.route
     low, high = route.interval
-    if isinstance(task.linkage, FourBar):
-        # A diagonal of no length has no angle.
-        low = max(low, 64.0 * EPS * high)
     places = [low, high]
     for place in route.candidates(*task.slack):
         # The width jumps where a fold begins, so that both sides of the place count.

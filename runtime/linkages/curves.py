@@ -530,25 +530,24 @@ def _integrate_turn(f: Callable[[Array], Array], breaks: Array) -> tuple[Array, 
     # differences of the panels, generous, and round-off.
     ends = np.unique(np.concatenate([np.linspace(0, 2 * pi, _PANELS + 1), breaks % (2 * pi)]))
     low, high = ends[:-1], ends[1:]
+    sums: Any = 0.0
     for level in range(_HALVINGS):
         few, _ = _panels(f, low, high, 10)
         many, size = _panels(f, low, high, 16)
         difference = np.abs(many - few)
         if level == 0:
             scale = np.sum(size, axis=1)
-            total, error, whole = (np.zeros(len(many)) for _ in range(3))
         good = np.all(difference <= 0.5 * EPS * scale[:, None], axis=0)
         # More panels than this at once: what is left is the round-off of the integrands.
         if level == _HALVINGS - 1 or np.count_nonzero(~good) > 2000:
             good[:] = True
-        total = total + np.sum(many[:, good], axis=1)
-        error = error + np.sum(difference[:, good], axis=1)
-        whole = whole + np.sum(size[:, good], axis=1)
+        sums = sums + np.stack([many, difference, size])[..., good].sum(axis=-1)
         if np.all(good):
             break
         low, high = low[~good], high[~good]
         middle = 0.5 * (low + high)
         low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+    total, error, whole = sums
     return total, error + 8.0 * EPS * whole
 
 

@@ -10,17 +10,7 @@ import numpy as np
 
 from ..core.collocation import gauss_tableau
 from ..core.errors import bad
-from .equations import (
-    SMALL,
-    Array,
-    Equations,
-    Linearised,
-    NoConvergence,
-    State,
-    Step,
-    StoppedEarly,
-    Tolerance,
-)
+from .equations import SMALL, Array, Equations, Linearised, NoConvergence, State
 
 # Terms at the end of the series of the accelerations whose size and fall decide a window's length.
 _TAIL = 2
@@ -144,6 +134,20 @@ def _by_chebyshev(count: int) -> Array:
 
 
 @dataclass(frozen=True)
+class Tolerance:
+    """How exact the steps are to be."""
+
+    rtol: float  # relative tolerance of the error of one step
+    # place, speed: sizes of scaled coordinates and velocities that are added to their own ones
+    place: float
+    speed: float
+
+
+class StoppedEarly(ArithmeticError):  # noqa: N818 - reads as what it is
+    """The integration cannot go on; the message says why."""
+
+
+@dataclass(frozen=True)
 class _Units:
     """Sizes that a window's errors are relative to, of coordinates and velocities, ``(n,)``."""
 
@@ -196,24 +200,27 @@ def _gain(h: float, terms: Array) -> tuple[Array, Array]:
 
 
 @dataclass(frozen=True)
-class _Astray:
-    """The error along a window, linearised about its motion; scaled.
+class Step:
+    """One window of a motion, and the error along it, linearised about the motion; scaled.
 
-    It begins with that of the windows before and is driven by what the series of the accelerations
-    lacks, measured at the ends and between the nodes: forces that jump show there too.
+    The error begins with that of the windows before and is driven by what the series of the
+    accelerations lacks, measured at the ends and between the nodes: forces that jump show there
+    too.
     """
 
-    # x, v: (n,): at the beginning
-    x: Array
-    v: Array
-    # carried, local: (s + 2, n): Legendre terms of the accelerations that this brings, and
+    window: _Window
+    after: State  # its end, on the constraints
+    begin: tuple[Array, Array] | None  # errors at the beginning, (n,) each, where they are known
+    # carried, local: (s + 2, n): Legendre terms of the accelerations that these bring, and
     # those that the window adds
     carried: Array
     local: Array
 
     @classmethod
-    def of(cls, window: _Window, after: State, x: Array, v: Array) -> _Astray:
+    def of(cls, window: _Window, after: State, begin: tuple[Array, Array] | None) -> Step:
+        """Return a window with the error along it."""
         points, slopes, h, terms = window.points, window.slopes, window.h, window.terms
+        x, v = begin or (np.zeros_like(after.x), np.zeros_like(after.x))
         defect = window.defect.copy()
         defect[len(terms)] = window.before.a - (-1.0) ** np.arange(len(terms)) @ terms
         defect[-1] = after.a - np.sum(terms, axis=0)
@@ -229,49 +236,57 @@ class _Astray:
         both = np.tensordot(points.series, window.unwind(np.stack([carried, local], -1)), axes=1)
         carried, local = np.moveaxis(both, -1, 0)
         lacking[:-2] += local
-        return cls(x, v, np.concatenate([carried, np.zeros((2, len(x)))]), lacking)
+        return cls(window, after, begin, np.concatenate([carried, np.zeros((2, len(x)))]), lacking)
 
-    def added(self, window: _Window) -> float:
-        """Return what the window itself adds by its end, relative."""
-        return window.units.of(*_gain(window.h, self.local))
+    @property
+    def added(self) -> float:
+        """What the window itself adds to the error by its end, relative."""
+        return self.window.units.of(*_gain(self.window.h, self.local))
 
-    def at_end(
-        self, equations: Equations, window: _Window, after: State
-    ) -> tuple[Array, Array] | None:
-        """Return the error at the end, on the constraints; None where there is no such state.
+    @property
+    def error(self) -> Array:
+        """Largest error estimate of the coordinates inside, ``(n,)``."""
+        h, points, units = self.window.h, self.window.points, self.window.units
+        if self.begin is None:
+            return np.full_like(self.after.x, np.inf)
+        x, v = self.begin
+        carried, local = (
+            h * h * (points.terms_twice @ part) for part in (self.carried, self.local)
+        )
+        error = np.abs(x + h * points.all[:, None] * v + carried) + np.abs(local)
+        return np.asarray(np.max(error, axis=0) + self.window.left * units.place)
+
+    def error_at_end(self, equations: Equations) -> tuple[Array, Array] | None:
+        """Return the error at the end, on the constraints; None where it is not known.
 
         Where a force jumps the sign of what a window adds is not known, nor that of what its
         iteration left: all is taken to go one way.
         """
-        (x, v), local = _gain(window.h, self.carried), _gain(window.h, self.local)
-        units = window.units
-        x, v = self.x + window.h * self.v + x, self.v + v
-        x = x + np.copysign(np.abs(local[0]) + window.left * units.place, x)
-        v = v + np.copysign(np.abs(local[1]) + window.left * units.speed, v)
+        if self.begin is None:
+            return None
+        h, left, units, after = self.window.h, self.window.left, self.window.units, self.after
+        (x, v), local = _gain(h, self.carried), _gain(h, self.local)
+        x, v = self.begin[0] + h * self.begin[1] + x, self.begin[1] + v
+        x = x + np.copysign(np.abs(local[0]) + left * units.place, x)
+        v = v + np.copysign(np.abs(local[1]) + left * units.speed, v)
         try:
             x, v = equations.nearest(after.t, after.x + x, after.v + v)
         except NoConvergence:
             return None
         return x - after.x, v - after.v
 
+    @property
+    def inner(self) -> Array:
+        """Times inside at which to look for what stops a motion."""
+        return np.asarray(self.window.before.t + self.window.h * self.window.points.c[2:-1:3])
 
-def _step(window: _Window, after: State, astray: _Astray | None) -> Step:
-    before, h, points = window.before, window.h, window.points
-
-    def at(t: Array) -> tuple[Array, Array]:
+    def at(self, t: Array) -> tuple[Array, Array]:
+        """Return coordinates and velocities at times inside, not yet on the constraints."""
+        before, h, terms = self.window.before, self.window.h, self.window.terms
         part = (t - before.t) / h
-        values = at_places(part, len(window.terms)) @ window.terms
+        values = at_places(part, len(terms)) @ terms
         twice, once = values[:, 0], values[:, 1]
         return before.x + h * part[:, None] * before.v + h * h * twice, before.v + h * once
-
-    error = np.full_like(before.x, np.inf)
-    if astray is not None:
-        along = astray.x + h * points.all[:, None] * astray.v
-        along = np.abs(along + h * h * (points.terms_twice @ astray.carried))
-        along += np.abs(h * h * (points.terms_twice @ astray.local))
-        error = np.max(along, axis=0) + window.left * window.units.place
-    inner = before.t + h * points.c[2:-1:3]  # what may stop a motion is looked at there
-    return Step(before, after, at, window.units.place, inner, error)
 
 
 def _solved(
@@ -284,8 +299,7 @@ def _solved(
     near: float,
 ) -> _Window:
     """Return a window of collocation, its accelerations at the nodes by Newton's iteration."""
-    # Within `near` of the solution the derivatives are kept.  The last correction goes with an
-    # evaluation between the nodes.
+    # Within `near` of the solution the derivatives are kept.
     t, rtol = before.t + h * points.c, tolerance.rtol
     a, last = guess, np.inf
     slopes: Linearised | None = None
@@ -310,45 +324,30 @@ def _solved(
             break
         part = min(10.0 * size if fresh else size / last, 1.0)
         tail, fall = _tail(points.series @ a, h, units)
+        # The terms that are not there fall on as those before them.
+        over = tail * fall / rtol
         # Before its last correction the iteration may leave this part of the tolerance.
         if (part < 0.5 and size * part <= 0.1 * rtol) or (size <= 1e-9 and part >= 0.25):
-            # The terms that are not there fall on as those before them.
-            if tail * fall > rtol:
-                raise _TooLong(tail * fall / rtol, points.series @ a)
-            a, defect, change = _between(equations, before, h, points, a, unwind)
+            if over > 1.0:
+                raise _TooLong(over, points.series @ a)
+            # What is wrong at the nodes goes with the last correction, between them too.
+            x = before.x + h * (points.all[:, None] * before.v + h * (points.all_twice @ a))
+            v = before.v + h * (points.all_once @ a)
+            exact = equations.accelerations(before.t + h * points.all, x, v)[0]
+            defect = exact - points.values @ exact[: len(a)]
+            change = unwind(exact[: len(a)] - a)
+            terms = points.series @ (a + change)
             left = min(part * units.of(h * h * change, h * change), size)
-            over = tail * fall / rtol
-            return _Window(
-                before, h, points, points.series @ a, defect, over, left, units, slopes, unwind
-            )
+            return _Window(before, h, points, terms, defect, over, left, units, slopes, unwind)
         # What the iteration has not settled yet is no sign of a window that is too long.
         if tail * fall > max(30.0 * rtol, size if size < 1e-2 else 0.1):
-            raise _TooLong(tail * fall / rtol, None)
+            raise _TooLong(over, None)
         if size > 2.0 * last and last < 1e-2 and fresh:
             break
         if size > near or (part > 0.2 and not fresh):
             slopes = None
         last = size
     raise NoConvergence("the window does not converge")
-
-
-def _between(
-    equations: Equations,
-    before: State,
-    h: float,
-    points: Nodes,
-    a: Array,
-    unwind: Callable[[Array], Array],
-) -> tuple[Array, Array, Array]:
-    """Evaluate at and between the nodes; return accelerations, defect between, and correction."""
-    s = len(a)
-    x = before.x + h * (points.all[:, None] * before.v + h * (points.all_twice @ a))
-    v = before.v + h * (points.all_once @ a)
-    exact = equations.accelerations(before.t + h * points.all, x, v)[0]
-    # What is wrong at the nodes goes with the correction, between them too.
-    defect = exact - points.values @ exact[:s]
-    change = unwind(exact[:s] - a)
-    return a + change, defect, change
 
 
 def _tail(terms: Array, h: float, units: _Units) -> tuple[float, float]:
@@ -423,9 +422,8 @@ def collocation(
             # it is less where there are more than the next number.
             near = 1e-3 * min(1.0, 30.0 * h / (end - start.t))
             window = _solved(equations, state, h, points, first, tolerance, near)
-            after = equations.state(t, *window.end())
-            astray = _Astray.of(window, after, *(begin or (0.0 * state.x, 0.0 * state.x)))
-            if astray.added(window) > rtol:
+            step = Step.of(window, equations.state(t, *window.end()), begin)
+            if step.added > rtol:
                 # How much shorter a window becomes in which a force jumps.
                 raise _TooLong(2.0**s, window.terms)
         except _TooLong as reason:
@@ -436,11 +434,10 @@ def collocation(
         except NoConvergence:
             h, guess = h * _SHORTER, None
             continue
-        yield _step(window, after, astray if begin is not None else None)
+        yield step
         if t >= end:
             return
-        begin = None if begin is None else astray.at_end(equations, window, after)
-        state, guess = after, None
+        begin, state, guess = step.error_at_end(equations), step.after, None
         h *= min(_LONGER, _CAUTION * max(window.size, 1e-300) ** (-1.0 / s))
     raise StoppedEarly(f"{_MOST_WINDOWS} steps were not enough: shorten the span")
 

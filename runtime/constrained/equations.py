@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -37,35 +37,6 @@ class State:
     x: Array
     v: Array
     a: Array
-
-
-@dataclass(frozen=True)
-class Step:
-    """One accepted step of a motion, scaled."""
-
-    # before, after: its ends
-    before: State
-    after: State
-    # times inside, ``(nt,)``, to predicted coordinates and velocities ``(nt, n)``, not yet on the
-    # constraints
-    at: Callable[[Array], tuple[Array, Array]]
-    reach: Array  # (n,): largest size of the coordinates inside
-    inner: Array  # times inside at which to look for what stops a motion
-    error: Array  # (n,): largest error estimate of the coordinates inside
-
-
-@dataclass(frozen=True)
-class Tolerance:
-    """How exact the steps are to be."""
-
-    rtol: float  # relative tolerance of the error of one step
-    # place, speed: sizes of scaled coordinates and velocities that are added to their own ones
-    place: float
-    speed: float
-
-
-class StoppedEarly(ArithmeticError):  # noqa: N818 - reads as what it is
-    """An integrator cannot go on; the message says why."""
 
 
 @dataclass(frozen=True)

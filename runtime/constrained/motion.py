@@ -17,20 +17,8 @@ from ..core.families.multipliers import check_rank, scaling
 from ..core.inputs import numbers, require_between, require_kind
 from ..core.plotting import Axes, draw_coordinates
 from ..core.results import FAIR, Check, Result, provenance
-from .collocation import collocation
-from .equations import (
-    EPS,
-    LEVELS,
-    SMALL,
-    Array,
-    Equations,
-    NoConvergence,
-    State,
-    Step,
-    StoppedEarly,
-    Tolerance,
-    constraint_norms,
-)
+from .collocation import Step, StoppedEarly, Tolerance, collocation
+from .equations import EPS, LEVELS, SMALL, Array, Equations, NoConvergence, State, constraint_norms
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -409,7 +397,7 @@ def march(
         try:
             for step in collocation(equations, start, float(times[-1]), tolerance):
                 if not steps:  # from rest at the origin a motion has its size from here
-                    least = max(tolerance.place, SMALL * float(np.max(step.reach)))
+                    least = max(tolerance.place, SMALL * float(np.max(step.window.units.place)))
                     limit = bound * np.maximum(np.abs(start.x), least)
                 steps += 1
                 stopped = _stop(equations, step, guards, limit)
@@ -508,7 +496,7 @@ def _stop(
     equations: Equations, step: Step, guards: Sequence[Guard], limit: Array
 ) -> tuple[State, str] | None:
     """Return where and why a step stops the motion; None where it goes on."""
-    if not guards and np.all(step.reach <= limit):
+    if not guards and np.all(step.window.units.place <= limit):
         return None
     x, v = step.at(step.inner)
     # Mostly all is well by far: only what may stop the motion is carried onto the constraints.
@@ -519,7 +507,7 @@ def _stop(
     x, v = equations.nearest(step.inner, x, v)
     a, _ = equations.accelerations(step.inner, x, v)
     inner = [State(float(t), *at) for t, *at in zip(step.inner, x, v, a, strict=True)]
-    for before, after in pairwise([step.before, *inner, step.after]):
+    for before, after in pairwise([step.window.before, *inner, step.after]):
         met = [g for g in guards if not _margin(equations, g, after.t, after.x, after.v) > 0.0]
         stops = [(_crossing(equations, step, guard, before, after), guard) for guard in met]
         if stops:

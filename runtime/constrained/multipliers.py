@@ -192,32 +192,31 @@ def orbit_multipliers(orbit: PeriodicOrbit) -> ConstrainedMultipliers:
 class _Turn:
     """One turn of the variational equations: all of it, and within the constraints.
 
-    ``leak`` is what leaves the tangent space, ``sign`` and ``logarithm`` tell the determinant.
+    ``steps`` are those within, ``leak`` is what leaves the tangent space.
     """
 
     whole: Array
     reduced: Array
+    steps: Array
     leak: float
-    sign: float
-    logarithm: float
     tangent: Tangent
 
     @classmethod
     def of(cls, shooting: Shooting, shot: Shot) -> _Turn:
-        ring, maps, meeting = shot.ring, shot.sweep.maps, shooting.junctions(shot.ring)
+        maps, meeting = shot.sweep.maps, shooting.junctions(shot.ring)
         carried = maps @ meeting.along
-        steps = np.swapaxes(ring.following(meeting.along), -1, -2) @ carried
-        leak = np.swapaxes(ring.following(meeting.across), -1, -2) @ carried
-        sign, logarithm = np.linalg.slogdet(steps)
+        steps, leak = (
+            np.swapaxes(np.roll(basis, -1, axis=0), -1, -2) @ carried
+            for basis in (meeting.along, meeting.across)
+        )
         whole, reduced = np.eye(maps.shape[-1]), np.eye(steps.shape[-1])
         for one, inner in zip(maps, steps, strict=True):
             whole, reduced = one @ whole, inner @ reduced
         return cls(
             whole,
             reduced,
+            steps,
             float(np.max(np.abs(leak), initial=0.0)),
-            float(np.prod(sign)),
-            float(np.sum(logarithm)),
             Tangent(meeting.normals[0], meeting.along[0], meeting.across[0]),
         )
 
@@ -275,7 +274,8 @@ def _liouville(turn: _Turn, shot: Shot, shift: float) -> Check:
     # The violations have determinant 1, so that of the whole is that of the physical part.
     trace = np.trace(shot.sweep.slopes.by_v, axis1=-2, axis2=-1)
     total = float(shot.ring.step * np.sum(trace @ shot.ring.points.b))
-    gap = abs(turn.logarithm - total) if turn.sign > 0 else np.inf
+    sign, logarithm = np.linalg.slogdet(turn.steps)
+    gap = abs(float(np.sum(logarithm)) - total) if np.prod(sign) > 0 else np.inf
     p = len(turn.reduced)
     return Check(gap, 8 * p * shift * max(1.0, float(np.linalg.norm(turn.reduced))) + 1e-12)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from numbers import Real
 from typing import Any, ClassVar
@@ -75,15 +76,10 @@ class Ring:
     def gaps(self) -> tuple[Array, Array]:
         """Return the ends of the steps less the beginnings of the next, shape ``(m, n)``."""
         h, b, c = self.step, self.points.b, self.points.c
-        ahead = self.following(self.x)
+        ahead = np.roll(self.x, -1, axis=0)
         ahead[-1] += self.advance
         x = self.x + h * (self.v + h * ((b * (1.0 - c)) @ self.a))
-        return x - ahead, self.v + h * (b @ self.a) - self.following(self.v)
-
-    @staticmethod
-    def following(values: Array) -> Array:
-        """Return what stands at the beginning of the next step."""
-        return np.roll(values, -1, axis=0)
+        return x - ahead, self.v + h * (b @ self.a) - np.roll(self.v, -1, axis=0)
 
     def at(self, t: Array) -> tuple[Array, Array]:
         """Return coordinates and velocities at any times ``(nt,)``, by the collocation itself."""
@@ -220,88 +216,75 @@ class Shooting:
         for count in range(_ITERATIONS):
             size = self.size(here.ring)
             here = replace(here, residual=here.sweep.defect / size, iterations=count)
-            step = self._newton_step(here)
-            if step is None:
-                singular = "diverging shooting: singular, a multiplier of the motion is 1"
-                return replace(here, reason=singular)
-            length = step[3] / size
-            if length < _SMALL and length > before / 2:
-                return here
-            taken = self._damped(here, step)
-            if isinstance(taken, str):
-                return replace(here, reason=f"diverging shooting: {taken}")
+            try:
+                *step, length = self._newton_step(here)
+                length /= size
+                if before / 2 < length < _SMALL:
+                    return here
+                taken, part = self._damped(here, step)
+            except NoConvergence as reason:
+                return replace(here, reason=f"diverging shooting: {reason}")
             if length <= _ROUNDING:
-                residual = taken[0].sweep.defect / size
-                return replace(taken[0], residual=residual, iterations=count + 1)
-            here, part = taken
-            before = length if part == 1.0 else np.inf
+                return replace(taken, residual=taken.sweep.defect / size, iterations=count + 1)
+            here, before = taken, length if part == 1.0 else np.inf
         return replace(here, reason=f"diverging shooting: not there after {_ITERATIONS} steps")
 
-    def _newton_step(self, here: Shot) -> tuple[Array, Array, Array, float] | None:
+    def _newton_step(self, here: Shot) -> tuple[Array, Array, Array, float]:
         """Return the changes of states and stage accelerations, and the largest of them."""
         ring, swept, n = here.ring, here.sweep, self.equations.n
-        moved = self._closed(here, swept.gap[..., None])
-        if moved is None:
-            return None
-        change = (moved[0] @ moved[1])[..., 0]
+        along, within = self._closed(here, swept.gap[..., None])
+        change = (along @ within)[..., 0]
         a = swept.change + (swept.response @ change[:, None, :, None])[..., 0]
         inner = float(np.max(np.abs(a))) * ring.step / self.rate
-        return (
-            change[:, :n],
-            change[:, n:] * self.rate,
-            a,
-            max(float(np.max(np.abs(change))), inner),
-        )
+        largest = max(float(np.max(np.abs(change))), inner)
+        return change[:, :n], change[:, n:] * self.rate, a, largest
 
-    def _damped(
-        self, here: Shot, step: tuple[Array, Array, Array, float]
-    ) -> tuple[Shot, float] | str:
-        """Return the motion after a step and the part taken; or why none lessens the defect."""
-        part, reason, ring = 1.0, "no shortened Newton step lessens the defect", here.ring
+    def _damped(self, here: Shot, step: Sequence[Array]) -> tuple[Shot, float]:
+        """Return the motion after a step, and the part of it that was taken."""
+        part, ring = 1.0, here.ring
+        reason = NoConvergence("no shortened Newton step lessens the defect")
         while part >= _LEAST_DAMPING:
-            x, v, a = (
-                old + part * new
-                for old, new in zip((ring.x, ring.v, ring.a), step[:3], strict=True)
-            )
+            old = ring.x, ring.v, ring.a
+            x, v, a = (value + part * new for value, new in zip(old, step, strict=True))
             try:
                 with np.errstate(all="ignore"):
                     x, v = self.equations.nearest(ring.start, x, v)
                     moved = replace(ring, x=x, v=v, a=a)
                     swept = sweep(self.equations, moved, self.rate)
             except NoConvergence as refusal:
-                reason = str(refusal)
+                reason = refusal
             else:
                 limit = (1.0 - part / 4) * here.sweep.defect
                 rounding = _SMALL * self.size(moved) if part == 1.0 else 0.0
                 if swept.defect <= max(limit, rounding):
                     return Shot(moved, swept), part
             part /= 2
-        return reason
+        raise reason
 
-    def _closed(self, shot: Shot, wrong: Array) -> tuple[Array, Array] | None:
+    def _closed(self, shot: Shot, wrong: Array) -> tuple[Array, Array]:
         """Return the tangent spaces, and the changes in them ``(m, p, k)`` that close the ring."""
-        # The ends of the steps are off by wrong (m, 2n, k); None where nothing closes it.
+        # The ends of the steps are off by wrong (m, 2n, k).
         along = self.junctions(shot.ring).along
-        back = np.swapaxes(shot.ring.following(along), -1, -2)
+        back = np.swapaxes(np.roll(along, -1, axis=0), -1, -2)
         maps, loads = back @ shot.sweep.maps @ along, np.moveaxis(back @ wrong, -1, 0)
         if not loads.size:  # constraints that leave nothing free
             return along, np.moveaxis(loads, 0, -1)
         solution, _ = solve_ring(np.broadcast_to(maps, (len(loads), *maps.shape)), loads)
         if not np.all(np.isfinite(solution)):
-            return None
+            raise NoConvergence("singular, a multiplier of the motion is 1")
         return along, np.moveaxis(solution, 0, -1)
 
     def rounding(self, shot: Shot) -> float:
         """Return what rounding in every step does to the motion, by random samples of it."""
         size = self.size(shot.ring)
-        # Rounding of one step of the motion's size: random samples, enlarged for the largest of
-        # more.
+        # Of one step of the motion's size; enlarged for the largest of more samples.
         shape = (*shot.sweep.gap.shape, 4)
         noise = np.random.default_rng(0).normal(size=shape) * size * EPS
-        moved = self._closed(shot, noise)
-        return (
-            np.inf if moved is None else 4.0 * float(np.max(np.abs(moved[1]), initial=0.0)) / size
-        )
+        try:
+            _, moved = self._closed(shot, noise)
+        except NoConvergence:
+            return np.inf
+        return 4.0 * float(np.max(np.abs(moved), initial=0.0)) / size
 
     def error(self, coarse: Shot, fine: Shot) -> float:
         """Return the error of the finer motion: what refinement changed, and rounding."""
@@ -507,6 +490,10 @@ def _result(
     if system.watch is not None:
         checks["linear range"] = linear_range(system.watch, inside[0], times)
         deflection = checks["linear range"].value
+    given = source.shooting.state(guess.q / columns, guess.qd / columns)
+    with np.errstate(all="ignore"):
+        reached = source.shooting.state(*ring.at(guess.times))
+    size = max(float(np.max(np.abs(state))) for state in (given, reached))
     q, qd = ring.x * columns, ring.v * columns
     pick = slice(None, None, max(len(q) // _SAMPLES, 1))
     for margin, reason in system.guards:
@@ -529,22 +516,12 @@ def _result(
         residual=shot.residual,
         iterations=iterations,
         deflection=deflection,
-        moved=_moved(source.shooting, guess, ring),
+        moved=float(np.max(np.abs(reached - given))) / size if size > 0 else 0.0,
         message=shot.reason,
         labels=system.labels,
         source=source,
         **largest,
     )
-
-
-def _moved(shooting: Shooting, guess: _Guess, ring: Ring) -> float:
-    """Return the largest distance of the motion from its guess, over the larger one."""
-    columns = shooting.equations.columns
-    given = shooting.state(guess.q / columns, guess.qd / columns)
-    with np.errstate(all="ignore"):
-        reached = shooting.state(*ring.at(guess.times))
-    size = max(float(np.max(np.abs(state))) for state in (given, reached))
-    return float(np.max(np.abs(reached - given))) / size if size > 0 else 0.0
 
 
 # From a guess to a first ring ---------------------------------------------------------------------

@@ -146,24 +146,19 @@ class Circuit:
         """True where the crank turns fully."""
         return not any(self.swings)
 
-    @property
-    def count(self) -> int:
-        """How many circuits the linkage has: one or two."""
-        if self.linkage.mechanism == "quick_return":
-            return 1
-        return 1 if self.swings[0] != self.swings[1] else 2
-
     def check(self) -> None:
         """Raise BadInput for a change point or a circuit that the linkage has not."""
+        last = int(self.swings[0] == self.swings[1])
         if self.linkage.mechanism == "quick_return":
-            # A block that leaves the rod has no closed motion.
+            # A block that leaves the rod has no closed motion; there is one assembly.
             self.linkage.require_full_turn()
+            last = 0
         if self.limits.q1 == 0 or self.limits.one_less_q2 == 0:
             kind, fix = type(self.linkage).__name__, "change a length by a little"
             found = "a change point: the links come into one line and may leave it two ways"
             raise bad(kind, found, "a linkage whose circuits do not meet", fix)
-        if not is_whole(self.number, 0, self.count - 1):
-            has = f"0 to {self.count - 1}" if self.count > 1 else "0, the only one"
+        if not is_whole(self.number, 0, last):
+            has = "0 to 1" if last else "0, the only one"
             raise bad("circuit", shown(self.number), has, "choose another circuit")
 
     @property
@@ -242,7 +237,11 @@ class Circuit:
         pin = size["crank"] * crank
         placed = {"crank": Placed(zero, crank)}
         if kind == "quick_return":
-            return placed | self._rod(cosine, sine, pin)
+            near, far = size["frame"] - size["crank"], size["frame"] + size["crank"]
+            square = far**2 * (cosine * cosine) + near**2 * (sine * sine)
+            along = far * (cosine * cosine) + near * (sine * sine)
+            rod = (along + 1j * _imag(pin)) / square.sqrt()
+            return placed | {"block": Placed(pin, rod), "rod": Placed(zero - size["frame"], rod)}
         if kind == "slider_crank":
             c, m, e = size["crank"], size["coupler"], size["offset"]
             raised = e - c * (sine * sine - cosine * cosine)
@@ -262,14 +261,6 @@ class Circuit:
         placed["coupler"] = Placed(pin, to_pivot * (middle + 1j * beside) / (m * square))
         placed["follower"] = Placed(zero + f, to_pivot * (1j * beside - opposite) / (n * square))
         return placed
-
-    def _rod(self, cosine: Taylor, sine: Taylor, pin: Taylor) -> dict[str, Placed]:
-        f, c = self.sizes["frame"], self.sizes["crank"]
-        near, far = f - c, f + c
-        square = far**2 * (cosine * cosine) + near**2 * (sine * sine)
-        from_pivot = (far * (cosine * cosine) + near * (sine * sine)) + 1j * _imag(pin)
-        rod = from_pivot / square.sqrt()
-        return {"block": Placed(pin, rod), "rod": Placed(Taylor(0 * pin.c) - f, rod)}
 
     def path(self, s: Array, link: str, place: complex, order: int) -> Taylor:
         """Return the path of a point of a link, ``place`` in the link's frame over ``scale``."""

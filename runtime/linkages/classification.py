@@ -403,6 +403,11 @@ def _four_bar(linkage: FourBar, driven: Input, tolerance: Fraction) -> Classific
     # Input, coupler and output in this order: the other way round where the follower is driven.
     seen = signs if driven == "crank" else signs[::-1]
     order = LINKS if driven == "crank" else (LINKS[0], *LINKS[:0:-1])
+    # The sums of an inversion, the frame going round in this order, are those of the linkage in
+    # another one, some with their sign turned.
+    s_2, s_3, s_4 = seen
+    turned = (seen, (-s_4, -s_3, s_2), (-s_2, s_3, -s_4), (s_4, -s_3, -s_2))
+    inverted = [SYMBOLS[number_of_signs(each)] for each in turned]
     row = CLASSES[number_of_signs(seen) - 1]
     if row.symbol == "CP2X":
         row = replace(row, also="parallelogram linkage" if signs[1] else "kite linkage")
@@ -412,7 +417,7 @@ def _four_bar(linkage: FourBar, driven: Input, tolerance: Fraction) -> Classific
         **vars(row),
         turns={link: pairs["frame", link] for link in LINKS[1:]},
         relative_turns={"-".join(pair): turns for pair, turns in sorted(pairs.items())},
-        inversions=dict(zip(order, _inversions(seen), strict=True)),
+        inversions=dict(zip(order, inverted, strict=True)),
         distance=float((shortest + longest - p - q) / sums.total),
         change_distances={
             name: float(value / sums.total)
@@ -448,16 +453,6 @@ def _signs(
     if abs(sums[least]) <= tolerance * sum(exact):
         signs[least] = 0
     return signs, least
-
-
-def _inversions(signs: Sequence[int]) -> list[str]:
-    """Return the symbols of the four inversions, the frame going round in the order of the links.
-
-    The sums of an inversion are those of the linkage in another order, some with their sign turned.
-    """
-    two, three, four = signs
-    turned = (signs, (-four, -three, two), (-two, three, -four), (four, -three, -two))
-    return [SYMBOLS[number_of_signs(each)] for each in turned]
 
 
 def _slider_crank(linkage: SliderCrank, tolerance: Fraction) -> SlidingClassification:

@@ -61,15 +61,12 @@ class CrankPosition:
     margin_error: Array
 
 
-# Play at values of the variable: (variable, radius, guide).
-Kernel = Callable[[ArrayLike, ArrayLike, ArrayLike], Play]
-
-
 @dataclass(frozen=True)
 class Route:
     """One output of one linkage."""
 
-    measure: Kernel
+    # play at values of the variable: (variable, radius, guide)
+    measure: Callable[[ArrayLike, ArrayLike, ArrayLike], Play]
     position: Callable[[Array], CrankPosition]  # at crank angles
     turn: float  # +1 where the output falls as the place of ``measure`` rises, else -1
     interval: tuple[float, float]  # ends of the variable
@@ -190,7 +187,9 @@ def _four_bar(linkage: FourBar, link: str) -> Route:
         sine2 = (diagonal - short) * (diagonal + short)
         return _angle_of(sine2, (long - diagonal) * (long + diagonal))
 
-    ends = (max(short, abs(side - other)), min(long, side + other))
+    greatest = min(long, side + other)
+    # A diagonal of no length has no angle.
+    ends = (max(short, abs(side - other), 64.0 * EPS * greatest), greatest)
     triangle = partial(_triangle, side=side, other=other)
     return Route(triangle, position, turn, ends, candidates, crank_at)
 
@@ -201,25 +200,23 @@ def _triangle(
     """Return the play of the angle at D between DB and DC; BC is ``other`` give or take."""
     d, r, _ = _together(diagonal, radius, guide)
     scale = np.maximum(4.0 * d * side, _TINY)
-    least, nominal, greatest = (
-        _opened(d, side, other, change, scale) for change in (-r, np.zeros_like(r), r)
-    )
+
+    def opened(change: Array) -> _Half:
+        """Return the angle between ``d`` and ``side``, opposite to ``other + change``."""
+        excess, around = (other - side) + change, (other + side) + change
+        sine2 = (around - d) * (d + excess) / scale
+        cosine2 = (d - excess) * (around + d) / scale
+        # A side below zero sets no limit, whatever the signs of the factors.
+        none = other + change <= 0.0
+        return _Half.of(np.where(none, -1.0, sine2), np.where(none, 1.0, cosine2))
+
+    least, nominal, greatest = (opened(change) for change in (-r, np.zeros_like(r), r))
     rises = r * (2.0 * other - r) / scale, r * (2.0 * other + r) / scale
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         small = (r / d) * (other / side) / (nominal.sine * nominal.cosine)
     small = np.where(r == 0.0, 0.0, small)
     margin = np.minimum((other + side) - d, d - abs(other - side))
     return _of_angles((least, nominal, greatest), rises, small, margin)
-
-
-def _opened(d: Array, side: float, other: float, change: Array, scale: Array) -> _Half:
-    """Return the angle between two sides, ``d`` and ``side``, opposite to ``other + change``."""
-    excess, around = (other - side) + change, (other + side) + change
-    sine2 = (around - d) * (d + excess) / scale
-    cosine2 = (d - excess) * (around + d) / scale
-    # A side below zero sets no limit, whatever the signs of the factors.
-    none = other + change <= 0.0
-    return _Half.of(np.where(none, -1.0, sine2), np.where(none, 1.0, cosine2))
 
 
 def _slider_crank(linkage: SliderCrank, link: str) -> Route:
@@ -229,14 +226,12 @@ def _slider_crank(linkage: SliderCrank, link: str) -> Route:
 
     def position(theta: Array) -> CrankPosition:
         gap = offset - crank * np.sin(theta)
-        sum_error = EPS * (abs(offset) + 2.0 * crank)
-        margin_error = EPS * (coupler + np.abs(gap) + crank * np.abs(theta)) + 2.0 * sum_error
+        start = crank * np.cos(theta) if along else np.full_like(gap, np.pi / 2.0)
+        sum_error, size = EPS * (abs(offset) + 2.0 * crank), coupler + np.abs(gap)
+        margin_error = EPS * (size + crank * np.abs(theta)) + 2.0 * sum_error
         # Of the gap, and of the lengths that it is compared with.
-        error = sum_error + 2.0 * EPS * (coupler + np.abs(gap))
-        if along:
-            start = crank * np.cos(theta)
-            return CrankPosition(gap, error, start, 2.0 * EPS * np.abs(start), margin_error)
-        return CrankPosition(gap, error, np.full_like(gap, np.pi / 2.0), EPS * np.pi, margin_error)
+        error = sum_error + 2.0 * EPS * size
+        return CrankPosition(gap, error, start, 2.0 * EPS * np.abs(start), margin_error)
 
     def candidates(radius: float, guide: float) -> tuple[float, ...]:
         edge = coupler - radius - guide
@@ -324,10 +319,10 @@ def _angle_of(sine2: float, cosine2: float) -> float:
 
 # Of a kind of linkage the links that can be ranged, the output first; the joint that slides and
 # does not turn: its clearance is across its guide; and what makes the route to the play of a link.
-_OUTPUTS: Mapping[type, tuple[tuple[str, ...], str, Callable[[Any, str], Route]]] = {
-    FourBar: (("follower", "coupler"), "", _four_bar),
-    SliderCrank: (("slider", "coupler"), "41", _slider_crank),
-    QuickReturn: (("rod",), "34", _quick_return),
+_OUTPUTS: Mapping[str, tuple[tuple[str, ...], str, Callable[[Any, str], Route]]] = {
+    "four_bar": (("follower", "coupler"), "", _four_bar),
+    "slider_crank": (("slider", "coupler"), "41", _slider_crank),
+    "quick_return": (("rod",), "34", _quick_return),
 }
 
 
@@ -527,7 +522,7 @@ def clearance_range(
     0.0503 0.0503
     """
     require_linkage(linkage)
-    links, sliding, route = next(of for kind, of in _OUTPUTS.items() if isinstance(linkage, kind))
+    links, sliding, _ = _OUTPUTS[linkage.mechanism]
     link = links[0] if link is None else link
     require_one_of("link", link, links)
     plays = _checked(linkage, clearances, joint)
@@ -539,9 +534,9 @@ def clearance_range(
     guide = halves.pop(sliding, 0.0)
     slack = math.fsum(halves.values()), guide
     angles = finite_array("theta", theta, "angles [rad]")
-    task = _Task(linkage, link, route(linkage, link), slack, angles)
+    task = _Task(linkage, link, slack, angles)
     play = task.play
-    errors = DeferredGroup(partial(_errors, task))
+    errors = DeferredGroup(task.errors)
     nominal, below, above, small = (
         task.in_units(part) for part in (play.nominal, play.below, play.above, play.small)
     )
@@ -579,9 +574,13 @@ class _Task:
 
     linkage: FourBar | SliderCrank | QuickReturn
     link: str
-    route: Route  # to the play of this output
     slack: tuple[float, float]  # radius of the play of all pins, half the clearance of the guide
     theta: Array
+
+    @property
+    def route(self) -> Route:
+        """The way to the play of this output, made anew: its functions bear no pickling."""
+        return _OUTPUTS[self.linkage.mechanism][2](self.linkage, self.link)
 
     @cached_property
     def position(self) -> CrankPosition:
@@ -598,6 +597,11 @@ class _Task:
             reached &= self.position.variable > self.position.margin_error
         self.linkage.require(reached, self.theta)
         return play
+
+    def errors(self) -> dict[str, Array]:
+        """Return the errors as fields of the result."""
+        error, nominal = self.route.errors(self.position, *self.slack, self.play)
+        return {"error": self.in_units(2.0 * error), "nominal_error": self.in_units(nominal)}
 
     def in_units(self, value: Array | float) -> Array:
         """Return places in the linkage's unit: those of a slider are lengths."""
@@ -636,9 +640,6 @@ def _extremes(task: _Task) -> tuple[WidthExtreme, WidthExtreme]:
     # where its derivative vanishes, where the play begins to fold, and at the ends.
     route = task.route
     low, high = route.interval
-    if isinstance(task.linkage, FourBar):
-        # A diagonal of no length has no angle.
-        low = max(low, 64.0 * EPS * high)
     places = [low, high]
     for place in route.candidates(*task.slack):
         # The width jumps where a fold begins, so that both sides of the place count.
@@ -654,11 +655,6 @@ def _extremes(task: _Task) -> tuple[WidthExtreme, WidthExtreme]:
     return least, greatest
 
 
-def _errors(task: _Task) -> dict[str, Array]:
-    error, nominal_error = task.route.errors(task.position, *task.slack, task.play)
-    return {"error": task.in_units(2.0 * error), "nominal_error": task.in_units(nominal_error)}
-
-
 def _checks(task: _Task) -> dict[str, Check]:
     return {
         "loop closure at both ends over its round-off": Check(_gap(task), 1.0),
@@ -668,22 +664,19 @@ def _checks(task: _Task) -> dict[str, Check]:
 
 def _gap(task: _Task) -> float:
     """Return how far the loop with all clearance taken up stays open, over its round-off."""
-    play, sizes = task.play, task.linkage.unit_lengths
+    play = task.play
     error = np.add(*task.route.errors(task.position, *task.slack, play))
-    longest = max(abs(size) for size in sizes.values())
+    longest = max(abs(size) for size in task.linkage.unit_lengths.values())
     limit = 64.0 * EPS * longest * np.maximum(np.abs(task.theta), 1.0)
-    blur = limit + longest * error
-    pin = sizes["crank"] * np.exp(1j * task.theta)
-    worst = 0.0
-    for end in (play.nominal - play.below, play.nominal + play.above):
-        missing = np.where(play.free, 0.0, _missing(task, sizes, pin, end))
-        worst = max(worst, float(np.max(np.abs(missing) / blur, initial=0.0)))
-    return worst
+    ends = (play.nominal - play.below, play.nominal + play.above)
+    missing = [np.where(play.free, 0.0, _missing(task, end)) for end in ends]
+    return float(np.max(np.abs(missing) / (limit + longest * error), initial=0.0))
 
 
-def _missing(task: _Task, sizes: Mapping[str, float], pin: Any, end: Array) -> Array:
+def _missing(task: _Task, end: Array) -> Array:
     """Return by how much the loop at an end of the range leaves or exceeds the play."""
-    play, guide = task.slack
+    (play, guide), sizes = task.slack, task.linkage.unit_lengths
+    pin = sizes["crank"] * np.exp(1j * task.theta)
     if isinstance(task.linkage, QuickReturn):
         away = np.abs(((pin + sizes["frame"]) * np.exp(-1j * end)).imag)
         return np.asarray(away - (play + guide))

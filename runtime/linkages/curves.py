@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from math import pi
-from typing import Any, ClassVar, TypeAlias
+from typing import Any, ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -226,11 +227,11 @@ def coupler_curve(
     require_whole("points", points, 16, 10**6)
     motion.check()
     trace = _Trace(motion, link, place / motion.scale)
-    trace.require_motion()
-    slow = slowest(trace.series, trace.sharp)
-    doubles = trace.doubles(slow.stops)
-    s = _parameters(motion, int(points))
-    at = trace.series(s, 2)
+    if np.max(trace.speed(np.linspace(0.1, 6.2, 64))) <= 8 * EPS * trace.size:
+        raise bad("along, across", "the pivot of the link", "a point that moves", "choose another")
+    # Dead centres lie at +-pi/2; with this part of a step none is met for any number of points.
+    shift = 0.0 if motion.turns else 0.375
+    s: Array = (np.arange(float(points)) + shift) * (TURN / points)
     return CouplerCurve(
         linkage=linkage,
         circuit=circuit,
@@ -240,14 +241,14 @@ def coupler_curve(
         parameter=s,
         theta2=motion.crank_angle(s),
         branch=motion.branch(s),
-        **trace.local(s, at),
-        **trace.sizes(slow.parameter),
-        slowest=float(np.min(slow.speed / slow.fastest, initial=1.0)),
-        **trace.marked(slow.stops, doubles),
+        **trace.local(s),
+        **trace.sizes(),
+        slowest=float(np.min(trace.slowest[1], initial=1.0)),
+        **trace.marked(),
         method="Taylor series of the closed form; cusps and double points by Newton",
         error=trace.error(s),
         error_norm="distance of each position [m] from that at the same parameter",
-        checks=DeferredChecks(partial(_checks, trace, s, len(doubles.place))),
+        checks=DeferredChecks(partial(trace.checks, s)),
         provenance=provenance(linkage.provenance),
     )
 
@@ -265,13 +266,12 @@ def _place(linkage: Linkage, link: str, along: float, across: float) -> complex:
     return place
 
 
-def _parameters(motion: Circuit, points: int) -> Array:
-    """Return samples around the circuit, none of them on a dead centre of the crank."""
-    steps = 2.0 * pi / points
-    if motion.turns:
-        return np.asarray(np.arange(points) * steps)
-    # Dead centres lie at +-pi/2; a quarter of a step off, none is met for any number of points.
-    return np.asarray((np.arange(points) + 0.375) * steps)
+class _Doubles(NamedTuple):
+    """Double points: both parameters (m, 2), the place, the sine between the two branches."""
+
+    parameter: Array
+    place: Complex
+    sine: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -285,6 +285,10 @@ class _Trace:
     def series(self, s: Array, order: int) -> Taylor:
         return self.motion.path(s, self.link, self.place, order)
 
+    def speed(self, s: Array) -> Array:
+        """Return the speed by the parameter."""
+        return np.abs(self.series(s, 1).derivative(1))
+
     @property
     def sharp(self) -> Array:
         """Parameters about which the motion may change quickly: near a change point."""
@@ -295,24 +299,101 @@ class _Trace:
     def size(self) -> float:
         return float(sum(map(abs, self.motion.sizes.values())) + abs(self.place))
 
-    def require_motion(self) -> None:
-        s = np.linspace(0.1, 6.2, 64)
-        moved = np.max(np.abs(self.series(s, 1).derivative(1)))
-        if moved <= 8 * EPS * self.size:
-            found = "the pivot of the link"
-            raise bad("along, across", found, "a point that moves", "choose another")
+    @cached_property
+    def slowest(self) -> tuple[Array, Array]:
+        """Parameters of all local minima of the speed, and the speeds there over the largest.
 
-    def doubles(self, stops: Array) -> Doubles:
-        """Return the double points; on a line, an arc or a circle about a joint nothing crosses."""
+        The derivative of the squared speed has a simple root at a cusp too, where the speed itself
+        has a corner; bisection finds it whatever the speed left there.
+        """
+
+        def rate(s: Array) -> Array:
+            at = self.series(s, 2)
+            return np.asarray((at.derivative(1).conj() * at.derivative(2)).real)
+
+        s = _graded(self.sharp)
+        rates = rate(s)
+        starts = np.flatnonzero((rates < 0) & (np.roll(rates, -1) >= 0))
+        low, high = s[starts], np.append(s, s[0] + TURN)[starts + 1]
+        rough, width, _ = bracketed_roots(lambda _, at: (rate(at), 0.0), low, high)
+        # One step more: brackets stop at the noise of the rate's sign.
+        at = self.series(rough, 2)
+        first, second = at.derivative(1), at.derivative(2)
+        step = over(-(first * second.conj()).real, np.abs(second) ** 2)
+        better = self.speed(rough + step) < np.abs(first)
+        least = np.where(better & (np.abs(step) <= 1e-6 + width), rough + step, rough)
+        return least % TURN, self.speed(least) / np.max(self.speed(s))
+
+    @property
+    def stops(self) -> Array:
+        """The parameters of cusps."""
+        parameter, speed = self.slowest
+        return parameter[speed <= _STILL]
+
+    @cached_property
+    def doubles(self) -> _Doubles:
+        """The double points (crunodes), each once.
+
+        By Newton's method from pairs of parameters near them.  The equation is ``(z(s1) - z(s2)) /
+        sin((s1 - s2)/2) = 0``, so that the trivial solution s1 = s2 does not draw it in.  Loops so
+        small that it loses digits stay as they are, but for those that a cusp has swallowed.
+        """
         joints = (0.0, self.motion.sizes.get("coupler", 0.0))
         at_joint = min(abs(self.place - joint) for joint in joints) <= 64 * EPS * self.size
+        # On a line, an arc or a circle about a joint nothing crosses.
         free = self.link in ("coupler", "block") and not at_joint
-        seeds = crossings(self.motion, self.place) if free else np.zeros((0, 2))
-        return double_points(self.series, seeds, stops, self.size)
+        pairs = crossings(self.motion, self.place).T if free else np.zeros((2, 0))
+        wide = np.abs(np.sin(0.5 * (pairs[1] - pairs[0]))) > 1e-2
+        for _ in range(40 if np.any(wide) else 0):
+            stepped = self._newton(*pairs[:, wide])
+            moved = np.max(np.abs(stepped - pairs[:, wide]))
+            pairs[:, wide] = stepped
+            if moved < 1e-13:
+                break
+        beside = np.abs(np.sin(0.5 * (pairs[:, :, None] - self.stops)))
+        swallowed = np.any(np.all(beside < 1e-3, axis=0), axis=1)
+        apart = np.abs(np.sin(0.5 * (pairs[1] - pairs[0]))) > 1e-6
+        first, second = np.sort(pairs[:, apart & ~swallowed] % TURN, axis=0)
+        one, two = self.series(first, 1).c, self.series(second, 1).c
+        gap, across = np.abs(one[0] - two[0]), np.abs((one[1].conj() * two[1]).imag)
+        sine = over(across, np.abs(one[1]) * np.abs(two[1]))
+        good = np.flatnonzero((gap <= 64 * EPS * self.size) & (sine > 64 * EPS))
+        kept: list[int] = []
+        for i in good[np.argsort(gap[good], kind="stable")]:
+            # Where the branches nearly touch, the crossing is loose along them.
+            slack = 1e-9 + 1e3 * EPS / max(float(sine[i]), EPS)
+            a, b = first[kept], second[kept]
+            # How far the pairs are apart, either way round.
+            ways = [
+                np.maximum(_turn(first[i] - x), _turn(second[i] - y)) for x, y in ((a, b), (b, a))
+            ]
+            if np.all(np.minimum(*ways) > slack):
+                kept.append(i)
+        kept.sort(key=lambda i: float(first[i]))
+        chosen = np.stack([first[kept], second[kept]], axis=1)
+        return _Doubles(chosen, 0.5 * (one[0] + two[0])[kept], sine[kept])
 
-    def local(self, s: Array, at: Taylor) -> dict[str, Any]:
+    def _newton(self, first: Array, second: Array) -> Array:
+        """Return the next parameters of double points, (2, k)."""
+        places, rates = self.series(np.concatenate([first, second]), 1).c.reshape(2, 2, -1)
+        gap = places[0] - places[1]
+        half = 0.5 * (first - second)
+        sine = np.sin(half)
+        sine = np.where(np.abs(sine) < 1e-12, 1e-12, sine)
+        slope = 0.5 * gap * np.cos(half) / sine
+        a, b = rates[0] - slope, slope - rates[1]
+        determinant = (a.conj() * b).imag
+        determinant = np.where(determinant == 0, 1e-300, determinant)
+        with np.errstate(over="ignore", invalid="ignore"):
+            x = (-gap * b.conj()).imag / -determinant
+            y = (a.conj() * -gap).imag / determinant
+        # The farther the step, the less it can be trusted.
+        x, y = (np.clip(np.nan_to_num(step), -0.2, 0.2) for step in (x, y))
+        return np.stack([first + x, second + y])
+
+    def local(self, s: Array) -> dict[str, Any]:
         """Return place, velocity, acceleration, curvature and its centre at samples."""
-        scale = self.motion.scale
+        at, scale = self.series(s, 2), self.motion.scale
         crank = self.motion.links(s, 2)["crank"].direction
         turn = [(crank.derivative(k) * crank.c[0].conj()).imag for k in (1, 2)]
         first, second = at.derivative(1), at.derivative(2)
@@ -349,7 +430,7 @@ class _Trace:
         offset = np.stack([np.where(cusp, 0.0, part) for part in (offset_x, offset_y)], axis=-1)
         return np.where(cusp, np.inf, curvature), planar(z) + offset
 
-    def sizes(self, breaks: Array) -> dict[str, Any]:
+    def sizes(self) -> dict[str, Any]:
         """Return length and area with their errors."""
 
         def integrands(s: Array) -> Array:
@@ -358,7 +439,7 @@ class _Trace:
             return np.stack([np.abs(first), 0.5 * (z.conj() * first).imag])
 
         middle = complex(np.mean(self.series(np.linspace(0, 2 * pi, 64), 0).c[0]))
-        total, error = _integrate_turn(integrands, np.concatenate([breaks, self.sharp]))
+        total, error = _integrate_turn(integrands, np.concatenate([self.slowest[0], self.sharp]))
         scale = self.motion.scale
         return {
             "length": float(total[0]) * scale,
@@ -367,12 +448,10 @@ class _Trace:
             "area_error": float(error[1]) * scale**2,
         }
 
-    def marked(self, cusps: Array, doubles: Doubles) -> dict[str, Any]:
+    def marked(self) -> dict[str, Any]:
         """Return cusps and double points as the fields of the result."""
-        cusps = np.sort(cusps)
-        pairs = doubles.parameter
-        flat = pairs.ravel()
-        scale = self.motion.scale
+        cusps, (pairs, places, sine) = np.sort(self.stops), self.doubles
+        flat, scale = pairs.ravel(), self.motion.scale
         return {
             "cusp_parameter": cusps,
             "cusp_theta2": self.motion.crank_angle(cusps),
@@ -381,17 +460,14 @@ class _Trace:
             "double_parameter": pairs,
             "double_theta2": self.motion.crank_angle(flat).reshape(pairs.shape),
             "double_branch": self.motion.branch(flat).reshape(pairs.shape),
-            "double_position": scale * planar(doubles.place),
-            "crossing_angle": np.arcsin(np.minimum(doubles.sine, 1.0)),
+            "double_position": scale * planar(places),
+            "crossing_angle": np.arcsin(np.minimum(sine, 1.0)),
         }
 
     def error(self, s: Array) -> Array:
         """Return three times what a round-off of parameter and lengths does to the place."""
-        at = self.series(s, 1)
-        moved = np.abs(s) * np.abs(at.derivative(1))
-        turned = abs(self.place) * self._blur(s)
-        size = self.size
-        return np.asarray(1.5 * EPS * (moved + turned + size) * self.motion.scale)
+        moved, turned = np.abs(s) * self.speed(s), abs(self.place) * self._blur(s)
+        return np.asarray(1.5 * EPS * (moved + turned + self.size) * self.motion.scale)
 
     def _blur(self, s: Array) -> Array:
         """Return the error of the direction of the link in units of round-off."""
@@ -420,42 +496,32 @@ class _Trace:
         base = (f + c) / reach + (reach**2 + m**2 + n**2) / (reach * length)
         return np.asarray(base + 2.0 * f * c * root / (reach * length))
 
-
-def _motion_of(motion: Circuit, s: Array) -> Any:
-    """Return the mechanism's motion, or None where it has none to compare with."""
-    if motion.number != 0 or not (motion.turns and motion.linkage.crank_turns):
-        return None
-    try:
-        return motion.linkage.motion(motion.crank_angle(s))
-    except BadInput:
-        # A hair from a change point it declines positions that this circuit passes.
-        return None
-
-
-def _checks(trace: _Trace, s: Array, crossings: int) -> dict[str, Check]:
-    """Compare with the mechanism's own motion, and with the equation of the curve."""
-    motion = trace.motion
-    checks: dict[str, Check] = {}
-    at = trace.series(s, 1)
-    place, scale = trace.place * motion.scale, motion.scale
-    mechanism = _motion_of(motion, s)
-    if mechanism is not None:
-        point = mechanism.point(trace.link, place.real, place.imag)
-        blur = 2 * (trace.error(s) / scale + 4 * EPS * trace.size * (1 + mechanism.error / EPS))
-        for name, there, here in (
-            ("places", point.position, at.c[0]),
-            ("velocities", point.velocity, at.derivative(1)),
-        ):
-            gap = np.hypot(*(there / scale - planar(here)).T)
-            if name == "velocities":
-                blur = blur * (1 + np.abs(at.derivative(1)) / trace.size)
-            worst = float(np.max(gap / blur))
-            checks[f"{name} against the mechanism's motion, over their round-off"] = Check(worst, 1)
-    if motion.linkage.mechanism == "four_bar" and trace.link == "coupler":
-        residual = sextic_residual(motion.sizes, trace.place, at.c[0])
-        checks["equation of sixth degree, over its terms"] = Check(float(np.max(residual)), 1e-12)
-        checks["double points"] = Check(float(crossings), 3.0)
-    return checks
+    def checks(self, s: Array) -> dict[str, Check]:
+        """Compare with the mechanism's own motion, and with the equation of the curve."""
+        motion, at, scale = self.motion, self.series(s, 1), self.motion.scale
+        checks: dict[str, Check] = {}
+        mechanism = None
+        if motion.number == 0 and motion.turns and motion.linkage.crank_turns:
+            # A hair from a change point it declines positions that this circuit passes.
+            with suppress(BadInput):
+                mechanism = motion.linkage.motion(motion.crank_angle(s))
+        if mechanism is not None:
+            place = self.place * scale
+            point = mechanism.point(self.link, place.real, place.imag)
+            blur = 2 * (self.error(s) / scale + 4 * EPS * self.size * (1 + mechanism.error / EPS))
+            moved = blur * (1 + np.abs(at.derivative(1)) / self.size)
+            for name, there, here, slack in (
+                ("places", point.position, at.c[0], blur),
+                ("velocities", point.velocity, at.derivative(1), moved),
+            ):
+                worst = float(np.max(np.hypot(*(there / scale - planar(here)).T) / slack))
+                label = f"{name} against the mechanism's motion, over their round-off"
+                checks[label] = Check(worst, 1)
+        if motion.linkage.mechanism == "four_bar" and self.link == "coupler":
+            worst = float(np.max(sextic_residual(motion.sizes, self.place, at.c[0])))
+            checks["equation of sixth degree, over its terms"] = Check(worst, 1e-12)
+            checks["double points"] = Check(float(len(self.doubles.place)), 3.0)
+        return checks
 
 
 def _integrate_turn(f: Callable[[Array], Array], breaks: Array) -> tuple[Array, Array]:
@@ -464,25 +530,24 @@ def _integrate_turn(f: Callable[[Array], Array], breaks: Array) -> tuple[Array, 
     # differences of the panels, generous, and round-off.
     ends = np.unique(np.concatenate([np.linspace(0, 2 * pi, _PANELS + 1), breaks % (2 * pi)]))
     low, high = ends[:-1], ends[1:]
+    sums: Any = 0.0
     for level in range(_HALVINGS):
         few, _ = _panels(f, low, high, 10)
         many, size = _panels(f, low, high, 16)
         difference = np.abs(many - few)
         if level == 0:
             scale = np.sum(size, axis=1)
-            total, error, whole = (np.zeros(len(many)) for _ in range(3))
         good = np.all(difference <= 0.5 * EPS * scale[:, None], axis=0)
         # More panels than this at once: what is left is the round-off of the integrands.
         if level == _HALVINGS - 1 or np.count_nonzero(~good) > 2000:
             good[:] = True
-        total = total + np.sum(many[:, good], axis=1)
-        error = error + np.sum(difference[:, good], axis=1)
-        whole = whole + np.sum(size[:, good], axis=1)
+        sums = sums + np.stack([many, difference, size])[..., good].sum(axis=-1)
         if np.all(good):
             break
         low, high = low[~good], high[~good]
         middle = 0.5 * (low + high)
         low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+    total, error, whole = sums
     return total, error + 8.0 * EPS * whole
 
 
@@ -580,72 +645,11 @@ def _cognate(
     return Cognate(linkage, place.real, place.imag, planar(pivot), turn, circuit)
 
 
-# A path: parameters, shape (n,), and order, to the series of the place (x + i y) there.
-Path = Callable[[Array, int], Taylor]
-
 _UNIFORM = 720
 # Samples draw near a sharp turn by this ratio, down to this distance.
 _GRADING, _NEAREST = 1.6, 1e-9
 # A point whose speed falls below this part of its largest is said to stop: a cusp.
 _STILL = 1e-11
-
-
-@dataclass(frozen=True, eq=False)
-class Slow:
-    """Places at which a path runs slowest: parameter and speed there by the parameter."""
-
-    parameter: Array
-    speed: Array
-    fastest: float
-
-    @property
-    def stops(self) -> Array:
-        """The parameters of cusps."""
-        return self.parameter[self.speed <= _STILL * self.fastest]
-
-
-@dataclass(frozen=True, eq=False)
-class Doubles:
-    """Double points: both parameters (m, 2), the place, the sine between the two branches."""
-
-    parameter: Array
-    place: Complex
-    sine: Array
-
-
-def slowest(path: Path, sharp: Array) -> Slow:
-    """Return all local minima of the speed.
-
-    The derivative of the squared speed has a simple root at a cusp too, where the speed itself
-    has a corner; bisection finds it whatever the speed left there.
-    """
-    s = _graded(sharp)
-    at = path(s, 2)
-    rate = _squared_speed_rate(at)
-    fastest = float(np.max(np.abs(at.derivative(1))))
-    following = np.roll(rate, -1)
-    starts = np.flatnonzero((rate < 0) & (following >= 0))
-    low, high = s[starts], np.append(s, s[0] + TURN)[starts + 1]
-    rough, width, _ = bracketed_roots(
-        lambda _, at: (_squared_speed_rate(path(at, 2)), 0.0), low, high
-    )
-    least = _polished(path, rough, width)
-    return Slow(least % TURN, np.abs(path(least, 1).derivative(1)), fastest)
-
-
-def _polished(path: Path, s: Array, width: Array) -> Array:
-    """Take the step to the least speed once more; brackets stop at the noise of its rate's sign."""
-    at = path(s, 2)
-    first, second = at.derivative(1), at.derivative(2)
-    step = over(-(first * second.conj()).real, np.abs(second) ** 2)
-    near = s + step
-    better = np.abs(path(near, 1).derivative(1)) < np.abs(first)
-    inside = np.abs(step) <= 1e-6 + width
-    return np.where(better & inside, near, s)
-
-
-def _squared_speed_rate(at: Taylor) -> Array:
-    return np.asarray((at.derivative(1).conj() * at.derivative(2)).real)
 
 
 def _graded(sharp: Array) -> Array:
@@ -658,33 +662,6 @@ def _graded(sharp: Array) -> Array:
     return np.unique(places)
 
 
-def double_points(path: Path, seeds: Array, stops: Array, size: float) -> Doubles:
-    """Return the double points of one closed path (crunodes), each once.
-
-    By Newton's method from pairs of parameters near them.  The equation is ``(z(s1) - z(s2)) /
-    sin((s1 - s2)/2) = 0``, so that the trivial solution s1 = s2 does not draw it in.  Loops so
-    small that it loses digits stay as they are, but for those that a cusp has swallowed.  Round-off
-    is measured by a length of the given size.
-    """
-    pairs = seeds.T.copy()
-    wide = np.abs(np.sin(0.5 * (pairs[1] - pairs[0]))) > 1e-2
-    for _ in range(40 if np.any(wide) else 0):
-        stepped = _newton(path, *pairs[:, wide])
-        moved = np.max(np.abs(stepped - pairs[:, wide]))
-        pairs[:, wide] = stepped
-        if moved < 1e-13:
-            break
-    beside = np.abs(np.sin(0.5 * (pairs[:, :, None] - stops)))
-    swallowed = np.any(np.all(beside < 1e-3, axis=0), axis=1)
-    apart = np.abs(np.sin(0.5 * (pairs[1] - pairs[0]))) > 1e-6
-    pairs = pairs[:, apart & ~swallowed] % TURN
-    one, two = (path(s, 1) for s in pairs)
-    gap = np.abs(one.c[0] - two.c[0])
-    good = (gap <= 64 * EPS * size) & (_crossing_sine(one, two) > 64 * EPS)
-    order = np.flatnonzero(good)
-    return _each_once(path, pairs.T[order[np.argsort(gap[order], kind="stable")]])
-
-
 def crossings(motion: Circuit, place: complex) -> Array:
     """Return pairs of parameters (k, 2) at which a point of coupler or block is in one place.
 
@@ -695,6 +672,18 @@ def crossings(motion: Circuit, place: complex) -> Array:
     g, kind = place, motion.linkage.mechanism
     locus = {"four_bar": _four_bar, "slider_crank": _slider_crank, "quick_return": _quick_return}
     places, other = locus[kind](motion.sizes, g)
+
+    def parameter(p: complex, u: complex) -> float | None:
+        """Return where on the circuit the link has the direction u with its point at p."""
+        pin = p - g * u
+        if kind == "four_bar":
+            branch = np.sign(((motion.sizes["frame"] - pin).conjugate() * u).imag)
+        elif kind == "slider_crank":
+            branch = np.sign(u.real)
+        else:
+            branch = np.sign((u.conjugate() * (pin + motion.sizes["frame"])).real)
+        return motion.parameter(pin / motion.sizes["crank"], float(branch))
+
     pairs = []
     for p in places:
         crank = p.conjugate() * g, abs(p) ** 2 + abs(g) ** 2 - motion.sizes["crank"] ** 2
@@ -703,7 +692,7 @@ def crossings(motion: Circuit, place: complex) -> Array:
         if not abs(cosine) < 1.0:
             continue
         turns = [complex(cosine, sign * np.sqrt(1.0 - cosine**2)) for sign in (1.0, -1.0)]
-        both = [_parameter(motion, p, g, u * factor.conjugate() / abs(factor)) for u in turns]
+        both = [parameter(p, u * factor.conjugate() / abs(factor)) for u in turns]
         if None not in both:
             pairs.append(both)
     return np.array(pairs, dtype=float).reshape(-1, 2)
@@ -749,60 +738,5 @@ def _real_roots(terms: ArrayLike) -> Array:
     return np.asarray(roots[np.abs(roots.imag) <= 1e-6 * np.abs(roots)].real)
 
 
-def _parameter(motion: Circuit, p: complex, place: complex, u: complex) -> float | None:
-    """Return where on the circuit the link has the direction u with its point at p."""
-    pin = p - place * u
-    if motion.linkage.mechanism == "four_bar":
-        branch = np.sign(((motion.sizes["frame"] - pin).conjugate() * u).imag)
-    elif motion.linkage.mechanism == "slider_crank":
-        branch = np.sign(u.real)
-    else:
-        branch = np.sign((u.conjugate() * (pin + motion.sizes["frame"])).real)
-    return motion.parameter(pin / motion.sizes["crank"], float(branch))
-
-
-def _each_once(path: Path, pairs: Array) -> Doubles:
-    """Sort pairs of parameters, and leave out those met before."""
-    first, second = np.min(pairs, axis=1), np.max(pairs, axis=1)
-    one, two = path(first, 1), path(second, 1)
-    sine = _crossing_sine(one, two)
-    kept: list[int] = []
-    for i in range(len(first)):
-        # Where the branches nearly touch, the crossing is loose along them.
-        slack = 1e-9 + 1e3 * EPS / max(float(sine[i]), EPS)
-        a, b = first[kept], second[kept]
-        # How far the pairs are apart, either way round.
-        ways = [np.maximum(_turn(first[i] - x), _turn(second[i] - y)) for x, y in ((a, b), (b, a))]
-        if np.all(np.minimum(*ways) > slack):
-            kept.append(i)
-    kept.sort(key=lambda i: float(first[i]))
-    chosen = np.column_stack([first[kept], second[kept]]).reshape(-1, 2)
-    return Doubles(chosen, 0.5 * (one.c[0] + two.c[0])[kept], sine[kept])
-
-
-def _crossing_sine(one: Taylor, two: Taylor) -> Array:
-    across = np.abs((one.c[1].conj() * two.c[1]).imag)
-    return over(across, np.abs(one.c[1]) * np.abs(two.c[1]))
-
-
 def _turn(x: Array) -> Array:
     return np.asarray(np.abs((x + pi) % TURN - pi))
-
-
-def _newton(path: Path, first: Array, second: Array) -> Array:
-    """Return the next parameters, (2, k)."""
-    places, rates = path(np.concatenate([first, second]), 1).c.reshape(2, 2, -1)
-    gap = places[0] - places[1]
-    half = 0.5 * (first - second)
-    sine = np.sin(half)
-    sine = np.where(np.abs(sine) < 1e-12, 1e-12, sine)
-    slope = 0.5 * gap * np.cos(half) / sine
-    a, b = rates[0] - slope, slope - rates[1]
-    determinant = (a.conj() * b).imag
-    determinant = np.where(determinant == 0, 1e-300, determinant)
-    with np.errstate(over="ignore", invalid="ignore"):
-        x = (-gap * b.conj()).imag / -determinant
-        y = (a.conj() * -gap).imag / determinant
-    # The farther the step, the less it can be trusted.
-    x, y = (np.clip(np.nan_to_num(step), -0.2, 0.2) for step in (x, y))
-    return np.stack([first + x, second + y])

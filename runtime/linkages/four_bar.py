@@ -6,30 +6,14 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from types import ModuleType
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...generated import four_bar_kinematics
-from ..core.errors import Problem, bad, refuse
-from .linkage import (
-    ROUND_OFFS,
-    ROUNDED,
-    TINY,
-    Array,
-    Assembly,
-    Limits,
-    Linkage,
-    LinkMotion,
-    Motion,
-    Terms,
-    assembly_problems,
-    length_problems,
-    turning,
-    units_of,
-)
+from ..core.errors import Problem, bad
+from .linkage import ROUNDED, TINY, Array, Limits, Linkage, LinkMotion, Motion, Terms, turning
 
 
 class LoopSums(NamedTuple):
@@ -68,7 +52,7 @@ class LoopSums(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class FourBarMotion(Motion):
+class FourBarMotion(Motion, kinematics=four_bar_kinematics):
     """Motion of a four-bar linkage at given crank angles; every array has their shape.
 
     ``error`` has it too: that of the worse of theta3 and theta4 [rad], from the round-off of crank
@@ -95,9 +79,8 @@ class FourBarMotion(Motion):
     alpha4: Array
     transmission_angle: Array
 
-    places, rates = units_of(four_bar_kinematics)
-    norm: ClassVar[str] = "worse of theta3 and theta4 [rad]"
-    drawn: ClassVar[tuple[str, ...]] = ("theta4", "omega4", "alpha4", "omega3")
+    norm = "worse of theta3 and theta4 [rad]"
+    drawn = ("theta4", "omega4", "alpha4", "omega3")
 
     def _other_link(self, name: str) -> LinkMotion:
         if name == "coupler":
@@ -133,35 +116,25 @@ class FourBar(Linkage):
     crank: float
     coupler: float
     follower: float
-    assembly: Assembly = "open"
+    assembly: Literal["open", "crossed"] = "open"
 
-    mechanism: ClassVar[str] = "four_bar"
-    moves: ClassVar[type[Motion]] = FourBarMotion
-    kinematics: ClassVar[ModuleType] = four_bar_kinematics
-    names: ClassVar[tuple[str, ...]] = ("frame", "crank", "coupler", "follower")
-    links: ClassVar[tuple[str, str, str]] = ("crank", "coupler", "follower")
-    bars: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "crank": ("A", "B"),
-        "coupler": ("B", "C"),
-        "follower": ("D", "C"),
-    }
+    mechanism = "four_bar"
+    moves = FourBarMotion
+    names = ("frame", "crank", "coupler", "follower")
+    links = ("crank", "coupler", "follower")
+    bars: ClassVar = {"crank": ("A", "B"), "coupler": ("B", "C"), "follower": ("D", "C")}
 
-    def __post_init__(self) -> None:
-        problems = length_problems("FourBar", self.lengths)
-        problems += assembly_problems("FourBar", self.assembly)
-        if not problems:
-            longest = max(self.lengths, key=lambda name: self.lengths[name])
-            rest = sum(self.lengths.values()) - self.lengths[longest]
-            # Exact, as the class is: a sum in floats may close what cannot close.
-            exact = LoopSums.of((Fraction(float(size)) for size in self.lengths.values()), sum)
-            spare = min(exact.less)
-            why = "cannot close" if spare < 0 else "is stretched and cannot move"
-            if spare <= 0:
-                where, found = f"FourBar.{longest}", f"{self.lengths[longest]:g}"
-                expected = f"less than {rest:g}, the sum of the other three"
-                fix = f"the linkage {why}; shorten this link or lengthen another"
-                problems.append(Problem(where, found, expected, fix))
-        refuse(problems)
+    def _gaping(self) -> list[Problem]:
+        # Exact, as the class is: a sum in floats may close what cannot close.
+        spare = min(LoopSums.of(map(Fraction, map(float, self.lengths.values())), sum).less)
+        if spare > 0:
+            return []
+        longest = max(self.lengths, key=lambda name: self.lengths[name])
+        rest = sum(self.lengths.values()) - self.lengths[longest]
+        why = "cannot close" if spare < 0 else "is stretched and cannot move"
+        expected = f"less than {rest:g}, the sum of the other three"
+        fix = f"the linkage {why}; shorten this link or lengthen another"
+        return [Problem(f"FourBar.{longest}", f"{self.lengths[longest]:g}", expected, fix)]
 
     @property
     def reach(self) -> tuple[float, float]:
@@ -221,7 +194,6 @@ class FourBar(Linkage):
         return f"a diagonal BD between {shortest:g} and {longest:g}, {super().reachable}"
 
     def _error(self, m: Mapping[str, Array]) -> Array:
-        """Return what a unit round-off of the angle and of each length does, three times."""
         # A change of a length moves the closure along that link; seen along coupler or follower it
         # turns the other one, the more the closer the two are to one line.  The triangle BCD comes
         # from the square of BD: its round-off moves C, seen from a short link most.
@@ -244,7 +216,7 @@ class FourBar(Linkage):
             moved += length * aligned + opposite + 2.0 * (leaning + opposite * lying)
             turned = np.abs(theta2 * m["omega" + link]) + np.abs(m["theta" + link])
             errors.append(turned + moved / (length * sine))
-        return np.asarray(ROUND_OFFS * np.maximum(*errors))
+        return np.asarray(np.maximum(*errors))
 
     def _loop(self, m: Mapping[str, Array]) -> Terms:
         frame, crank, coupler, follower = self.unit_lengths.values()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
@@ -153,26 +153,22 @@ def harmonics(source: Source, *, order: int = 8, accuracy: float = 1e-12) -> Har
     require_whole("order", order, 1, 4096)
     if not (isinstance(accuracy, (int, float)) and 0.0 < accuracy < 1.0):
         raise bad("accuracy", repr(accuracy), "a number between 0 and 1", "try 1e-12")
-    periodic, secular, gap = _without_growth(f, name)
-    result = _doubled(periodic, name, int(order), accuracy)
-    evaluations = result.evaluations + 2
-    error = result.error + gap
-    return replace(
-        result, secular=secular, evaluations=evaluations, error=error, provenance=provenance(known)
-    )
-
-
-def _doubled(f: Callable[[Array], Array], name: str, order: int, accuracy: float) -> Harmonics:
-    """Return the harmonics of a periodic function, its angles doubled until they stay."""
+    f, secular, growing = _without_growth(f, name)
     count = max(64, 4 * 2 ** int(np.ceil(np.log2(order + 1))))
     probes = irregular_angles(_PROBES)
     at_probes = values_at(f, probes, name)
-    largest, evaluations = float(np.max(np.abs(at_probes))), _PROBES
+    largest, evaluations = float(np.max(np.abs(at_probes))), _PROBES + 2
     before: np.ndarray[Any, Any] | None = None
     changes: list[float] = []
     while True:
         settled = False
-        theta, values, full = _coefficients(f, count, name)
+        # From an irrational part of a step on; the highest coefficient is known in part alone.
+        start = (GOLDEN * np.log2(count)) % 1.0
+        theta = np.asarray(TURN * (np.arange(count) + start) / count, dtype=np.float64)
+        values = values_at(f, theta, name)
+        full = np.fft.rfft(values)[:-1] / count
+        full *= np.exp(-1j * TURN * start / count * np.arange(len(full)))
+        full[1:] *= 2.0
         evaluations += count
         largest = max(largest, float(np.max(np.abs(values))))
         # A pulse that one set has met and the next ones miss must not be forgotten.
@@ -207,14 +203,15 @@ def _doubled(f: Callable[[Array], Array], name: str, order: int, accuracy: float
         name=name,
         a=series.a,
         b=series.b,
-        secular=0.0,
+        secular=secular,
         largest=largest,
         remainder=max(2.0 * rest, min(dropped, 4.0 * rest)) + error,
         evaluations=evaluations,
         method="FFT",
-        error=error,
+        error=error + growing,
         error_norm="largest error of a coefficient, absolute",
         checks={"change on doubling over the largest value": Check(change, accuracy)},
+        provenance=provenance(known),
     )
 
 
@@ -238,20 +235,6 @@ def _last_change(changes: list[float], settled: bool) -> float:
             break
         worst = max(worst, before / 4**back)
     return worst
-
-
-def _coefficients(
-    f: Callable[[Array], Array], count: int, name: str
-) -> tuple[Array, Array, np.ndarray[Any, Any]]:
-    """Return angles, from an irrational place on, samples, and the coefficients a - i b."""
-    start = (GOLDEN * np.log2(count)) % 1.0
-    theta = np.asarray(TURN * (np.arange(count) + start) / count, dtype=np.float64)
-    values = values_at(f, theta, name)
-    spectrum = np.fft.rfft(values) / count
-    spectrum *= np.exp(-1j * TURN * start / count * np.arange(len(spectrum)))
-    spectrum[1:] *= 2.0
-    # The highest one is known in part alone.
-    return theta, values, spectrum[:-1]
 
 
 def _function(source: Source) -> tuple[str, Function, dict[str, str]]:

@@ -9,19 +9,18 @@ from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from inspect import signature
 from types import ModuleType
-from typing import Any, ClassVar, Literal, Self, TypeAlias, TypeVar
+from typing import Any, ClassVar, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.errors import Problem, bad
+from ..core.errors import Problem, bad, refuse
 from ..core.inputs import is_finite, is_one_of, numbers, require_kind, require_one_of
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Deferred, DeferredChecks, DeferredField, Result, provenance
 from ..core.twofold import Twofold
 
 Array: TypeAlias = NDArray[np.float64]
-Assembly: TypeAlias = Literal["open", "crossed"]
 Terms: TypeAlias = tuple[list[Any], list[Any], list[Any]]
 
 TURN = 2.0 * np.pi
@@ -102,18 +101,6 @@ class LinkMotion:
         return cos * u - sin * v, sin * u + cos * v
 
 
-def units_of(kinematics: ModuleType) -> tuple[dict[str, str], dict[str, str]]:
-    """Return the units of places and of rates that an emitted motion returns, by name."""
-    kinds = {"velocity": "m/s", "acceleration": "m/s^2", "omega": "rad/s", "alpha": "rad/s^2"}
-    kinds |= {"position": "m", "slide": "m", "": "rad"}
-    units: dict[str, str] = {
-        name: next(unit for kind, unit in kinds.items() if kind in name)
-        for name in kinematics.RETURNS["motion"]
-    }
-    places = {name: unit for name, unit in units.items() if "/" not in unit}
-    return places, {name: unit for name, unit in units.items() if name not in places}
-
-
 def pair(x: ArrayLike, y: ArrayLike) -> Array:
     """Return two components as one array, shape (..., 2)."""
     x, y = np.asarray(x), np.asarray(y)
@@ -145,12 +132,23 @@ class Motion(Result, ABC):
     alpha2: Array
     error: Any = _LATER
 
+    kinematics: ClassVar[ModuleType]  # the emitted module
     # What moves, by name, with its unit: angles and places, then rates.
     places: ClassVar[Mapping[str, str]] = {}
     rates: ClassVar[Mapping[str, str]] = {}
     norm: ClassVar[str] = ""
     # What is drawn against the crank angle.
     drawn: ClassVar[tuple[str, ...]] = ()
+
+    def __init_subclass__(cls, kinematics: ModuleType, **given: Any) -> None:
+        """Take what moves from an emitted module."""
+        super().__init_subclass__(**given)
+        kinds = {"velocity": "m/s", "acceleration": "m/s^2", "omega": "rad/s", "alpha": "rad/s^2"}
+        kinds |= {"position": "m", "slide": "m", "": "rad"}
+        cls.kinematics, cls.places, cls.rates = kinematics, {}, {}
+        for name in kinematics.RETURNS["motion"]:
+            unit = next(unit for kind, unit in kinds.items() if kind in name)
+            (cls.rates if "/" in unit else cls.places)[name] = unit
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the motion of the output against the crank angle.
@@ -251,7 +249,10 @@ class Motion(Result, ABC):
         self.point(link, along, across)  # refuses what is no place
         still = dict.fromkeys((*self.errors, "theta2", "omega2", "alpha2"), np.zeros(()))
         still = {name: np.broadcast_to(zero, np.shape(self.theta2)) for name, zero in still.items()}
-        rest, off = (self._with(values).link(link) for values in (still, {**still, **self.errors}))
+        shifted = copy(self), copy(self)  # what is deferred in them is not computed
+        for other, values in zip(shifted, (still, {**still, **self.errors}), strict=True):
+            vars(other).update(values)
+        rest, off = (other.link(link) for other in shifted)
         reach = np.hypot(along, across)[..., np.newaxis]
         # Sines, products and sums: five halves of a unit in the last place of the largest.
         tilt, slip = off.angle + 3.0 * EPS, 3.0 * EPS
@@ -269,12 +270,6 @@ class Motion(Result, ABC):
             error(off.acceleration, own.acceleration, bent),
         )
 
-    def _with(self, values: Mapping[str, Array]) -> Self:
-        """Return the motion with other numbers; what is deferred in it is not computed for that."""
-        other = copy(self)
-        vars(other).update(values)
-        return other
-
     @property
     def joints(self) -> Mapping[str, Array]:
         """Places of the joints by letter (A, B, C, D), each of shape (..., 2)."""
@@ -291,10 +286,7 @@ class Motion(Result, ABC):
         return bool(np.all(self.omega2 == 1.0) and np.all(self.alpha2 == 0.0))
 
     def unit(self, name: str) -> str:
-        """Return the unit of a place or rate; that of the defaults is per radian of the crank.
-
-        Of an angle it is 1 then.
-        """
+        """Return the unit of a place or rate; relative ones are per radian, and 1 of an angle."""
         return self.unit_of(name, self.relative)
 
     def _own_units(self) -> dict[str, str]:
@@ -370,12 +362,28 @@ class Linkage(ABC):
     """
 
     mechanism: ClassVar[str]
-    kinematics: ClassVar[ModuleType]
     moves: ClassVar[type[Motion]]
     names: ClassVar[tuple[str, ...]]
     links: ClassVar[tuple[str, str, str]]
     bars: ClassVar[Mapping[str, tuple[str, ...]]]
     fold_axis: ClassVar[float] = 0.0
+
+    def __post_init__(self) -> None:
+        owner, problems = type(self).__name__, []
+        for name, size in self.lengths.items():
+            signed = name == "offset"
+            if not (is_finite(size) and (signed or size > 0.0)):
+                expected = "a finite length" if signed else "a positive finite length"
+                problems.append(Problem(f"{owner}.{name}", repr(size), expected, "correct it"))
+        assembly = getattr(self, "assembly", "open")
+        if not is_one_of(assembly, ("open", "crossed")):
+            where, expected = f"{owner}.assembly", "'open' or 'crossed'"
+            problems.append(Problem(where, repr(assembly), expected, "choose one"))
+        refuse(problems or self._gaping())
+
+    @abstractmethod
+    def _gaping(self) -> list[Problem]:
+        """Return why lengths, good ones by themselves, cannot close."""
 
     @property
     def lengths(self) -> Mapping[str, float]:
@@ -461,10 +469,10 @@ class Linkage(ABC):
         angles, speeds, changes, shape = checked_drive(theta, speed, acceleration)
         drive = [np.array(np.broadcast_to(item, shape)) for item in (speeds, changes)]
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            moved = emitted(self, self.kinematics, "motion", angles, self.unit_lengths)
+            moved = emitted(self, kind.kinematics, "motion", angles, self.unit_lengths)
         m = {"theta2": angles, **{name: np.asarray(value) for name, value in moved.items()}}
         reached = np.logical_and.reduce([np.isfinite(value) for value in m.values()])
-        self.require(reached & self._decided(m), angles)
+        self.require(reached & (ROUND_OFFS * self._blur(m) < UNDECIDED), angles)
         fields: dict[str, Any] = {}
         with np.errstate(over="ignore", invalid="ignore"):
             moved = driven(m, *drive)
@@ -529,13 +537,16 @@ class Linkage(ABC):
             fix = "this linkage cannot reach the angle, or folds there; keep theta inside its range"
             raise bad("theta", f"{first:.6g} rad", self.reachable, fix)
 
-    def _decided(self, m: Mapping[str, Array]) -> NDArray[np.bool_]:
-        """Return where the position is one that the lengths decide, and within the links' ends."""
-        return np.ones(np.shape(m["theta2"]), dtype=bool)
+    def _blur(self, m: Mapping[str, Array]) -> Array:
+        """Return what round-offs of the lengths do to the position [rad], in round-offs.
+
+        Infinite where it is beyond the links' ends.
+        """
+        return np.zeros(np.shape(m["theta2"]))
 
     @abstractmethod
     def _error(self, m: Mapping[str, Array]) -> Array:
-        """Return what a unit round-off of the angle and of each length does, three times."""
+        """Return what round-offs of the angle and of the lengths do, in round-offs."""
 
     @abstractmethod
     def _loop(self, m: Mapping[str, Array]) -> Terms:
@@ -548,15 +559,11 @@ class Linkage(ABC):
         """Count the folds strictly between the least and the greatest angle, each end once."""
         if self.crank_turns or theta.size == 0:
             return 0
-        low, high = float(theta.min()), float(theta.max())
-        folds: list[float] = []
-        for end in (end for span in self.crank_ranges() for end in span):
-            # The first one beyond the least angle is enough to know.
-            first = end + TURN * (np.floor((low - end) / TURN) + 1.0)
-            new = all(abs(first - other) > 1e-9 for other in folds)
-            if low < first < high and new:
-                folds.append(float(first))
-        return len(folds)
+        low, ends = theta.min(), np.ravel(self.crank_ranges())
+        # Of each end the first one beyond the least angle is enough to know.
+        first = np.sort(ends + TURN * (np.floor((low - ends) / TURN) + 1.0))
+        within = first[(low < first) & (first < theta.max())]
+        return int(np.count_nonzero(np.diff(within, prepend=-np.inf) > 1e-9))
 
 
 def emitted(
@@ -582,7 +589,7 @@ def _without_rounding(linkage: Linkage, theta: Array) -> dict[str, Any]:
     known: dict[str, Any] = {name: Twofold(value) for name, value in lengths.items()}
     known["winding"] = float(lengths["crank"] > lengths.get("frame", np.inf))
     with np.errstate(all="ignore"):
-        return emitted(linkage, linkage.kinematics, "motion", Twofold(theta), known)
+        return emitted(linkage, linkage.moves.kinematics, "motion", Twofold(theta), known)
 
 
 @cache
@@ -604,12 +611,12 @@ def driven(m: Mapping[str, Any], speed: Any, acceleration: Any) -> dict[str, Any
 
 def _error(linkage: Linkage, m: Mapping[str, Array], shape: tuple[int, ...]) -> Array:
     """Return the error at the places of a result."""
-    return np.array(np.broadcast_to(linkage._error(m), shape))
+    return np.array(np.broadcast_to(ROUND_OFFS * linkage._error(m), shape))
 
 
 def _checks(linkage: Linkage, m: Mapping[str, Array]) -> dict[str, Check]:
     """Close the loop, and its first and second derivative."""
-    error = linkage._error(m)
+    error = ROUND_OFFS * linkage._error(m)
     places, *rates = linkage._loop(m)
     longest = max(abs(value) for value in linkage.unit_lengths.values())
     closure = float(np.max(np.abs(sum(places)), initial=0.0) / longest)
@@ -620,7 +627,6 @@ def _checks(linkage: Linkage, m: Mapping[str, Array]) -> dict[str, Check]:
         "folds within the angles": Check(float(linkage._folds(m["theta2"])), 0.0),
     }
     # Round-off of the rates is judged at the angles at which the position is known worst.
-    # Rates are judged at these angles.
     judged = np.argsort(np.ravel(error))[-64:]
     exact = _without_rounding(linkage, np.ravel(m["theta2"])[judged])
     for name, terms in zip(_RATES, rates, strict=True):
@@ -671,22 +677,6 @@ def finite_array(name: str, value: ArrayLike, meaning: str) -> Array:
 def over(part: Array, whole: Array) -> Array:
     """Return a quotient, zero where there is nothing to divide by."""
     return np.asarray(np.divide(part, whole, out=np.zeros(np.shape(whole)), where=whole > 0.0))
-
-
-def length_problems(owner: str, lengths: Mapping[str, Any]) -> list[Problem]:
-    """Return what is wrong with lengths that must be positive."""
-    return [
-        Problem(f"{owner}.{name}", repr(value), "a positive finite length", "correct it")
-        for name, value in lengths.items()
-        if not (is_finite(value) and value > 0.0)
-    ]
-
-
-def assembly_problems(owner: str, assembly: object) -> list[Problem]:
-    """Return what is wrong with the name of an assembly."""
-    if is_one_of(assembly, ("open", "crossed")):
-        return []
-    return [Problem(f"{owner}.assembly", repr(assembly), "'open' or 'crossed'", "choose one")]
 
 
 def turning(size: ArrayLike, angle: Array, speed: ArrayLike, change: ArrayLike) -> list[Any]:

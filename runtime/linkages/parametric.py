@@ -74,7 +74,7 @@ class Parametric:
     def _moved(self, theta: Any, numbers: Mapping[str, Any]) -> dict[str, Any]:
         scale = 2.0**self.linkage.scale
         lengths = {name: numbers[name] * scale for name in self.linkage.names}
-        m = emitted(self.linkage, self.linkage.kinematics, "motion", theta, lengths)
+        m = emitted(self.linkage, self.linkage.moves.kinematics, "motion", theta, lengths)
         return {
             name: value / scale if self.linkage.moves.unit_of(name).startswith("m") else value
             for name, value in driven(m, self.speed, self.acceleration).items()

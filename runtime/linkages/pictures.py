@@ -37,13 +37,12 @@ _BLOCK = np.array([1 + 0.6j, -1 + 0.6j, -1 - 0.6j, 1 - 0.6j, 1 + 0.6j])
 def draw_curve(ax: Axes, curve: CouplerCurve) -> None:
     """Draw a path, the linkage at some positions, and what is marked on it."""
     motion = Circuit(curve.linkage, curve.circuit)
-    place = complex(curve.along, curve.across)
     trace = _trace(motion, curve)
     _draw_frame(ax, motion, [trace])
     for i, start in enumerate((0.7, 0.7 + pi / 2, 0.7 + pi, 0.7 + 3 * pi / 2)):
         alpha = 1.0 if i == 0 else 0.22
         _draw_linkage(ax, motion, start, alpha)
-        line = _point_bar(motion, start, curve.link, place)
+        line = _point_bar(motion, start, curve)
         ax.plot(line.real, line.imag, color=_COLOURS[curve.link], lw=1.0, alpha=alpha, zorder=2)
         ax.plot(line[1].real, line[1].imag, ".", color="k", alpha=alpha, zorder=6)
     ax.plot(trace.real, trace.imag, color="k", lw=1.3, label=f"point of the {curve.link}")
@@ -146,7 +145,7 @@ class _Film:
     def __init__(self, motion: Circuit, curves: Sequence[CouplerCurve]) -> None:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-        self._motion, self._curves = motion, curves
+        self._motion = motion
         figure = new_figure(6.4, 4.8)
         figure.set_dpi(100)
         figure.set_facecolor("white")
@@ -156,13 +155,13 @@ class _Film:
         _draw_frame(ax, motion, traces)
         for trace in traces:
             ax.plot(trace.real, trace.imag, color="k", lw=1.0, zorder=1)
-        self._places = [complex(curve.along, curve.across) for curve in curves]
         self._links = _draw_linkage(ax, motion, 0.0)
-        self._arms, self._dots = [], []
-        for curve, place in zip(curves, self._places, strict=True):
-            bar = _point_bar(motion, 0.0, curve.link, place)
-            self._arms += ax.plot(bar.real, bar.imag, color=_COLOURS[curve.link], lw=1.0, zorder=2)
-            self._dots += ax.plot(bar[1:2].real, bar[1:2].imag, "o", color="k", ms=4, zorder=6)
+        self._points: list[tuple[CouplerCurve, Any, Any]] = []
+        for curve in curves:
+            bar = _point_bar(motion, 0.0, curve)
+            (arm,) = ax.plot(bar.real, bar.imag, color=_COLOURS[curve.link], lw=1.0, zorder=2)
+            (dot,) = ax.plot(bar[1:2].real, bar[1:2].imag, "o", color="k", ms=4, zorder=6)
+            self._points.append((curve, arm, dot))
         # Artists above this order may be covered by moving ones, or cover them: drawn in every
         # frame.
         above = [line for line in ax.lines if line.get_zorder() >= 2]
@@ -178,10 +177,10 @@ class _Film:
             self._links[link].set_data(line.real, line.imag)
         at = pins_at(self._motion, s)
         self._links["pins"].set_data(at.real, at.imag)
-        for i, (curve, place) in enumerate(zip(self._curves, self._places, strict=True)):
-            line = _point_bar(self._motion, s, curve.link, place)
-            self._arms[i].set_data(line.real, line.imag)
-            self._dots[i].set_data(line[1:2].real, line[1:2].imag)
+        for curve, arm, dot in self._points:
+            line = _point_bar(self._motion, s, curve)
+            arm.set_data(line.real, line.imag)
+            dot.set_data(line[1:2].real, line[1:2].imag)
         self._canvas.restore_region(self._still)
         for artist in self._moving:
             self._ax.draw_artist(artist)
@@ -213,13 +212,13 @@ def pins_at(motion: Circuit, s: float) -> Complex:
     return np.array([complex(at[name][0]) for name in names])
 
 
-def _point_bar(motion: Circuit, s: float, link: str, place: complex) -> Complex:
-    """Return the line from the link's joints to a point of it."""
-    here = motion.links(np.array([s]), 0)[link]
+def _point_bar(motion: Circuit, s: float, curve: CouplerCurve) -> Complex:
+    """Return the line from the joints of the curve's link to its point."""
+    here = motion.links(np.array([s]), 0)[curve.link]
     origin, turn = complex(here.origin.c[0, 0]), complex(here.direction.c[0, 0])
-    ends = [0.0, place / motion.scale]
-    if link in motion.sizes and place.imag != 0:
-        ends.append(motion.sizes[link])
+    ends = [0.0, complex(curve.along, curve.across) / motion.scale]
+    if curve.link in motion.sizes and curve.across != 0:
+        ends.append(motion.sizes[curve.link])
     return motion.scale * (origin + turn * np.array(ends))
 
 

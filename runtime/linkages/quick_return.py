@@ -5,33 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import ModuleType
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...generated import quick_return_kinematics
-from ..core.errors import Problem, bad, refuse
-from .linkage import (
-    ROUND_OFFS,
-    ROUNDED,
-    TINY,
-    UNDECIDED,
-    Array,
-    Limits,
-    Linkage,
-    LinkMotion,
-    Motion,
-    Terms,
-    length_problems,
-    turning,
-    units_of,
-)
+from ..core.errors import Problem, bad
+from .linkage import ROUNDED, TINY, Array, Limits, Linkage, LinkMotion, Motion, Terms, turning
 
 
 @dataclass(frozen=True, kw_only=True)
-class QuickReturnMotion(Motion):
+class QuickReturnMotion(Motion, kinematics=quick_return_kinematics):
     """Motion of a quick-return at given crank angles; every array has their shape.
 
     ``error`` has it too: that of the worse of theta4 [rad] and of the slide over its
@@ -59,9 +44,8 @@ class QuickReturnMotion(Motion):
     slide_velocity: Array
     slide_acceleration: Array
 
-    places, rates = units_of(quick_return_kinematics)
-    norm: ClassVar[str] = "worse of theta4 [rad] and slide over its greatest value"
-    drawn: ClassVar[tuple[str, ...]] = ("theta4", "omega4", "alpha4")
+    norm = "worse of theta4 [rad] and slide over its greatest value"
+    drawn = ("theta4", "omega4", "alpha4")
 
     def _other_link(self, name: str) -> LinkMotion:
         if name == "block":
@@ -101,24 +85,18 @@ class QuickReturn(Linkage):
     crank: float
     rod: float
 
-    mechanism: ClassVar[str] = "quick_return"
-    moves: ClassVar[type[Motion]] = QuickReturnMotion
-    kinematics: ClassVar[ModuleType] = quick_return_kinematics
-    names: ClassVar[tuple[str, ...]] = ("frame", "crank", "rod")
-    links: ClassVar[tuple[str, str, str]] = ("crank", "block", "rod")
-    bars: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "crank": ("A", "B"),
-        "block": ("B",),
-        "rod": ("D", "C"),
-    }
+    mechanism = "quick_return"
+    moves = QuickReturnMotion
+    names = ("frame", "crank", "rod")
+    links = ("crank", "block", "rod")
+    bars: ClassVar = {"crank": ("A", "B"), "block": ("B",), "rod": ("D", "C")}
 
-    def __post_init__(self) -> None:
-        problems = length_problems("QuickReturn", self.lengths)
-        if not problems and self._ends[0] <= 0.0:
-            expected = f"more than {abs(self.frame - self.crank):g}, the least distance DB"
-            fix = "the rod never reaches the block; lengthen it"
-            problems.append(Problem("QuickReturn.rod", f"{self.rod:g}", expected, fix))
-        refuse(problems)
+    def _gaping(self) -> list[Problem]:
+        if self._ends[0] > 0.0:
+            return []
+        expected = f"more than {abs(self.frame - self.crank):g}, the least distance DB"
+        fix = "the rod never reaches the block; lengthen it"
+        return [Problem("QuickReturn.rod", f"{self.rod:g}", expected, fix)]
 
     @property
     def eps(self) -> float:
@@ -132,14 +110,11 @@ class QuickReturn(Linkage):
         longer, shorter = self._ends
         across, along = (2.0 * max(size, TINY) for size in (frame, crank))
         apart = (frame - crank) / across * ((frame - crank) / along)
-        if self._long_enough:
-            return Limits(-1.0, 2.0, 1.0 + apart, -apart)
-        return Limits(
-            shorter / across * ((frame + crank + rod) / along),
-            longer / across * ((rod + abs(frame - crank)) / along),
-            1.0 + apart,
-            -apart,
-        )
+        lower = -1.0, 2.0
+        if not self._long_enough:
+            most, least = (frame + crank + rod) / along, (rod + abs(frame - crank)) / along
+            lower = shorter / across * most, longer / across * least
+        return Limits(*lower, 1.0 + apart, -apart)
 
     @property
     def _long_enough(self) -> bool:
@@ -174,24 +149,19 @@ class QuickReturn(Linkage):
         """Return the motion of rod and block; see :meth:`Linkage.motion`."""
         return self._moved(QuickReturnMotion, theta, speed, acceleration)
 
-    def _decided(self, m: Mapping[str, Array]) -> NDArray[np.bool_]:
-        rod = self.unit_lengths["rod"]
-        return np.asarray((m["slide"] <= rod * (1.0 + ROUNDED)) & (self._blur(m) < UNDECIDED))
-
     def _blur(self, m: Mapping[str, Array]) -> Array:
-        """Return what a unit round-off of each length does to theta4 [rad], three times."""
-        frame, crank, _ = self.unit_lengths.values()
+        frame, crank, rod = self.unit_lengths.values()
         moved = frame * np.abs(np.sin(m["theta4"]))
         moved = moved + crank * np.abs(np.sin(m["theta2"] - m["theta4"]))
-        return np.asarray(ROUND_OFFS * moved / m["slide"])
+        return np.where(m["slide"] <= rod * (1.0 + ROUNDED), moved / m["slide"], np.inf)
 
     def _error(self, m: Mapping[str, Array]) -> Array:
         frame, crank, _ = self.unit_lengths.values()
         theta2, theta4 = m["theta2"], m["theta4"]
-        turned = ROUND_OFFS * (np.abs(theta2 * m["omega4"]) + np.abs(theta4)) + self._blur(m)
+        turned = np.abs(theta2 * m["omega4"]) + np.abs(theta4) + self._blur(m)
         moved = np.abs(theta2 * m["slide_velocity"]) + m["slide"] + frame * np.abs(np.cos(theta4))
         moved = moved + crank * np.abs(np.cos(theta2 - theta4))
-        return np.asarray(np.maximum(turned, ROUND_OFFS * moved / (frame + crank)))
+        return np.asarray(np.maximum(turned, moved / (frame + crank)))
 
     def _loop(self, m: Mapping[str, Array]) -> Terms:
         frame, crank, _ = self.unit_lengths.values()

@@ -5,37 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import ModuleType
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...generated import slider_crank_kinematics
-from ..core.errors import Problem, bad, refuse
-from ..core.inputs import is_finite
-from .linkage import (
-    ROUND_OFFS,
-    ROUNDED,
-    TINY,
-    UNDECIDED,
-    Array,
-    Assembly,
-    Limits,
-    Linkage,
-    LinkMotion,
-    Motion,
-    Terms,
-    assembly_problems,
-    length_problems,
-    pair,
-    turning,
-    units_of,
-)
+from ..core.errors import Problem, bad
+from .linkage import ROUNDED, TINY, Array, Limits, Linkage, LinkMotion, Motion, Terms, pair, turning
 
 
 @dataclass(frozen=True, kw_only=True)
-class SliderCrankMotion(Motion):
+class SliderCrankMotion(Motion, kinematics=slider_crank_kinematics):
     """Motion of a slider-crank at given crank angles; every array has their shape.
 
     ``error`` has it too: that of the worse of theta3 [rad] and of the position over the
@@ -68,9 +49,8 @@ class SliderCrankMotion(Motion):
     slider_acceleration: Array
     transmission_angle: Array
 
-    places, rates = units_of(slider_crank_kinematics)
-    norm: ClassVar[str] = "worse of theta3 [rad] and position over the longest length"
-    drawn: ClassVar[tuple[str, ...]] = ("position", "slider_velocity", "slider_acceleration")
+    norm = "worse of theta3 [rad] and position over the longest length"
+    drawn = ("position", "slider_velocity", "slider_acceleration")
 
     def _other_link(self, name: str) -> LinkMotion:
         if name == "coupler":
@@ -110,33 +90,22 @@ class SliderCrank(Linkage):
     crank: float
     coupler: float
     offset: float = 0.0
-    assembly: Assembly = "open"
+    assembly: Literal["open", "crossed"] = "open"
 
-    mechanism: ClassVar[str] = "slider_crank"
-    moves: ClassVar[type[Motion]] = SliderCrankMotion
-    kinematics: ClassVar[ModuleType] = slider_crank_kinematics
-    names: ClassVar[tuple[str, ...]] = ("crank", "coupler", "offset")
-    links: ClassVar[tuple[str, str, str]] = ("crank", "coupler", "slider")
-    bars: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "crank": ("A", "B"),
-        "coupler": ("B", "C"),
-        "slider": ("C",),
-    }
-    fold_axis: ClassVar[float] = -np.pi / 2.0
+    mechanism = "slider_crank"
+    moves = SliderCrankMotion
+    names = ("crank", "coupler", "offset")
+    links = ("crank", "coupler", "slider")
+    bars: ClassVar = {"crank": ("A", "B"), "coupler": ("B", "C"), "slider": ("C",)}
+    fold_axis = -np.pi / 2.0
 
-    def __post_init__(self) -> None:
-        positive = {"crank": self.crank, "coupler": self.coupler}
-        problems = length_problems("SliderCrank", positive)
-        if not is_finite(self.offset):
-            found = repr(self.offset)
-            problems.append(Problem("SliderCrank.offset", found, "a finite length", "correct it"))
-        problems += assembly_problems("SliderCrank", self.assembly)
+    def _gaping(self) -> list[Problem]:
         # Each factor is zero where the links just reach the guide, correctly rounded.
-        if not problems and min(self.limits.one_less_q1, self.limits.q2) <= 0.0:
-            expected = f"less than {self.crank + self.coupler:g} in magnitude, crank and coupler"
-            fix = "they cannot reach the guide; bring it nearer or lengthen one of them"
-            problems.append(Problem("SliderCrank.offset", f"{self.offset:g}", expected, fix))
-        refuse(problems)
+        if min(self.limits.one_less_q1, self.limits.q2) > 0.0:
+            return []
+        expected = f"less than {self.crank + self.coupler:g} in magnitude, crank and coupler"
+        fix = "they cannot reach the guide; bring it nearer or lengthen one of them"
+        return [Problem("SliderCrank.offset", f"{self.offset:g}", expected, fix)]
 
     @property
     def limits(self) -> Limits:
@@ -163,26 +132,21 @@ class SliderCrank(Linkage):
         """Return the motion of coupler and slider; see :meth:`Linkage.motion`."""
         return self._moved(SliderCrankMotion, theta, speed, acceleration)
 
-    def _decided(self, m: Mapping[str, Array]) -> NDArray[np.bool_]:
-        return np.asarray(self._blur(m) < UNDECIDED)
-
     def _blur(self, m: Mapping[str, Array]) -> Array:
-        """Return what a unit round-off of each length does to theta3 [rad], three times."""
         crank, coupler, offset = self.unit_lengths.values()
         sine = np.abs(np.cos(m["transmission_angle"]))
         moved = abs(offset) + crank * np.abs(np.sin(m["theta2"])) + coupler * sine
         across = np.abs(np.sin(m["transmission_angle"]))
-        return np.asarray(ROUND_OFFS * moved / (coupler * across))
+        return np.asarray(moved / (coupler * across))
 
     def _error(self, m: Mapping[str, Array]) -> Array:
-        """Return what a unit round-off of the angle and of each length does, three times."""
         # A change of a length across the guide moves the slider by its product with the tangent.
         crank, coupler, offset = self.unit_lengths.values()
         theta2, blur = m["theta2"], self._blur(m)
-        turned = ROUND_OFFS * (np.abs(theta2 * m["omega3"]) + np.abs(m["theta3"])) + blur
+        turned = np.abs(theta2 * m["omega3"]) + np.abs(m["theta3"]) + blur
         along = crank * np.abs(np.cos(theta2)) + coupler * np.abs(np.cos(m["theta3"]))
         moved = np.abs(theta2 * m["slider_velocity"]) + np.abs(m["position"]) + along
-        moved = ROUND_OFFS * moved + blur * coupler * np.abs(np.cos(m["transmission_angle"]))
+        moved = moved + blur * coupler * np.abs(np.cos(m["transmission_angle"]))
         longest = max(crank, coupler, abs(offset))
         return np.asarray(np.maximum(turned, moved / longest))
 

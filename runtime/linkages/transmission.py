@@ -19,7 +19,7 @@ from ..core.errors import bad, shown
 from ..core.inputs import are_finite
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
-from .four_bar import FourBar, LoopSums
+from .four_bar import FourBar
 from .linkage import EPS, Array, require_linkage
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
@@ -289,19 +289,37 @@ def _result(
 def _four_bar(linkage: FourBar, band: tuple[float, float]) -> TransmissionAngle:
     """Return the positions of a four-bar linkage (Aannaque 3.9, 3.10, and the triangles ACD)."""
     _, crank, coupler, follower = linkage.unit_lengths.values()
-    s = linkage.sums
+    s, branch = linkage.sums, linkage.branch
     # Transmission angle 0 or pi at the folds, else from the diagonal frame -+ crank.
     inner, outer = linkage.limits.ends
     turns = not inner and outer in (None, pi)
-    centres, outputs = _four_bar_centres(s, crank, coupler, linkage.branch)
-    output_range = _follower_range(s, outputs, linkage.branch)
+    far = _angle((s.less_coupler, s.less_follower), (s.two, s.total)) if outer is None else pi
+    # Where crank and coupler lie in one line.  Open, C lies to the left of the line from B to D:
+    # above the frame when extended, and when folded above it if the coupler is the longer one.
+    centres, outputs = {}, {}
+    if s.four >= 0:
+        centres["extended"] = branch * _angle((s.less_frame, s.four), (s.less_follower, s.total))
+        outputs["extended"] = branch * _angle((s.four, s.total), (s.less_frame, s.less_follower))
+    if s.two * s.three <= 0 and not s.two == s.three == 0:
+        centres["folded"] = -branch * _angle((s.three, s.less_crank), (s.two, s.less_coupler))
+        side = branch if coupler > crank else -branch
+        outputs["folded"] = side * _angle((s.less_coupler, s.less_crank), (s.two, s.three))
+    centres = {name: _turned(angle) for name, angle in centres.items()}
+    # The follower has an outer limit, an inner one, both or none.
+    outer_end = abs(outputs["extended"]) if s.four > 0 else None
+    inner_end = abs(outputs["folded"]) if s.two * s.three < 0 else None
+    output_range = None
+    if outer_end is not None and inner_end is not None:
+        output_range = (outer_end, inner_end) if branch > 0 else (-inner_end, -outer_end)
+    elif outer_end is not None:
+        output_range = outer_end, tau - outer_end
+    elif inner_end is not None:
+        output_range = -inner_end, inner_end
     return _result(
         linkage,
         band,
         least=0.0 if inner is not None else _angle((s.three, s.four), (s.less_frame, s.less_crank)),
-        greatest=pi
-        if outer is not None
-        else _angle((s.less_coupler, s.less_follower), (s.two, s.total)),
+        greatest=far,
         at_least=_mirrored(0.0, -(inner or 0.0)),
         at_greatest=_mirrored(0.0, -pi if outer is None else -outer),
         dead_centres=centres,
@@ -311,36 +329,6 @@ def _four_bar(linkage: FourBar, band: tuple[float, float]) -> TransmissionAngle:
         time_ratio=_time_ratio(centres) if turns else None,
         round_off=8.0 * EPS * s.total**2 / (coupler * follower),
     )
-
-
-def _four_bar_centres(
-    s: LoopSums, crank: float, coupler: float, branch: float
-) -> tuple[dict[str, float], dict[str, float]]:
-    """Return crank and follower angles where crank and coupler lie in one line."""
-    # Open, C lies to the left of the line from B to D: above the frame when extended, and when
-    # folded above it if the coupler is the longer one.
-    centres, outputs = {}, {}
-    if s.four >= 0:
-        centres["extended"] = branch * _angle((s.less_frame, s.four), (s.less_follower, s.total))
-        outputs["extended"] = branch * _angle((s.four, s.total), (s.less_frame, s.less_follower))
-    if s.two * s.three <= 0 and not s.two == s.three == 0:
-        centres["folded"] = -branch * _angle((s.three, s.less_crank), (s.two, s.less_coupler))
-        side = branch if coupler > crank else -branch
-        outputs["folded"] = side * _angle((s.less_coupler, s.less_crank), (s.two, s.three))
-    return {name: _turned(angle) for name, angle in centres.items()}, outputs
-
-
-def _follower_range(
-    s: LoopSums, centres: Mapping[str, float], branch: float
-) -> tuple[float, float] | None:
-    """Return the follower's range: an outer limit, an inner one, both or none."""
-    outer = abs(centres["extended"]) if s.four > 0 else None
-    inner = abs(centres["folded"]) if s.two * s.three < 0 else None
-    if outer is not None and inner is not None:
-        return (outer, inner) if branch > 0 else (-inner, -outer)
-    if outer is not None:
-        return outer, tau - outer
-    return None if inner is None else (-inner, inner)
 
 
 def _slider_crank(linkage: SliderCrank, band: tuple[float, float]) -> TransmissionAngle:

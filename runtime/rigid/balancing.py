@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
@@ -13,7 +13,7 @@ from ..core.errors import BadInput, bad
 from ..core.inputs import names_in_a_row, require_mapping, require_one_of, require_whole
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
-from ..linkages.linkage import Array, finite_array
+from ..linkages.linkage import Array
 from .counterweights import (
     CASES,
     Bounds,
@@ -183,25 +183,20 @@ def balance(
     added = case_counterweights(
         machine, case, offsets, density=density, thickness=thickness, fraction=fraction
     )
-    return _compared(machine, case, added, speed, acceleration, angles)
+    speed, acceleration = finite_number(speed, "speed"), finite_number(acceleration, "acceleration")
+    return _compared(ForceBasis(machine, speed, acceleration), case, added, angles)
 
 
 def _compared(
-    machine: Machine,
-    case: Case,
-    added: Mapping[str, Counterweight],
-    speed: float,
-    acceleration: float,
-    angles: ArrayLike | None,
+    plain: ForceBasis, case: Case, added: Mapping[str, Counterweight], angles: ArrayLike | None
 ) -> Balancing:
-    balanced = with_counterweights(machine, added.values())
-    unbalanced, _ = _turn_peaks(machine, speed, acceleration, angles)
-    after, where = _turn_peaks(balanced, speed, acceleration, angles)
+    balanced = replace(plain, machine=with_counterweights(plain.machine, added.values()))
+    unbalanced, _ = _sizes(plain.sampled(angles))
+    after, where = _sizes(balanced.sampled(angles))
     relative = _relative(after, unbalanced)
     moved = []
-    for linkage in _all_but_equal(machine.linkage):
-        pair = (replace(each, linkage=linkage) for each in (machine, balanced))
-        before, then = (_turn_peaks(each, speed, acceleration, angles)[0] for each in pair)
+    for pair in zip(_all_but_equal(plain), _all_but_equal(balanced), strict=True):
+        before, then = (_sizes(each.sampled(angles))[0] for each in pair)
         moved.append([then[term] / before[term] for term in relative])
     checks = {}
     if case in ("c", "d") and "shaking_force" in relative:
@@ -209,7 +204,7 @@ def _compared(
     spread = float(np.max(np.ptp(moved, axis=0), initial=0.0))
     return Balancing(
         counterweights=added,
-        machine=balanced,
+        machine=balanced.machine,
         unbalanced=unbalanced,
         relative=relative,
         peak_angles=where,
@@ -217,20 +212,20 @@ def _compared(
         error=spread / max(relative.values(), default=1.0) + _DIGITS,
         error_norm="relative peaks, over the largest of them",
         checks=checks,
-        provenance=provenance({"speed": repr(float(speed))}),
+        provenance=provenance({"speed": repr(plain.speed)}),
     )
 
 
-def _all_but_equal(linkage: Any) -> list[Any]:
-    """Return linkages whose lengths are a few last digits away from one's."""
-    made = []
+def _all_but_equal(basis: ForceBasis) -> Iterator[ForceBasis]:
+    """Yield machines whose lengths are a few last digits away from one's."""
+    linkage: Any = basis.machine.linkage
     for signs in _SIGNS:
         moved = {
-            name: getattr(linkage, name) * (1.0 + 0.5 * sign * _DIGITS)
-            for name, sign in zip(linkage.names, signs, strict=False)
+            name: length * (1.0 + 0.5 * sign * _DIGITS)
+            for (name, length), sign in zip(linkage.lengths.items(), signs, strict=False)
         }
-        made.append(replace(linkage, **moved))
-    return made
+        machine = replace(basis.machine, linkage=replace(linkage, **moved))
+        yield replace(basis, machine=machine)
 
 
 def _searched(
@@ -254,13 +249,10 @@ def _searched(
         raise bad("weights", "no weight above zero", "at least one", "give --weights torque=1")
     chosen = _links(machine, links)
     masses, lengths, stiffness = _units(machine, chosen, bounds)
-    basis = ForceBasis(machine, chosen, speed, acceleration, masses, lengths)
-    design = Design(stiffness)
-    theta, whole = _angles(basis, angles, measure)
-    # A mean over the samples has no peaks between them.
-    between = whole and measure == "peak"
-    peaks, _ = _sizes(basis, theta, np.zeros(design.count), between, measure)
-    search = Search(basis, theta, between, peaks, design, wanted, tops, measure, whole)
+    basis = ForceBasis(machine, speed, acceleration, chosen, masses, lengths, measure)
+    basis = basis.sampled(angles)
+    peaks, _ = _sizes(basis)
+    search = Search(basis, peaks, Design(stiffness), wanted, tops)
     zero = _zero_forces(peaks)
     for term in search.terms:
         if term in zero:
@@ -270,29 +262,39 @@ def _searched(
 
 
 def _described(search: Search, best: Candidate) -> Balancing:
-    added, p = _counterweights(search, best.x), search.design.parameters(best.x)
-    balanced, where = _sizes(search.basis, search.theta, p, search.between, search.measure)
+    basis, p, added = search.basis, search.design.parameters(best.x), {}
+    units = zip(basis.links, basis.masses, basis.lengths, search.design.stiffness, strict=True)
+    for unit, (m, u, v) in zip(units, best.x.reshape(-1, 3), strict=True):
+        link, mass, length, stiffness = unit
+        # Inertia about the centre over mass is half the square of the radius.
+        radius = length * np.sqrt(2.0 * stiffness * m)
+        body = (m * mass, u * length, v * length, radius)
+        if m > 0.0:
+            added[link] = Counterweight(link, *map(float, body))
+    balanced, where = _sizes(basis, p)
     relative = _relative(balanced, search.unbalanced)
     gap = (best.value - best.bound) / search.unit
-    # Of forces that have limits the last digits count by what the limits are worth.
-    rounding = (_rounding(search, p) + _DIGITS * best.slope) / search.unit
+    # Some last digits, of forces that have limits by what the limits are worth; and near a change
+    # point, where forces hang on the last digits of the lengths, what some of these change.
+    rounded = [_weighted(search, each, p) for each in _all_but_equal(basis)]
+    rounding = (float(np.ptp(rounded)) + _DIGITS * best.slope) / search.unit + _DIGITS
     over = max((relative[term] / top - 1.0 for term, top in search.limits.items()), default=0.0)
     sampling = _sampling(search, p) / search.unit
     checks = {
         "gap or KKT residual": Check(min(gap, best.residual), _OPTIMAL),
         "limits passed, relative": Check(max(over, 0.0), 1e-7),
     }
-    if search.measure == "rms":
+    if basis.measure == "rms":
         checks["samples"] = Check(sampling, _SAMPLED)
     return Balancing(
         counterweights=added,
-        machine=with_counterweights(search.basis.machine, added.values()),
+        machine=with_counterweights(basis.machine, added.values()),
         weights=dict(search.weights),
         limits=dict(search.limits),
         value=best.value,
         lower_bound=best.bound,
         unbalanced=search.unbalanced,
-        measure=search.measure,
+        measure=basis.measure,
         relative=relative,
         peak_angles=where,
         method="second-order cone programme over the convex hull, SLSQP within",
@@ -300,19 +302,8 @@ def _described(search: Search, best: Candidate) -> Balancing:
         error_norm="weighted sum above the least possible one, over the unbalanced linkage's",
         error_kind="bound",
         checks=checks,
-        provenance=provenance({"speed": repr(search.basis.speed)}),
+        provenance=provenance({"speed": repr(basis.speed)}),
     )
-
-
-def _rounding(search: Search, p: Array) -> float:
-    """Return what round-off does to the weighted sum of the relative peaks."""
-    # Some last digits; and near a change point, where forces hang on the last digits of the
-    # lengths, what some of these change.
-    values = []
-    for linkage in _all_but_equal(search.basis.machine.linkage):
-        machine = replace(search.basis.machine, linkage=linkage)
-        values.append(_weighted(search, replace(search.basis, machine=machine), search.theta, p))
-    return float(np.ptp(values)) + _DIGITS * search.unit
 
 
 def _sampling(search: Search, p: Array) -> float:
@@ -321,42 +312,28 @@ def _sampling(search: Search, p: Array) -> float:
     Samples between the given ones are off by as much to the other side where they resolve the
     motion; where they do not, no two of four rows of samples agree.
     """
-    if not search.whole or search.measure != "rms":
+    basis = search.basis
+    if not basis.whole or basis.measure != "rms":
         return 0.0
-    step = float(search.theta[1] - search.theta[0])
-    rows = [search.theta + share * step for share in (0.0, 0.25, 0.5, 0.75)]
-    return float(np.ptp([_weighted(search, search.basis, theta, p) for theta in rows]))
+    step = float(basis.theta[1] - basis.theta[0])
+    rows = [basis.theta + share * step for share in (0.0, 0.25, 0.5, 0.75)]
+    return float(np.ptp([_weighted(search, replace(basis, theta=theta), p) for theta in rows]))
 
 
-def _weighted(search: Search, basis: ForceBasis, theta: Array, p: Array) -> float:
-    """Return the weighted sum of relative sizes at angles, both sizes with the same basis."""
-    before, after = (
-        basis.sizes(theta, masses, search.between, search.measure, tuple(search.weights))
-        for masses in (np.zeros_like(p), p)
-    )
+def _weighted(search: Search, basis: ForceBasis, p: Array) -> float:
+    """Return the weighted sum of relative sizes, both sizes with the same basis."""
+    before, after = (basis.sizes(each, tuple(search.weights)) for each in (None, p))
     return sum(
         weight * float(after[name][1].max()) / float(before[name][1].max())
         for name, weight in search.weights.items()
     )
 
 
-def _sizes(
-    basis: ForceBasis, theta: Array, p: Array, between: bool, measure: Measure
-) -> tuple[dict[str, float], dict[str, float]]:
+def _sizes(basis: ForceBasis, p: Array | None = None) -> tuple[dict[str, float], dict[str, float]]:
     """Return the peak or root mean square of each force, and the angle of the peak."""
-    sizes = basis.sizes(theta, p, between, measure)
+    sizes = basis.sizes(p)
     where = {term: float(at[int(np.argmax(size))]) for term, (at, size) in sizes.items()}
     return {term: float(size.max()) for term, (_, size) in sizes.items()}, where
-
-
-def _turn_peaks(
-    machine: Machine, speed: float, acceleration: float, angles: ArrayLike | None
-) -> tuple[dict[str, float], dict[str, float]]:
-    """Return peak and its angle for every force of a machine as it is."""
-    speed, acceleration = finite_number(speed, "speed"), finite_number(acceleration, "acceleration")
-    basis = ForceBasis(machine, (), speed, acceleration, np.zeros(0), np.zeros(0))
-    theta, between = _angles(basis, angles)
-    return _sizes(basis, theta, np.zeros(0), between, "peak")
 
 
 def _relative(after: Mapping[str, float], before: Mapping[str, float]) -> dict[str, float]:
@@ -372,19 +349,6 @@ def _zero_forces(peaks: Mapping[str, float]) -> set[str]:
     most |= dict.fromkeys(moments, max(peaks[term] for term in moments))
     # A force below this, over the largest of its kind, is no force to compare with.
     return {term for term in TERMS if not peaks[term] > 1e-12 * most[term]}
-
-
-def _counterweights(search: Search, x: Array) -> dict[str, Counterweight]:
-    """Return the counterweights of design variables; none where the mass is zero."""
-    basis, added = search.basis, {}
-    units = zip(basis.links, basis.masses, basis.lengths, search.design.stiffness, strict=True)
-    for (link, mass, length, stiffness), (m, u, v) in zip(units, x.reshape(-1, 3), strict=True):
-        # Inertia about the centre over mass is half the square of the radius.
-        radius = length * np.sqrt(2.0 * stiffness * m)
-        body = (m * mass, u * length, v * length, radius)
-        if m > 0.0:
-            added[link] = Counterweight(link, *map(float, body))
-    return added
 
 
 def _terms(given: Mapping[str, float], where: str, *, zero: bool) -> dict[str, float]:
@@ -439,21 +403,6 @@ def _units(
         rows.append((mass, offset, stiffness))
     masses, offsets, stiff = np.array(rows).T
     return masses, offsets, stiff
-
-
-def _angles(
-    basis: ForceBasis, angles: ArrayLike | None, measure: Measure = "peak"
-) -> tuple[Array, bool]:
-    """Return the angles that count, and whether they stand for a whole turn."""
-    if angles is not None:
-        theta = finite_array("angles", angles, "angles [rad]").ravel()
-        if theta.size == 0:
-            raise bad("angles", "none", "finite angles [rad]", "give one or more")
-        return theta, False
-    if not basis.machine.linkage.crank_turns:
-        fix = "give angles that the crank can reach"
-        raise bad("angles", "a crank that cannot turn fully", "angles [rad]", fix)
-    return basis.grid(measure), True
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -587,7 +536,7 @@ def trade_off(
         first_values=values[0],
         second_values=values[1],
         points=results,
-        cases=_cases(machine, search.basis.speed, acceleration, offsets, angles, (first, second)),
+        cases=_cases(search.basis, offsets, angles, (first, second)),
         method="limits to the first peak; second-order cone programmes, SLSQP within",
         # Of points on which both peaks count: the second has the weight 1, and is relative already.
         error=np.array([search.unit * one.error for one in results]) + beyond,
@@ -606,22 +555,17 @@ def _end(search: Search, term: str, other: str) -> tuple[Candidate, float]:
 
 
 def _cases(
-    machine: Machine,
-    speed: float,
-    acceleration: float,
-    offsets: Offsets,
-    angles: ArrayLike | None,
-    terms: tuple[str, str],
+    basis: ForceBasis, offsets: Offsets, angles: ArrayLike | None, terms: tuple[str, str]
 ) -> dict[str, tuple[float, float]]:
     peaks: dict[str, tuple[float, float]] = {}
     for case in CASES:
         try:
-            added = case_counterweights(machine, case, offsets)
+            added = case_counterweights(basis.machine, case, offsets)
         except BadInput:
             if offsets is not None and case != "d":
                 raise
             # A slider-crank has no case (d), and a link without a length no default offset.
             continue
-        relative = _compared(machine, case, added, speed, acceleration, angles).relative
+        relative = _compared(basis, case, added, angles).relative
         peaks[case] = relative[terms[0]], relative[terms[1]]
     return peaks

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
 from ..core.errors import Problem, bad, refuse
 from ..core.inputs import number_problems, require_one_of
@@ -234,9 +234,8 @@ def case_counterweights(
         return place({link: -_moment(machine, link) for link in turning})
     if case == "reciprocating":
         return _reciprocating(machine, place, finite_number(fraction, "fraction"))
-    kinds: dict[str, Any] = {"slider": _slider_crank, "rod": _quick_return, "follower": _four_bar}
-    counterweights: dict[str, Counterweight] = kinds[links[-1]](machine, case, place)
-    return counterweights
+    kinds = {"slider": _slider_crank, "rod": _quick_return, "follower": _four_bar}
+    return kinds[links[-1]](machine, case, place)
 
 
 def _moment(machine: Machine, link: str) -> complex:
@@ -246,41 +245,36 @@ def _moment(machine: Machine, link: str) -> complex:
 
 
 def _four_bar(machine: Machine, case: Case, place: _Place) -> dict[str, Counterweight]:
-    lengths = machine.linkage.lengths
-    coupler = machine.mass("coupler")
-    crank, follower = _moment(machine, "crank"), _moment(machine, "follower")
+    lengths, follower = machine.linkage.lengths, _moment(machine, "follower")
     if case == "c":
-        middle = place({"coupler": -_moment(machine, "coupler")})
-        at_pin = coupler.mass + sum(weight.mass for weight in middle.values())
-        crank += at_pin * lengths["crank"]
-    else:
-        # The coupler's momentum is that of masses at B and C: mu/l3 at C, the rest at B.
-        at_c = _moment(machine, "coupler") / lengths["coupler"]
-        crank += (coupler.mass - at_c) * lengths["crank"]
-        follower += at_c * lengths["follower"]
-        middle = {}
-    return {**place({"crank": -crank}), **middle, **place({"follower": -follower})}
+        return _balanced_at_pin(machine, place, 0.0) | place({"follower": -follower})
+    # The coupler's momentum is that of masses at B and C: mu/l3 at C, the rest at B.
+    at_c = _moment(machine, "coupler") / lengths["coupler"]
+    crank = _moment(machine, "crank") + (machine.mass("coupler").mass - at_c) * lengths["crank"]
+    return place({"crank": -crank, "follower": -follower - at_c * lengths["follower"]})
 
 
 def _slider_crank(machine: Machine, case: Case, place: _Place) -> dict[str, Counterweight]:
     if case == "d":
         fix = "use case 'c', or 'reciprocating' for a crank counterweight alone"
         raise bad("case", "'d' for a slider-crank", "case b, c or reciprocating", fix)
-    lengths = machine.linkage.lengths
-    slider, coupler = machine.mass("slider"), machine.mass("coupler")
     # The slider does not turn: wherever its centre is, it moves as a point mass at C.
-    middle = place({"coupler": -_moment(machine, "coupler") - slider.mass * lengths["coupler"]})
-    at_pin = slider.mass + coupler.mass + sum(weight.mass for weight in middle.values())
-    return {**place({"crank": -_moment(machine, "crank") - at_pin * lengths["crank"]}), **middle}
+    return _balanced_at_pin(machine, place, machine.mass("slider").mass)
+
+
+def _balanced_at_pin(machine: Machine, place: _Place, at_c: float) -> dict[str, Counterweight]:
+    """Balance the coupler, with a mass at C, on the crank's pin, and the crank with all of them."""
+    lengths = machine.linkage.lengths
+    middle = place({"coupler": -_moment(machine, "coupler") - at_c * lengths["coupler"]})
+    at_pin = at_c + machine.mass("coupler").mass + sum(weight.mass for weight in middle.values())
+    return place({"crank": -_moment(machine, "crank") - at_pin * lengths["crank"]}) | middle
 
 
 def _quick_return(machine: Machine, case: Case, place: _Place) -> dict[str, Counterweight]:
     # The block's mass sits on the crank pin; its first moments turn with the rod.
-    crank = (
-        _moment(machine, "crank") + machine.mass("block").mass * machine.linkage.lengths["crank"]
-    )
+    block, length = machine.mass("block"), machine.linkage.lengths["crank"]
     rod = _moment(machine, "rod") + _moment(machine, "block")
-    return place({"crank": -crank, "rod": -rod})
+    return place({"crank": -_moment(machine, "crank") - block.mass * length, "rod": -rod})
 
 
 def _reciprocating(machine: Machine, place: _Place, fraction: float) -> dict[str, Counterweight]:

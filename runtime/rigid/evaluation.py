@@ -77,22 +77,24 @@ class Evaluation:
         kept = {*wanted, *(FRAME_FORCE if "shaking_force" in wanted else ())}
         kept |= set(self.kernels.RETURNS["pin_forces"]) if "pins" in wanted else set()
         names = [name for name in self.kernels.RETURNS[function] if name in kept]
-        out = np.empty((len(names), *self.batch))
-        rows = {name: place for place, name in enumerate(names)}
+        out = {name: np.empty(self.batch) for name in names}
         with np.errstate(all="ignore"):
-            total = self._add(function, self.numbers, out, rows, names)
+            total = self._add(function, self.numbers, out, names)
             if self.machine.loaded:
-                total += self._loads(out, rows)
-        if self.exponent:
-            for name in ("torque", "shaking_moment", "couple34", "couple41"):
-                if name in rows:
-                    out[rows[name]] = np.ldexp(out[rows[name]], self.exponent)
+                speed, unit = self.numbers["speed"], 2.0**-self.exponent
+                motion = self.machine.linkage.motion(self.theta, speed)
+                for changed, pushed in pushes(self.machine, motion, speed, names, unit):
+                    given = self.numbers | pushed
+                    total += self._add("load_forces", given, out, changed, more=True)
+        for name in out if self.exponent else ():
+            if name.startswith(COUPLES):
+                out[name] = np.ldexp(out[name], self.exponent)
         if not math.isfinite(total):
             self.machine.linkage.motion(self.theta)  # says which angle is out of reach
             where = "forces beyond the largest float, or a fold of the linkage"
             fix = "use other units, or keep the angles off the fold"
             raise bad("rigid_forces", where, "finite forces", fix)
-        return {name: out[row] for name, row in rows.items()}
+        return {name: values[()] for name, values in out.items()}
 
     def _numbers(self, speed: Array, acceleration: Array) -> dict[str, Any]:
         linkage = self.machine.linkage
@@ -108,51 +110,41 @@ class Evaluation:
             numbers[f"inertia{place}"] = math.ldexp(mass.inertia, -self.exponent)
         return numbers
 
-    def _loads(self, out: Array, rows: Mapping[str, int]) -> float:
-        motion = self.machine.linkage.motion(self.theta, self.numbers["speed"])
-        unit = 2.0**-self.exponent
-        total = 0.0
-        for names, pushed in pushes(self.machine, motion, self.numbers["speed"], list(rows), unit):
-            given = self.numbers | pushed
-            total += self._add("load_forces", given, out, rows, names, more=True)
-        return total
-
     def _add(
         self,
         function: str,
         numbers: Mapping[str, Any],
-        out: Array,
-        rows: Mapping[str, int],
+        out: Mapping[str, Array],
         names: list[str],
         more: bool = False,
     ) -> float:
-        """Evaluate an emitted function into the named rows of ``out``, or add it to what is there.
+        """Evaluate an emitted function into the named arrays, or add it to what is there.
 
         In blocks that stay in the processor's cache.  An argument that does not vary along an axis
         is not spread along it: what depends on the crank angle alone is evaluated once for all the
         speeds of a block.  Returns a sum that is no finite number where an entry is none.
         """
-        total = 0.0
-        if out.size == 0 or not names:
+        total, size = 0.0, math.prod(self.batch)
+        if size == 0 or not names:
             return total
         call: Callable[..., Any] = getattr(self.kernels, function)
         given = [self.theta, *(numbers[name] for name in arguments(call)[1:])]
         # One number as NumPy's, whose powers and quotients overflow without an exception.
         given = [np.float64(item) if np.ndim(item) == 0 else item for item in given]
         returned = self.kernels.RETURNS[function]
-        places = [(rows[name], returned.index(name)) for name in names]
-        watched = {places[0][1], places[min(1, len(places) - 1)][1], places[-1][1]}
-        batch = out.shape[1:]
+        places = [returned.index(name) for name in names]
+        watched, batch = {*places[:2], places[-1]}, self.batch
         axis = max(range(len(batch)), key=batch.__getitem__, default=0)
         longest = batch[axis] if batch else 1
-        step = max(1, BLOCK * longest * len(out) // out.size)
+        step = max(1, BLOCK * longest // size)
         for start in range(0, longest, step):
             part = slice(start, start + step)
             arrays = call(*(_part(item, part, axis - len(batch) or -1) for item in given))
             arrays = arrays if isinstance(arrays, tuple) else (arrays,)
-            target = out[(slice(None),) * (axis + 1) + (part,)] if batch else out
-            for row, place in places:
-                target[row] = target[row] + arrays[place] if more else arrays[place]
+            at = (slice(None),) * axis + (part,) if batch else ()
+            for name, place in zip(names, places, strict=True):
+                target = out[name]
+                target[at] = target[at] + arrays[place] if more else arrays[place]
             # An angle out of reach spoils every row; what overflows shows in the first ones or the
             # last, to which the others add up.  All of them would take a twentieth of the time.
             for place in watched:
@@ -191,22 +183,17 @@ class ParametricMachine(Parametric):
         """Names of the forces."""
         return tuple(force_kernels(self.linkage.mechanism).RETURNS["forces"])
 
-    def evaluate(self, numbers: Mapping[str, Any]) -> dict[str, Any]:
-        """Return every output of the numbers; what cannot close is not finite."""
-        theta = self._angle(numbers)
-        with np.errstate(all="ignore"):
-            moved = self._moved(theta, numbers)
-            return moved | self._forces(theta, numbers, moved)
-
     def _size(self, name: str) -> float:
         if "." not in name:
             return super()._size(name)
         kind = name.partition(".")[2]
         return max(abs(getattr(mass, kind)) for mass in self.machine.masses.values()) or 1.0
 
-    def _forces(
-        self, theta: Any, numbers: Mapping[str, Any], moved: Mapping[str, Any]
-    ) -> dict[str, Any]:
+    @np.errstate(all="ignore")
+    def evaluate(self, numbers: Mapping[str, Any]) -> dict[str, Any]:
+        """Return every output of the numbers; what cannot close is not finite."""
+        theta = self._angle(numbers)
+        moved = self._moved(theta, numbers)
         kernels, links = force_kernels(self.linkage.mechanism), self.linkage.links
         # In a unit of length in which the longest link is near 1, their powers are safe.
         size = 2.0**self.linkage.scale
@@ -231,4 +218,5 @@ class ParametricMachine(Parametric):
             for names, pushed in pushes(acting, motion, self.speed, [*forces], size):
                 more = emitted(self.linkage, kernels, "load_forces", theta, {**lengths, **pushed})
                 forces |= {name: forces[name] + more[name] for name in names}
-        return {k: value / size if k.startswith(COUPLES) else value for k, value in forces.items()}
+        moments = {k: value / size for k, value in forces.items() if k.startswith(COUPLES)}
+        return moved | forces | moments

@@ -85,7 +85,14 @@ def torque_fluctuation(machine: Machine, speed: float) -> TorqueFluctuation:
 
 def _with_tail(machine: Machine, speed: float) -> tuple[TorqueFluctuation, float]:
     """Return the torque's fluctuation, and what of its error is not round-off [J]."""
-    _require(machine, speed)
+    require_machine(machine)
+    machine.linkage.require_full_turn()
+    if not (is_finite(speed) and speed * speed):
+        raise bad("speed", shown(speed), "a finite crank speed, not zero", "give one in rad/s")
+    turns = driving_torque(machine, _SCATTERED + TURN * _TURNS[:, np.newaxis], speed).torque
+    if not np.allclose(turns, turns[:1], rtol=1e-6, atol=1e-6 * float(np.max(np.abs(turns)))):
+        fix = "check torsion springs and loads that depend on the angle"
+        raise bad("machine", "a torque that changes turn by turn", "one that repeats", fix)
     theta, torque, tail = _sampled(machine, speed)
     mean, energy = float(np.mean(torque)), _integral(torque)
     (low, slowest), (high, fastest) = _extreme(-energy), _extreme(energy)
@@ -348,16 +355,3 @@ def _summit(values: Array) -> float:
     place = int(np.clip(np.argmax(values), 2, values.size - 3))
     height = float(polished(values[place - 2 : place + 3])[1])
     return max(height, float(np.max(values)))
-
-
-def _require(machine: Machine, speed: float) -> None:
-    require_machine(machine)
-    machine.linkage.require_full_turn()
-    if not (is_finite(speed) and speed * speed):
-        raise bad("speed", shown(speed), "a finite crank speed, not zero", "give one in rad/s")
-    turns = _SCATTERED + TURN * _TURNS[:, np.newaxis]
-    torque = driving_torque(machine, turns, speed).torque
-    size = float(np.max(np.abs(torque)))
-    if not np.allclose(torque, torque[:1], rtol=1e-6, atol=1e-6 * size):
-        fix = "check torsion springs and loads that depend on the angle"
-        raise bad("machine", "a torque that changes turn by turn", "one that repeats", fix)

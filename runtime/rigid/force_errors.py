@@ -7,10 +7,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.results import Check
-from ..linkages.linkage import EPS, Array, Linkage, Motion, over
+from ..linkages.linkage import EPS, Array, Linkage, over
 from ..linkages.parametric import ANGLE
 from .evaluation import BLOCK, COUPLES, ParametricMachine
 from .loads import Load, Spring, Wrench, at_first_joint, frozen
@@ -47,18 +46,16 @@ def error_and_size(
     batch = np.broadcast_shapes(theta.shape, speed.shape, acceleration.shape)
     given = [np.ravel(np.broadcast_to(item, batch)) for item in (theta, speed, acceleration)]
     errors, size = np.empty(given[0].size), np.empty(given[0].size)
-    loads = _frozen_loads(machine, *given)
     # Some twenty derivatives of each number.
     step = BLOCK // 8
     for where in (slice(start, start + step) for start in range(0, errors.size, step)):
-        part = tuple(_FrozenLoad(one.load, one.force[where], one.couple[where]) for one in loads)
-        errors[where], size[where] = _of_block(machine, part, *(item[where] for item in given))
+        errors[where], size[where] = _of_block(machine, *(item[where] for item in given))
     return errors.reshape(batch), size.reshape(batch)
 
 
 @dataclass(frozen=True)
 class _FrozenLoad:
-    """A load with its force (n, 2), along its axes, and couple (n,) at given angles."""
+    """A load with its force (..., 2), along its axes, and couple (...) at given angles."""
 
     load: Load
     force: Array
@@ -68,25 +65,11 @@ class _FrozenLoad:
         return {self.load.link: at_first_joint(self.load, motion, self.force, self.couple)}
 
 
-def _frozen_loads(
-    machine: Machine, theta: Array, speed: Array, acceleration: Array
-) -> list[_FrozenLoad]:
-    if not machine.loads:
-        return []
-    motion = machine.linkage.motion(theta, speed, acceleration)
-    loads = []
-    for load in machine.loads:
-        force, couple = frozen(load, motion, speed)
-        full = np.broadcast_to(force, (*theta.shape, 2))
-        loads.append(_FrozenLoad(load, full, np.broadcast_to(couple, theta.shape)))
-    return loads
-
-
-def _of_block(
-    machine: Machine, loads: tuple[_FrozenLoad, ...], theta: Array, speed: Array, change: Array
-) -> tuple[Array, Array]:
+def _of_block(machine: Machine, theta: Array, speed: Array, change: Array) -> tuple[Array, Array]:
     """Return the error and what is added up [N] at angles of one axis."""
     linkage = machine.linkage
+    motion = linkage.motion(theta, speed, change)
+    loads = tuple(_FrozenLoad(load, *frozen(load, motion, speed)) for load in machine.loads)
     model = ParametricMachine(linkage, theta, speed, change, machine=machine, loads=loads)
     numbers = model.values
     longest = max(abs(size) for size in linkage.lengths.values())
@@ -109,7 +92,7 @@ def _of_block(
             parts = parts + sum(np.abs(part[name]) for part in drives)
             moved = np.fmax(moved, (sum(terms[:split]) + parts) / arm)
             size = np.fmax(size, parts / arm)
-        pulls = _pulls(machine, loads, longest, linkage.motion(theta, speed, change))
+        pulls = _pulls(machine, loads, longest, motion)
         # The emitted functions are off by a few round-offs of everything they are given.  Of 5700
         # random machines near folds, near change points and with short links the worst needed 18.4
         # against 60 digits, all others less than 9 (tests/error_estimates has a part of them).
@@ -127,9 +110,7 @@ def _step(linkage: Linkage, name: str, value: float) -> float:
     return abs(value) + (linkage.lengths["crank"] + linkage.lengths["coupler"]) / 4.0
 
 
-def _pulls(
-    machine: Machine, loads: tuple[_FrozenLoad, ...], longest: float, motion: Motion
-) -> Array:
+def _pulls(machine: Machine, loads: tuple[_FrozenLoad, ...], longest: float, motion: Any) -> Array:
     """Return how large the parts of loads and springs are, seen in the joints [N]."""
     total: Array = np.zeros(motion.theta2.shape)
     if not (loads or machine.springs):
@@ -146,18 +127,13 @@ def _pulls(
         moving = (link for link in spring.links if link in machine.linkage.links)
         turned = sum(np.abs(motion.link(link).angle) for link in moving)
         total = total + spring.stiffness * (turned + abs(spring.free_angle)) + abs(spring.preload)
-    return np.asarray(total / _shortest_arm(machine.linkage.lengths, motion))
-
-
-def _shortest_arm(lengths: Mapping[str, float], motion: Any) -> Array:
-    """Return the shortest arm by which a force in a joint balances a moment."""
-    # The coupler's length seen across the follower or across the guide, the follower's across the
-    # coupler, or the slide of a block along its rod.
+    # The shortest arm by which a force in a joint balances a moment: the coupler's length seen
+    # across the follower or across the guide, the follower's across the coupler, or the slide.
     if hasattr(motion, "slide"):
-        return np.asarray(motion.slide)
-    sine = np.abs(np.sin(motion.transmission_angle))
+        return np.asarray(total / motion.slide)
+    lengths = machine.linkage.lengths
     bars = (lengths[name] for name in ("coupler", "follower") if name in lengths)
-    return np.asarray(min(bars) * sine)
+    return np.asarray(total / (min(bars) * np.abs(np.sin(motion.transmission_angle))))
 
 
 def checks(
@@ -172,7 +148,10 @@ def checks(
     if int(np.prod(batch, dtype=int)) == 0:
         return {}
     flat = {name: np.ravel(value) for name, value in values.items()}
-    chosen = _places(flat)
+    # Places all over, and those at which each of the values is largest.
+    spread = np.linspace(0, len(next(iter(flat.values()))) - 1, 24).astype(int)
+    peaks = [int(np.argmax(np.abs(value))) for value in flat.values()]
+    chosen = np.unique(np.concatenate([spread, peaks]))
     given = [
         np.ravel(np.broadcast_to(item, batch))[chosen] for item in (theta, speed, acceleration)
     ]
@@ -192,15 +171,6 @@ def checks(
         }
 
 
-def _places(values: Mapping[str, Array]) -> NDArray[np.intp]:
-    """Return places all over, and those at which each of the values is largest."""
-    size = next(iter(values.values())).size
-    # Places at which the checks are made, beside those where a force is largest.
-    spread = np.linspace(0, size - 1, 24).astype(int)
-    peaks = [int(np.argmax(np.abs(value))) for value in values.values()]
-    return np.unique(np.concatenate([spread, np.array(peaks, dtype=int)]))
-
-
 class _Balance:
     """Newton's and Euler's equations at some places."""
 
@@ -208,50 +178,52 @@ class _Balance:
         self.machine = machine
         self.motion = machine.linkage.motion(theta, speed, acceleration)
         self.unit = machine.linkage.motion(theta)
-        self.inertia = {link: self._momentum(link) for link in machine.linkage.links}
-        self.acting = wrenches(machine, self.motion, speed)
-        self.outside = wrenches(machine, self.motion, speed, "outside")
+        # What acts on each link, and of it what comes from outside, less the rate of its momentum.
+        self.acting = self._left(wrenches(machine, self.motion, speed))
+        self.outside = self._left(wrenches(machine, self.motion, speed, "outside"))
         self.longest = max(abs(length) for length in machine.linkage.lengths.values())
 
     def residuals(self, forces: Mapping[str, Array]) -> dict[str, Array]:
         """Return by how much each balance that can be made fails [N]."""
         gaps = {}
         if "torque" in forces:
-            power = power_of(self.acting, self.unit) - power_of(self.inertia, self.unit)
+            power = power_of(self.acting, self.unit)
             gaps["power balance"] = (forces["torque"] + power) / self.longest
+        fx, fy, moment = self._frame()
         if "shaking_x" in forces:
-            fx, fy, _ = self._frame()
             gap = np.hypot(forces["shaking_x"] - fx, forces["shaking_y"] - fy)
             gaps["shaking force against -dP/dt"] = gap
         if "shaking_moment" in forces:
-            gap = forces["shaking_moment"] - self._frame()[2]
+            gap = forces["shaking_moment"] - moment
             gaps["shaking moment against -dH/dt"] = gap / self.longest
         if "x12" in forces:
             gaps["equilibrium of the links"] = self._statics(forces)
         return gaps
 
-    def _momentum(self, link: str) -> Wrench:
-        """Return the rate of change of a link's momentum, and of its moment at the first joint."""
-        moving, mass = self.motion.link(link), self.machine.mass(link)
-        x, y = moving.turned(mass.along, mass.across)
-        ax, ay = moving.acceleration[..., 0], moving.acceleration[..., 1]
-        alpha, square = moving.angular_acceleration, moving.speed**2
-        return (
-            mass.mass * ax - alpha * y - square * x,
-            mass.mass * ay + alpha * x - square * y,
-            mass.inertia * alpha + x * ay - y * ax,
-        )
+    def _left(self, acting: Mapping[str, Wrench]) -> dict[str, Wrench]:
+        """Return wrenches less the rates of change of the links' momenta, at the first joints."""
+        left: dict[str, Wrench] = {}
+        for link in self.machine.linkage.links:
+            moving, mass = self.motion.link(link), self.machine.mass(link)
+            x, y = moving.turned(mass.along, mass.across)
+            ax, ay = moving.acceleration[..., 0], moving.acceleration[..., 1]
+            alpha, square = moving.angular_acceleration, moving.speed**2
+            fx, fy, couple = acting.get(link, (0.0, 0.0, 0.0))
+            left[link] = (
+                fx - (mass.mass * ax - alpha * y - square * x),
+                fy - (mass.mass * ay + alpha * x - square * y),
+                couple - (mass.inertia * alpha + x * ay - y * ax),
+            )
+        return left
 
-    def _frame(self) -> Wrench:
-        """Return what the momenta and the outside leave for the frame, moment about A."""
-        total: list[Array] = [np.zeros(np.shape(self.motion.theta2)) for _ in range(3)]
-        for by_link, sign in ((self.inertia, -1.0), (self.outside, 1.0)):
-            for link, (fx, fy, couple) in by_link.items():
-                origin = self.motion.link(link).origin
-                moment = couple + origin[..., 0] * fy - origin[..., 1] * fx
-                parts = zip(total, (fx, fy, moment), strict=True)
-                total = [old + sign * part for old, part in parts]
-        return total[0], total[1], total[2]
+    def _frame(self) -> tuple[Any, Any, Any]:
+        """Return what momenta and the outside leave for the frame, moment about A."""
+        parts = []
+        for link, (fx, fy, couple) in self.outside.items():
+            x, y = np.moveaxis(self.motion.link(link).origin, -1, 0)
+            parts.append((fx, fy, couple + x * fy - y * fx))
+        fx, fy, moment = (sum(part) for part in zip(*parts, strict=True))
+        return fx, fy, moment
 
     def _statics(self, forces: Mapping[str, Array]) -> Array:
         """Return the worst of the nine equations (Smith 4.4-4.6) [N]."""
@@ -264,16 +236,13 @@ class _Balance:
             self.machine.linkage.links, (("12", "23"), ("23", "34"), ("34", "41")), strict=True
         ):
             origin = self.motion.link(link).origin
-            acting = self.acting.get(link, (none, none, none))
-            total = [a - b for a, b in zip(acting, self.inertia[link], strict=True)]
+            total = np.stack(self.acting[link])
             for joint, sign in ((ahead, 1.0), (behind, -1.0)):
                 # The follower and the rod turn on their own first joint, where 41 acts.
                 arm = (origin if joint == "41" else first[joint]) - origin
                 fx, fy = forces["x" + joint], forces["y" + joint]
                 turned = arm[..., 0] * fy - arm[..., 1] * fx + forces.get("couple" + joint, none)
-                total = [
-                    old + sign * part for old, part in zip(total, (fx, fy, turned), strict=True)
-                ]
+                total = total + sign * np.stack([fx, fy, turned])
             gaps += [total[0], total[1]]
             if link != "crank":
                 gaps.append(total[2] / self.longest)

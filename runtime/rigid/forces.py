@@ -152,7 +152,15 @@ class RigidForces(Result):
             # A force that keeps its line, such as that of a guide, has no polar diagram.
             if not np.any(columns[still]):
                 return _over_the_turn(ax, self.theta2, columns[other], f"{label}, {axis} [N]")
-        return _hodograph(ax, self.theta2, columns[0], columns[1], label)
+        angles = np.broadcast_to(self.theta2, columns[0].shape)
+        curves = _curves(angles, *columns)
+        for _, across, up in curves:
+            ax.plot(across, up)
+        _mark(ax, *curves[0])
+        ax.plot(0.0, 0.0, "+", color="k")
+        ax.set_aspect("equal", adjustable="datalim")
+        ax.set(xlabel="X [N]", ylabel="Y [N]", title=label)
+        return ax
 
 
 def rigid_forces(
@@ -348,18 +356,6 @@ def _over_the_turn(ax: Axes, theta: Array, values: Array, label: str) -> Axes:
         ax.plot(row, value)
     ax.axhline(0.0, color="0.7", linewidth=0.8)
     ax.set(xlabel="crank angle [deg]", ylabel=label)
-    return ax
-
-
-def _hodograph(ax: Axes, theta: Array, x: Array, y: Array, label: str) -> Axes:
-    angles = np.broadcast_to(theta, x.shape)
-    for _, across, up in _curves(angles, x, y):
-        ax.plot(across, up)
-    _mark(ax, *_curves(angles, x, y)[0])
-    ax.plot(0.0, 0.0, "+", color="k")
-    ax.set_aspect("equal", adjustable="datalim")
-    ax.set(xlabel="X [N]", ylabel="Y [N]")
-    ax.set_title(label)
     return ax
 
 

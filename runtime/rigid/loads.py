@@ -186,7 +186,12 @@ class Spring:
     def __post_init__(self) -> None:
         problems = []
         for name in ("first", "second"):
-            problems += _end_problems(f"Spring.{name}", getattr(self, name))
+            where, end = f"Spring.{name}", getattr(self, name)
+            if isinstance(end, tuple) and len(end) == 3 and isinstance(end[0], str):
+                problems += number_problems(where, {"along": end[1], "across": end[2]})
+            else:
+                expected, fix = "a link and two coordinates", "write it like ('crank', 0.1, 0.0)"
+                problems.append(Problem(where, shown(end), expected, fix))
         sizes = {name: getattr(self, name) for name in ("stiffness", "free_length", "damping")}
         problems += number_problems("Spring", sizes, "not negative")
         problems += number_problems("Spring", {"preload": self.preload})
@@ -360,10 +365,3 @@ def _one_more(given: Any, shape: tuple[int, ...]) -> Any:
     inner = np.shape(given)[len(shape) :]
     flat = np.broadcast_to(given, (*shape, *inner)).reshape(-1, *inner)
     return np.concatenate([flat, flat[:1]])
-
-
-def _end_problems(where: str, end: object) -> list[Problem]:
-    if not (isinstance(end, tuple) and len(end) == 3 and isinstance(end[0], str)):
-        fix = "write it like ('crank', 0.1, 0.0)"
-        return [Problem(where, shown(end), "a link and two coordinates", fix)]
-    return number_problems(where, {"along": end[1], "across": end[2]})

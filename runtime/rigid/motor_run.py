@@ -100,6 +100,8 @@ class Goals:
     max_steps: int  # most steps
 
 
+# What is too large overflows quietly here, and is refused by its speed.
+@np.errstate(over="ignore", invalid="ignore")
 def integrate(
     system: OneFreedom,
     law: TorqueLaw,
@@ -109,6 +111,8 @@ def integrate(
     goals: Goals,
 ) -> Run:
     """Integrate until a goal is reached, the crank stalls or folds, or the steps are used up."""
+    from scipy.integrate import DOP853, OdeSolution
+
     theta0, speed0 = start
     if not abs(speed0) < _FASTEST:
         raise _too_fast(speed0, 0.0)
@@ -116,21 +120,13 @@ def integrate(
     state = np.array([theta0, math.sqrt(motion.inertia(theta0)) * speed0, 0.0])
     if stuck := _cannot_start(system, law, theta0, speed0, goals.reversals):
         return Run(system, _Standing(state), "stalled", stuck)
-    # What is too large overflows quietly here, and is refused by its speed.
-    with np.errstate(over="ignore", invalid="ignore"):
-        return _stepped(motion, state, tolerance, longest, goals)
-
-
-def _stepped(motion: _Motion, state: Array, tolerance: float, longest: float, goals: Goals) -> Run:
-    from scipy.integrate import DOP853, OdeSolution
-
     bound = np.inf if goals.duration is None else goals.duration
     scale = motion.scale(0.0, state)
     first = motion.longest_step(state, motion(0.0, state), longest)
     small: Any = tolerance * scale
     # The relative tolerance is left to the sizes: an angle of many turns is not allowed more.
     solver: Any = DOP853(motion, 0.0, state, bound, max_step=first, rtol=128.0 * EPS, atol=small)
-    events = _Events(motion.system, state, goals)
+    events = _Events(system, state, goals)
     times: list[float] = [0.0]
     pieces: list[Any] = []
     status: Status = "finished"
@@ -155,8 +151,8 @@ def _stepped(motion: _Motion, state: Array, tolerance: float, longest: float, go
         solver.atol = tolerance * scale
         solver.max_step = motion.longest_step(solver.y, solver.f, longest)
     if not pieces:
-        return Run(motion.system, _Standing(state), status, message)
-    return Run(motion.system, OdeSolution(times, pieces), status, message)
+        return Run(system, _Standing(state), status, message)
+    return Run(system, OdeSolution(times, pieces), status, message)
 
 
 @dataclass(frozen=True)
@@ -252,25 +248,22 @@ class _Events:
         self, piece: Any, begin: float, end: float, state: Array
     ) -> tuple[float, Status, str] | None:
         """Return the first event in a step, if there is one: its time, status and message."""
-        if self.direction == 0.0:
-            self.direction = float(np.sign(state[1]))
+        self.direction = self.direction or float(np.sign(state[1]))
         low, high = self.range
         # So near to an end of the crank's range the reduced inertia grows beyond all bounds.
         fold = 1e-6
-        watched: dict[tuple[Status, str], Callable[[Array], float]] = {
-            ("finished", "the revolutions are made"): (
-                lambda y: abs(float(y[0]) - self.theta) - self.goal
-            ),
-            ("fold", "the crank came to an end of its range"): (
-                lambda y: max(float(y[0]) - high, low - float(y[0])) + fold
-            ),
-        }
+        made, ended = "the revolutions are made", "the crank came to an end of its range"
+        watched: list[tuple[Callable[[Array], float], Status, str]] = [
+            (lambda y: abs(float(y[0]) - self.theta) - self.goal, "finished", made),
+            (lambda y: max(float(y[0]) - high, low - float(y[0])) + fold, "fold", ended),
+        ]
         if not self.reversals:
-            watched["stalled", "the crank stalled"] = lambda y: -self.direction * float(y[1])
+            stalled = "the crank stalled"
+            watched.append((lambda y: -self.direction * float(y[1]), "stalled", stalled))
         events = [
-            (_root(rule, piece, begin, end), *words)
-            for words, rule in watched.items()
-            if np.isfinite(rule(state)) and rule(state) > 0
+            (_root(rule, piece, begin, end), status, message)
+            for rule, status, message in watched
+            if 0.0 < rule(state) < np.inf
         ]
         return min(events, key=lambda item: item[0], default=None)
 
@@ -572,31 +565,25 @@ class TorqueLine:
 
 
 def torque_law(torque: object) -> TorqueLaw:
-    """Return a motor torque as a function of speed, angle and time."""
+    """Return a motor torque by speed, angle and time, which refuses what is no finite number."""
     if isinstance(torque, Real) and not isinstance(torque, bool):
         value = finite_number(torque, "torque")
         return lambda speed, angle, time: value
     if not callable(torque) or isinstance(torque, type):
         raise bad("torque", shown(torque), "a number or a callable", "give a TorqueLine")
     law: Any = torque
-    try:
-        parameters = inspect.signature(law).parameters.values()
-    except (TypeError, ValueError):  # some built-in callables tell nothing
-        return _checked(law)
-    if any(item.kind is inspect.Parameter.VAR_POSITIONAL for item in parameters):
-        return _checked(law)
     kinds = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
-    count = min(sum(item.kind in kinds for item in parameters), 3)
+    try:
+        given = [item.kind for item in inspect.signature(law).parameters.values()]
+    except (TypeError, ValueError):  # some built-in callables tell nothing
+        given = [inspect.Parameter.VAR_POSITIONAL]
+    whole = inspect.Parameter.VAR_POSITIONAL in given
+    count = 3 if whole else min(sum(kind in kinds for kind in given), 3)
     if count == 0:
         raise bad("torque", "a callable without arguments", "torque(speed, ...)", "take the speed")
-    return _checked(lambda speed, angle, time: law(*(speed, angle, time)[:count]))
 
-
-def _checked(law: TorqueLaw) -> TorqueLaw:
-    """Return a torque law that refuses what is no finite number."""
-
-    def torque(speed: float, angle: float, time: float) -> float:
-        value = law(speed, angle, time)
+    def checked(speed: float, angle: float, time: float) -> float:
+        value = law(*(speed, angle, time)[:count])
         number = isinstance(value, Real) and not isinstance(value, bool)
         if not number and isinstance(value, np.ndarray) and value.size == 1:
             value, number = value.item(), value.dtype.kind in "fiu"
@@ -606,4 +593,4 @@ def _checked(law: TorqueLaw) -> TorqueLaw:
             raise bad("torque", found, "a finite number [N m]", "correct the torque law")
         return float(value)
 
-    return torque
+    return checked

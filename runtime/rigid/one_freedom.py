@@ -89,9 +89,7 @@ class OneFreedom:
             given = _series(lambda theta: self._required(theta, 0.0, "nonconservative")[0])
             if every and given:
                 return lambda theta, speed: (every(theta), given(theta) if loads else 0.0)
-        parts: tuple[Part, ...] = ("all", "nonconservative")
-        if not (loads or self.hasty):
-            parts = ("all",)
+        parts: tuple[Part, ...] = ("all", "nonconservative") if loads or self.hasty else ("all",)
 
         def torques(theta: float, speed: float) -> tuple[float, float]:
             required = [float(value) for value in self._required(theta, speed, *parts)]
@@ -118,9 +116,8 @@ class OneFreedom:
             return -np.inf, np.inf
         for low, high in linkage.crank_ranges():
             turns = TURN * np.floor((theta - low) / TURN)
-            if low + turns <= theta <= high + turns:
-                if high - low >= TURN:  # a fold at whole turns is none for the interval
-                    continue
+            # A fold at whole turns is none for the interval.
+            if high - low < TURN and low + turns <= theta <= high + turns:
                 return float(low + turns), float(high + turns)
         return -np.inf, np.inf
 

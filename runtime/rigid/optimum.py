@@ -16,15 +16,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy import linalg, optimize, sparse
 
 from ..core.errors import BadInput, bad
 from ..core.trigonometric import even_angles, tail
-from ..linkages.linkage import TURN, Array
+from ..linkages.linkage import TURN, Array, finite_array
 from .machine import Machine
 from .masses import MassDistribution
 from .peaks import TERMS, forces_of, highest
@@ -200,11 +202,11 @@ def hull_minimum(problem: PeakProblem) -> tuple[Array, float] | None:
     right: list[Array] = []
     cones: list[Any] = []
 
-    def add(kind: Any, matrix: Array, constant: Array) -> None:
-        """Ask for ``constant + matrix z`` in a cone."""
+    def add(matrix: Array, constant: Array, *kinds: Any) -> None:
+        """Ask for ``constant + matrix z`` in cones."""
         rows.append(-matrix)
         right.append(constant)
-        cones.append(kind)
+        cones.extend(kinds)
 
     for cone in problem.cones:
         n, d = cone.fixed.shape
@@ -212,26 +214,25 @@ def hull_minimum(problem: PeakProblem) -> tuple[Array, float] | None:
         matrix[:, 0, count + cone.bound] = 1.0
         matrix[:, 1:, :count] = cone.basis
         constant[:, 1:] = cone.fixed
-        rows.append(-matrix.reshape(-1, size))
-        right.append(constant.ravel())
-        cones += [clarabel.SecondOrderConeT(d + 1)] * n
+        kinds = [clarabel.SecondOrderConeT(d + 1)] * n
+        add(matrix.reshape(-1, size), constant.ravel(), *kinds)
     unit = np.eye(size)
     capped = np.flatnonzero(np.isfinite(problem.ceilings))
     if len(capped):
-        cone = clarabel.NonnegativeConeT(len(capped))
-        add(cone, -unit[count + capped], problem.ceilings[capped])
+        kind = clarabel.NonnegativeConeT(len(capped))
+        add(-unit[count + capped], problem.ceilings[capped], kind)
     for i, stiffness in enumerate(design.stiffness):
         m, a, b, j = unit[PER_LINK * i : PER_LINK * (i + 1)]
         square = unit[count + bounds + stiff.index(i)] if stiffness else np.zeros(size)
         reach = j - stiffness * square
         placed = np.array([m + reach, m - reach, 2 * a, 2 * b])
-        add(clarabel.SecondOrderConeT(4), placed, np.zeros(4))
-        add(clarabel.SecondOrderConeT(3), np.array([m, a, b]), np.zeros(3))
+        add(placed, np.zeros(4), clarabel.SecondOrderConeT(4))
+        add(np.array([m, a, b]), np.zeros(3), clarabel.SecondOrderConeT(3))
         sides = np.array([-m, (1.0 + stiffness) * m - j, reach])
-        add(clarabel.NonnegativeConeT(3), sides, np.eye(3)[0])
+        add(sides, np.eye(3)[0], clarabel.NonnegativeConeT(3))
         if stiffness:
-            one = np.array([1.0, -1.0, 0.0])
-            add(clarabel.SecondOrderConeT(3), np.array([square, square, 2 * m]), one)
+            squared, one = np.array([square, square, 2 * m]), np.array([1.0, -1.0, 0.0])
+            add(squared, one, clarabel.SecondOrderConeT(3))
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     # Clarabel's tolerances: beyond 1e-10 round-off leads it astray, and the gap no longer shrinks.
@@ -396,13 +397,44 @@ class ForceBasis:
     """A machine at one speed: the forces at any angle, and what each unit of mass adds."""
 
     machine: Machine  # without the counterweights
-    links: Sequence[str]  # links that carry counterweights
     # speed, acceleration: of the crank [rad/s, rad/s^2]
     speed: float
     acceleration: float
+    links: Sequence[str] = ()  # links that carry counterweights
     # masses, lengths: units of mass [kg] and length [m] of each link's parameters
-    masses: Array
-    lengths: Array
+    masses: Array = field(default_factory=partial(np.zeros, 0))
+    lengths: Array = field(default_factory=partial(np.zeros, 0))
+    # what counts of each force: its peak, or its root mean square over the sampled angles
+    measure: Measure = "peak"
+    theta: Array = field(default_factory=partial(np.zeros, 0))  # sampled angles
+    whole: bool = False  # True where they stand for a whole turn
+
+    def sampled(self, angles: ArrayLike | None) -> ForceBasis:
+        """Return it with the angles that count: those given, or a turn by equal steps.
+
+        These are dense enough for the peaks between them, or for means.
+        """
+        if angles is not None:
+            theta = finite_array("angles", angles, "angles [rad]").ravel()
+            if theta.size == 0:
+                raise bad("angles", "none", "finite angles [rad]", "give one or more")
+            return replace(self, theta=theta)
+        if not self.machine.linkage.crank_turns:
+            fix = "give angles that the crank can reach"
+            raise bad("angles", "a crank that cannot turn fully", "angles [rad]", fix)
+        count, most = 256, _MOST_SAMPLES[self.measure]
+        while count <= most:
+            theta = even_angles(TURN, count)
+            count *= 2
+            # The tail of the forces' spectrum at which the peaks between samples are safe.
+            if max(map(tail, self.forces(theta).values())) < 1e-10:
+                break
+        return replace(self, theta=theta, whole=True)
+
+    @property
+    def between(self) -> bool:
+        """True where peaks between the samples count; a mean over them has none."""
+        return self.whole and self.measure == "peak"
 
     def forces(
         self, theta: Array, p: Array | None = None, terms: Sequence[str] = TERMS
@@ -436,20 +468,21 @@ class ForceBasis:
         return {term: np.stack(parts, axis=-1) for term, parts in columns.items()}
 
     def sizes(
-        self, theta: Array, p: Array, between: bool, measure: Measure, terms: Sequence[str] = TERMS
+        self, p: Array | None = None, terms: Sequence[str] = TERMS
     ) -> dict[str, tuple[Array, Array]]:
         """Return angles and sizes of the highest peaks of each term with parameters p [N; N m].
 
-        The root mean square counts as one peak, at the first of the angles.
+        The root mean square counts as one peak, at the highest of the samples.
         """
-        if between:
+        theta, peaked = self.theta, self.measure == "peak"
+        if self.between:
             peaks = highest(lambda at: self.forces(at, p, terms), theta, around=True)
             return {term: (at, np.linalg.norm(each, axis=1)) for term, (at, each) in peaks.items()}
         sizes = {}
         for term, force in self.forces(theta, p, terms).items():
             size = np.linalg.norm(force, axis=1)
             top = int(np.argmax(size))
-            whole = size[top] if measure == "peak" else np.sqrt(np.mean(size**2))
+            whole = size[top] if peaked else np.sqrt(np.mean(size**2))
             sizes[term] = (theta[top : top + 1], np.array([whole]))
         return sizes
 
@@ -459,33 +492,17 @@ class ForceBasis:
         moment = mass * length
         return MassDistribution(m * mass, a * moment, b * moment, j * moment * length)
 
-    def grid(self, measure: Measure) -> Array:
-        """Return equally spaced angles of a turn, dense enough for peaks between them, or means."""
-        count, most = 256, _MOST_SAMPLES[measure]
-        while count <= most:
-            theta = even_angles(TURN, count)
-            count *= 2
-            # The tail of the forces' spectrum at which the peaks between samples are safe.
-            if max(map(tail, self.forces(theta).values())) < 1e-10:
-                break
-        return theta
-
 
 @dataclass(frozen=True)
 class Search:
     """Everything about one search that stays as it is."""
 
     basis: ForceBasis
-    theta: Array  # sampled angles
-    between: bool  # True where peaks between the samples count
     unbalanced: Mapping[str, float]  # peaks of every force without counterweights [N; N m]
     design: Design
     # weights, limits: of the relative peaks
     weights: Mapping[str, float]
     limits: Mapping[str, float]
-    # what counts of each force: its peak, or its root mean square over the sampled angles
-    measure: Measure = "peak"
-    whole: bool = False  # True where the sampled angles stand for a whole turn
 
     @property
     def terms(self) -> tuple[str, ...]:
@@ -514,19 +531,19 @@ class Search:
             rows = slice(first, first + len(theta[term]))
             size = self.unbalanced[term] * units[k]
             cone = Cones(k, fixed[term][rows] / size, basis[term][rows] / size)
-            cones.append(cone if self.measure == "peak" else _mean_square(cone))
+            cones.append(cone if self.basis.measure == "peak" else _mean_square(cone))
             first += len(theta[term])
         return PeakProblem(self.design, cones, cost, tops)
 
     def start(self) -> PeakProblem:
         """Return the problem with some of the samples, or all that count."""
         # A search starts with every eighth sample.
-        theta = self.theta[::8] if self.between else self.theta
+        theta = self.basis.theta[:: 8 if self.basis.between else 1]
         return self.problem(dict.fromkeys(self.terms, theta))
 
     def peaks(self, p: Array) -> dict[str, tuple[Array, Array]]:
         """Return angles and relative sizes of the highest peaks with parameters p."""
-        sizes = self.basis.sizes(self.theta, p, self.between, self.measure, self.terms)
+        sizes = self.basis.sizes(p, self.terms)
         return {term: (at, size / self.unbalanced[term]) for term, (at, size) in sizes.items()}
 
     def value(self, peaks: Peaks) -> float:
@@ -549,7 +566,7 @@ class Search:
 
         The excess is in units of the bounds t.
         """
-        if not self.between:
+        if not self.basis.between:
             return problem, 0.0
         peaks, t, chosen, excess = self.peaks(p), problem.bounds(p), {}, 0.0
         for k, term in enumerate(self.terms):
@@ -573,10 +590,16 @@ def _mean_square(cone: Cones) -> Cones:
 def best_counterweights(search: Search) -> Candidate:
     """Return the best counterweights that are known, and the proof of how good they are."""
     problem, p, bound = _hull(search)
-    design, unfelt = search.design, _unfelt(problem)
+    design = search.design
+    # Of some links' counterweights nothing but the first moments matters.
+    felt = np.max([np.max(np.abs(cone.basis), axis=(0, 1)) for cone in problem.cones], axis=0)
+    unfelt = [bool(max(link[0], link[3]) < 1e-9) for link in felt.reshape(-1, PER_LINK)]
     candidates = [_descended(search, problem, bound, design.realised(p, unfelt))]
     if candidates[0].value - candidates[0].bound > _GAP * search.unit:
-        candidates += [_descended(search, problem, bound, x) for x in _starts(design)]
+        # Further starts, the same ones each time: nothing, and four directions.
+        for u, v in ((0.0, 0.0), (-0.7, 0.0), (0.7, 0.0), (0.0, 0.7), (0.0, -0.7)):
+            start = np.tile([0.5 if u or v else 0.0, u, v], len(design.stiffness))
+            candidates.append(_descended(search, problem, bound, start))
     chosen = min(candidates, key=lambda each: each.value)
     bound = max(each.bound for each in candidates)
     x = _lightened(search, problem, chosen, unfelt)
@@ -612,23 +635,14 @@ def _out_of_reach(search: Search, problem: PeakProblem) -> BadInput:
             break
     times = max(1.0, 1.0 + search.broken(search.peaks(p)))
     names = ", ".join(f"{term} {top:g}" for term, top in limits.items())
-    # Rounded up: what is named can be given.
-    least = [f"{term} at least {_rounded_up(times * top)}" for term, top in limits.items()]
+    least = []
+    for term, top in limits.items():
+        # In four digits, rounded up: what is named can be given.
+        unit = 10.0 ** (math.floor(math.log10(times * top)) - 3)
+        least.append(f"{term} at least {math.ceil(times * top / unit) * unit:.4g}")
     together = "" if len(limits) == 1 else " where all are raised alike"
     fix = "raise a limit, or allow more mass or offset"
     return bad("limits", names, ", ".join(least) + together, fix)
-
-
-def _rounded_up(value: float) -> str:
-    """Return a number in four digits, none below it."""
-    unit = 10.0 ** (math.floor(math.log10(value)) - 3)
-    return f"{math.ceil(value / unit) * unit:.4g}"
-
-
-def _starts(design: Design) -> list[Array]:
-    """Return further starts, the same ones each time: nothing, and four directions."""
-    starts = [(0.0, 0.0, 0.0), (0.5, -0.7, 0.0), (0.5, 0.7, 0.0), (0.5, 0.0, 0.7), (0.5, 0.0, -0.7)]
-    return [np.tile(each, len(design.stiffness)) for each in starts]
 
 
 def _descended(search: Search, problem: PeakProblem, bound: float, start: Array) -> Candidate:
@@ -652,12 +666,6 @@ def _descended(search: Search, problem: PeakProblem, bound: float, start: Array)
                 value, best = least, other
     residual, proved, slope = epigraph.proof(best)
     return Candidate(best, value, max(bound, proved), residual, slope)
-
-
-def _unfelt(problem: PeakProblem) -> list[bool]:
-    """Return for each link whether nothing but the first moments of its counterweight matters."""
-    felt = np.max([np.max(np.abs(cone.basis), axis=(0, 1)) for cone in problem.cones], axis=0)
-    return [bool(max(link[0], link[3]) < 1e-9) for link in felt.reshape(-1, PER_LINK)]
 
 
 def _lightened(

@@ -103,12 +103,9 @@ def forces_of(
     result = rigid_forces(machine, theta, speed, acceleration, outputs=wanted)
     forces = {}
     for term in terms:
-        if term in COUPLES:
-            if term in result.values:
-                forces[term] = result[term][:, np.newaxis]
-            continue
-        value = np.asarray(getattr(result, term))
-        forces[term] = value[:, np.newaxis] if value.ndim == 1 else value
+        if term not in COUPLES or term in result.values:
+            part = result[term] if term in result.values else getattr(result, term)
+            forces[term] = np.reshape(part, (len(theta), -1))
     return forces
 
 

@@ -2,6 +2,7 @@
 
 import itertools
 import json
+import pickle
 
 import numpy as np
 import pytest
@@ -199,3 +200,13 @@ def test_shapes_and_export(tmp_path):
     assert saved["greatest"]["theta2"] == 0.0 and saved["clearances"] == {"34": 0.1}
     rows = found.save(tmp_path / "play.csv").read_text().splitlines()
     assert len(rows) == 7
+
+
+@pytest.mark.parametrize(
+    "linkage", [FourBar(*LONG_CRANK), SliderCrank(0.1, 0.3), QuickReturn(0.3, 0.1, 0.6)]
+)
+def test_errors_and_checks_to_be_bear_pickling(linkage):
+    found = clearance_range(linkage, 1e-3, ANGLES)
+    copied = pickle.loads(pickle.dumps(found))
+    np.testing.assert_array_equal(copied.error, found.error)
+    assert copied.passed

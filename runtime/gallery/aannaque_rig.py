@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from math import degrees, radians
-from typing import Any
 
 import numpy as np
 
@@ -24,18 +23,14 @@ from ..recovery.stress_over_speed import StressCurve, stress_curve
 from ..scenes import load_scene
 from .aannaque_beams import FRAME, exact_frequencies, maxima, nearest
 from .aannaque_kinematics import cycle
-from .drawing import COLOURS, Axes, Panels, mark_fractions, panel_title, turn
+from .drawing import COLOURS, Axes, Looks, Panels, mark_fractions, panel_title, turn
 from .records import Drawn, contents
 
 SHORT, LONG = "aannaque_1996_table_4_1", "aannaque_1996_long_coupler"
 # Speeds in the captions of appendices C and D [rad/s].
 SPEEDS: Mapping[str, Sequence[float]] = contents("aannaque")["speeds"]
-# Where the gauges sat: the captions say the middle of the input link, section 8.5 its end.
-STATIONS: Mapping[str, tuple[float, ...]] = {
-    "crank": (0.0, 0.5),
-    "coupler": (0.5,),
-    "follower": (0.5,),
-}
+# Where the gauges sat.
+STATIONS: Mapping[str, Sequence[float]] = contents("aannaque")["gauges"]
 _SLOW, _FAST = SPEEDS["C"][0], SPEEDS["C"][-1]
 # How much larger displacements are drawn beside the true path.
 _LARGER = {_SLOW: 200.0, _FAST: 8.0}
@@ -282,19 +277,15 @@ def cycles(
     return motion.theta, by_station
 
 
-def sheet(axes: Panels, letter: str, first: int, last: int) -> Drawn:
+def sheet(axes: Panels, letter: str, first: int, last: int, looks: Looks) -> Drawn:
     """Draw some figures of appendix C or D, a row of links for each."""
     numbers = range(first, last + 1)
     speeds = tuple(SPEEDS[letter][number - 1] for number in numbers)
     theta, stress = cycles({"C": SHORT, "D": LONG}[letter], FRAME, speeds)
     names = {"crank": "input link", "coupler": "coupler", "follower": "follower"}
-    looks: dict[float, dict[str, Any]] = {
-        0.5: {"color": COLOURS[0], "lw": 1.0, "label": "midpoint"},
-        0.0: {"color": COLOURS[1], "lw": 0.8, "ls": "--", "label": "end at the flywheel"},
-    }
     for row, number in enumerate(numbers):
         for ax, (link, name) in zip(axes[3 * row :], names.items(), strict=False):
-            for place, look in looks.items():
+            for place, look in zip((0.5, 0.0), looks, strict=True):
                 if (link, place) in stress:
                     turn(ax, theta, stress[link, place][row] / 1e6, **look)
             ax.locator_params(axis="y", nbins=4)

@@ -24,7 +24,7 @@ from ..linkages import FourBar
 from ..periodic import simulate
 from ..scenes import load_scene
 from .algorithms import de_vogelaere_maps, de_vogelaere_start, kutta_merson, second_order_form
-from .drawing import COLOURS, Array, Axes, Panels, outline, panel_title, peak
+from .drawing import COLOURS, Array, Axes, Looks, Panels, outline, panel_title, peak
 from .records import Drawn
 from .smith_linkages import linkage_of, series
 
@@ -182,8 +182,8 @@ def figure_33(axes: Panels) -> Drawn:
     return Drawn([*np.abs(half[::2]), *np.abs(half[1::2])])
 
 
-def _edges(ax: Axes, mu: Array, ends: Array, style: str, colour: str, label: str) -> None:
-    ax.plot(np.concatenate(ends).T, mu, style, color=colour, lw=1.3, label=label)
+def _edges(ax: Axes, mu: Array, ends: Array, **look: Any) -> None:
+    ax.plot(np.concatenate(ends).T, mu, lw=1.3, **look)
 
 
 def _to_order(f: PeriodicFunction, mu: Array, regions: Sequence[int], order: int) -> Array:
@@ -196,32 +196,29 @@ def _shade(ax: Axes, f: PeriodicFunction, mu: Array, regions: Sequence[int], lef
     exact = hill_boundaries(f, mu, regions)
     for low, high in zip(exact.lower, exact.upper, strict=True):
         ax.fill_betweenx(mu, np.maximum(low, left), high, color="#f4dcc8", lw=0)
-    _edges(ax, mu, np.stack([exact.lower, exact.upper]), "-", COLOURS[5], "exact")
+    _edges(ax, mu, np.stack([exact.lower, exact.upper]), color=COLOURS[5], label="exact")
 
 
-def figure_34(axes: Panels) -> Drawn:
+def figure_34(axes: Panels, looks: Looks) -> Drawn:
     """Draw exact, first-order and second-order boundaries of a typical linkage."""
     ax, f, regions = axes[0], series(_LINKAGE), (1, 2, 3, 4)
     mu = np.linspace(0.0, 1.5, 151)
     _shade(ax, f, mu, (0, *regions, 5, 6), -1.5)
     exact, words = hill_boundaries(f, mu, (1,)), {}
-    for order, style, colour, name in (
-        (1, "--", COLOURS[0], "first"),
-        (2, ":", COLOURS[2], "second"),
-    ):
+    for order, name, look in zip((1, 2), ("first", "second"), looks, strict=True):
         near = _to_order(f, mu, (*regions, 5), order)
-        _edges(ax, mu, near, style, colour, f"{name} order")
+        _edges(ax, mu, near, **look)
         words[name] = peak(near[:, 0] - np.concatenate([exact.lower, exact.upper]))
     return Drawn(words=words)
 
 
-def figure_35(axes: Panels) -> Drawn:
+def figure_35(axes: Panels, looks: Looks) -> Drawn:
     """Draw the unstable regions for four cranks, the other links being equal."""
     mu, regions, widths = np.linspace(0.0, 1.0, 121), (1, 2, 3), []
     for ax, crank in zip(axes, (0.5, 1.5, 3.0, 4.0), strict=True):
         f = series(FourBar(frame=6.0, crank=crank, coupler=6.0, follower=6.0))
         _shade(ax, f, mu, (0, *regions, 4), -1.0)
-        _edges(ax, mu, _to_order(f, mu, regions, 2), ":", COLOURS[2], "second order")
+        _edges(ax, mu, _to_order(f, mu, regions, 2), **looks[0])
         widths.append(hill_boundaries(f, 1.0, regions).width)
     short = widths[0]
     growth = min(float(np.min(b / a)) for a, b in pairwise(widths))

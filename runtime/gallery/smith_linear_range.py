@@ -12,20 +12,13 @@ from ..nonlinear.orbit import Lost, Solver
 from ..nonlinear.response import first_motion, linear_motion
 from ..nonlinear.segments import Motion, NotFinite, Problem
 from .drawing import Axes, Panels, panel_title
-from .records import Drawn
+from .records import Drawn, contents
 from .smith_linkages import RIG, RIGS, Rig
 from .smith_nonlinear import BENCHES, coupler, reading, specials
 from .smith_speeds import OBSERVATIONS, Observation
 
 _EQUATIONS = {"printed": "(6.17)", "complete": "complete", "nonlinear": "nonlinear"}
 _COMPARED = tuple(one for one in OBSERVATIONS if one.nonlinear)
-_READ = {
-    "rise": "jump up",
-    "onset": "first doubling",
-    "end": "last doubling",
-    "middle": "middle of the doublings",
-    "peak": "largest harmonic {}",
-}
 _LEAST = 0.0058  # follower inertia [lbf in s^2]
 _TURN = np.linspace(0.0, 2.0 * np.pi, 129)[:-1]
 # Speeds of the comparison over the coupler's frequency; the largest deflections, by the linear
@@ -91,7 +84,7 @@ def _deviations(ax: Axes) -> tuple[Rows, Rows]:
     rows: Rows = []
     for i, one in enumerate(_COMPARED):
         cells = [f"{v:.1f} ({p:+.1f} %)" for v, p in zip(speeds[:, i], percent[:, i], strict=True)]
-        read = _READ[one.nonlinear[1]].format(*one.nonlinear[2:])
+        read = contents("smith")["readings"][one.nonlinear[1]].format(*one.nonlinear[2:])
         place = (one.rig.name, one.inertia, one.meaning, one.speed)
         rows.append((*place, *cells, read, names[nearest[i]]))
     # Without the resonance that the text names otherwise.

@@ -19,7 +19,7 @@ from ..linkages.clearance import clearance_range
 from ..linkages.transmission import transmission_angle
 from ..scenes import load_scene
 from . import sketch
-from .drawing import COLOURS, Array, Axes, Panels, peak
+from .drawing import COLOURS, Array, Axes, Looks, Panels, peak
 from .records import Drawn, contents
 
 RPM = pi / 30.0
@@ -234,18 +234,11 @@ def figure_7(axes: Panels) -> Drawn:
     return Drawn([total[0, 1] / total[0, 0], *higher, np.min(cosine / sine), np.min(sine / cosine)])
 
 
-def end_loads(axes: Panels, proportions: str) -> Drawn:
+def end_loads(axes: Panels, proportions: str, looks: Looks) -> Drawn:
     """Draw phi, f1, f2 and f3 of one linkage (Fig. 27)."""
-    ax, theta = axes[0], np.linspace(0.0, 2 * pi, 1441)
-    linkage = linkage_of(proportions)
-    parts = end_load(linkage, theta)
-    for name, label, colour in (
-        ("phi", r"$\varphi$", COLOURS[4]),
-        ("f1", "$f_1$", COLOURS[1]),
-        ("f2", "$f_2$", COLOURS[2]),
-        ("f3", "$f_3$", COLOURS[0]),
-    ):
-        ax.plot(np.degrees(theta), parts[name], color=colour, label=label)
+    linkage, theta = linkage_of(proportions), np.linspace(0.0, 2 * pi, 1441)
+    for values, look in zip(end_load(linkage, theta).values(), looks, strict=False):
+        axes[0].plot(np.degrees(theta), values, **look)
     phi, f1, f2, f3 = _sizes(proportions)
     eps2 = pi**2 * linkage.crank / (2 * linkage.coupler)
     if proportions == "(54,0.4,54,3)":
@@ -280,7 +273,7 @@ def _direction(vector: Array) -> float:
     return float(np.arctan2(vector[1], vector[0]))
 
 
-def figure_8(axes: Panels) -> None:
+def figure_8(axes: Panels, angles: Sequence[tuple[float, str, str]]) -> None:
     """Draw the nominal position and the two extremes for one crank angle."""
     ax = sketch.canvas(axes[0])
     linkage, theta = FourBar(frame=10.0, crank=4.0, coupler=9.0, follower=7.0), radians(70.0)
@@ -288,11 +281,7 @@ def figure_8(axes: Panels) -> None:
     a, b, d = places["A"], places["B"], places["D"]
     ax.plot(*np.transpose([b, d]), ":", color="0.4", lw=1.0)
     ax.plot(*np.transpose([a, d]), color="0.6", lw=0.8, zorder=1)
-    for radius, name, text in (
-        (2.0, "C", r"$\phi$"),
-        (2.9, "C'", r"$\phi'$"),
-        (1.2, "C''", r"$\phi''$"),
-    ):
+    for radius, name, text in angles:
         sketch.arc(ax, d, radius, (_direction(b - d), _direction(places[name] - d)), text)
     sketch.arc(ax, a, 1.1, (0.0, theta), r"$\theta_2$")
 

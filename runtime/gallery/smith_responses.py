@@ -14,7 +14,7 @@ from scipy.signal import find_peaks
 
 from ..hill import characteristic_exponents
 from ..periodic import simulate, steady_state
-from .drawing import COLOURS, Array, Panels, mark_fractions, panel_title, peak, turn
+from .drawing import COLOURS, Array, Looks, Panels, mark_fractions, panel_title, peak, turn
 from .records import Drawn
 from .smith_linkages import RIG, RPM, OfRig
 
@@ -32,21 +32,17 @@ def figure_45(axes: Panels) -> Drawn:
     return Drawn([100.0 * (1.0 - loaded[50] / sine[50])])
 
 
-def wave_form(axes: Panels, divisor: float) -> Drawn:
+def wave_form(axes: Panels, divisor: float, looks: Looks) -> Drawn:
     """Draw the wave-form at the speed Omega/divisor (Figs. 47 to 51)."""
     ax, speed = axes[0], _RIG.frequency / divisor
     # Between the least and the greatest logarithmic decrement measured at 1/16 in (9.5.5).
     damped = {name: _RIG.system(name, decrement=0.075) for name in ("reduced", "complete")}
     length = 1e3 * damped["complete"].reference_length
-    for equation, label, colour in (
-        ("reduced", "equation of the thesis (6.18)", COLOURS[0]),
-        ("complete", "complete equation", COLOURS[1]),
-    ):
-        state = steady_state(damped[equation], speed, samples=512)
-        turn(ax, state.theta, length * state.q[:, 0], color=colour, label=f"{label}, damped")
+    for system, look in zip(damped.values(), looks, strict=False):
+        state = steady_state(system, speed, samples=512)
+        turn(ax, state.theta, length * state.q[:, 0], **look)
     run = simulate(_RIG.system("reduced"), speed, 1.0, initial=(0.0, 0.0), samples=512)
-    label = "(6.18), undamped, from rest"
-    ax.plot(np.degrees(run.theta), length * run.q[:, 0], "--", color=COLOURS[4], label=label)
+    ax.plot(np.degrees(run.theta), length * run.q[:, 0], **looks[-1])
     values = [_vibrations(name, speed) for name in damped]
     if divisor == round(divisor):
         both = steady_state(damped["reduced"], speed * np.array([1.0, 0.97]), samples=512)
@@ -115,17 +111,14 @@ def response(
 ) -> Drawn:
     """Draw a frequency response; compute resonances near speeds [rpm] and one of the claims."""
     one, ax = Response(chart, inertia, low, high), axes[0]
-    least, middle, most = one.rig.decrements
-    for decrement, colour, width in (
-        (least, COLOURS[1], 0.8),
-        (middle, COLOURS[0], 1.3),
-        (most, COLOURS[2], 0.8),
+    for decrement, colour, width in zip(
+        one.rig.decrements, (1, 0, 2), (0.8, 1.3, 0.8), strict=True
     ):
         ends = envelope(one, decrement)
-        look: dict[str, Any] = {"color": colour, "lw": width, "zorder": 2.0 + width}
+        look: dict[str, Any] = {"color": COLOURS[colour], "lw": width, "zorder": 2.0 + width}
         ax.plot(ends.speed, ends.greatest, label=f"decrement {decrement:.3g}", **look)
         ax.plot(ends.speed, ends.least, **look)
-    ends = envelope(one, middle)
+    ends = envelope(one, one.rig.decrements[1])
     if not np.all(ends.stable):
         look = {"transform": ax.get_xaxis_transform(), "color": "#f7e3d3", "lw": 0, "zorder": 0}
         inside = ~ends.stable

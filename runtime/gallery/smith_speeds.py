@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
@@ -86,7 +86,7 @@ OBSERVATIONS = tuple(Observation(**row) for row in contents("smith")["observatio
 _COMPARED = tuple(one for one in OBSERVATIONS if one.region)
 
 
-def chart(axes: Panels, figure: str) -> Drawn:
+def chart(axes: Panels, figure: str, looks: Mapping[str, Mapping[str, Any]]) -> Drawn:
     """Draw the chart of one rig."""
     rig, ax = RIG[figure], axes[0]
     low, high = (end / RPM for end in load_scene(rig.scene).get("chart.x_range"))
@@ -94,7 +94,9 @@ def chart(axes: Panels, figure: str) -> Drawn:
     inertia = np.linspace(least, greatest, 61)
     _boundaries(ax, rig, inertia, high)
     seen = [one for one in OBSERVATIONS if one.chart == figure]
-    _points(ax, seen)
+    for one in seen:
+        half = one.half_width or None
+        ax.errorbar(1e3 * one.si_inertia, one.speed, half, **looks["all"], **looks[one.kind])
     _margins(ax, rig, (low, high))
     ax.set(xlim=(1e3 * least, 1e3 * greatest), ylim=(low, high))
     compared = [one for one in seen if one.region]
@@ -134,21 +136,6 @@ def _boundaries(ax: Axes, rig: Rig, inertia: Array, high: float) -> None:
             ax.plot(across, complete[k, i], color=COLOURS[1], lw=0.8)
             named = label if i < 2 and k == 0 else None
             ax.plot(across, thesis[k, i], style, color=COLOURS[0], lw=1.3, label=named)
-
-
-def _points(ax: Axes, seen: Sequence[Observation]) -> None:
-    marks = {
-        "resonance": ("o", "white", "resonance quoted"),
-        "onset": ("^", "black", "instability quoted: onset, range"),
-        "range": ("^", "black", "instability quoted: onset, range"),
-        "end": ("v", "white", "stable again, quoted"),
-        "stable": ("s", "white", "stable, quoted"),
-    }
-    edges: dict[str, Any] = {"ms": 6, "mec": "black", "ecolor": "black", "capsize": 3, "zorder": 5}
-    for one in seen:
-        shape, face, label = marks[one.kind]
-        place, half = (1e3 * one.si_inertia, one.speed), one.half_width or None
-        ax.errorbar(*place, yerr=half, fmt=shape, mfc=face, label=label, **edges)
 
 
 def _margins(ax: Axes, rig: Rig, window: tuple[float, float]) -> None:

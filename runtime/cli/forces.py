@@ -6,7 +6,7 @@ import argparse
 import math
 from dataclasses import asdict
 from functools import partial
-from math import degrees, pi
+from math import degrees
 from typing import TYPE_CHECKING, Any
 
 from .. import rigid
@@ -170,7 +170,7 @@ def _run_lines(found: rigid.RunUp) -> list[str]:
         ("time [s]", f"{found.time[-1]:.6g}"),
         ("revolutions", f"{found.revolutions:.6g}"),
         ("final speed [rad/s]", f"{speed:.6g}"),
-        ("final speed [rpm]", f"{speed * 30.0 / pi:.6g}"),
+        ("final speed [rpm]", f"{speed * opt.RPM:.6g}"),
         (
             "speed fluctuation, last revolution",
             "less than one made" if fluctuation is None else f"{fluctuation:.4g}",

@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from .. import linkages, periodic
+from .. import constrained, linkages, periodic
 from ..core.errors import BadInput, bad
 from . import options as opt
 
@@ -317,15 +317,13 @@ def _simulate(options: argparse.Namespace) -> int:
 
 def _simulate_constrained(options: argparse.Namespace, scene: Scene) -> int:
     """Integrate the constrained equations from the undeformed rod."""
-    from ..constrained import constrained_motion
-
     if options.initial is not None:
         fix = "leave it out: the motion starts from the undeformed rod"
         raise bad("--initial", "a value", "none for constrained equations", fix)
     if options.method not in (None, "collocation"):
         raise bad("--method", repr(options.method), "collocation alone", "leave it out")
     rod = at_speed(options, scene)
-    result = constrained_motion(
+    result = constrained.constrained_motion(
         rod,
         span=options.revolutions * (2.0 * math.pi / abs(rod.speed)),
         samples=max(1, round(360 * options.revolutions)),

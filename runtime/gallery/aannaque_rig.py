@@ -31,9 +31,6 @@ SHORT, LONG = "aannaque_1996_table_4_1", "aannaque_1996_long_coupler"
 SPEEDS: Mapping[str, Sequence[float]] = contents("aannaque")["speeds"]
 # Where the gauges sat.
 STATIONS: Mapping[str, Sequence[float]] = contents("aannaque")["gauges"]
-_SLOW, _FAST = SPEEDS["C"][0], SPEEDS["C"][-1]
-# How much larger displacements are drawn beside the true path.
-_LARGER = {_SLOW: 200.0, _FAST: 8.0}
 # By section 8.4 the cycle is divided into ten equal angles.
 ANGLES = tuple(range(0, 360, 36))
 _LENGTHS = np.concatenate([np.linspace(0.30, 0.52, 8), np.linspace(0.535, 0.80, 16)])
@@ -56,46 +53,29 @@ def midpoint(speed: float) -> ElasticCurve:
     return elastic_coupler_curve(rig(), steady_state(rig(), speed, rtol=1e-5))
 
 
-def _path(ax: Axes, speed: float, style: str, colour: str, label: str, larger: float = 1.0) -> None:
-    """Draw the midpoint's path, its displacement so many times as large: 0 of the rigid linkage."""
-    path = midpoint(speed)
-    places = 1e3 * (path.rigid + larger * path.displacement)
-    ax.plot(*np.vstack([places, places[:1]]).T, style, color=colour, label=label)
+def paths(
+    axes: Panels,
+    shown: Sequence[tuple[int, float, float]],
+    distances: Sequence[tuple[float, str]],
+    looks: Looks,
+) -> Drawn:
+    """Draw paths of the midpoint, and how far they lie from the rigid linkage's (8.2 to 8.4).
 
-
-def _displacement(ax: Axes, speed: float, colour: str) -> None:
-    path = midpoint(speed)
-    turn(ax, path.theta, 1e3 * np.hypot(*path.displacement.T), color=colour)
-
-
-def figure_8_2(axes: Panels) -> Drawn:
-    """Draw the path at a low and at a high speed, the rigid linkage's beside it."""
-    for ax, (speed, larger) in zip(axes, _LARGER.items(), strict=True):
-        _path(ax, speed, "-", COLOURS[0], "elastic linkage")
-        _path(ax, speed, "--", "0.8", "rigid linkage", 0.0)
-        _path(ax, speed, ":", COLOURS[1], "elastic linkage, its displacement enlarged", larger)
-        panel_title(ax, f"{speed:g} rad/s; dotted: displacement {larger:g} times as large")
-    return Drawn([1e3 * midpoint(speed).largest for speed in (_SLOW, _FAST)])
-
-
-def figure_8_3(axes: Panels) -> Drawn:
-    """Draw the path at a low speed and how far it lies from that of the rigid linkage."""
-    _path(axes[0], _SLOW, "-", COLOURS[0], "elastic linkage")
-    _path(axes[0], _SLOW, "--", "0.8", "rigid linkage", 0.0)
-    _displacement(axes[1], _SLOW, COLOURS[0])
-    return Drawn([1e3 * midpoint(_SLOW).largest])
-
-
-def figure_8_4(axes: Panels) -> Drawn:
-    """Draw the paths at a low and at a high speed over each other, and their distances."""
-    label, larger = f"{_FAST:g} rad/s", _LARGER[_FAST]
-    _path(axes[0], _SLOW, "--", COLOURS[4], f"{_SLOW:g} rad/s")
-    _path(axes[0], _FAST, "-", COLOURS[1], label)
-    more = f"{label}, displacement {larger:g} times as large"
-    _path(axes[0], _FAST, ":", COLOURS[1], more, larger)
-    _displacement(axes[1], _SLOW, COLOURS[4])
-    _displacement(axes[1], _FAST, COLOURS[1])
-    return Drawn([midpoint(_FAST).largest / midpoint(_SLOW).largest / (_FAST / _SLOW) ** 2])
+    ``shown``: panel, speed, how many times as large the displacement is, 0 of the rigid linkage.
+    """
+    for (panel, speed, larger), look in zip(shown, looks, strict=True):
+        path = midpoint(speed)
+        places = 1e3 * (path.rigid + larger * path.displacement)
+        axes[panel].plot(*np.vstack([places, places[:1]]).T, **look)
+    for speed, colour in distances:
+        path = midpoint(speed)
+        turn(axes[1], path.theta, 1e3 * np.hypot(*path.displacement.T), color=colour)
+    speeds = list(dict.fromkeys(speed for _, speed, _ in shown))
+    largest = [1e3 * midpoint(speed).largest for speed in speeds]
+    if len(distances) < 2:
+        return Drawn(largest)
+    (slow, fast), (before, after) = speeds, largest
+    return Drawn([after / before / (fast / slow) ** 2])
 
 
 @lru_cache(maxsize=1)

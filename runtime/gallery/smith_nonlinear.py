@@ -175,20 +175,6 @@ def _way(one: Bench, rising: bool) -> _Way:
     return _Way(test.speed[at] / RPM, _MM * test.lowest[at], _MM * test.highest[at])
 
 
-def _read(one: Bench, rising: bool, kind: str, order: int = 0) -> float:
-    return reading(one, kind, order)
-
-
-def _other(one: Bench, rising: bool, name: str, kind: str) -> float:
-    """Return a reading of another test."""
-    return reading(BENCHES[name], kind)
-
-
-def _apart(one: Bench, rising: bool, first: str, second: str) -> float:
-    """Return one reading less another [rpm]."""
-    return reading(one, first) - reading(one, second)
-
-
 def _stable(one: Bench, rising: bool, speed: float, *turns: int) -> float:
     """Return how many stable motions of so many turns there are at a speed [rpm]."""
     return sum(holds and count in turns for count, holds, _ in _amplitudes(one, speed))
@@ -224,9 +210,9 @@ def _level(one: Bench, rising: bool, below: float, above: float) -> float:
 
 # What section 9.5.3 says of single figures, by the names in their records.
 _CLAIMS: Mapping[str, Callable[..., float]] = {
-    "read": _read,
-    "other": _other,
-    "apart": _apart,
+    "read": lambda one, _, *what: reading(one, *what),
+    "other": lambda one, _, name, kind: reading(BENCHES[name], kind),
+    "apart": lambda one, _, first, second: reading(one, first) - reading(one, second),
     "stable": _stable,
     "largest": _largest,
     "greater": _greater,

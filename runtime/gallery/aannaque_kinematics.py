@@ -189,7 +189,7 @@ def free_body(axes: Panels, link: str) -> Drawn:
     sketch.draw_body(ax, body, letters, names, scale)
     heads = np.array(body.places) + scale * np.array(body.forces)
     low = np.min([*body.places, *heads], axis=0) - 0.22 * length
-    sketch.scale_bar(ax, low, scale, sketch.round_force(largest))
+    sketch.scale_bar(ax, low, scale, largest)
     values = []
     if link == "crank":
         turn = np.linspace(0.0, 2.0 * pi, 361)

@@ -7,9 +7,9 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh
 
 from ..core.trigonometric import even_angles
+from ..frequencies.held import held_modes
 from ..periodic import SteadyState, cycles_to_settle, steady_state
 from .aannaque_beams import CRITICAL, FULL, THESIS, beams, midpoint, moved, rms
 from .algorithms import modal_motion, newmark_limit, newmark_maps, operation_count, printed_count
@@ -79,13 +79,11 @@ def _gap(link: str, modes: int) -> float:
 def _contributions(link: str) -> tuple[Array, Array]:
     """Return the displacement at a midpoint and the part of each mode, (nt,) and (nt, 9) [m]."""
     system, motion = beams(1), _whole()
-    row = midpoint(system, link, motion.theta)
-    mass, stiffness = (system.array(name, motion.theta) for name in "MK")
-    parts = np.empty((len(motion.theta), system.size))
-    for i, q in enumerate(motion.q):
-        shape = eigh(stiffness[i], mass[i])[1]
-        parts[i] = (row[i] @ shape) * (shape.T @ mass[i] @ q)
-    return np.einsum("tn,tn->t", row, motion.q), parts
+    row, held = midpoint(system, link, motion.theta), held_modes(system, motion.theta, {})
+    amplitudes = np.einsum("tnk,tnm,tm->tk", held.shape, held.mass, motion.q)
+    return np.einsum("tn,tn->t", row, motion.q), np.einsum(
+        "tn,tnk->tk", row, held.shape
+    ) * amplitudes
 
 
 def contributions(axes: Panels, link: str) -> Drawn:

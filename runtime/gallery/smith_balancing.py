@@ -91,7 +91,7 @@ def figure_11(axes: Panels) -> Drawn:
     for place, (force, text) in zip(ground, on_frame, strict=True):
         sketch.pivot(ax, place, 0.1 * frame)
         sketch.arrow(ax, place, scale * np.asarray(force), COLOURS[3], text)
-    sketch.scale_bar(ax, (0.15 * frame, -0.8 * frame), scale, sketch.round_force(largest))
+    sketch.scale_bar(ax, (0.15 * frame, -0.8 * frame), scale, largest)
     names = ("f12", "f23", "f34", "f41")
     rows = [(name.upper(), *(getattr(forces, name) / POUND)) for name in names]
     return Drawn(tables=[rows])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from elastolink.runtime.core.plotting import new_figure
-from elastolink.runtime.gallery import smith_linear_range, smith_nonlinear
+from elastolink.runtime.gallery import smith_nonlinear
 from elastolink.runtime.gallery.smith_linkages import RIG, RIGS, RPM
 from elastolink.runtime.gallery.smith_nonlinear import BENCHES, Bench, reading
 from elastolink.runtime.periodic import steady_state
@@ -20,7 +20,7 @@ def test_the_decrement_taken_is_the_geometric_mean_of_those_measured(rig):
 
 @pytest.mark.parametrize("rig", [RIGS[0], RIGS[3]], ids=lambda rig: rig.figure)
 def test_the_linear_deflection_is_that_of_the_complete_equation(rig):
-    one, speed = smith_linear_range._Deflection(rig), 0.23 * rig.frequency
+    one, speed = smith_nonlinear._Deflection(rig), 0.23 * rig.frequency
     linear = steady_state(rig.system(decrement=rig.decrement, inertia=0.0058), speed, samples=1024)
     assert one.linear(speed) == pytest.approx(np.max(np.abs(linear.q[:, 0])), rel=2e-4)
     # At half a per cent of the length both equations say the same.
@@ -29,7 +29,7 @@ def test_the_linear_deflection_is_that_of_the_complete_equation(rig):
 
 
 def test_the_top_of_a_resonance_is_where_its_parabola_has_it():
-    place, height = smith_linear_range._top(lambda v: 1.0 / ((v - 9.873) ** 2 + 0.01), 10.0)
+    place, height = smith_nonlinear._top(lambda v: 1.0 / ((v - 9.873) ** 2 + 0.01), 10.0)
     assert place == pytest.approx(9.873, abs=1e-6) and height == pytest.approx(100.0, rel=1e-6)
 
 

@@ -229,5 +229,4 @@ def pulses_of(frame: float) -> tuple[float, float]:
 
 def crossover() -> float:
     """Return the frame length [m] at which the second pulse is as large as the first."""
-    excess = brentq(lambda frame: np.diff(pulses_of(frame))[0], 0.60, 0.68, xtol=1e-9)
-    return float(excess)
+    return float(brentq(lambda frame: np.diff(pulses_of(frame))[0], 0.60, 0.68, xtol=1e-9))

@@ -402,22 +402,19 @@ def _mark(ax: Axes, omega: Array) -> None:
         for i, j in combinations_with_replacement(range(2), 2)
         for n in range(1, 4)
     )
-    groups: list[list[tuple[float, str]]] = []
-    for place in places:
-        if not _SPEEDS[0] <= place[0] <= _SPEEDS[-1]:
-            continue
-        ax.plot([place[0]], [0.0], "^", color="0.2", ms=4, zorder=6)
-        # Marks closer than 150 rad/s share one label.
-        if groups and place[0] - groups[-1][-1][0] < 150.0:
-            groups[-1].append(place)
-        else:
-            groups.append([place])
+    places = [place for place in places if _SPEEDS[0] <= place[0] <= _SPEEDS[-1]]
+    speeds = np.array([speed for speed, _ in places])
+    ax.plot(speeds, np.zeros(len(speeds)), "^", color="0.2", ms=4, zorder=6)
     ax.axhline(0.0, color="0.2", lw=0.7)
-    for i, group in enumerate(groups):
+    # Marks closer than 150 rad/s share one label.
+    apart = np.flatnonzero(np.diff(speeds) >= 150.0) + 1
+    for i, group in enumerate(np.split(np.arange(len(places)), apart)):
         # Neighbours stand on two lines, so that they do not meet.
-        middle = float(np.mean([speed for speed, _ in group]))
-        names, look = ", ".join(name for _, name in group), {**ABOVE, "va": "top", "fontsize": 6.5}
-        ax.annotate(names, (middle, 0.0), (0.0, -4.0 - 9.0 * (i % 2)), **look)
+        names, look = (
+            ", ".join(places[k][1] for k in group),
+            {**ABOVE, "va": "top", "fontsize": 6.5},
+        )
+        ax.annotate(names, (np.mean(speeds[group]), 0.0), (0.0, -4.0 - 9.0 * (i % 2)), **look)
 
 
 def _name(i: int, j: int, n: int) -> str:

@@ -91,9 +91,8 @@ def closing(f: PeriodicFunction, n: int, order: int | None) -> float:
     (crossings,) = np.nonzero((left[:-1] > 0.0) & (left[1:] <= 0.0))
     if not crossings.size:
         return float("nan")
-    k = int(crossings[0])
-    share = left[k] / (left[k] - left[k + 1])
-    return float(scan[k] + share * (scan[k + 1] - scan[k]))
+    beside = crossings[0] + np.array([1, 0])
+    return float(np.interp(0.0, left[beside], scan[beside]))
 
 
 def estimates_table(axes: Panels, looks: Looks) -> Drawn:

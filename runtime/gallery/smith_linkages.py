@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import acos, cos, degrees, pi, radians, sin, sqrt
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -112,7 +113,12 @@ class Rig:
 
         With a logarithmic decrement, and the follower's inertia [lbf in s^2] or the scene's.
         """
-        return _system(self.scene, equation, modes, decrement, inertia)
+        changes: dict[str, Any] = {"model.formulation": equation, "model.modes": modes}
+        if decrement:
+            changes["coupler.damping_ratio"] = decrement / (2 * pi)
+        if inertia is not None:
+            changes["follower.inertia"] = inertia * LBF_IN_S2
+        return load_scene(self.scene, overrides=changes).linear_system()
 
     def function(
         self, equation: str, inertia: float | None = None, **changes: float
@@ -120,7 +126,7 @@ class Rig:
         """Return the periodic coefficient at a follower inertia [kg m^2], or the scene's."""
         if inertia is not None:
             changes["follower_inertia"] = inertia
-        return _form(self.scene, equation).function(1.0, **changes)
+        return _form(self, equation).function(1.0, **changes)
 
     def ends(self, equation: str, inertia: ArrayLike, regions: tuple[int, ...]) -> Array:
         """Return the crank speeds [rad/s] that bound unstable regions of the first mode.
@@ -154,20 +160,8 @@ class OfRig:
 
 
 @lru_cache(maxsize=64)
-def _system(
-    scene: str, equation: str, modes: int, decrement: float = 0.0, inertia: float | None = None
-) -> LinearPeriodic:
-    changes = {"model.formulation": equation, "model.modes": modes}
-    if decrement:
-        changes["coupler.damping_ratio"] = decrement / (2 * pi)
-    if inertia is not None:
-        changes["follower.inertia"] = inertia * LBF_IN_S2
-    return load_scene(scene, overrides=changes).linear_system()
-
-
-@lru_cache(maxsize=64)
-def _form(scene: str, equation: str) -> HillForm:
-    return hill_form(_system(scene, equation, 1))
+def _form(rig: Rig, equation: str) -> HillForm:
+    return hill_form(rig.system(equation))
 
 
 def region_name(n: int) -> str:

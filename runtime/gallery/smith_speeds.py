@@ -92,7 +92,7 @@ def chart(axes: Panels, figure: str, looks: Mapping[str, Mapping[str, Any]]) -> 
     low, high = (end / RPM for end in load_scene(rig.scene).get("chart.x_range"))
     least, greatest = load_scene(rig.scene).get("chart.y_range")
     inertia = np.linspace(least, greatest, 61)
-    _boundaries(ax, rig, inertia, high)
+    _boundaries(ax, rig, inertia, high, looks)
     seen = [one for one in OBSERVATIONS if one.chart == figure]
     for one in seen:
         half = one.half_width or None
@@ -117,7 +117,9 @@ def chart(axes: Panels, figure: str, looks: Mapping[str, Mapping[str, Any]]) -> 
     return Drawn(values, tables=[rows] if seen else ())
 
 
-def _boundaries(ax: Axes, rig: Rig, inertia: Array, high: float) -> None:
+def _boundaries(
+    ax: Axes, rig: Rig, inertia: Array, high: float, looks: Mapping[str, Mapping[str, Any]]
+) -> None:
     across = 1e3 * inertia
     # Beyond the picture every value does; infinite ones cannot be drawn.
     thesis, complete = (
@@ -127,15 +129,10 @@ def _boundaries(ax: Axes, rig: Rig, inertia: Array, high: float) -> None:
     ax.fill_between([], [], color=_FILL, label="complete equation, unstable")
     for i, n in enumerate(_REGIONS):
         ax.fill_between(across, complete[0, i], complete[1, i], color=_FILL, lw=0)
-        style, label = (
-            ("--", r"(6.18), with resonance $\Omega/n$")
-            if n % 2 == 0
-            else (":", r"(6.18), instability alone, $2\Omega/n$")
-        )
+        look = looks["odd" if n % 2 else "even"]
         for k in (0, 1):
             ax.plot(across, complete[k, i], color=COLOURS[1], lw=0.8)
-            named = label if i < 2 and k == 0 else None
-            ax.plot(across, thesis[k, i], style, color=COLOURS[0], lw=1.3, label=named)
+            ax.plot(across, thesis[k, i], color=COLOURS[0], lw=1.3, **look)
 
 
 def _margins(ax: Axes, rig: Rig, window: tuple[float, float]) -> None:

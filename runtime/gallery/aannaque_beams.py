@@ -259,7 +259,7 @@ def _elements(column: str) -> Array:
     return np.asarray(_FACTOR * np.sqrt(eigh(stiffness, mass, eigvals_only=True)))
 
 
-def figure_5_1(axes: Panels) -> Drawn:
+def figure_5_1(axes: Panels, looks: Looks) -> Drawn:
     """Draw the logarithm of the determinant of D over the frequency, bars whole and halved."""
     low, high = 20.0, 1200.0
     known = _exact()
@@ -272,10 +272,7 @@ def figure_5_1(axes: Panels) -> Drawn:
     for pieces, ax in enumerate(axes, start=1):
         value = log_determinant(_problem(pieces), omega / _FACTOR)[0]
         for place, frequency in enumerate(inside, start=1):
-            colour, width, label = ("0.7", 0.6, "natural frequency")
-            if place in _WRONG:
-                colour, width, label = (COLOURS[1], 0.9, "nodes at rest")
-            ax.axvline(frequency, ls=(0, (3, 2)), color=colour, lw=width, label=label)
+            ax.axvline(frequency, ls=(0, (3, 2)), **looks[place in _WRONG])
         ax.plot(omega, value, color=COLOURS[0], lw=1.0, label=r"$\log_{10}|\det D|$")
     beside = known[3] / _FACTOR * (1.0 + np.array([1e-7, 1e-5]))
     slopes = (np.diff(log_determinant(_problem(pieces), beside)[0]) for pieces in (1, 2))

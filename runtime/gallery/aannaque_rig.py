@@ -8,15 +8,9 @@ from math import degrees, radians
 
 import numpy as np
 
+from .. import frequencies
 from ..beams.element_forms import required_structure
 from ..core.families import Array, LinearPeriodic
-from ..frequencies import (
-    LinkFrequencies,
-    NaturalFrequencies,
-    draw_mode,
-    link_frequencies,
-    natural_frequencies,
-)
 from ..periodic import steady_state
 from ..recovery import ElasticCurve, elastic_coupler_curve, stress_operator
 from ..recovery.stress_over_speed import StressCurve, stress_curve
@@ -79,9 +73,9 @@ def paths(
 
 
 @lru_cache(maxsize=1)
-def held_modes() -> NaturalFrequencies:
+def held_modes() -> frequencies.NaturalFrequencies:
     """Return the first three modes at the ten crank angles of section 8.4."""
-    return natural_frequencies(rig(), np.radians(ANGLES), 3)
+    return frequencies.natural_frequencies(rig(), np.radians(ANGLES), 3)
 
 
 def modes(axes: Panels, place: int) -> Drawn:
@@ -89,7 +83,7 @@ def modes(axes: Panels, place: int) -> Drawn:
     angle, tracked = ANGLES[place], held_modes().tracked[place]
     computed, order = np.sort(tracked), np.argsort(tracked)
     for rank, ax in enumerate(axes):
-        draw_mode(rig(), radians(angle), int(order[rank]) + 1, ax, found=held_modes())
+        frequencies.draw_mode(rig(), radians(angle), int(order[rank]) + 1, ax, found=held_modes())
         hertz = computed[rank] / (2 * np.pi)
         ax.set_title(f"mode {rank + 1}: {hertz:.1f} Hz, {computed[rank]:.1f} rad/s", fontsize=9)
     exact = exact_frequencies(required_structure(rig()), np.array([radians(angle)]), 3)[0]
@@ -99,9 +93,9 @@ def modes(axes: Panels, place: int) -> Drawn:
 
 
 @lru_cache(maxsize=1)
-def over_coupler() -> LinkFrequencies:
+def over_coupler() -> frequencies.LinkFrequencies:
     """Return the mean first natural frequency against the coupler's length."""
-    return link_frequencies(rig(), "coupler", "length", _LENGTHS)
+    return frequencies.link_frequencies(rig(), "coupler", "length", _LENGTHS)
 
 
 def crossing() -> float:
@@ -135,9 +129,9 @@ def curve(scene: str, frame: float, high: float = _HIGH) -> StressCurve:
 
 
 @lru_cache(maxsize=2)
-def _held(scene: str) -> LinkFrequencies:
+def _held(scene: str) -> frequencies.LinkFrequencies:
     """Return the first two frequencies of a held linkage for all L4."""
-    return link_frequencies(rig(scene), "frame", "length", FRAMES, count=2)
+    return frequencies.link_frequencies(rig(scene), "frame", "length", FRAMES, count=2)
 
 
 def mean_frequency(scene: str, frame: float, mode: int = 1) -> float:

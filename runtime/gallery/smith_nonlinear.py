@@ -5,7 +5,7 @@ And how far the linear equation suffices.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -73,6 +73,68 @@ class Bench(Response):
         """The coupler."""
         return coupler(self.rig, self.inertia, self.decrement, self.modes)
 
+    def reading(self, kind: str, order: int = 0) -> float:
+        """Return the speed [rpm] at which something happens by the branches of a test.
+
+        ``rise`` and ``fall``: the first and the second fold along the first branch, which a rising
+        and a falling speed reach; ``two turns fall``: the lowest fold of two turns; ``onset``,
+        ``end``: where the motion of one turn begins and ends to double, ``middle`` between them;
+        ``peak``: the maximum of its order-th harmonic that is nearest to Omega/order.
+        """
+        found = specials(self)
+        doublings = [p.speed for p in found if (p.kind, p.turns) == ("doubling", 1)]
+        if kind in ("rise", "fall"):
+            folds = [point.speed for point in found if (point.kind, point.branch) == ("fold", 0)]
+            return folds[("rise", "fall").index(kind)]
+        if kind == "two turns fall":
+            return min(p.speed for p in found if (p.kind, p.turns) == ("fold", 2))
+        if kind == "peak":
+            return self._peak(order)
+        ends = {"onset": min(doublings), "end": max(doublings)}
+        return ends.get(kind, 0.5 * (ends["onset"] + ends["end"]))
+
+    def _peak(self, order: int) -> float:
+        curve, shown, turn = branches(self), self.system.shown, np.linspace(0.0, 2 * pi, 65)[:-1]
+        first = np.flatnonzero(curve.branch == 0)
+        lower = first[: np.argmin(np.append(curve.stable[first], False))]
+        bent = [shown(curve.orbits[i].motion.at(turn)[0]) for i in lower]
+        sizes, speed = np.abs(np.fft.rfft(bent, axis=-1))[:, order], curve.value[lower]
+        size = CubicSpline(speed, sizes)
+        flat = size.derivative().roots(extrapolate=False)
+        tops = flat[size(flat, 2) < 0.0]
+        return float(tops[np.argmin(np.abs(tops - self.rig.frequency / order))]) / RPM
+
+    def other(self, name: str, kind: str) -> float:
+        """Return a reading of another test."""
+        return BENCHES[name].reading(kind)
+
+    def apart(self, first: str, second: str) -> float:
+        """Return one reading less another [rpm]."""
+        return self.reading(first) - self.reading(second)
+
+    def _amplitudes(self, speed: float) -> list[tuple[int, bool, float]]:
+        """Return revolutions, stability and deflection [mm] of each motion at a speed [rpm]."""
+        curve, found = branches(self), []
+        value = curve.value - speed * RPM
+        for i in np.flatnonzero((value[:-1] * value[1:] <= 0.0) & (np.diff(curve.branch) == 0)):
+            share = value[i] / (value[i] - value[i + 1])
+            before, after = curve.peak_to_peak[i : i + 2]
+            size = _MM * float(before + share * (after - before))
+            found.append((int(curve.turns[i]), bool(np.all(curve.stable[i : i + 2])), size))
+        return found
+
+    def stable(self, speed: float, *turns: int) -> float:
+        """Return how many stable motions of so many turns there are at a speed [rpm]."""
+        return sum(holds and count in turns for count, holds, _ in self._amplitudes(speed))
+
+    def greater(self, fall: str, rise: str) -> float:
+        """Return the largest stable deflection between two readings over that at the second."""
+        low, high = self.reading(fall), self.reading(rise)
+        curve = branches(self)
+        inside = curve.stable & (curve.value >= low * RPM) & (curve.value <= high * RPM)
+        largest = _MM * float(np.max(curve.peak_to_peak[inside]))
+        return largest / max(size for _, holds, size in self._amplitudes(high) if holds)
+
 
 BENCHES = {name: Bench(**row) for name, row in contents("smith")["bench"].items()}
 
@@ -112,51 +174,6 @@ def specials(one: Bench) -> list[Special]:
     return [Special(*row) for row in rows]
 
 
-def reading(one: Bench, kind: str, order: int = 0) -> float:
-    """Return the speed [rpm] at which something happens by the branches of a test.
-
-    ``rise`` and ``fall``: the first and the second fold along the first branch, which a rising and
-    a falling speed reach; ``two turns fall``: the lowest fold of two turns; ``onset``, ``end``:
-    where the motion of one turn begins and ends to double, ``middle`` between them; ``peak``: the
-    maximum of its order-th harmonic that is nearest to Omega/order.
-    """
-    found = specials(one)
-    doublings = [p.speed for p in found if (p.kind, p.turns) == ("doubling", 1)]
-    if kind in ("rise", "fall"):
-        folds = [point.speed for point in found if (point.kind, point.branch) == ("fold", 0)]
-        return folds[("rise", "fall").index(kind)]
-    if kind == "two turns fall":
-        return min(p.speed for p in found if (p.kind, p.turns) == ("fold", 2))
-    if kind == "peak":
-        return _peak(one, order)
-    ends = {"onset": min(doublings), "end": max(doublings)}
-    return ends.get(kind, 0.5 * (ends["onset"] + ends["end"]))
-
-
-def _peak(one: Bench, order: int) -> float:
-    curve, shown, turn = branches(one), one.system.shown, np.linspace(0.0, 2 * pi, 65)[:-1]
-    first = np.flatnonzero(curve.branch == 0)
-    lower = first[: np.argmin(np.append(curve.stable[first], False))]
-    bent = [shown(curve.orbits[i].motion.at(turn)[0]) for i in lower]
-    sizes, speed = np.abs(np.fft.rfft(bent, axis=-1))[:, order], curve.value[lower]
-    size = CubicSpline(speed, sizes)
-    flat = size.derivative().roots(extrapolate=False)
-    tops = flat[size(flat, 2) < 0.0]
-    return float(tops[np.argmin(np.abs(tops - one.rig.frequency / order))]) / RPM
-
-
-def _amplitudes(one: Bench, speed: float) -> list[tuple[int, bool, float]]:
-    """Return revolutions, stability and deflection [mm] of each motion at a speed [rpm]."""
-    curve, found = branches(one), []
-    value = curve.value - speed * RPM
-    for i in np.flatnonzero((value[:-1] * value[1:] <= 0.0) & (np.diff(curve.branch) == 0)):
-        share = value[i] / (value[i] - value[i + 1])
-        size = curve.peak_to_peak[i] + share * (curve.peak_to_peak[i + 1] - curve.peak_to_peak[i])
-        holds = bool(curve.stable[i] and curve.stable[i + 1])
-        found.append((int(curve.turns[i]), holds, _MM * float(size)))
-    return found
-
-
 class _Way(NamedTuple):
     """One way of a slow test: speeds [rpm] rising, extremes of the deflection [mm]."""
 
@@ -172,6 +189,21 @@ class _Way(NamedTuple):
         inside = (self.speed >= low) & (self.speed <= high)
         return _Way(*(part[inside] for part in self))
 
+    def largest(self, low: float, high: float) -> float:
+        """Return the speed [rpm] of the largest deflection within a range."""
+        way = self.within(low, high)
+        return float(way.speed[np.argmax(way.size)])
+
+    def beats(self, low: float, high: float) -> float:
+        """Return how many maxima the upper edge of the trace has within a range."""
+        edge = self.within(low, high).highest
+        return len(find_peaks(edge, prominence=0.01 * np.ptp(edge))[0])
+
+    def level(self, below: float, above: float) -> float:
+        """Return how far the mean level moves between two speeds, over the largest deflection."""
+        mean = np.interp([below, above], self.speed, 0.5 * (self.lowest + self.highest))
+        return float(abs(mean[1] - mean[0]) / np.max(self.within(below, above).size))
+
 
 def _way(one: Bench, rising: bool) -> _Way:
     test = slow_test(one)
@@ -180,58 +212,18 @@ def _way(one: Bench, rising: bool) -> _Way:
     return _Way(test.speed[at] / RPM, _MM * test.lowest[at], _MM * test.highest[at])
 
 
-def _stable(one: Bench, rising: bool, speed: float, *turns: int) -> float:
-    """Return how many stable motions of so many turns there are at a speed [rpm]."""
-    return sum(holds and count in turns for count, holds, _ in _amplitudes(one, speed))
-
-
-def _largest(one: Bench, rising: bool, low: float, high: float) -> float:
-    """Return the speed [rpm] of the largest deflection of the slow test within a range."""
-    way = _way(one, rising).within(low, high)
-    return float(way.speed[np.argmax(way.size)])
-
-
-def _greater(one: Bench, rising: bool, fall: str, rise: str) -> float:
-    """Return the largest stable deflection between two readings over that at the second."""
-    low, high = reading(one, fall), reading(one, rise)
-    curve = branches(one)
-    inside = curve.stable & (curve.value >= low * RPM) & (curve.value <= high * RPM)
-    largest = _MM * float(np.max(curve.peak_to_peak[inside]))
-    return largest / max(size for _, holds, size in _amplitudes(one, high) if holds)
-
-
-def _beats(one: Bench, rising: bool, low: float, high: float) -> float:
-    """Return how many maxima the upper edge of the trace has within a range."""
-    edge = _way(one, rising).within(low, high).highest
-    return len(find_peaks(edge, prominence=0.01 * np.ptp(edge))[0])
-
-
-def _level(one: Bench, rising: bool, below: float, above: float) -> float:
-    """Return how far the mean level moves between two speeds, over the largest deflection."""
-    way = _way(one, rising)
-    mean = np.interp([below, above], way.speed, 0.5 * (way.lowest + way.highest))
-    return float(abs(mean[1] - mean[0]) / np.max(way.within(below, above).size))
-
-
-# What section 9.5.3 says of single figures, by the names in their records.
-_CLAIMS: Mapping[str, Callable[..., float]] = {
-    "read": lambda one, _, *what: reading(one, *what),
-    "other": lambda one, _, name, kind: reading(BENCHES[name], kind),
-    "apart": lambda one, _, first, second: reading(one, first) - reading(one, second),
-    "stable": _stable,
-    "largest": _largest,
-    "greater": _greater,
-    "beats": _beats,
-    "level": _level,
-}
-
-
 def trace(
-    axes: Panels, linear: Sequence[Any], name: str, rising: bool, claims: Sequence[Sequence[Any]]
+    axes: Panels,
+    linear: Sequence[Any],
+    name: str,
+    rising: bool,
+    traced: Sequence[Sequence[Any]],
+    claims: Sequence[Sequence[Any]],
 ) -> Drawn:
     """Draw a recorded response: by the linear equation above, the slow test below.
 
-    ``linear``: what :func:`.response` takes; name of the test and which way the speed goes.
+    ``linear``: what :func:`.response` takes; name of the test and which way the speed goes; what
+    section 9.5.3 says of the trace and of the test, as methods of both and what these take.
     """
     values = list(response(axes[:1], *linear).values)
     one, ax, (low, high) = BENCHES[name], axes[1], linear[2:4]
@@ -246,7 +238,8 @@ def trace(
     mark_fractions(ax, *marks, low=False)
     panel_title(axes[0], "complete linear equation")
     panel_title(ax, f"nonlinear equation, decrement {one.rig.decrement:g}")
-    return Drawn([*values, *(_CLAIMS[claim[0]](one, rising, *claim[1:]) for claim in claims)])
+    values += [getattr(way, method)(*given) for method, *given in traced]
+    return Drawn([*values, *(getattr(one, method)(*given) for method, *given in claims)])
 
 
 def figure_64(axes: Panels, name: str, speed: float) -> Drawn:
@@ -285,7 +278,7 @@ def figure_69(axes: Panels, name: str, speeds: Sequence[float]) -> Drawn:
     values = curve.linear_value, curve.value[curve.stable & (curve.turns == 1)]
     heights = linear, curve.peak_to_peak[curve.stable & (curve.turns == 1)]
     tops = [v[np.argmax(np.where(v < half, h, 0.0))] for v, h in zip(values, heights, strict=True)]
-    counts = [_stable(one, True, speed, 1, 2) for speed in speeds]
+    counts = [one.stable(speed, 1, 2) for speed in speeds]
     return Drawn([*counts, float(tops[1] - tops[0]) / RPM])
 
 
@@ -320,13 +313,13 @@ def quoted_speeds(axes: Panels, chart: str, cranks: Sequence[float]) -> Drawn:
     law = max(abs(row[-1]) for row in leaning)
     both = [BENCHES[name] for name in ("least", "two_modes")]
     kinds = ("rise", "fall", "onset", "end")
-    moved = [abs(float(np.diff([reading(one, kind) for one in both])[0])) for kind in kinds]
+    moved = [abs(float(np.diff([one.reading(kind) for one in both])[0])) for kind in kinds]
     share = summary[-1][1] / len(_COMPARED)
     words: dict[str, object] = {
         "count": summary[-1][1],
         "all": len(_COMPARED),
-        "entered": reading(BENCHES["softening"], "rise"),
-        "lost": reading(BENCHES["softening"], "onset"),
+        "entered": BENCHES["softening"].reading("rise"),
+        "lost": BENCHES["softening"].reading("onset"),
         "within": good[-1][0].split()[-2],
         "there": good[-1][-1],
         "second": max(moved),
@@ -371,7 +364,7 @@ def _speed(one: Observation, equation: str) -> float:
     if equation != "nonlinear":
         return one.predicted(equation)
     name, *what = one.nonlinear
-    return reading(BENCHES[name], *what)
+    return BENCHES[name].reading(*what)
 
 
 class _Deflection:

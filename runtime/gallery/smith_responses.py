@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi
@@ -68,12 +68,54 @@ class Response(OfRig):
     """One recorded frequency response of chapter 9: chart of the rig, inertia, range of the speed.
 
     The follower's inertia [lbf in s^2]; speeds [rpm] as written in the text or beside the trace,
-    else chosen.
+    else chosen.  Methods that records name say what section 9.5.3 does of single figures.
     """
 
     inertia: float
     low: float
     high: float
+
+    def resonance(self, speed: float) -> float:
+        """Return the crank speed [rpm] of the greatest deflection's maximum nearest to a speed."""
+        ends = envelope(self, self.rig.decrements[0])
+        places = ends.speed[find_peaks(ends.height)[0]]
+        return float(places[np.argmin(np.abs(places - speed))]) if len(places) else float("nan")
+
+    def harmonics(self, first: int, last: int) -> list[float]:
+        """Return how far from Omega/n [%] each of some harmonics is greatest, at most."""
+        system = self.rig.system(decrement=self.rig.decrements[0], inertia=self.inertia)
+        factor, apart = np.linspace(0.94, 1.06, 61), []
+        for order in range(first, last + 1):
+            motion = steady_state(system, factor * self.rig.frequency / order)
+            size = np.abs(np.fft.rfft(motion.q[..., 0], axis=-1)[:, order])
+            apart.append(abs(float(factor[np.argmax(size)]) - 1.0))
+        return [100.0 * max(apart)]
+
+    def increment(self, before: float, at: float) -> list[float]:
+        """Return how an increment of the inertia, from one before, raises the amplitude."""
+        sizes = []
+        for inertia in (self.inertia, before):
+            ends = envelope(replace(self, inertia=inertia), self.rig.decrements[0])
+            sizes.append(float(np.interp(at, ends.speed, ends.height)))
+        return [sizes[0] / sizes[1]]
+
+    def unstable(self, which: str, damping: int, low: float, high: float) -> list[float]:
+        """Return ``first``, ``middle``, ``last`` unstable speed within a range, as many as named.
+
+        With the least measured decrement, the middle or the greatest one (0, 1, 2).
+        """
+        ends = envelope(self, self.rig.decrements[damping])
+        inside = ends.speed[~ends.stable & (ends.speed > low) & (ends.speed < high)]
+        first, last = float(inside[0]), float(inside[-1])
+        found = {"first": first, "middle": 0.5 * (first + last), "last": last}
+        return [found[name] for name in which.split()]
+
+    def largest(self, at: float, apart: float) -> list[float]:
+        """Return at how many speeds about one the periodic motion is largest."""
+        ends = envelope(self, self.rig.decrements[0])
+        inside = np.flatnonzero(np.abs(ends.speed - at) < apart)
+        beside = np.maximum(ends.height[inside - 1], ends.height[inside + 1])
+        return [int(np.count_nonzero(ends.height[inside] > beside))]
 
 
 class Envelope(NamedTuple):
@@ -109,7 +151,10 @@ def response(
     resonances: Sequence[float] = (),
     claim: Sequence[Any] = (),
 ) -> Drawn:
-    """Draw a frequency response; compute resonances near speeds [rpm] and one of the claims."""
+    """Draw a frequency response; compute resonances near speeds [rpm], and what the text says.
+
+    ``claim``: a method of :class:`Response` and what it takes.
+    """
     one, ax = Response(chart, inertia, low, high), axes[0]
     for decrement, colour, width in zip(
         one.rig.decrements, (1, 0, 2), (0.8, 1.3, 0.8), strict=True
@@ -133,64 +178,8 @@ def response(
             ax.axhline(level, color="0.5", lw=0.7, ls="--", zorder=1)
     mark_fractions(ax, one.rig.frequency / RPM, range(1, 13), "Ω/{}", (low, high), low=False)
     ax.set(xlim=(low, high), ylim=(-end, end))
-    values = [resonance(one, at) for at in resonances]
-    return Drawn([*values, *_CLAIMS[claim[0]](one, *claim[1:])] if claim else values)
-
-
-def resonance(one: Response, speed: float) -> float:
-    """Return the crank speed [rpm] of the greatest deflection's maximum nearest to a speed."""
-    ends = envelope(one, one.rig.decrements[0])
-    places = ends.speed[find_peaks(ends.height)[0]]
-    return float(places[np.argmin(np.abs(places - speed))]) if len(places) else float("nan")
-
-
-def _harmonics(one: Response, first: int, last: int) -> list[float]:
-    """Return how far from Omega/n [%] each of some harmonics is greatest, at most."""
-    system = one.rig.system(decrement=one.rig.decrements[0], inertia=one.inertia)
-    factor, apart = np.linspace(0.94, 1.06, 61), []
-    for order in range(first, last + 1):
-        motion = steady_state(system, factor * one.rig.frequency / order)
-        size = np.abs(np.fft.rfft(motion.q[..., 0], axis=-1)[:, order])
-        apart.append(abs(float(factor[np.argmax(size)]) - 1.0))
-    return [100.0 * max(apart)]
-
-
-def _increment(one: Response, before: float, at: float) -> list[float]:
-    """Return how an increment of the inertia, from one before, raises the amplitude at a speed."""
-    sizes = []
-    for inertia in (one.inertia, before):
-        ends = envelope(replace(one, inertia=inertia), one.rig.decrements[0])
-        sizes.append(float(np.interp(at, ends.speed, ends.height)))
-    return [sizes[0] / sizes[1]]
-
-
-def _unstable(one: Response, which: str, damping: int, low: float, high: float) -> list[float]:
-    """Return the ``first``, ``middle``, ``last`` unstable speed within a range, as many as named.
-
-    With the least measured decrement, the middle or the greatest one (0, 1, 2).
-    """
-    ends = envelope(one, one.rig.decrements[damping])
-    inside = ends.speed[~ends.stable & (ends.speed > low) & (ends.speed < high)]
-    first, last = float(inside[0]), float(inside[-1])
-    found = {"first": first, "middle": 0.5 * (first + last), "last": last}
-    return [found[name] for name in which.split()]
-
-
-def _largest(one: Response, at: float, apart: float) -> list[float]:
-    """Return at how many speeds about one the periodic motion is largest."""
-    ends = envelope(one, one.rig.decrements[0])
-    inside = np.flatnonzero(np.abs(ends.speed - at) < apart)
-    beside = np.maximum(ends.height[inside - 1], ends.height[inside + 1])
-    return [int(np.count_nonzero(ends.height[inside] > beside))]
-
-
-# What section 9.5.3 says of single figures, by the names in their records.
-_CLAIMS: dict[str, Callable[..., list[float]]] = {
-    "harmonics": _harmonics,
-    "increment": _increment,
-    "unstable": _unstable,
-    "largest": _largest,
-}
+    values = [one.resonance(at) for at in resonances]
+    return Drawn([*values, *getattr(one, claim[0])(*claim[1:])] if claim else values)
 
 
 def wave(chart: str, inertia: float, speed: float) -> tuple[Array, Array]:

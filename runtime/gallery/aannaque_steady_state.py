@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,9 +33,9 @@ def figure_6_1(axes: Panels, said: Sequence[tuple[float, float, str]], looks: Lo
     ax.fill_between(right, real, pairs, color="#dfeadf", lw=0.0)
     ax.fill_between(right, pairs, 0.8, color="#c2dcc4", lw=0.0)
     ax.axvline(0.5, color="0.3", lw=0.8)
-    mean, linear = (0.5, 0.25), (0.5, 1.0 / 6.0)
-    for place, look in zip(((right, pairs), (right, real), mean, linear), looks, strict=True):
-        ax.plot(*place, **look)
+    curves: tuple[Any, ...] = ((right, pairs), (right, real), (0.5, 0.25), (0.5, 1.0 / 6.0))
+    for curve, look in zip(curves, looks, strict=True):
+        ax.plot(*curve, **look)
     for x, y, words in said:
         ax.text(x, y, words, ha="center", va="center")
     # The least beta that is stable at every step: beside round values, on which round-off decides.

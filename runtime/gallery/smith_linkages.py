@@ -231,8 +231,8 @@ def figure_7(axes: Panels) -> Drawn:
 def end_loads(axes: Panels, proportions: str, looks: Looks) -> Drawn:
     """Draw phi, f1, f2 and f3 of one linkage (Fig. 27)."""
     linkage, theta = linkage_of(proportions), np.linspace(0.0, 2 * pi, 1441)
-    for values, look in zip(end_load(linkage, theta).values(), looks, strict=False):
-        axes[0].plot(np.degrees(theta), values, **look)
+    for part, look in zip(end_load(linkage, theta).values(), looks, strict=False):
+        axes[0].plot(np.degrees(theta), part, **look)
     phi, f1, f2, f3 = _sizes(proportions)
     eps2 = pi**2 * linkage.crank / (2 * linkage.coupler)
     if proportions == "(54,0.4,54,3)":

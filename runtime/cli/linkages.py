@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from ..scenes import Scene
     from ..systems.rod import FreeFreeRod
 
-WHOLE_TURN = "0:360:721deg"
-
 
 def add(commands: Any) -> None:
     """Add the five subcommands."""
@@ -186,19 +184,6 @@ def _table(motion: linkages.Motion) -> list[str]:
     if motion.relative:
         lines.append("speeds over omega2, accelerations over omega2^2, at constant crank speed")
     return lines
-
-
-def angles_of(options: argparse.Namespace, linkage: linkages.Linkage, margin: float) -> Array:
-    """Return the crank angles [rad] of ``--angles``: by default a turn, or what the crank reaches.
-
-    At either end of that range, where the linkage folds, a share of it (``margin``) is left out.
-    """
-    if options.angles is not None or linkage.crank_turns:
-        text = WHOLE_TURN if options.angles is None else options.angles
-        return opt.values(text, "angle", "--angles")
-    low, high = linkage.crank_ranges()[-1]
-    inset = margin * (high - low)
-    return opt.spaced(low + inset, high - inset, 721)
 
 
 def speed_option(default: str) -> dict[str, str]:

@@ -18,7 +18,7 @@ from ..core.errors import LinearRangeWarning, bad
 from ..core.progress import bar
 from ..core.results import Check
 from . import records
-from .records import KINDS, FigureEntry, Gallery, Quoted, Shown, Table, counts
+from .records import KINDS, FigureEntry, Gallery, Quoted, Shown, counts
 
 _STYLE = (resources.files(__package__) / "data" / "page.css").read_text("utf-8")
 
@@ -187,7 +187,9 @@ def _figure(item: Shown) -> str:
         rows = [row for row in item.quoted if row.kind == kind]
         if rows:
             lines += [f"<h3>{what.capitalize()}</h3>", _quoted(rows, name)]
-    lines += [_table(table) for table in item.tables]
+    for table in item.tables:
+        cells = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in table.rows]
+        lines += [f"<h3>{escape(table.title)}</h3>", _html(table.header, cells)]
     return "\n".join(lines)
 
 
@@ -208,11 +210,6 @@ def _quoted(rows: Sequence[Quoted], name: str) -> str:
         )
     header = ("what", "section", name, "computed", "deviation", "tolerance", "verdict")
     return _html(header, lines)
-
-
-def _table(table: Table) -> str:
-    rows = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in table.rows]
-    return f"<h3>{escape(table.title)}</h3>\n{_html(table.header, rows)}"
 
 
 def _html(header: Sequence[str], rows: Sequence[str]) -> str:

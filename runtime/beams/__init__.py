@@ -25,15 +25,4 @@ if TYPE_CHECKING:
     from .structure import Node as Node
     from .structure import Structure as Structure
 
-__all__ = on_first_use(
-    globals(),
-    {
-        "elements": "KINDS element_arrays",
-        "frames": "frame without_stretching",
-        "layered": "ElasticLayer ViscoelasticLayer sandwich_section",
-        "linear": "linear_system",
-        "linkages": "beam_linkage linkage_system",
-        "section": "Section",
-        "structure": "Beam Node Structure",
-    },
-)
+__all__ = on_first_use(globals())

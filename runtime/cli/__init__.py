@@ -12,4 +12,4 @@ from ..core.lazy import on_first_use
 if TYPE_CHECKING:
     from .application import main as main
 
-__all__ = on_first_use(globals(), {"application": "main"})
+__all__ = on_first_use(globals())

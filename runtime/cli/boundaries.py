@@ -6,7 +6,7 @@ import argparse
 import re
 from functools import partial
 from itertools import chain
-from math import pi, sqrt
+from math import sqrt
 from typing import TYPE_CHECKING, Any
 
 from .. import hill, stability
@@ -217,13 +217,12 @@ def _perturbation(found: Sequence[Any]) -> dict[str, Any]:
 
 def _bars(ax: Any, exact: hill.Boundaries, frequency: float) -> None:
     """Draw the unstable bands of crank speed, a row per region."""
-    rpm = 30.0 / pi
     for i, n in enumerate(exact.regions):
         low, high = (float(end[i, 0]) for end in (exact.lower, exact.upper))
         if high > 0.0:
             right = frequency / sqrt(low) if low > 0.0 else 2.0 * frequency / sqrt(high)
             left = frequency / sqrt(high)
-            ax.barh(str(n), (right - left) * rpm, left=left * rpm, height=0.6)
+            ax.barh(str(n), (right - left) * opt.RPM, left=left * opt.RPM, height=0.6)
     ax.set(xlabel="crank speed [rpm]", ylabel="region")
 
 
@@ -324,4 +323,4 @@ def _speed(frequency: float, lam2: float) -> str:
 
 
 def _rpm(speed: float, digits: int = 8) -> str:
-    return f"{speed * 30.0 / pi:.{digits}g} rpm" if speed == speed else "-"
+    return f"{speed * opt.RPM:.{digits}g} rpm" if speed == speed else "-"

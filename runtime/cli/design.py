@@ -177,8 +177,6 @@ def _identify(options: argparse.Namespace) -> int:
       unstable from, 752, 2
       unstable to, 770, 2
     """
-    from ..core.plotting import RPM
-
     points = design.read_points(options.points)
     window = opt.quantity(options.window, "dimensionless", "--window")
     system: Any = opt.load(options).system()
@@ -190,11 +188,11 @@ def _identify(options: argparse.Namespace) -> int:
         ("start", ".7g", found.start),
         ("", "", ["" if decided else "not decided" for decided in found.decided]),
     )
-    units = [("mm", 1e3) if p.kind == "deflection" else ("rpm", RPM) for p in found.points]
+    units = [("mm", 1e3) if p.kind == "deflection" else ("rpm", opt.RPM) for p in found.points]
     scales = [scale for _, scale in units]
     rows = opt.columns(
         ("point", "", [point.kind for point in found.points]),
-        ("at [rpm]", ".6g", [point.speed * RPM for point in found.points]),
+        ("at [rpm]", ".6g", [point.speed * opt.RPM for point in found.points]),
         ("measured", ".6g", found.measured * scales),
         ("computed", ".6g", found.computed * scales),
         ("", "", [unit for unit, _ in units]),
@@ -256,27 +254,24 @@ def _certify(options: argparse.Namespace) -> int:
 
     elastolink certify smith_1972_5152_sixteenth_inch --speed 300:400rpm --set coupler.damping=0.1
     """
-    from ..core.plotting import RPM
-
     low, high = opt.span(options.speed, "frequency", "--speed", "300rpm:400rpm")
     resolution = opt.positive(options, "resolution", "frequency")
     system: Any = opt.load(options).system()
     found = design.certify(system, (low, high), resolution=resolution)
-    return opt.finish(options, found, [line for _, line in sorted(_proof_lines(found, RPM))])
+    return opt.finish(options, found, [line for _, line in sorted(_proof_lines(found))])
 
 
-def _proof_lines(found: Any, rpm: float) -> list[tuple[float, str]]:
+def _proof_lines(found: Any) -> list[tuple[float, str]]:
     """Return what is said of each interval, with its lower end."""
+
+    def span(low: float, high: float) -> str:
+        return f"from {low * opt.RPM:.6g} to {high * opt.RPM:.6g} rpm"
+
     lines = []
     for (low, high), bound in zip(found.proved, found.bound, strict=True):
-        fall = (
-            f"every disturbance falls to at most {bound:.4g} of itself per period in the long run"
-        )
-        text = f"proved: stable from {low * rpm:.6g} to {high * rpm:.6g} rpm; {fall}"
-        lines.append((low, text if bound < 1.0 else text.partition(";")[0]))
-    for low, high in found.unstable:
-        lines.append((low, f"proved: unstable from {low * rpm:.6g} to {high * rpm:.6g} rpm"))
-    for low, high in found.open:
-        why = "multipliers too close to the unit circle for --resolution"
-        lines.append((low, f"not proved from {low * rpm:.6g} to {high * rpm:.6g} rpm: {why}"))
-    return lines
+        fall = f"every disturbance falls to at most {bound:.4g} of itself per period"
+        more = f"; {fall} in the long run" if bound < 1.0 else ""
+        lines.append((low, f"proved: stable {span(low, high)}{more}"))
+    lines += [(low, f"proved: unstable {span(low, high)}") for low, high in found.unstable]
+    why = "multipliers too close to the unit circle for --resolution"
+    return lines + [(low, f"not proved {span(low, high)}: {why}") for low, high in found.open]

@@ -6,19 +6,21 @@ import argparse
 import math
 from dataclasses import asdict
 from functools import partial
-from math import degrees, pi
+from math import degrees
 from typing import TYPE_CHECKING, Any
 
 from .. import rigid
 from ..core.errors import bad
 from . import options as opt
-from .linkages import WHOLE_TURN, angles_of, drive_of, drive_options
+from .linkages import drive_of, drive_options
 
 if TYPE_CHECKING:
+    from ..core.families import Array
     from ..core.results import Result
+    from ..linkages import Linkage
     from ..scenes import Scene
 
-_REVOLUTIONS = 10.0
+_WHOLE_TURN, _REVOLUTIONS = "0:360:721deg", 10.0
 _JOINTS = ("12", "23", "34", "41", "frame", "torque", "moment")
 
 
@@ -26,7 +28,7 @@ def add(commands: Any) -> None:
     """Add the three subcommands."""
     forces = opt.command(commands, "forces", _forces)
     opt.add(forces, drive_options("default operation.speed"))
-    opt.add(forces, opt.angles(f"{WHOLE_TURN}, or the range that the crank reaches"))
+    opt.add(forces, opt.angles(f"{_WHOLE_TURN}, or the range that the crank reaches"))
     drawn = "what --plot draws: a polar diagram, or the torque or moment over the angle"
     opt.add(forces, {"--joint": drawn}, choices=_JOINTS)
     wheel = "size a flywheel for this coefficient of speed fluctuation, e.g. 0.02"
@@ -63,8 +65,7 @@ def _forces(options: argparse.Namespace) -> int:
     scene = opt.load(options)
     machine = scene.machine()
     speed, acceleration = drive_of(options, scene)
-    # At the folds themselves the forces are infinite: stay a hundredth of the range away.
-    theta = angles_of(options, machine.linkage, margin=0.01)
+    theta = _angles(options, machine.linkage)
     found = rigid.rigid_forces(machine, theta, speed, acceleration)
     even, numbers, beside = _evenness(machine, speed, options.fluctuation)
     span = float(theta[0]), float(theta[-1])
@@ -78,6 +79,17 @@ def _forces(options: argparse.Namespace) -> int:
     more = {"peaks": {name: asdict(peak) for name, peak in peaks.items()}, **numbers}
     draw = partial(found.plot, joint=options.joint)
     return opt.finish(options, found, [*table, "", *even], draw, more=more, beside=beside)
+
+
+def _angles(options: argparse.Namespace, linkage: Linkage) -> Array:
+    """Return the crank angles of ``--angles``: by default a turn, or what the crank reaches."""
+    if options.angles is not None or linkage.crank_turns:
+        text = _WHOLE_TURN if options.angles is None else options.angles
+        return opt.values(text, "angle", "--angles")
+    low, high = linkage.crank_ranges()[-1]
+    # At the folds themselves the forces are infinite: stay a hundredth of the range away.
+    inset = 0.01 * (high - low)
+    return opt.spaced(low + inset, high - inset, 721)
 
 
 def _evenness(
@@ -170,7 +182,7 @@ def _run_lines(found: rigid.RunUp) -> list[str]:
         ("time [s]", f"{found.time[-1]:.6g}"),
         ("revolutions", f"{found.revolutions:.6g}"),
         ("final speed [rad/s]", f"{speed:.6g}"),
-        ("final speed [rpm]", f"{speed * 30.0 / pi:.6g}"),
+        ("final speed [rpm]", f"{speed * opt.RPM:.6g}"),
         (
             "speed fluctuation, last revolution",
             "less than one made" if fluctuation is None else f"{fluctuation:.4g}",

@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from .. import linkages, periodic
+from .. import constrained, linkages, periodic
 from ..core.errors import BadInput, bad
 from . import options as opt
 
@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ..linkages.curves import CouplerCurve
     from ..scenes import Scene
     from ..systems.rod import FreeFreeRod
-
-WHOLE_TURN = "0:360:721deg"
 
 
 def add(commands: Any) -> None:
@@ -188,19 +186,6 @@ def _table(motion: linkages.Motion) -> list[str]:
     return lines
 
 
-def angles_of(options: argparse.Namespace, linkage: linkages.Linkage, margin: float) -> Array:
-    """Return the crank angles [rad] of ``--angles``: by default a turn, or what the crank reaches.
-
-    At either end of that range, where the linkage folds, a share of it (``margin``) is left out.
-    """
-    if options.angles is not None or linkage.crank_turns:
-        text = WHOLE_TURN if options.angles is None else options.angles
-        return opt.values(text, "angle", "--angles")
-    low, high = linkage.crank_ranges()[-1]
-    inset = margin * (high - low)
-    return opt.spaced(low + inset, high - inset, 721)
-
-
 def speed_option(default: str) -> dict[str, str]:
     """Return the option of the crank speed; ``default`` says what holds without it."""
     return {"--speed SPEED": f"crank speed, e.g. '195 rpm', rad/s without a unit; {default}"}
@@ -317,15 +302,13 @@ def _simulate(options: argparse.Namespace) -> int:
 
 def _simulate_constrained(options: argparse.Namespace, scene: Scene) -> int:
     """Integrate the constrained equations from the undeformed rod."""
-    from ..constrained import constrained_motion
-
     if options.initial is not None:
         fix = "leave it out: the motion starts from the undeformed rod"
         raise bad("--initial", "a value", "none for constrained equations", fix)
     if options.method not in (None, "collocation"):
         raise bad("--method", repr(options.method), "collocation alone", "leave it out")
     rod = at_speed(options, scene)
-    result = constrained_motion(
+    result = constrained.constrained_motion(
         rod,
         span=options.revolutions * (2.0 * math.pi / abs(rod.speed)),
         samples=max(1, round(360 * options.revolutions)),

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from inspect import cleandoc
 from typing import TYPE_CHECKING, Any
 
+from .. import scenes
 from ..core.errors import bad, printable
 
 if TYPE_CHECKING:
@@ -22,8 +23,9 @@ if TYPE_CHECKING:
 
     from ..core.families import Array
     from ..core.results import Check, Result
-    from ..scenes import Scene
 
+# Revolutions per minute of one radian per second.
+RPM = 30.0 / math.pi
 # Rows of a table of maxima at the most.
 MOST_ROWS = 25
 _COUNT = re.compile(r"\s*(\d+)\s*(.*)")
@@ -95,11 +97,9 @@ def scene_options(parser: argparse.ArgumentParser, nargs: str | None = None) -> 
     add(parser, {"--modules DIR": "look for emitted modules in this folder first"})
 
 
-def load(options: argparse.Namespace, **more: Any) -> Scene:
+def load(options: argparse.Namespace, **more: Any) -> scenes.Scene:
     """Return the scene that the options name, with its overrides and ``more``."""
-    from ..scenes import load_scene
-
-    return load_scene(options.scene, overrides={**settings(options.set), **more})
+    return scenes.load_scene(options.scene, overrides={**settings(options.set), **more})
 
 
 def settings(pairs: Sequence[str]) -> dict[str, Any]:

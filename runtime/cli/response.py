@@ -204,10 +204,8 @@ def _curve_lines(curve: nonlinear.ResponseCurve) -> list[str]:
     """Return the special points, the branches, and the largest stable deflection."""
     import numpy as np
 
-    from ..core.plotting import RPM
-
     speed = curve.parameter == "speed"
-    factor, head = (RPM, "speed [rpm]") if speed else (1.0, f"{curve.parameter} [SI]")
+    factor, head = (opt.RPM, "speed [rpm]") if speed else (1.0, f"{curve.parameter} [SI]")
     size, unit = (1e3, "mm") if curve.unit == "m" else (1.0, curve.unit)
     deflection = size * (curve.special_highest - curve.special_lowest)
     count = len(curve.ended)
@@ -236,8 +234,6 @@ def _curve_lines(curve: nonlinear.ResponseCurve) -> list[str]:
 
 def _sweep(options: argparse.Namespace, scene: Scene, system: Nonlinear, told: list[str]) -> int:
     """March up and down, and print the jumps."""
-    from ..core.plotting import RPM
-
     opt.refuse_unused(options, ("in", "search"), "a response curve, without --sweep")
     rate = opt.positive(options, "sweep", "angular_acceleration") or 0.0
     bounds = speed_range(options.speed, scene, "--speed")
@@ -253,7 +249,7 @@ def _sweep(options: argparse.Namespace, scene: Scene, system: Nonlinear, told: l
         lines += [
             "",
             *opt.columns(
-                ("jump at [rpm]", ".6g", RPM * found.jump_speed),
+                ("jump at [rpm]", ".6g", opt.RPM * found.jump_speed),
                 ("", "", ["run up" if up else "run down" for up in found.jump_rising]),
                 ("deflection after / before", ".3g", found.jump_ratio),
             ),

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from .. import scenes
 from ..core.errors import bad
 from . import options as opt
-
-if TYPE_CHECKING:
-    from ..scenes import Scene
 
 
 def add(commands: Any) -> None:
@@ -32,20 +30,18 @@ def _scenes(options: argparse.Namespace) -> int:
     elastolink scenes
     elastolink scenes --plot scenes.pdf   (each one drawn)
     """
-    from ..scenes import list_scenes, load_scene, scene_titles
-
     path = opt.picture(options)
     if path is not None:
         from ..core.plotting import new_figure, save_figure
         from ..scenes.pictures import draw_scene
 
-        names = list_scenes()
+        names = scenes.list_scenes()
         rows = -(-len(names) // 3)
         figure = new_figure(12.0, 3.0 * rows)
         for place, name in enumerate(names, start=1):
-            draw_scene(load_scene(name), figure.add_subplot(rows, 3, place))
+            draw_scene(scenes.load_scene(name), figure.add_subplot(rows, 3, place))
         save_figure(figure, path)
-    titles = scene_titles()
+    titles = scenes.scene_titles()
     width = max(map(len, titles))
     content, lines = [], []
     for name, (title, source) in sorted(titles.items()):
@@ -105,10 +101,9 @@ def _new(options: argparse.Namespace) -> int:
     if options.plot:
         import tomllib
 
-        from ..scenes import scene_from_document
         from ..scenes.pictures import draw_scene
 
-        scene = scene_from_document(kind, tomllib.loads(new_scene(kind)))
+        scene = scenes.scene_from_document(kind, tomllib.loads(new_scene(kind)))
         opt.draw_into(options, lambda ax: draw_scene(scene, ax))
     return opt.say(options, {"kind": kind, "text": text}, text.rstrip())
 
@@ -130,7 +125,7 @@ def _schema(options: argparse.Namespace) -> int:
     return opt.say(options, schema, json.dumps(schema, indent=1, ensure_ascii=False))
 
 
-def _lines(scene: Scene) -> list[str]:
+def _lines(scene: scenes.Scene) -> list[str]:
     from ..core.units import DIMENSIONS, describe
 
     lines = [scene.title, f"source: {scene.source}", f"module: {scene.model_spec().name()}"]

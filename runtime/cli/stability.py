@@ -10,7 +10,7 @@ from contextlib import AbstractContextManager, nullcontext
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-from .. import periodic, stability, sweeps
+from .. import constrained, periodic, stability, sweeps
 from ..core.errors import bad
 from . import options as opt
 from .design import measured_points, points_option, with_points
@@ -92,12 +92,10 @@ def _stability(options: argparse.Namespace) -> int:
 
 def _about_orbit(options: argparse.Namespace, scene: Scene) -> int:
     """Find the periodic motion by shooting, and the multipliers about it."""
-    from ..constrained import orbit_multipliers, periodic_orbit
-
-    orbit = periodic_orbit(at_speed(options, scene))
+    orbit = constrained.periodic_orbit(at_speed(options, scene))
     if not orbit.converged:
         return opt.finish(options, orbit, [f"no periodic motion: {orbit.message}"])
-    result = orbit_multipliers(orbit)
+    result = constrained.orbit_multipliers(orbit)
     lines = [
         *opt.multipliers("physical multiplier", result.physical),
         "",

@@ -101,8 +101,6 @@ def _lines(found: Sweep, name: str) -> list[str]:
     """Return how many designs there are, which are least and greatest, and why some failed."""
     import numpy as np
 
-    from ..core.plotting import RPM
-
     shape = tuple(map(len, found.axes.values()))
     grid = " x ".join(f"{count} {key}" for key, count in zip(found.axes, shape, strict=True))
     lines = [f"{grid}: {np.prod(shape)} designs, {len(found.failures)} of them failed"]
@@ -116,7 +114,7 @@ def _lines(found: Sweep, name: str) -> list[str]:
     def told(key: str, value: float) -> str:
         unit = found.units.get(key, "")
         if unit == "rad/s" and key.endswith("speed"):
-            return f"{value * RPM:.6g} rpm"
+            return f"{value * opt.RPM:.6g} rpm"
         return f"{value:.6g} {unit}".rstrip()
 
     for word, place in (("least", np.nanargmin(ranked)), ("greatest", np.nanargmax(ranked))):

@@ -19,11 +19,4 @@ if TYPE_CHECKING:
     from .multipliers import orbit_multipliers as orbit_multipliers
     from .orbits import periodic_orbit as periodic_orbit
 
-__all__ = on_first_use(
-    globals(),
-    {
-        "motion": "consistent_state constrained_motion",
-        "multipliers": "orbit_multipliers",
-        "orbits": "periodic_orbit",
-    },
-)
+__all__ = on_first_use(globals())

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Iterable
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
@@ -31,21 +32,25 @@ def unknown_name(package: str, name: str, names: Iterable[str]) -> AttributeErro
     return AttributeError(message, name=name)
 
 
-def on_first_use(namespace: dict[str, Any], public: Mapping[str, str]) -> list[str]:
+_IMPORTED = re.compile(r"^    from (\.[.\w]+) import (\w+) as \2$", re.MULTILINE)
+
+
+def on_first_use(namespace: dict[str, Any]) -> list[str]:
     """Return ``__all__`` of a package whose names load when they are used.
 
-    ``namespace`` is ``globals()`` of the package: it is given ``__getattr__``, which keeps there
-    what it loads, and ``__dir__``, the public names.  Type checkers see neither, and refuse a
-    misspelt name.  ``public`` takes each module, as it is imported from the package, to its names,
-    spaces between them.
+    The names are those that its file imports for type checkers, ``if TYPE_CHECKING``, each on a
+    line of its own, ``from .module import name as name``: what these see is what there is, and a
+    misspelt name is refused.  ``namespace`` is ``globals()`` of the package: it is given
+    ``__getattr__``, which keeps there what it loads, and ``__dir__``, the public names.
     """
-    package = namespace["__name__"]
-    modules = {name: module for module, names in public.items() for name in names.split()}
+    package, spec = namespace["__name__"], namespace["__spec__"]
+    source = spec.loader.get_data(spec.origin).decode()
+    modules = {name: module for module, name in _IMPORTED.findall(source)}
 
     def load(name: str) -> Any:
         if name not in modules:
             raise unknown_name(package, name, modules)
-        value = getattr(import_module(f".{modules[name]}", package), name)
+        value = getattr(import_module(modules[name], package), name)
         namespace[name] = value
         return value
 

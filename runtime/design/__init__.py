@@ -25,22 +25,4 @@ if TYPE_CHECKING:
     from .transient import run_through as run_through
     from .within_tolerances import tolerance_bands as tolerance_bands
 
-__all__ = on_first_use(
-    globals(),
-    {
-        "diagnosis": "diagnose",
-        "differentiation": "sensitivities",
-        "certificates": "certify",
-        "closing": "closing_damping",
-        "fatigue_life": "Material fatigue",
-        "identification": "identify",
-        "nearest_regions": "margins",
-        "measured": "Point draw_points read_points",
-        "procedure": "running_speed",
-        "quiet": "quiet_speeds",
-        "speed_profile": "SpeedProfile",
-        "stabilising": "stabilise",
-        "transient": "run_through",
-        "within_tolerances": "tolerance_bands",
-    },
-)
+__all__ = on_first_use(globals())

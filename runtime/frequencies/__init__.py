@@ -28,16 +28,4 @@ if TYPE_CHECKING:
     from .resonance_curves import ResonanceCurve as ResonanceCurve
     from .resonance_curves import resonance_curve as resonance_curve
 
-__all__ = on_first_use(
-    globals(),
-    {
-        "campbell_diagram": "campbell",
-        "counting": "wittrick_williams",
-        "critical": "critical_speeds",
-        "frames": "dynamic_stiffness element_matrices log_determinant member_matrices",
-        "held": "buckling_speed",
-        "link_study": "LinkFrequencies link_frequencies pinned_frequency",
-        "natural": "NaturalFrequencies draw_mode draw_modes natural_frequencies",
-        "resonance_curves": "ResonanceCurve resonance_curve",
-    },
-)
+__all__ = on_first_use(globals())

@@ -21,7 +21,7 @@ from ..frequencies.held import held_frequencies
 from ..recovery.stress_over_speed import StressCurve, stress_curve
 from ..scenes import load_scene
 from ..systems import with_modal_damping
-from .drawing import COLOURS, Array, Panels, turn
+from .drawing import COLOURS, Array, Looks, Panels, turn
 from .records import Drawn, contents
 
 SCENE = "aannaque_1996_table_4_1"
@@ -188,26 +188,20 @@ def hybrid_model() -> LinearPeriodic:
 @lru_cache(maxsize=1)
 def _models() -> dict[str, tuple[int, Array]]:
     """Return freedoms and four frequencies of the five models at 120 crank angles."""
-    models = {
-        "1 element": beams(1, FULL),
-        "2 elements": beams(2, FULL),
-        "3 elements": beams(3, FULL),
-        "p-version 1": beams(1, FULL, kind="internal_node_beams"),
-        "p-version 2": beams(1, FULL, kind="curvature_beams"),
-    }
-    theta = even_angles(2.0 * np.pi, 120)
-    return {name: (system.size, held(system, theta)) for name, system in models.items()}
+    theta, found = even_angles(2.0 * np.pi, 120), {}
+    for name, model in contents("aannaque")["models"].items():
+        system = beams(drop=FULL, **model)
+        found[name] = system.size, held(system, theta)
+    return found
 
 
-def elements(axes: Panels, mode: int) -> Drawn:
+def elements(axes: Panels, mode: int, looks: Looks) -> Drawn:
     """Draw one natural frequency over the crank angle, five models (Fig. 4.6)."""
     models, curves = _models(), {}
-    for (name, (size, frequencies)), style, colour in zip(
-        models.items(), ("-", "-", "-", "--", "-."), COLOURS, strict=False
-    ):
+    for (name, (size, frequencies)), look in zip(models.items(), looks, strict=True):
         curve = curves[name] = frequencies[:, mode - 1]
         label = f"{name}, {size} freedoms"
-        turn(axes[0], even_angles(2.0 * np.pi, 120), curve, style, color=colour, label=label)
+        turn(axes[0], even_angles(2.0 * np.pi, 120), curve, label=label, **look)
     one, two, three, p1, p2 = curves.values()
     values: list[SupportsFloat] = [
         float(np.max(three / two)) - 1.0,
@@ -265,7 +259,7 @@ def _elements(column: str) -> Array:
     return np.asarray(_FACTOR * np.sqrt(eigh(stiffness, mass, eigvals_only=True)))
 
 
-def figure_5_1(axes: Panels) -> Drawn:
+def figure_5_1(axes: Panels, looks: Looks) -> Drawn:
     """Draw the logarithm of the determinant of D over the frequency, bars whole and halved."""
     low, high = 20.0, 1200.0
     known = _exact()
@@ -278,10 +272,7 @@ def figure_5_1(axes: Panels) -> Drawn:
     for pieces, ax in enumerate(axes, start=1):
         value = log_determinant(_problem(pieces), omega / _FACTOR)[0]
         for place, frequency in enumerate(inside, start=1):
-            colour, width, label = ("0.7", 0.6, "natural frequency")
-            if place in _WRONG:
-                colour, width, label = (COLOURS[1], 0.9, "nodes at rest")
-            ax.axvline(frequency, ls=(0, (3, 2)), color=colour, lw=width, label=label)
+            ax.axvline(frequency, ls=(0, (3, 2)), **looks[place in _WRONG])
         ax.plot(omega, value, color=COLOURS[0], lw=1.0, label=r"$\log_{10}|\det D|$")
     beside = known[3] / _FACTOR * (1.0 + np.array([1e-7, 1e-5]))
     slopes = (np.diff(log_determinant(_problem(pieces), beside)[0]) for pieces in (1, 2))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from math import cos, degrees, pi, radians, sin, sqrt
@@ -29,18 +30,13 @@ _VIEW = np.array([[-sin(_TURN), cos(_TURN), 0.0], [0.0, 0.0, cos(_TILT)]])
 _VIEW[1, :2] = -sin(_TILT) * np.array([cos(_TURN), sin(_TURN)])
 
 
-def figure_3_4(axes: Panels) -> None:
+def figure_3_4(axes: Panels, faces: Sequence[tuple[str, tuple[float, float]]]) -> None:
     """Draw the solution space up to a base plane, seen obliquely."""
     ax, plane = axes[0], base_plane(1.5)
     total = sqrt(3.0) * plane.lam
     ax.set_axis_off()
     ax.set_aspect("equal")
     far, near = 0.5 * (total + 1.0), 0.5 * (total - 1.0)
-    faces = (
-        (r"$\lambda_2=1+\lambda_3+\lambda_4$", (-96, -14)),
-        (r"$\lambda_3=\lambda_2+1+\lambda_4$", (96, -14)),
-        (r"$\lambda_4=\lambda_2+\lambda_3+1$", (104, 44)),
-    )
     for i, (name, shift) in enumerate(faces):
         corners = np.full((3, 3), 0.0)
         corners[:, i] = 1.0, far, far
@@ -155,18 +151,11 @@ def figure_3_9(axes: Panels) -> Drawn:
     return Drawn([least, greatest])
 
 
-def figure_3_10(axes: Panels) -> None:
+def figure_3_10(axes: Panels, shares: Mapping[str, tuple[float, float]]) -> None:
     """Draw the mechanism at several positions, and the paths of some points of its coupler."""
     ax, bars = sketch.canvas(axes[0]), linkage()
-    length, first = bars.coupler, radians(70.0)
-    points = {
-        "A": (0.0, 0.0),
-        "B": (length, 0.0),
-        "P": (0.25 * length, 0.0),
-        "Q": (0.5 * length, 0.0),
-        "R": (0.5 * length, 0.6 * length),
-        "S": (1.3 * length, 0.5 * length),
-    }
+    first = radians(70.0)
+    points = {name: bars.coupler * np.array(share) for name, share in shares.items()}
     curves = {name: coupler_curve(bars, *place) for name, place in points.items()}
     for k in range(1, 8):
         joints = bars.motion(first + k * pi / 4.0).joints
@@ -200,7 +189,7 @@ def free_body(axes: Panels, link: str) -> Drawn:
     sketch.draw_body(ax, body, letters, names, scale)
     heads = np.array(body.places) + scale * np.array(body.forces)
     low = np.min([*body.places, *heads], axis=0) - 0.22 * length
-    sketch.scale_bar(ax, low, scale, sketch.round_force(largest))
+    sketch.scale_bar(ax, low, scale, largest)
     values = []
     if link == "crank":
         turn = np.linspace(0.0, 2.0 * pi, 361)
@@ -240,5 +229,4 @@ def pulses_of(frame: float) -> tuple[float, float]:
 
 def crossover() -> float:
     """Return the frame length [m] at which the second pulse is as large as the first."""
-    excess = brentq(lambda frame: np.diff(pulses_of(frame))[0], 0.60, 0.68, xtol=1e-9)
-    return float(excess)
+    return float(brentq(lambda frame: np.diff(pulses_of(frame))[0], 0.60, 0.68, xtol=1e-9))

@@ -5,40 +5,26 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from math import degrees, radians
-from typing import Any
 
 import numpy as np
 
+from .. import frequencies
 from ..beams.element_forms import required_structure
 from ..core.families import Array, LinearPeriodic
-from ..frequencies import (
-    LinkFrequencies,
-    NaturalFrequencies,
-    draw_mode,
-    link_frequencies,
-    natural_frequencies,
-)
 from ..periodic import steady_state
 from ..recovery import ElasticCurve, elastic_coupler_curve, stress_operator
 from ..recovery.stress_over_speed import StressCurve, stress_curve
 from ..scenes import load_scene
 from .aannaque_beams import FRAME, exact_frequencies, maxima, nearest
 from .aannaque_kinematics import cycle
-from .drawing import COLOURS, Axes, Panels, mark_fractions, panel_title, turn
+from .drawing import COLOURS, Axes, Looks, Panels, mark_fractions, panel_title, turn
 from .records import Drawn, contents
 
 SHORT, LONG = "aannaque_1996_table_4_1", "aannaque_1996_long_coupler"
 # Speeds in the captions of appendices C and D [rad/s].
 SPEEDS: Mapping[str, Sequence[float]] = contents("aannaque")["speeds"]
-# Where the gauges sat: the captions say the middle of the input link, section 8.5 its end.
-STATIONS: Mapping[str, tuple[float, ...]] = {
-    "crank": (0.0, 0.5),
-    "coupler": (0.5,),
-    "follower": (0.5,),
-}
-_SLOW, _FAST = SPEEDS["C"][0], SPEEDS["C"][-1]
-# How much larger displacements are drawn beside the true path.
-_LARGER = {_SLOW: 200.0, _FAST: 8.0}
+# Where the gauges sat.
+STATIONS: Mapping[str, Sequence[float]] = contents("aannaque")["gauges"]
 # By section 8.4 the cycle is divided into ten equal angles.
 ANGLES = tuple(range(0, 360, 36))
 _LENGTHS = np.concatenate([np.linspace(0.30, 0.52, 8), np.linspace(0.535, 0.80, 16)])
@@ -61,52 +47,35 @@ def midpoint(speed: float) -> ElasticCurve:
     return elastic_coupler_curve(rig(), steady_state(rig(), speed, rtol=1e-5))
 
 
-def _path(ax: Axes, speed: float, style: str, colour: str, label: str, larger: float = 1.0) -> None:
-    """Draw the midpoint's path, its displacement so many times as large: 0 of the rigid linkage."""
-    path = midpoint(speed)
-    places = 1e3 * (path.rigid + larger * path.displacement)
-    ax.plot(*np.vstack([places, places[:1]]).T, style, color=colour, label=label)
+def paths(
+    axes: Panels,
+    shown: Sequence[tuple[int, float, float]],
+    distances: Sequence[tuple[float, str]],
+    looks: Looks,
+) -> Drawn:
+    """Draw paths of the midpoint, and how far they lie from the rigid linkage's (8.2 to 8.4).
 
-
-def _displacement(ax: Axes, speed: float, colour: str) -> None:
-    path = midpoint(speed)
-    turn(ax, path.theta, 1e3 * np.hypot(*path.displacement.T), color=colour)
-
-
-def figure_8_2(axes: Panels) -> Drawn:
-    """Draw the path at a low and at a high speed, the rigid linkage's beside it."""
-    for ax, (speed, larger) in zip(axes, _LARGER.items(), strict=True):
-        _path(ax, speed, "-", COLOURS[0], "elastic linkage")
-        _path(ax, speed, "--", "0.8", "rigid linkage", 0.0)
-        _path(ax, speed, ":", COLOURS[1], "elastic linkage, its displacement enlarged", larger)
-        panel_title(ax, f"{speed:g} rad/s; dotted: displacement {larger:g} times as large")
-    return Drawn([1e3 * midpoint(speed).largest for speed in (_SLOW, _FAST)])
-
-
-def figure_8_3(axes: Panels) -> Drawn:
-    """Draw the path at a low speed and how far it lies from that of the rigid linkage."""
-    _path(axes[0], _SLOW, "-", COLOURS[0], "elastic linkage")
-    _path(axes[0], _SLOW, "--", "0.8", "rigid linkage", 0.0)
-    _displacement(axes[1], _SLOW, COLOURS[0])
-    return Drawn([1e3 * midpoint(_SLOW).largest])
-
-
-def figure_8_4(axes: Panels) -> Drawn:
-    """Draw the paths at a low and at a high speed over each other, and their distances."""
-    label, larger = f"{_FAST:g} rad/s", _LARGER[_FAST]
-    _path(axes[0], _SLOW, "--", COLOURS[4], f"{_SLOW:g} rad/s")
-    _path(axes[0], _FAST, "-", COLOURS[1], label)
-    more = f"{label}, displacement {larger:g} times as large"
-    _path(axes[0], _FAST, ":", COLOURS[1], more, larger)
-    _displacement(axes[1], _SLOW, COLOURS[4])
-    _displacement(axes[1], _FAST, COLOURS[1])
-    return Drawn([midpoint(_FAST).largest / midpoint(_SLOW).largest / (_FAST / _SLOW) ** 2])
+    ``shown``: panel, speed, how many times as large the displacement is, 0 of the rigid linkage.
+    """
+    for (panel, speed, larger), look in zip(shown, looks, strict=True):
+        path = midpoint(speed)
+        places = 1e3 * (path.rigid + larger * path.displacement)
+        axes[panel].plot(*np.vstack([places, places[:1]]).T, **look)
+    for speed, colour in distances:
+        path = midpoint(speed)
+        turn(axes[1], path.theta, 1e3 * np.hypot(*path.displacement.T), color=colour)
+    speeds = list(dict.fromkeys(speed for _, speed, _ in shown))
+    largest = [1e3 * midpoint(speed).largest for speed in speeds]
+    if len(distances) < 2:
+        return Drawn(largest)
+    (slow, fast), (before, after) = speeds, largest
+    return Drawn([after / before / (fast / slow) ** 2])
 
 
 @lru_cache(maxsize=1)
-def held_modes() -> NaturalFrequencies:
+def held_modes() -> frequencies.NaturalFrequencies:
     """Return the first three modes at the ten crank angles of section 8.4."""
-    return natural_frequencies(rig(), np.radians(ANGLES), 3)
+    return frequencies.natural_frequencies(rig(), np.radians(ANGLES), 3)
 
 
 def modes(axes: Panels, place: int) -> Drawn:
@@ -114,7 +83,7 @@ def modes(axes: Panels, place: int) -> Drawn:
     angle, tracked = ANGLES[place], held_modes().tracked[place]
     computed, order = np.sort(tracked), np.argsort(tracked)
     for rank, ax in enumerate(axes):
-        draw_mode(rig(), radians(angle), int(order[rank]) + 1, ax, found=held_modes())
+        frequencies.draw_mode(rig(), radians(angle), int(order[rank]) + 1, ax, found=held_modes())
         hertz = computed[rank] / (2 * np.pi)
         ax.set_title(f"mode {rank + 1}: {hertz:.1f} Hz, {computed[rank]:.1f} rad/s", fontsize=9)
     exact = exact_frequencies(required_structure(rig()), np.array([radians(angle)]), 3)[0]
@@ -124,9 +93,9 @@ def modes(axes: Panels, place: int) -> Drawn:
 
 
 @lru_cache(maxsize=1)
-def over_coupler() -> LinkFrequencies:
+def over_coupler() -> frequencies.LinkFrequencies:
     """Return the mean first natural frequency against the coupler's length."""
-    return link_frequencies(rig(), "coupler", "length", _LENGTHS)
+    return frequencies.link_frequencies(rig(), "coupler", "length", _LENGTHS)
 
 
 def crossing() -> float:
@@ -160,9 +129,9 @@ def curve(scene: str, frame: float, high: float = _HIGH) -> StressCurve:
 
 
 @lru_cache(maxsize=2)
-def _held(scene: str) -> LinkFrequencies:
+def _held(scene: str) -> frequencies.LinkFrequencies:
     """Return the first two frequencies of a held linkage for all L4."""
-    return link_frequencies(rig(scene), "frame", "length", FRAMES, count=2)
+    return frequencies.link_frequencies(rig(scene), "frame", "length", FRAMES, count=2)
 
 
 def mean_frequency(scene: str, frame: float, mode: int = 1) -> float:
@@ -282,19 +251,15 @@ def cycles(
     return motion.theta, by_station
 
 
-def sheet(axes: Panels, letter: str, first: int, last: int) -> Drawn:
+def sheet(axes: Panels, letter: str, first: int, last: int, looks: Looks) -> Drawn:
     """Draw some figures of appendix C or D, a row of links for each."""
     numbers = range(first, last + 1)
     speeds = tuple(SPEEDS[letter][number - 1] for number in numbers)
     theta, stress = cycles({"C": SHORT, "D": LONG}[letter], FRAME, speeds)
     names = {"crank": "input link", "coupler": "coupler", "follower": "follower"}
-    looks: dict[float, dict[str, Any]] = {
-        0.5: {"color": COLOURS[0], "lw": 1.0, "label": "midpoint"},
-        0.0: {"color": COLOURS[1], "lw": 0.8, "ls": "--", "label": "end at the flywheel"},
-    }
     for row, number in enumerate(numbers):
         for ax, (link, name) in zip(axes[3 * row :], names.items(), strict=False):
-            for place, look in looks.items():
+            for place, look in zip((0.5, 0.0), looks, strict=True):
                 if (link, place) in stress:
                     turn(ax, theta, stress[link, place][row] / 1e6, **look)
             ax.locator_params(axis="y", nbins=4)

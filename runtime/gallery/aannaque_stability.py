@@ -68,14 +68,12 @@ def multiplier_surfaces(
     low, high = d_range
     numbers = _reaching(high, eps)
     ends = hill_boundaries(COSINE, 0.25 * eps, numbers)
-    lines = np.sort(np.concatenate([ends.lower[1:], ends.upper]), axis=0)
-    sides = (np.full((1, eps.size), side) for side in (low, high))
-    first, last = sides
-    edges = np.concatenate([first, np.clip(4.0 * lines, low, high), last])
+    lines = 4.0 * np.sort(np.concatenate([ends.lower[1:], ends.upper]), axis=0)
+    edges = np.pad(np.clip(lines, low, high), ((1, 1), (0, 0)), constant_values=((low, high),) * 2)
     # Closer at the lines, where the multipliers change as a root.
     share = 0.5 - 0.5 * np.cos(pi * np.arange(per_band) / per_band)
     bands = [a + share[:, None] * (b - a) for a, b in pairwise(edges) if np.any(b > a)]
-    grid = np.concatenate([*bands, last])
+    grid = np.concatenate([*bands, edges[-1:]])
     across = np.broadcast_to(eps, grid.shape)
     half = discriminant(COSINE, 0.25 * grid, 0.25 * across).value
     root = np.sqrt((half * half - 1.0).astype(complex))

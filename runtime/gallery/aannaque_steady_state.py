@@ -2,31 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh
 
 from ..core.trigonometric import even_angles
+from ..frequencies.held import held_modes
 from ..periodic import SteadyState, cycles_to_settle, steady_state
 from .aannaque_beams import CRITICAL, FULL, THESIS, beams, midpoint, moved, rms
 from .algorithms import modal_motion, newmark_limit, newmark_maps, operation_count, printed_count
-from .drawing import COLOURS, Array, Panels, panel_title, turn
+from .drawing import COLOURS, Array, Looks, Panels, panel_title, turn
 from .records import Drawn, contents
 
 _SPEED = 35.0
 _FORMS = ((THESIS, "the thesis' form"), (FULL, "full form with stiffening"))
 # Tables 6.2 and 6.3 as printed.
 _TABLES = contents("aannaque")["table_6"]
-_NAMES = {
-    "time_marching": "time marching",
-    "transition_matrix": "algorithm 1",
-    "closed_form": "algorithm 2",
-}
+_NAMES: Mapping[str, str] = _TABLES["algorithms"]
 
 
-def figure_6_1(axes: Panels) -> Drawn:
+def figure_6_1(axes: Panels, said: Sequence[tuple[float, float, str]], looks: Looks) -> Drawn:
     """Draw the regions of stability of Newmark's scheme over gamma and beta."""
     ax, right = axes[0], np.linspace(0.5, 1.2, 71)
     pairs, real = 0.25 * (right + 0.5) ** 2, 0.5 * right
@@ -34,17 +32,11 @@ def figure_6_1(axes: Panels) -> Drawn:
     ax.fill_between(right, 0.0, real, color="#f1dcc6", lw=0.0)
     ax.fill_between(right, real, pairs, color="#dfeadf", lw=0.0)
     ax.fill_between(right, pairs, 0.8, color="#c2dcc4", lw=0.0)
-    ax.plot(right, pairs, color=COLOURS[0], label=r"$(\gamma + 1/2)^2/4$")
-    ax.plot(right, real, color=COLOURS[1], ls="--", label=r"$\gamma/2$")
     ax.axvline(0.5, color="0.3", lw=0.8)
-    marks = (("mean acceleration", 0.25, "o"), ("linear acceleration", 1.0 / 6.0, "s"))
-    for name, place, mark in marks:
-        ax.plot(0.5, place, mark, color="0.1", ms=5, label=name, ls="none")
-    for x, y, words in (
-        (0.25, 0.5, "unstable"),
-        (0.85, 0.15, "stable up to a step"),
-        (0.75, 0.62, "stable at every step"),
-    ):
+    curves: tuple[Any, ...] = ((right, pairs), (right, real), (0.5, 0.25), (0.5, 1.0 / 6.0))
+    for curve, look in zip(curves, looks, strict=True):
+        ax.plot(*curve, **look)
+    for x, y, words in said:
         ax.text(x, y, words, ha="center", va="center")
     # The least beta that is stable at every step: beside round values, on which round-off decides.
     fine = 1e-12 + np.linspace(0.0, 1.0, 1000001)
@@ -67,17 +59,11 @@ def _across(link: str, q: Array) -> Array:
     return moved(beams(1), link, even_angles(2.0 * np.pi, len(q)), q)
 
 
-def deflections(axes: Panels, link: str) -> Drawn:
+def deflections(axes: Panels, link: str, looks: Looks) -> Drawn:
     """Draw a link's midpoint over the cycle, with and without uncoupled modes (Fig. 6.3)."""
-    ax, full = axes[0], steady_state(beams(1, FULL), _SPEED, rtol=1e-5)
-    for q, style, colour, label in (
-        (_whole().q, "-", COLOURS[0], "no uncoupling"),
-        (_uncoupled(9), "--", COLOURS[1], "all 9 modes, uncoupled"),
-        (_uncoupled(4), "-.", COLOURS[2], "4 modes, uncoupled"),
-        (full.q, ":", "0.4", "full form with stiffening"),
-    ):
-        angles = even_angles(2.0 * np.pi, len(q))
-        turn(ax, angles, 1e3 * _across(link, q), style, color=colour, label=label)
+    full = steady_state(beams(1, FULL), _SPEED, rtol=1e-5)
+    for q, look in zip((_whole().q, _uncoupled(9), _uncoupled(4), full.q), looks, strict=True):
+        turn(axes[0], even_angles(2.0 * np.pi, len(q)), 1e3 * _across(link, q), **look)
     coupler, follower = _gap("coupler", 9), _gap("follower", 9)
     if link == "follower":
         return Drawn([follower])
@@ -94,13 +80,11 @@ def _gap(link: str, modes: int) -> float:
 def _contributions(link: str) -> tuple[Array, Array]:
     """Return the displacement at a midpoint and the part of each mode, (nt,) and (nt, 9) [m]."""
     system, motion = beams(1), _whole()
-    row = midpoint(system, link, motion.theta)
-    mass, stiffness = (system.array(name, motion.theta) for name in "MK")
-    parts = np.empty((len(motion.theta), system.size))
-    for i, q in enumerate(motion.q):
-        shape = eigh(stiffness[i], mass[i])[1]
-        parts[i] = (row[i] @ shape) * (shape.T @ mass[i] @ q)
-    return np.einsum("tn,tn->t", row, motion.q), parts
+    row, held = midpoint(system, link, motion.theta), held_modes(system, motion.theta, {})
+    amplitudes = np.einsum("tnk,tnm,tm->tk", held.shape, held.mass, motion.q)
+    return np.einsum("tn,tn->t", row, motion.q), np.einsum(
+        "tn,tnk->tk", row, held.shape
+    ) * amplitudes
 
 
 def contributions(axes: Panels, link: str) -> Drawn:

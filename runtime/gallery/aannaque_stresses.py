@@ -32,7 +32,7 @@ from .aannaque_beams import (
     stresses,
     tops,
 )
-from .drawing import COLOURS, Panels, peak
+from .drawing import COLOURS, Looks, Panels, peak
 from .records import Drawn
 
 # Speeds [rad/s] of Figs. 7.1 and 7.3, of 7.4 and 7.6, of 7.7 to 7.11.
@@ -63,19 +63,15 @@ def real_parts() -> Array:
     return np.asarray(np.max(real.reshape(len(_SPEEDS), _MODES, 2), axis=-1))
 
 
-def figure_7_1(axes: Panels) -> Drawn:
+def figure_7_1(axes: Panels, looks: Looks) -> Drawn:
     """Draw the largest stress and the real parts of the multipliers over the speed."""
-    for drop, style, colour, label in (
-        (THESIS, "-", COLOURS[0], "the thesis' form"),
-        (FULL, ":", "0.4", "full form"),
-    ):
-        axes[0].semilogy(_SPEEDS, 1e-6 * _stress(drop), style, color=colour, label=label)
-    places = maxima(_SPEEDS, _stress(THESIS))
     # The two modes whose multipliers tell the critical speeds of this range.
     largest, second = real_parts().T[:2]
-    name = "multipliers of {} modulus"
-    axes[1].plot(_SPEEDS, largest, color=COLOURS[1], label=name.format("largest"))
-    axes[1].plot(_SPEEDS, second, ".", ms=3.5, color=COLOURS[2], label=name.format("second"))
+    for drop, look in zip((THESIS, FULL), looks, strict=False):
+        axes[0].semilogy(_SPEEDS, 1e-6 * _stress(drop), **look)
+    for real, look in zip((largest, second), looks[2:], strict=True):
+        axes[1].plot(_SPEEDS, real, **look)
+    places = maxima(_SPEEDS, _stress(THESIS))
     for ax in axes:
         for place in places:
             ax.axvline(place, color="0.6", lw=0.6, ls=(0, (1, 3)))
@@ -224,19 +220,13 @@ def bending_at_midpoint(
     return forces.theta, np.asarray(factor * forces.of("follower", "moment")[:, 0])
 
 
-def figure_7_9(axes: Panels) -> Drawn:
+def figure_7_9(axes: Panels, looks: Looks) -> Drawn:
     """Draw the stress at the follower's midpoint over the cycle at 30 rad/s, four models."""
-    ax = axes[0]
-    models = {
-        "1 element": bending_at_midpoint(beams(1)),
-        "2 elements": bending_at_midpoint(beams(2)),
-        "3 elements": bending_at_midpoint(beams(3)),
-        '"exact"': bending_at_midpoint(beams(1), hybrid_model()),
-    }
+    models = [bending_at_midpoint(beams(count)) for count in (1, 2, 3)]
+    models.append(bending_at_midpoint(beams(1), hybrid_model()))
     even = []
-    for (name, (theta, values)), colour in zip(models.items(), (*COLOURS[:3], "0.2"), strict=True):
-        style = "--" if "exact" in name else "-"
-        ax.plot(np.degrees(theta), 1e-6 * values, style, color=colour, label=name)
+    for (theta, values), look in zip(models, looks, strict=True):
+        axes[0].plot(np.degrees(theta), 1e-6 * values, **look)
         even.append(resampled(values, 512))
     one, two = (float(np.corrcoef(values, even[2])[0, 1]) for values in even[:2])
     peaks = [peak(values) for values in even]

@@ -276,7 +276,12 @@ def operation_count(
     # Marching takes its steps in each revolution anew where they are not kept, algorithm 1 in
     # both of its revolutions, algorithm 2 in the sum and in the recursion.
     passes = 1 if storage else {"time_marching": cycles}.get(algorithm, 2)
-    steps = passes * intervals * _newmark_step(n)
+    # The map of a step as newmark_matrices takes it: q'' at the left end, then q and v without the
+    # new acceleration; M + gamma h G + beta h^2 H and the right-hand side; the new acceleration.
+    wide = 2 * n + 1
+    left = new = _solve(n, wide) + 4 * n * wide
+    middle = 4 * n * n + 2 * _product(n, n, wide) + n * wide + n
+    steps = passes * intervals * (left + middle + new)
     once = _product(m, m, 1) + m
     if algorithm == "time_marching":
         return steps + cycles * intervals * once
@@ -292,13 +297,3 @@ def _product(a: int, b: int, c: int) -> int:
 
 def _solve(n: int, columns: int) -> int:
     return (4 * n**3 - 3 * n**2 - n) // 6 + columns * (2 * n**2 - n)
-
-
-def _newmark_step(n: int) -> int:
-    """Count the map of one step as :func:`newmark_matrices` takes it."""
-    wide = 2 * n + 1
-    # q'' at the left end, then q and v without the new acceleration.
-    left = _solve(n, wide) + 4 * n * wide
-    # M + gamma h G + beta h^2 H, and the right-hand side.
-    middle = 4 * n * n + 2 * _product(n, n, wide) + n * wide + n
-    return left + middle + _solve(n, wide) + 4 * n * wide

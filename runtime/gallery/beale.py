@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from itertools import combinations_with_replacement
 from typing import Any, cast
@@ -20,7 +20,7 @@ from ..scenes import load_scene
 from ..stability import StabilityChart, stability_chart
 from ..systems.rod import FreeFreeRod
 from . import sketch
-from .drawing import COLOURS, Array, Axes, Panels, panel_title, peak
+from .drawing import COLOURS, Array, Axes, Looks, Panels, panel_title, peak
 from .records import Drawn
 
 STIFF = "beale_1992_bahgat_willmert"
@@ -40,25 +40,10 @@ CONVERGED = f"{ENOUGH} overhang modes (converged)"
 _GIVEN, _FINE = 720, 1e-5
 # Places along the rod.
 _STATIONS = 201
-# Readings of "0.2 percent proportional damping", the caption's "0.002 damping".
-_DAMPINGS: dict[str, dict[str, Any]] = {
-    f"ratio 0.002, {law}": {"rod__damping_law": law, "rod__damping_ratio": 0.002}
-    for law in ("viscous", "internal", "modal")
-} | {"C = 0.002 s K": {"rod__relaxation_time": 0.002}}
 _RATIO, _QUOTED = 0.2, 900.0
 _COMPLETE: tuple[str, ...] = ()
 # Speeds of the chart [rad/s].
 _SPEEDS = np.linspace(500.0, 4000.0, 1401)
-_PANELS = [
-    (formulation, modes, drop, words)
-    for formulation, modes in (("polynomial", 3), ("overhang", 4))
-    for drop, words in ((AS_PRINTED, "as printed"), (_COMPLETE, "with centrifugal tension"))
-]
-_KINDS = (
-    (-1, "#f0bd98", "multiplier below -1"),
-    (1, "#c9783c", "multiplier above 1"),
-    (2, "#a58fc9", "complex multipliers: combination"),
-)
 
 
 def rod(
@@ -101,6 +86,13 @@ def _gap(one: Array, other: Array) -> float:
     return peak(one - other) / peak(other)
 
 
+def _draw(ax: Axes, run: tuple[Array, Array], label: str, **look: Any) -> Array:
+    """Draw the deflection of a tip over the crank angle, and return it."""
+    theta, tip = run
+    ax.plot(np.degrees(theta), 1e3 * tip, label=label, **look)
+    return tip
+
+
 def turns(values: Array) -> int:
     """Return how often a curve turns round between its ends."""
     return int(np.count_nonzero(np.diff(np.sign(np.diff(values)))))
@@ -110,12 +102,10 @@ def polynomials(axes: Panels, modes: int) -> Drawn:
     """Draw the large crank's tip with so many polynomial modes (Figs. 2 and 3)."""
     values: list[float] = []
     for ax, scene in zip(axes, READINGS, strict=True):
-        theta, exact = stiff_tip(scene, "overhang", ENOUGH)
-        ax.plot(np.degrees(theta), 1e3 * exact, **BAND, label=CONVERGED)
+        exact = _draw(ax, stiff_tip(scene, "overhang", ENOUGH), CONVERGED, **BAND)
         for count, (style, colour) in {10: ("--", COLOURS[1]), modes: ("-", COLOURS[0])}.items():
-            theta, tip = stiff_tip(scene, "polynomial", count)
-            label = f"{count} polynomial modes"
-            ax.plot(np.degrees(theta), 1e3 * tip, style, color=colour, label=label)
+            run = stiff_tip(scene, "polynomial", count)
+            _draw(ax, run, f"{count} polynomial modes", color=colour, ls=style)
         three, ten = (stiff_tip(scene, "polynomial", count)[1] for count in (3, 10))
         if modes == 3:
             values += [peak(three) / peak(ten), _gap(three, ten), turns(three)]
@@ -200,28 +190,23 @@ def lean(scene: str) -> float:
     return float(np.degrees(np.arctan2(drawn_in, abs(last[-1]))))
 
 
-def figure_5(axes: Panels) -> Drawn:
+def figure_5(
+    axes: Panels, dampings: Mapping[str, Mapping[str, Any]], looks: Mapping[str, Sequence[str]]
+) -> Drawn:
     """Draw the first turn and the periodic motion of ten polynomial modes with 0.002 damping."""
     values, rows = [], []
-    # Those that are drawn, of three that give one curve a single one.
-    drawn = {
-        "ratio 0.002, internal": (COLOURS[0], "damping ratio 0.002 in mode 1, internal"),
-        "C = 0.002 s K": (COLOURS[1], "C = 0.002 s K"),
-    }
     for ax, scene in zip(axes, READINGS, strict=True):
-        theta, free = stiff_tip(scene, "polynomial", 10)
-        ax.plot(np.degrees(theta), 1e3 * free, **BAND, label="undamped, from rest")
+        _draw(ax, stiff_tip(scene, "polynomial", 10), "undamped, from rest", **BAND)
         mass = "read as lbm/in" if scene == STIFF else "read as lbf s^2/in^2"
-        for name, changes in _DAMPINGS.items():
+        for name, changes in dampings.items():
             system = rod(scene, "polynomial", 10, **changes)
             theta, tip = tip_from_rest(system, SPEED)
             around = steady_state(system, SPEED, rtol=1e-8, samples=_GIVEN).deflection()
             settled = np.append(around, around[0])
-            if name in drawn:
-                colour, text = drawn[name]
-                angle, label = np.degrees(theta), f"{text}, periodic"
-                ax.plot(angle, 1e3 * tip, color=colour, label=f"{text}, from rest")
-                ax.plot(angle, 1e3 * settled, "--", color=colour, lw=1.0, label=label)
+            if look := looks.get(name):
+                label, colour = look
+                _draw(ax, (theta, tip), f"{label}, from rest", color=colour)
+                _draw(ax, (theta, settled), f"{label}, periodic", color=colour, ls="--", lw=1.0)
             values.append(_gap(tip, settled))
             numbers = (1e3 * peak(tip), 1e3 * peak(settled), 100 * values[-1], turns(settled))
             rows.append((mass, name, *numbers))
@@ -247,12 +232,12 @@ def _word(modes: int) -> str:
 def figure_7(axes: Panels) -> Drawn:
     """Draw the flexible rod's tip at the small crank with one, two and three modes."""
     theta, exact = tip_from_rest(rod(FLEXIBLE, "overhang", ENOUGH, FRAME), 100.0)
-    angle, gaps = np.degrees(theta), []
-    axes[0].plot(angle, 1e3 * exact, **BAND, label=CONVERGED)
+    _draw(axes[0], (theta, exact), CONVERGED, **BAND)
+    gaps = []
     for modes, colour, style in zip((1, 2, 3), COLOURS, ("-", "--", ":"), strict=False):
-        tip = constrained_tip(FLEXIBLE, modes)[1]
-        axes[0].plot(angle, 1e3 * tip, style, color=colour, label=_word(modes))
-        axes[1].plot(angle, 1e2 * (tip - exact) / peak(exact), style, color=colour)
+        run = constrained_tip(FLEXIBLE, modes)
+        tip = _draw(axes[0], run, _word(modes), color=colour, ls=style)
+        axes[1].plot(np.degrees(theta), 1e2 * (tip - exact) / peak(exact), style, color=colour)
         gaps.append(_gap(tip, exact))
     return Drawn([gaps[0], gaps[1] - gaps[2]])
 
@@ -260,27 +245,20 @@ def figure_7(axes: Panels) -> Drawn:
 def large_crank(axes: Panels, modes: int) -> Drawn:
     """Draw the stiff rod's tip with so many free-free modes (Figs. 8 to 10)."""
     values: list[float] = []
-    dashed: dict[str, Any] = {"color": COLOURS[1], "ls": "--"}
     for ax, scene in zip(axes, READINGS, strict=True):
-        tips = {}
-        for formulation, count, drop, look, label in (
-            ("overhang", ENOUGH, FRAME, BAND, CONVERGED),
-            ("polynomial", 10, AS_PRINTED, dashed, "10 polynomial modes"),
-            ("free_free_linear", modes, FRAME, {"color": COLOURS[2]}, f"{_word(modes)}, linear"),
-        ):
-            theta, tip = stiff_tip(scene, formulation, count, drop)
-            ax.plot(np.degrees(theta), 1e3 * tip, **look, label=label)
-            tips[formulation] = tip
-        linear = tips["free_free_linear"]
+        exact = _draw(ax, stiff_tip(scene, "overhang", ENOUGH, FRAME), CONVERGED, **BAND)
+        ten = stiff_tip(scene, "polynomial", 10)
+        printed = _draw(ax, ten, "10 polynomial modes", color=COLOURS[1], ls="--")
+        free = stiff_tip(scene, "free_free_linear", modes, FRAME)
+        linear = _draw(ax, free, f"{_word(modes)}, linear", color=COLOURS[2])
         if modes > 1:
             fewer = stiff_tip(scene, "free_free_linear", modes - 2, FRAME)[1]
-            values.append(_gap(linear, tips["overhang"]) / _gap(fewer, tips["overhang"]))
-        values.append(_gap(linear, tips["polynomial"]))
+            values.append(_gap(linear, exact) / _gap(fewer, exact))
+        values.append(_gap(linear, printed))
         # With more modes the constrained form of the light rod takes thousands of steps a turn.
         if scene == HEAVY or modes == 1:
-            theta, tip = constrained_tip(scene, modes)
-            label = f"{_word(modes)}, with constraints"
-            ax.plot(np.degrees(theta), 1e3 * tip, ":", color=COLOURS[0], lw=2.0, label=label)
+            held, label = constrained_tip(scene, modes), f"{_word(modes)}, with constraints"
+            tip = _draw(ax, held, label, color=COLOURS[0], ls=":", lw=2.0)
             values.append(_gap(tip, linear))
     return Drawn(values)
 
@@ -393,21 +371,22 @@ def frequencies(formulation: str, modes: int) -> Array:
     return natural_frequencies(_rod(formulation, modes, AS_PRINTED, 1e-6)).mean
 
 
-def figure_chart(axes: Panels) -> Drawn:
+def figure_chart(axes: Panels, bases: Sequence[Sequence[Any]], looks: Looks) -> Drawn:
     """Draw two bases, three polynomials and four overhang modes, with and without tension."""
     from matplotlib.colors import ListedColormap
 
-    colours, rows = ListedColormap(["#ffffff", *(colour for _, colour, _ in _KINDS)]), []
-    for ax, (formulation, modes, drop, words) in zip(axes, _PANELS, strict=True):
-        points = chart(formulation, modes, drop)
-        codes = sum((points.kind == kind) * (i + 1) for i, (kind, _, _) in enumerate(_KINDS))
+    kinds = (-1, 1, 2)
+    colours, rows = ListedColormap(["#ffffff", *(look["color"] for look in looks)]), []
+    for ax, (formulation, modes, drop, words) in zip(axes, bases, strict=True):
+        points = chart(formulation, modes, tuple(drop))
+        codes = sum((points.kind == kind) * i for i, kind in enumerate(kinds, start=1))
         ax.pcolormesh(points.x, points.y, codes, cmap=colours, vmin=0, vmax=3, rasterized=True)
         _mark(ax, frequencies(formulation, modes))
         panel_title(ax, f"{modes} {formulation} modes, {words}")
-        shares = (100.0 * float(np.mean(points.kind == kind)) for kind, _, _ in _KINDS)
+        shares = (100.0 * float(np.mean(points.kind == kind)) for kind in kinds)
         rows.append((f"{modes} {formulation}", words, *shares, np.max(points.error)))
-    for _, colour, label in _KINDS:
-        axes[0].fill([], [], color=colour, label=label)
+    for look in looks:
+        axes[0].fill([], [], **look)
     # Frequencies of two bases, a practical rod's multiplier, where regions start.
     three, four = frequencies("polynomial", 3), frequencies("overhang", 4)
     values = [three[0] / four[0], (three[0] + three[1]) / (four[0] + four[1])]
@@ -423,22 +402,19 @@ def _mark(ax: Axes, omega: Array) -> None:
         for i, j in combinations_with_replacement(range(2), 2)
         for n in range(1, 4)
     )
-    groups: list[list[tuple[float, str]]] = []
-    for place in places:
-        if not _SPEEDS[0] <= place[0] <= _SPEEDS[-1]:
-            continue
-        ax.plot([place[0]], [0.0], "^", color="0.2", ms=4, zorder=6)
-        # Marks closer than 150 rad/s share one label.
-        if groups and place[0] - groups[-1][-1][0] < 150.0:
-            groups[-1].append(place)
-        else:
-            groups.append([place])
+    places = [place for place in places if _SPEEDS[0] <= place[0] <= _SPEEDS[-1]]
+    speeds = np.array([speed for speed, _ in places])
+    ax.plot(speeds, np.zeros(len(speeds)), "^", color="0.2", ms=4, zorder=6)
     ax.axhline(0.0, color="0.2", lw=0.7)
-    for i, group in enumerate(groups):
+    # Marks closer than 150 rad/s share one label.
+    apart = np.flatnonzero(np.diff(speeds) >= 150.0) + 1
+    for i, group in enumerate(np.split(np.arange(len(places)), apart)):
         # Neighbours stand on two lines, so that they do not meet.
-        middle = float(np.mean([speed for speed, _ in group]))
-        names, look = ", ".join(name for _, name in group), {**ABOVE, "va": "top", "fontsize": 6.5}
-        ax.annotate(names, (middle, 0.0), (0.0, -4.0 - 9.0 * (i % 2)), **look)
+        names, look = (
+            ", ".join(places[k][1] for k in group),
+            {**ABOVE, "va": "top", "fontsize": 6.5},
+        )
+        ax.annotate(names, (np.mean(speeds[group]), 0.0), (0.0, -4.0 - 9.0 * (i % 2)), **look)
 
 
 def _name(i: int, j: int, n: int) -> str:

@@ -14,8 +14,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Axes: TypeAlias = "matplotlib.axes.Axes"
-# The panels of a figure, in the order of rows and columns.
+# The panels of a figure, in the order of rows and columns; how a record's curves are drawn.
 Panels: TypeAlias = "Sequence[matplotlib.axes.Axes]"
+Looks: TypeAlias = Sequence[Mapping[str, Any]]
 
 CRANK_ANGLE = r"crank angle $\theta_2$ [deg]"
 # Blue, orange, green, purple, grey, brown: distinct in print and by the colour-blind.

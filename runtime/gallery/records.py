@@ -1,8 +1,9 @@
 """Records of all figures, read from one file of data for each document, and what drawing gives.
 
 A record holds the figure's label and title, the function that draws it (``draw``, a module and a
-name in it, with ``arguments`` after the axes), its panels and size, and what is compared, by what
-each number is, the expected value under the name of its kind; ``common`` holds what these share.
+name in it, with ``arguments`` after the axes and the ``looks`` of its curves, where a record has
+them), its panels and size, and what is compared, by what each number is, the expected value under
+the name of its kind; ``common`` holds what these share.
 A record of a ``kind`` takes what it does not say from the file's table ``kind``, whose quoted
 numbers follow its own; one with a list ``each`` stands for so many figures, each of which adds to
 it.  A text ``@name`` is that of the file's table ``notes``, ``<name>`` within a text that of the
@@ -258,13 +259,13 @@ def _entry(document: str, record: dict[str, Any]) -> FigureEntry:
         record.pop(name, None)
     common = record.pop("common", {})
     place, arguments = record.pop("draw"), record.pop("arguments", ())
+    looks = {"looks": record.pop("looks")} if "looks" in record else {}
 
     def draw(axes: Panels) -> Drawn | None:
         # The module that draws is loaded only now.
         module, _, name = place.partition(".")
-        drawn: Drawn | None = getattr(import_module(f".{module}", __package__), name)(
-            axes, *arguments
-        )
+        make = getattr(import_module(f".{module}", __package__), name)
+        drawn: Drawn | None = make(axes, *arguments, **looks)
         return drawn
 
     for name in {"panels", "size"} & record.keys():

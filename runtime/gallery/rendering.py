@@ -10,6 +10,7 @@ from contextlib import suppress
 from html import escape
 from importlib import resources
 from pathlib import Path
+from string import ascii_lowercase
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from ..core.errors import LinearRangeWarning, bad
 from ..core.progress import bar
 from ..core.results import Check
 from . import records
-from .records import KINDS, FigureEntry, Gallery, Quoted, Shown, Table, counts
+from .records import KINDS, FigureEntry, Gallery, Quoted, Shown, counts
 
 _STYLE = (resources.files(__package__) / "data" / "page.css").read_text("utf-8")
 
@@ -37,11 +38,7 @@ def figures(document: str | None = None, figure: str | None = None) -> tuple[Fig
         return entries
     wanted = _plain(figure)
     exact = tuple(entry for entry in entries if _plain(entry.label) == wanted)
-    parts = tuple(
-        entry
-        for entry in entries
-        if _number(entry.label) == wanted or wanted in _spanned(entry.label)
-    )
+    parts = tuple(entry for entry in entries if wanted in _answers(entry.label))
     if not (exact or parts):
         labels = ", ".join(entry.label for entry in entries)
         raise bad("figure", repr(figure), f"one of {labels}", "correct the label")
@@ -138,19 +135,14 @@ def _plain(label: str) -> str:
     return "".join(c for c in label.lower() if c.isalnum() or c in "_.")
 
 
-def _number(label: str) -> str:
-    plain = _plain(label)
-    return plain.rstrip("abcdefghijklmnopqrstuvwxyz") if plain[:1].isdigit() else plain
-
-
-def _spanned(label: str) -> tuple[str, ...]:
-    """Return what a sheet ``C.1-C.6`` answers to: each figure on it, and its letter."""
-    first, _, last = label.partition("-")
+def _answers(label: str) -> set[str]:
+    """Return a label's number alone; of a sheet ``C.1-C.6`` each figure on it, and its letter."""
+    plain, (first, _, last) = _plain(label), label.lower().partition("-")
     if not last:
-        return ()
+        return {plain.rstrip(ascii_lowercase) if plain[:1].isdigit() else plain}
     letter, _, low = first.partition(".")
     high = last.rpartition(".")[2]
-    return (letter.lower(), *(f"{letter.lower()}.{k}" for k in range(int(low), int(high) + 1)))
+    return {letter, *(f"{letter}.{k}" for k in range(int(low), int(high) + 1))}
 
 
 def page(title: str, shown: Sequence[Shown]) -> str:
@@ -195,7 +187,9 @@ def _figure(item: Shown) -> str:
         rows = [row for row in item.quoted if row.kind == kind]
         if rows:
             lines += [f"<h3>{what.capitalize()}</h3>", _quoted(rows, name)]
-    lines += [_table(table) for table in item.tables]
+    for table in item.tables:
+        cells = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in table.rows]
+        lines += [f"<h3>{escape(table.title)}</h3>", _html(table.header, cells)]
     return "\n".join(lines)
 
 
@@ -216,11 +210,6 @@ def _quoted(rows: Sequence[Quoted], name: str) -> str:
         )
     header = ("what", "section", name, "computed", "deviation", "tolerance", "verdict")
     return _html(header, lines)
-
-
-def _table(table: Table) -> str:
-    rows = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in table.rows]
-    return f"<h3>{escape(table.title)}</h3>\n{_html(table.header, rows)}"
 
 
 def _html(header: Sequence[str], rows: Sequence[str]) -> str:

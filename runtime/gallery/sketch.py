@@ -243,17 +243,13 @@ def draw_body(
             turning_arrow(ax, place, share * length, float(value), names[name], COUPLE_COLOUR)
 
 
-def scale_bar(ax: Axes, corner: ArrayLike, scale: float, force: float) -> None:
-    """Draw a force of a round size as a measure of the others."""
+def scale_bar(ax: Axes, corner: ArrayLike, scale: float, largest: float) -> None:
+    """Draw a measure of forces: 1, 2 or 5 times a power of ten, at most half of the largest one."""
+    power = 10.0 ** np.floor(np.log10(0.5 * largest))
+    force = max(step for step in (1.0, 2.0, 5.0) if step * power <= 0.5 * largest) * power
     x, y = np.asarray(corner, dtype=float)
     length = scale * force
     ax.plot([x, x + length], [y, y], color="0.2", lw=1.4)
     for end in (x, x + length):
         ax.plot([end, end], [y - 0.03 * length, y + 0.03 * length], color="0.2", lw=1.0)
     write(ax, (x + 0.5 * length, y), f"{force:g} N", (0.0, 9.0), fontsize=8)
-
-
-def round_force(largest: float) -> float:
-    """Return 1, 2 or 5 times a power of ten, at most half of the largest force."""
-    power = 10.0 ** np.floor(np.log10(0.5 * largest))
-    return float(max(step for step in (1.0, 2.0, 5.0) if step * power <= 0.5 * largest) * power)

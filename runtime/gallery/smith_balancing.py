@@ -35,19 +35,14 @@ from ..rigid import (
 from ..rigid.counterweights import CASES, Case
 from ..scenes import load_scene
 from . import sketch
-from .drawing import COLOURS, Array, Axes, Panels, panel_title
+from .drawing import COLOURS, Array, Axes, Looks, Panels, panel_title
 from .records import Drawn, contents
 
 INCH, POUND = 0.0254, 4.4482216152605
 TURN = np.linspace(0.0, 2.0 * pi, 1441)
 # Discs half an inch thick, 6 in from the pins, as the thesis states none of these.
 _THICKNESS, _OFFSET = 0.5 * INCH, 6.0 * INCH
-_NAMES: Mapping[Case, str] = {
-    "a": "unbalanced",
-    "b": "crank and follower balanced",
-    "c": "fully balanced, 3 counterweights",
-    "d": "fully balanced, 2 counterweights",
-}
+_NAMES: Mapping[Case, str] = contents("smith")["cases"]
 
 
 @lru_cache(maxsize=1)
@@ -96,7 +91,7 @@ def figure_11(axes: Panels) -> Drawn:
     for place, (force, text) in zip(ground, on_frame, strict=True):
         sketch.pivot(ax, place, 0.1 * frame)
         sketch.arrow(ax, place, scale * np.asarray(force), COLOURS[3], text)
-    sketch.scale_bar(ax, (0.15 * frame, -0.8 * frame), scale, sketch.round_force(largest))
+    sketch.scale_bar(ax, (0.15 * frame, -0.8 * frame), scale, largest)
     names = ("f12", "f23", "f34", "f41")
     rows = [(name.upper(), *(getattr(forces, name) / POUND)) for name in names]
     return Drawn(tables=[rows])
@@ -199,18 +194,13 @@ def figure_20(axes: Panels) -> Drawn:
     return Drawn([*values, coupler.along / length * length**2 / coupler.inertia], tables=[rows])
 
 
-def figure_21(axes: Panels) -> Drawn:
+def figure_21(axes: Panels, looks: Looks) -> Drawn:
     """Draw the force on the frame, unbalanced and partially balanced, as a polar diagram."""
     ax = axes[0]
-    plans: tuple[tuple[Case, str, int, str], ...] = (
-        ("a", COLOURS[0], 40, "o"),
-        ("b", COLOURS[1], 120, "^"),
-    )
-    for case, colour, step, style in plans:
+    for case, colour, step, look in zip(CASES[:2], COLOURS, (40, 120), looks, strict=False):
         values = _forces(case).shaking_force
         ax.plot(*values.T, color=colour, label=f"({case}) {_NAMES[case]}")
-        face = "w" if style == "o" else colour
-        ax.plot(*values[:-1:step].T, style, color=colour, ms=3.5, mfc=face)
+        ax.plot(*values[:-1:step].T, color=colour, **look)
         for angle in (0, 60, 120, 180, 240, 300):
             place = values[4 * angle]
             way = place / (np.hypot(*place) or 1.0)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,7 +16,7 @@ from ..hill import critical_damping, perturbation_boundaries
 from ..hill.bloch import effective_operator
 from ..periodic import FloquetMultipliers, floquet_multipliers
 from ..stability import stability_edges
-from .drawing import COLOURS, Array, Panels, panel_title
+from .drawing import Array, Looks, Panels, panel_title
 from .records import Drawn, contents
 from .smith_linkages import LBF_IN_S2, RIG, RPM, OfRig, region_name
 
@@ -91,25 +91,20 @@ def closing(f: PeriodicFunction, n: int, order: int | None) -> float:
     (crossings,) = np.nonzero((left[:-1] > 0.0) & (left[1:] <= 0.0))
     if not crossings.size:
         return float("nan")
-    k = int(crossings[0])
-    share = left[k] / (left[k] - left[k + 1])
-    return float(scan[k] + share * (scan[k + 1] - scan[k]))
+    beside = crossings[0] + np.array([1, 0])
+    return float(np.interp(0.0, left[beside], scan[beside]))
 
 
-def estimates_table(axes: Panels) -> Drawn:
+def estimates_table(axes: Panels, looks: Looks) -> Drawn:
     """Draw the damping that closes each region over the follower's inertia."""
     values = []
     for ax, one in zip(axes, ESTIMATES, strict=True):
         measured = one.rig.inertias / LBF_IN_S2
         inertia = np.linspace(0.95 * measured[0], 1.02 * measured[-1], 31)
-        for equation, order, style, colour, label in (
-            ("reduced", 1, "--", COLOURS[0], "(7.51)"),
-            ("reduced", 2, ":", COLOURS[2], "second order"),
-            ("reduced", None, "-", COLOURS[5], "exact, (6.18)"),
-            ("complete", None, "-", COLOURS[3], "exact, complete equation"),
-        ):
-            damping = [critical(one, float(value), equation, order) for value in inertia]
-            ax.plot(inertia, damping, style, color=colour, label=label)
+        ways = (("reduced", 1), ("reduced", 2), ("reduced", None), ("complete", None))
+        for way, look in zip(ways, looks, strict=True):
+            damping = [critical(one, float(value), *way) for value in inertia]
+            ax.plot(inertia, damping, **look)
         ax.fill_between(inertia, *one.at_rest, color="0.92", lw=0, label="decrements at rest")
         ax.hlines(one.quoted, one.stable, one.unstable, color="black", lw=3.0, label="quoted")
         panel_title(ax, f"{one.name}, {one.rig.name}")
@@ -187,12 +182,6 @@ def _estimate_words() -> dict[str, object]:
 
 # The second mode: charts of the 1/16 in coupler, the least and greatest inertia [lbf in s^2].
 _CASES = tuple((chart, inertia) for chart in ("84", "87") for inertia in (0.0058, 0.0190))
-_KINDS = {
-    "principal 1": ("mode 1", COLOURS[0]),
-    "principal 2": ("mode 2", COLOURS[1]),
-    "sum": ("modes 1 and 2, sum", COLOURS[3]),
-    "difference": ("modes 1 and 2, difference", COLOURS[2]),
-}
 
 
 class _Region(NamedTuple):
@@ -252,18 +241,18 @@ def _damped(chart: str, inertia: float, modes: int, speeds: ArrayLike) -> Floque
     return floquet_multipliers(system, speeds, follower_inertia=inertia * LBF_IN_S2)
 
 
-def modes_table(axes: Panels) -> Drawn:
+def modes_table(axes: Panels, looks: Mapping[str, Mapping[str, Any]]) -> Drawn:
     """Draw the widths of all regions of two modes over the crank speed."""
     tables, titles = [], []
     for ax, (chart, inertia) in zip(axes, _CASES, strict=True):
         opened, closed = regions(chart, inertia)
-        for kind, (label, colour) in _KINDS.items():
+        for kind, look in looks.items():
             chosen = [one for one in opened if one.kind == kind and np.isfinite(one.width)]
             if not chosen:
                 continue
             middles, widths, damped = np.array([(r.middle, r.width, r.damped) for r in chosen]).T
-            ax.plot(middles, widths, "o", mfc="none", color=colour, label=label)
-            ax.plot(middles[damped > 0.0], damped[damped > 0.0], "o", color=colour, ms=4)
+            ax.plot(middles, widths, "o", mfc="none", **look)
+            ax.plot(middles[damped > 0.0], damped[damped > 0.0], "o", color=look["color"], ms=4)
         panel_title(ax, f"{RIG[chart].name}, {inertia:g} lbf in s²")
         tables.append([(*one[1:5], one.damped or "closed") for one in opened[:10]])
         rest = f"; {len(opened) - 10} narrower, {closed} closed" if len(opened) > 10 else ""

@@ -10,21 +10,15 @@ from typing import Any
 
 import numpy as np
 
+from .. import hill
 from ..core.families import LinearPeriodic
 from ..core.periodic_function import PeriodicFunction
 from ..core.trigonometric import PeriodicArray, interpolated
-from ..hill import (
-    boundary_series,
-    critical_damping,
-    discriminant,
-    hill_boundaries,
-    perturbation_boundaries,
-)
 from ..linkages import FourBar
 from ..periodic import simulate
 from ..scenes import load_scene
 from .algorithms import de_vogelaere_maps, de_vogelaere_start, kutta_merson, second_order_form
-from .drawing import COLOURS, Array, Axes, Panels, outline, panel_title, peak
+from .drawing import COLOURS, Array, Axes, Looks, Panels, outline, panel_title, peak
 from .records import Drawn
 from .smith_linkages import linkage_of, series
 
@@ -174,7 +168,7 @@ def figure_33(axes: Panels) -> Drawn:
     function = {"function.a": f.a.tolist(), "function.b": f.b.tolist()}
     changes = {**function, "parameters.mu": mu, "parameters.damping": 0.0}
     system = load_scene("hill_example", overrides=changes).linear_system()
-    half = discriminant(f, squares, mu).value
+    half = hill.discriminant(f, squares, mu).value
     for ax, lam2, colour in zip(axes, squares, 3 * (COLOURS[1], COLOURS[0]), strict=True):
         run = simulate(system.with_parameters(lam2=lam2), 1.0, 6.0, initial=(1.0, 0.0))
         ax.plot(run.theta / (2 * pi), run.q[:, 0], color=colour, lw=1.0)
@@ -182,47 +176,44 @@ def figure_33(axes: Panels) -> Drawn:
     return Drawn([*np.abs(half[::2]), *np.abs(half[1::2])])
 
 
-def _edges(ax: Axes, mu: Array, ends: Array, style: str, colour: str, label: str) -> None:
-    ax.plot(np.concatenate(ends).T, mu, style, color=colour, lw=1.3, label=label)
+def _edges(ax: Axes, mu: Array, ends: Array, **look: Any) -> None:
+    ax.plot(np.concatenate(ends).T, mu, lw=1.3, **look)
 
 
 def _to_order(f: PeriodicFunction, mu: Array, regions: Sequence[int], order: int) -> Array:
     """Return both ends by (7.25), (7.37), also where they are poor, ``(2, regions, mu)``."""
-    return np.stack([boundary_series(f, n, order)(mu) for n in regions], axis=1)
+    return np.stack([hill.boundary_series(f, n, order)(mu) for n in regions], axis=1)
 
 
 def _shade(ax: Axes, f: PeriodicFunction, mu: Array, regions: Sequence[int], left: float) -> None:
     """Shade the unstable regions of a chart and draw their exact boundaries."""
-    exact = hill_boundaries(f, mu, regions)
+    exact = hill.hill_boundaries(f, mu, regions)
     for low, high in zip(exact.lower, exact.upper, strict=True):
         ax.fill_betweenx(mu, np.maximum(low, left), high, color="#f4dcc8", lw=0)
-    _edges(ax, mu, np.stack([exact.lower, exact.upper]), "-", COLOURS[5], "exact")
+    _edges(ax, mu, np.stack([exact.lower, exact.upper]), color=COLOURS[5], label="exact")
 
 
-def figure_34(axes: Panels) -> Drawn:
+def figure_34(axes: Panels, looks: Looks) -> Drawn:
     """Draw exact, first-order and second-order boundaries of a typical linkage."""
     ax, f, regions = axes[0], series(_LINKAGE), (1, 2, 3, 4)
     mu = np.linspace(0.0, 1.5, 151)
     _shade(ax, f, mu, (0, *regions, 5, 6), -1.5)
-    exact, words = hill_boundaries(f, mu, (1,)), {}
-    for order, style, colour, name in (
-        (1, "--", COLOURS[0], "first"),
-        (2, ":", COLOURS[2], "second"),
-    ):
+    exact, words = hill.hill_boundaries(f, mu, (1,)), {}
+    for order, name, look in zip((1, 2), ("first", "second"), looks, strict=True):
         near = _to_order(f, mu, (*regions, 5), order)
-        _edges(ax, mu, near, style, colour, f"{name} order")
+        _edges(ax, mu, near, **look)
         words[name] = peak(near[:, 0] - np.concatenate([exact.lower, exact.upper]))
     return Drawn(words=words)
 
 
-def figure_35(axes: Panels) -> Drawn:
+def figure_35(axes: Panels, looks: Looks) -> Drawn:
     """Draw the unstable regions for four cranks, the other links being equal."""
     mu, regions, widths = np.linspace(0.0, 1.0, 121), (1, 2, 3), []
     for ax, crank in zip(axes, (0.5, 1.5, 3.0, 4.0), strict=True):
         f = series(FourBar(frame=6.0, crank=crank, coupler=6.0, follower=6.0))
         _shade(ax, f, mu, (0, *regions, 4), -1.0)
-        _edges(ax, mu, _to_order(f, mu, regions, 2), ":", COLOURS[2], "second order")
-        widths.append(hill_boundaries(f, 1.0, regions).width)
+        _edges(ax, mu, _to_order(f, mu, regions, 2), **looks[0])
+        widths.append(hill.hill_boundaries(f, 1.0, regions).width)
     short = widths[0]
     growth = min(float(np.min(b / a)) for a, b in pairwise(widths))
     return Drawn([short[1] / short[0], short[2] / short[0], growth])
@@ -235,13 +226,13 @@ def damped(axes: Panels, regions: list[int], dampings: list[float], top: float) 
         # Closer values above the tips, exact and by (7.51), where the outlines are flat.
         tips = 2.0 * damping * np.array(regions) / f.amplitudes[regions]
         if damping:
-            exact = critical_damping(f, None, regions, damping=damping).mu
+            exact = hill.critical_damping(f, None, regions, damping=damping).mu
             tips = np.concatenate([tips, exact])
         near = np.outer(tips, 1.0 + 1e-9 + np.linspace(0.0, 0.3, 1 + 30 // len(tips)) ** 2).ravel()
         mu = np.unique(np.concatenate([np.linspace(0.0, top, 181), near[near < top]]))
-        drawn = {"exact": ("-", hill_boundaries(f, mu, regions, damping=damping))}
+        drawn = {"exact": ("-", hill.hill_boundaries(f, mu, regions, damping=damping))}
         if len(regions) == 1:
-            first = perturbation_boundaries(f, mu, regions, damping=damping, outside="value")
+            first = hill.perturbation_boundaries(f, mu, regions, damping=damping, outside="value")
             drawn["first order"] = ("--", first)
         for name, (style, ends) in drawn.items():
             for low, high in zip(ends.lower, ends.upper, strict=True):
@@ -252,18 +243,20 @@ def damped(axes: Panels, regions: list[int], dampings: list[float], top: float) 
 def space_ends(eps1: float, eps2: float, amounts: Array) -> tuple[Array, Array]:
     """Return both ends of the region in lam2 with ``amounts * (eps1 f1 + eps2 f3)``, (8.3)."""
     f = series(_LINKAGE, "f1") * eps1 + series(_LINKAGE) * eps2
-    ends = hill_boundaries(f, amounts, (_REGION,))
+    ends = hill.hill_boundaries(f, amounts, (_REGION,))
     return ends.lower[0], ends.upper[0]
 
 
 def space_series(eps1: Array, eps2: Array, order: int) -> tuple[Array, Array]:
     """Return both ends to an order in the parameters."""
     both = [series(_LINKAGE, "f1"), series(_LINKAGE)]
-    ends = perturbation_boundaries(both, [eps1, eps2], (_REGION,), order=order, outside="value")
+    ends = hill.perturbation_boundaries(
+        both, [eps1, eps2], (_REGION,), order=order, outside="value"
+    )
     return ends.lower[0], ends.upper[0]
 
 
-def figure_38(axes: Panels) -> Drawn:
+def figure_38(axes: Panels, lines: Sequence[Sequence[Any]]) -> Drawn:
     """Draw both boundary surfaces of one region and their first-order lines in the planes."""
     space: Any = axes[0]
     turn, amounts = np.linspace(0.0, 0.5 * pi, 41), np.linspace(0.0, 1.0, 33)
@@ -279,7 +272,7 @@ def figure_38(axes: Panels) -> Drawn:
         for ray in range(0, len(turn), 10):
             space.plot(eps1[ray], sheet[ray], eps2[ray], color=colour, lw=0.7)
         space.plot(eps1[:, -1], sheet[:, -1], eps2[:, -1], color=colour, lw=0.9, label=label)
-    _first_order(space)
+    _first_order(space, lines)
     space.plot([0.0, 0.0], [0.0, 1.75], [0.0, 0.0], color="0.2", lw=1.0)
     space.set_box_aspect((1.0, 1.7, 1.0), zoom=1.12)
     space.view_init(elev=22.0, azim=-28.0)
@@ -300,7 +293,7 @@ def figure_38(axes: Panels) -> Drawn:
     return Drawn([min(around), max(falls)], words)
 
 
-def _first_order(space: Any) -> None:
+def _first_order(space: Any, named: Sequence[Sequence[Any]]) -> None:
     """Draw the straight lines of the first order and name the points as the thesis does."""
     amounts, ink = np.array([0.0, 1.0]), "0.25"
 
@@ -308,11 +301,7 @@ def _first_order(space: Any) -> None:
         space.plot(*([x] for x in place), "o", color=ink, ms=2.5, zorder=22)
         space.text(*place, f" {text}", fontsize=10, fontstyle="italic", zorder=23)
 
-    for names, share, (eps1, eps2) in (
-        ("ABG", 0.8, (1.0, 0.0)),
-        ("CDH", 0.8, (0.0, 1.0)),
-        ("EF", 0.55, (1.0, 1.0)),
-    ):
+    for names, share, (eps1, eps2) in named:
         x, z = share * _REACH * eps1 * amounts, share * _REACH * eps2 * amounts
         lower, upper = space_series(x, z, 1)
         lines = ((lower, "--", ""), (upper, "--", ""), (0.5 * (lower + upper), ":", "middle, "))

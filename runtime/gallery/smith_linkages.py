@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import acos, cos, degrees, pi, radians, sin, sqrt
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,7 +20,7 @@ from ..linkages.clearance import clearance_range
 from ..linkages.transmission import transmission_angle
 from ..scenes import load_scene
 from . import sketch
-from .drawing import COLOURS, Array, Axes, Panels, peak
+from .drawing import COLOURS, Array, Axes, Looks, Panels, peak
 from .records import Drawn, contents
 
 RPM = pi / 30.0
@@ -112,7 +113,12 @@ class Rig:
 
         With a logarithmic decrement, and the follower's inertia [lbf in s^2] or the scene's.
         """
-        return _system(self.scene, equation, modes, decrement, inertia)
+        changes: dict[str, Any] = {"model.formulation": equation, "model.modes": modes}
+        if decrement:
+            changes["coupler.damping_ratio"] = decrement / (2 * pi)
+        if inertia is not None:
+            changes["follower.inertia"] = inertia * LBF_IN_S2
+        return load_scene(self.scene, overrides=changes).linear_system()
 
     def function(
         self, equation: str, inertia: float | None = None, **changes: float
@@ -120,7 +126,7 @@ class Rig:
         """Return the periodic coefficient at a follower inertia [kg m^2], or the scene's."""
         if inertia is not None:
             changes["follower_inertia"] = inertia
-        return _form(self.scene, equation).function(1.0, **changes)
+        return _form(self, equation).function(1.0, **changes)
 
     def ends(self, equation: str, inertia: ArrayLike, regions: tuple[int, ...]) -> Array:
         """Return the crank speeds [rad/s] that bound unstable regions of the first mode.
@@ -154,20 +160,8 @@ class OfRig:
 
 
 @lru_cache(maxsize=64)
-def _system(
-    scene: str, equation: str, modes: int, decrement: float = 0.0, inertia: float | None = None
-) -> LinearPeriodic:
-    changes = {"model.formulation": equation, "model.modes": modes}
-    if decrement:
-        changes["coupler.damping_ratio"] = decrement / (2 * pi)
-    if inertia is not None:
-        changes["follower.inertia"] = inertia * LBF_IN_S2
-    return load_scene(scene, overrides=changes).linear_system()
-
-
-@lru_cache(maxsize=64)
-def _form(scene: str, equation: str) -> HillForm:
-    return hill_form(_system(scene, equation, 1))
+def _form(rig: Rig, equation: str) -> HillForm:
+    return hill_form(rig.system(equation))
 
 
 def region_name(n: int) -> str:
@@ -234,18 +228,11 @@ def figure_7(axes: Panels) -> Drawn:
     return Drawn([total[0, 1] / total[0, 0], *higher, np.min(cosine / sine), np.min(sine / cosine)])
 
 
-def end_loads(axes: Panels, proportions: str) -> Drawn:
+def end_loads(axes: Panels, proportions: str, looks: Looks) -> Drawn:
     """Draw phi, f1, f2 and f3 of one linkage (Fig. 27)."""
-    ax, theta = axes[0], np.linspace(0.0, 2 * pi, 1441)
-    linkage = linkage_of(proportions)
-    parts = end_load(linkage, theta)
-    for name, label, colour in (
-        ("phi", r"$\varphi$", COLOURS[4]),
-        ("f1", "$f_1$", COLOURS[1]),
-        ("f2", "$f_2$", COLOURS[2]),
-        ("f3", "$f_3$", COLOURS[0]),
-    ):
-        ax.plot(np.degrees(theta), parts[name], color=colour, label=label)
+    linkage, theta = linkage_of(proportions), np.linspace(0.0, 2 * pi, 1441)
+    for part, look in zip(end_load(linkage, theta).values(), looks, strict=False):
+        axes[0].plot(np.degrees(theta), part, **look)
     phi, f1, f2, f3 = _sizes(proportions)
     eps2 = pi**2 * linkage.crank / (2 * linkage.coupler)
     if proportions == "(54,0.4,54,3)":
@@ -280,7 +267,7 @@ def _direction(vector: Array) -> float:
     return float(np.arctan2(vector[1], vector[0]))
 
 
-def figure_8(axes: Panels) -> None:
+def figure_8(axes: Panels, angles: Sequence[tuple[float, str, str]]) -> None:
     """Draw the nominal position and the two extremes for one crank angle."""
     ax = sketch.canvas(axes[0])
     linkage, theta = FourBar(frame=10.0, crank=4.0, coupler=9.0, follower=7.0), radians(70.0)
@@ -288,11 +275,7 @@ def figure_8(axes: Panels) -> None:
     a, b, d = places["A"], places["B"], places["D"]
     ax.plot(*np.transpose([b, d]), ":", color="0.4", lw=1.0)
     ax.plot(*np.transpose([a, d]), color="0.6", lw=0.8, zorder=1)
-    for radius, name, text in (
-        (2.0, "C", r"$\phi$"),
-        (2.9, "C'", r"$\phi'$"),
-        (1.2, "C''", r"$\phi''$"),
-    ):
+    for radius, name, text in angles:
         sketch.arc(ax, d, radius, (_direction(b - d), _direction(places[name] - d)), text)
     sketch.arc(ax, a, 1.1, (0.0, theta), r"$\theta_2$")
 

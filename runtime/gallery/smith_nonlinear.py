@@ -1,10 +1,14 @@
-"""Smith's Figs. 62 to 78 and all speeds of chapter 9 by the nonlinear equation of the coupler."""
+"""Smith's Figs. 62 to 78 and all speeds of chapter 9 by the nonlinear equation of the coupler.
+
+And how far the linear equation suffices.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 from math import pi
 from typing import Any, NamedTuple, cast
 
@@ -14,11 +18,15 @@ from scipy.signal import find_peaks
 
 from ..core.families import Nonlinear
 from ..nonlinear import ResponseCurve, SweepResponse, response_curve, sweep_response
+from ..nonlinear.orbit import Lost, Solver
+from ..nonlinear.response import first_motion, linear_motion
+from ..nonlinear.segments import Motion, NotFinite, Problem
 from ..scenes import load_scene
-from .drawing import COLOURS, Array, Panels, mark_fractions, panel_title
+from .drawing import COLOURS, Array, Axes, Panels, mark_fractions, panel_title
 from .records import Drawn, contents
-from .smith_linkages import LBF_IN_S2, RPM, OfRig, Rig
-from .smith_responses import response
+from .smith_linkages import LBF_IN_S2, RIG, RIGS, RPM, Rig
+from .smith_responses import Response, response
+from .smith_speeds import OBSERVATIONS, Observation
 
 _MM = 1e3
 _WAYS = {True: "run up", False: "run down"}
@@ -44,17 +52,14 @@ def coupler(
 
 
 @dataclass(frozen=True)
-class Bench(OfRig):
+class Bench(Response):
     """A rig on the test bench, for the nonlinear equation.
 
-    Follower inertia [lbf in s^2], range of the speed [rpm], revolutions after which motions may
-    repeat; ends of the slow test, its rate [rpm/s] and what disturbs q1 and its rate in each
-    revolution; the decrement where not the rig's, and how many modes.
+    Revolutions after which motions may repeat; ends of the slow test, its rate [rpm/s] and what
+    disturbs q1 and its rate in each revolution; the decrement where not the rig's, and how many
+    modes.
     """
 
-    inertia: float
-    low: float
-    high: float
     turns: int = 1
     first: float = 0.0
     last: float = 0.0
@@ -67,6 +72,68 @@ class Bench(OfRig):
     def system(self) -> Nonlinear:
         """The coupler."""
         return coupler(self.rig, self.inertia, self.decrement, self.modes)
+
+    def reading(self, kind: str, order: int = 0) -> float:
+        """Return the speed [rpm] at which something happens by the branches of a test.
+
+        ``rise`` and ``fall``: the first and the second fold along the first branch, which a rising
+        and a falling speed reach; ``two turns fall``: the lowest fold of two turns; ``onset``,
+        ``end``: where the motion of one turn begins and ends to double, ``middle`` between them;
+        ``peak``: the maximum of its order-th harmonic that is nearest to Omega/order.
+        """
+        found = specials(self)
+        doublings = [p.speed for p in found if (p.kind, p.turns) == ("doubling", 1)]
+        if kind in ("rise", "fall"):
+            folds = [point.speed for point in found if (point.kind, point.branch) == ("fold", 0)]
+            return folds[("rise", "fall").index(kind)]
+        if kind == "two turns fall":
+            return min(p.speed for p in found if (p.kind, p.turns) == ("fold", 2))
+        if kind == "peak":
+            return self._peak(order)
+        ends = {"onset": min(doublings), "end": max(doublings)}
+        return ends.get(kind, 0.5 * (ends["onset"] + ends["end"]))
+
+    def _peak(self, order: int) -> float:
+        curve, shown, turn = branches(self), self.system.shown, np.linspace(0.0, 2 * pi, 65)[:-1]
+        first = np.flatnonzero(curve.branch == 0)
+        lower = first[: np.argmin(np.append(curve.stable[first], False))]
+        bent = [shown(curve.orbits[i].motion.at(turn)[0]) for i in lower]
+        sizes, speed = np.abs(np.fft.rfft(bent, axis=-1))[:, order], curve.value[lower]
+        size = CubicSpline(speed, sizes)
+        flat = size.derivative().roots(extrapolate=False)
+        tops = flat[size(flat, 2) < 0.0]
+        return float(tops[np.argmin(np.abs(tops - self.rig.frequency / order))]) / RPM
+
+    def other(self, name: str, kind: str) -> float:
+        """Return a reading of another test."""
+        return BENCHES[name].reading(kind)
+
+    def apart(self, first: str, second: str) -> float:
+        """Return one reading less another [rpm]."""
+        return self.reading(first) - self.reading(second)
+
+    def _amplitudes(self, speed: float) -> list[tuple[int, bool, float]]:
+        """Return revolutions, stability and deflection [mm] of each motion at a speed [rpm]."""
+        curve, found = branches(self), []
+        value = curve.value - speed * RPM
+        for i in np.flatnonzero((value[:-1] * value[1:] <= 0.0) & (np.diff(curve.branch) == 0)):
+            share = value[i] / (value[i] - value[i + 1])
+            before, after = curve.peak_to_peak[i : i + 2]
+            size = _MM * float(before + share * (after - before))
+            found.append((int(curve.turns[i]), bool(np.all(curve.stable[i : i + 2])), size))
+        return found
+
+    def stable(self, speed: float, *turns: int) -> float:
+        """Return how many stable motions of so many turns there are at a speed [rpm]."""
+        return sum(holds and count in turns for count, holds, _ in self._amplitudes(speed))
+
+    def greater(self, fall: str, rise: str) -> float:
+        """Return the largest stable deflection between two readings over that at the second."""
+        low, high = self.reading(fall), self.reading(rise)
+        curve = branches(self)
+        inside = curve.stable & (curve.value >= low * RPM) & (curve.value <= high * RPM)
+        largest = _MM * float(np.max(curve.peak_to_peak[inside]))
+        return largest / max(size for _, holds, size in self._amplitudes(high) if holds)
 
 
 BENCHES = {name: Bench(**row) for name, row in contents("smith")["bench"].items()}
@@ -107,51 +174,6 @@ def specials(one: Bench) -> list[Special]:
     return [Special(*row) for row in rows]
 
 
-def reading(one: Bench, kind: str, order: int = 0) -> float:
-    """Return the speed [rpm] at which something happens by the branches of a test.
-
-    ``rise`` and ``fall``: the first and the second fold along the first branch, which a rising and
-    a falling speed reach; ``two turns fall``: the lowest fold of two turns; ``onset``, ``end``:
-    where the motion of one turn begins and ends to double, ``middle`` between them; ``peak``: the
-    maximum of its order-th harmonic that is nearest to Omega/order.
-    """
-    found = specials(one)
-    doublings = [p.speed for p in found if (p.kind, p.turns) == ("doubling", 1)]
-    if kind in ("rise", "fall"):
-        folds = [point.speed for point in found if (point.kind, point.branch) == ("fold", 0)]
-        return folds[("rise", "fall").index(kind)]
-    if kind == "two turns fall":
-        return min(p.speed for p in found if (p.kind, p.turns) == ("fold", 2))
-    if kind == "peak":
-        return _peak(one, order)
-    ends = {"onset": min(doublings), "end": max(doublings)}
-    return ends.get(kind, 0.5 * (ends["onset"] + ends["end"]))
-
-
-def _peak(one: Bench, order: int) -> float:
-    curve, shown, turn = branches(one), one.system.shown, np.linspace(0.0, 2 * pi, 65)[:-1]
-    first = np.flatnonzero(curve.branch == 0)
-    lower = first[: np.argmin(np.append(curve.stable[first], False))]
-    bent = [shown(curve.orbits[i].motion.at(turn)[0]) for i in lower]
-    sizes, speed = np.abs(np.fft.rfft(bent, axis=-1))[:, order], curve.value[lower]
-    size = CubicSpline(speed, sizes)
-    flat = size.derivative().roots(extrapolate=False)
-    tops = flat[size(flat, 2) < 0.0]
-    return float(tops[np.argmin(np.abs(tops - one.rig.frequency / order))]) / RPM
-
-
-def _amplitudes(one: Bench, speed: float) -> list[tuple[int, bool, float]]:
-    """Return revolutions, stability and deflection [mm] of each motion at a speed [rpm]."""
-    curve, found = branches(one), []
-    value = curve.value - speed * RPM
-    for i in np.flatnonzero((value[:-1] * value[1:] <= 0.0) & (np.diff(curve.branch) == 0)):
-        share = value[i] / (value[i] - value[i + 1])
-        size = curve.peak_to_peak[i] + share * (curve.peak_to_peak[i + 1] - curve.peak_to_peak[i])
-        holds = bool(curve.stable[i] and curve.stable[i + 1])
-        found.append((int(curve.turns[i]), holds, _MM * float(size)))
-    return found
-
-
 class _Way(NamedTuple):
     """One way of a slow test: speeds [rpm] rising, extremes of the deflection [mm]."""
 
@@ -167,6 +189,21 @@ class _Way(NamedTuple):
         inside = (self.speed >= low) & (self.speed <= high)
         return _Way(*(part[inside] for part in self))
 
+    def largest(self, low: float, high: float) -> float:
+        """Return the speed [rpm] of the largest deflection within a range."""
+        way = self.within(low, high)
+        return float(way.speed[np.argmax(way.size)])
+
+    def beats(self, low: float, high: float) -> float:
+        """Return how many maxima the upper edge of the trace has within a range."""
+        edge = self.within(low, high).highest
+        return len(find_peaks(edge, prominence=0.01 * np.ptp(edge))[0])
+
+    def level(self, below: float, above: float) -> float:
+        """Return how far the mean level moves between two speeds, over the largest deflection."""
+        mean = np.interp([below, above], self.speed, 0.5 * (self.lowest + self.highest))
+        return float(abs(mean[1] - mean[0]) / np.max(self.within(below, above).size))
+
 
 def _way(one: Bench, rising: bool) -> _Way:
     test = slow_test(one)
@@ -175,72 +212,18 @@ def _way(one: Bench, rising: bool) -> _Way:
     return _Way(test.speed[at] / RPM, _MM * test.lowest[at], _MM * test.highest[at])
 
 
-def _read(one: Bench, rising: bool, kind: str, order: int = 0) -> float:
-    return reading(one, kind, order)
-
-
-def _other(one: Bench, rising: bool, name: str, kind: str) -> float:
-    """Return a reading of another test."""
-    return reading(BENCHES[name], kind)
-
-
-def _apart(one: Bench, rising: bool, first: str, second: str) -> float:
-    """Return one reading less another [rpm]."""
-    return reading(one, first) - reading(one, second)
-
-
-def _stable(one: Bench, rising: bool, speed: float, *turns: int) -> float:
-    """Return how many stable motions of so many turns there are at a speed [rpm]."""
-    return sum(holds and count in turns for count, holds, _ in _amplitudes(one, speed))
-
-
-def _largest(one: Bench, rising: bool, low: float, high: float) -> float:
-    """Return the speed [rpm] of the largest deflection of the slow test within a range."""
-    way = _way(one, rising).within(low, high)
-    return float(way.speed[np.argmax(way.size)])
-
-
-def _greater(one: Bench, rising: bool, fall: str, rise: str) -> float:
-    """Return the largest stable deflection between two readings over that at the second."""
-    low, high = reading(one, fall), reading(one, rise)
-    curve = branches(one)
-    inside = curve.stable & (curve.value >= low * RPM) & (curve.value <= high * RPM)
-    largest = _MM * float(np.max(curve.peak_to_peak[inside]))
-    return largest / max(size for _, holds, size in _amplitudes(one, high) if holds)
-
-
-def _beats(one: Bench, rising: bool, low: float, high: float) -> float:
-    """Return how many maxima the upper edge of the trace has within a range."""
-    edge = _way(one, rising).within(low, high).highest
-    return len(find_peaks(edge, prominence=0.01 * np.ptp(edge))[0])
-
-
-def _level(one: Bench, rising: bool, below: float, above: float) -> float:
-    """Return how far the mean level moves between two speeds, over the largest deflection."""
-    way = _way(one, rising)
-    mean = np.interp([below, above], way.speed, 0.5 * (way.lowest + way.highest))
-    return float(abs(mean[1] - mean[0]) / np.max(way.within(below, above).size))
-
-
-# What section 9.5.3 says of single figures, by the names in their records.
-_CLAIMS: Mapping[str, Callable[..., float]] = {
-    "read": _read,
-    "other": _other,
-    "apart": _apart,
-    "stable": _stable,
-    "largest": _largest,
-    "greater": _greater,
-    "beats": _beats,
-    "level": _level,
-}
-
-
 def trace(
-    axes: Panels, linear: Sequence[Any], name: str, rising: bool, claims: Sequence[Sequence[Any]]
+    axes: Panels,
+    linear: Sequence[Any],
+    name: str,
+    rising: bool,
+    traced: Sequence[Sequence[Any]],
+    claims: Sequence[Sequence[Any]],
 ) -> Drawn:
     """Draw a recorded response: by the linear equation above, the slow test below.
 
-    ``linear``: what :func:`.response` takes; name of the test and which way the speed goes.
+    ``linear``: what :func:`.response` takes; name of the test and which way the speed goes; what
+    section 9.5.3 says of the trace and of the test, as methods of both and what these take.
     """
     values = list(response(axes[:1], *linear).values)
     one, ax, (low, high) = BENCHES[name], axes[1], linear[2:4]
@@ -255,7 +238,8 @@ def trace(
     mark_fractions(ax, *marks, low=False)
     panel_title(axes[0], "complete linear equation")
     panel_title(ax, f"nonlinear equation, decrement {one.rig.decrement:g}")
-    return Drawn([*values, *(_CLAIMS[claim[0]](one, rising, *claim[1:]) for claim in claims)])
+    values += [getattr(way, method)(*given) for method, *given in traced]
+    return Drawn([*values, *(getattr(one, method)(*given) for method, *given in claims)])
 
 
 def figure_64(axes: Panels, name: str, speed: float) -> Drawn:
@@ -294,5 +278,158 @@ def figure_69(axes: Panels, name: str, speeds: Sequence[float]) -> Drawn:
     values = curve.linear_value, curve.value[curve.stable & (curve.turns == 1)]
     heights = linear, curve.peak_to_peak[curve.stable & (curve.turns == 1)]
     tops = [v[np.argmax(np.where(v < half, h, 0.0))] for v, h in zip(values, heights, strict=True)]
-    counts = [_stable(one, True, speed, 1, 2) for speed in speeds]
+    counts = [one.stable(speed, 1, 2) for speed in speeds]
     return Drawn([*counts, float(tops[1] - tops[0]) / RPM])
+
+
+_EQUATIONS = {"printed": "(6.17)", "complete": "complete", "nonlinear": "nonlinear"}
+_COMPARED = tuple(one for one in OBSERVATIONS if one.nonlinear)
+_LEAST = 0.0058  # follower inertia [lbf in s^2]
+_TURN = np.linspace(0.0, 2.0 * np.pi, 129)[:-1]
+# Speeds of the comparison over the coupler's frequency; the largest deflections, by the linear
+# equation and over the length, that belong together.
+_SPEEDS = np.linspace(0.16, 0.49, 45)
+_BINS = (0.0, 0.0025, 0.005, 0.01, 0.02, 0.03, 0.04)
+
+Rows = list[Sequence[Any]]
+
+
+def quoted_speeds(axes: Panels, chart: str, cranks: Sequence[float]) -> Drawn:
+    """Draw deviations from the quoted speeds, and what the linear equation is off; give tables.
+
+    ``chart``, ``cranks``: a rig whose resonance at Omega/2 leans, with shorter cranks over its own.
+    """
+    quoted, summary = _deviations(axes[0])
+    bins = _bins(axes[1])
+    leaning = [_leaning(RIG[chart], crank) for crank in cranks]
+    benches = [BENCHES[name] for name in ("least", "more", "softening")]
+    points = [
+        (one.rig.name, one.inertia, one.rig.decrement, p.kind, p.turns, p.speed, p.size)
+        for one in benches
+        for p in specials(one)
+    ]
+    # Bins below the first in which the linear equation is off by more than 1 %.
+    good = [row for row in bins if row[-1] < 1.0]
+    law = max(abs(row[-1]) for row in leaning)
+    both = [BENCHES[name] for name in ("least", "two_modes")]
+    kinds = ("rise", "fall", "onset", "end")
+    moved = [abs(float(np.diff([one.reading(kind) for one in both])[0])) for kind in kinds]
+    share = summary[-1][1] / len(_COMPARED)
+    words: dict[str, object] = {
+        "count": summary[-1][1],
+        "all": len(_COMPARED),
+        "entered": BENCHES["softening"].reading("rise"),
+        "lost": BENCHES["softening"].reading("onset"),
+        "within": good[-1][0].split()[-2],
+        "there": good[-1][-1],
+        "second": max(moved),
+        "law": law,
+        "leaned": 100.0 * float(np.sqrt(1e-3 / law)),
+    }
+    for name, row in zip(_EQUATIONS, summary, strict=True):
+        words |= {f"rms_{name}": row[2], f"rest_{name}": row[3]}
+    tables = (quoted, summary, points, bins, leaning)
+    return Drawn((share, summary[-1][-1]), words, tables)
+
+
+def _deviations(ax: Axes) -> tuple[Rows, Rows]:
+    """Draw the deviations; return a table of the speeds and one of the equations."""
+    quoted = np.array([one.speed for one in _COMPARED])
+    speeds = np.array([[_speed(one, name) for one in _COMPARED] for name in _EQUATIONS])
+    percent = 100.0 * (speeds / quoted - 1.0)
+    nearest = np.argmin(np.abs(percent), axis=0)
+    names, places = list(_EQUATIONS.values()), np.arange(len(_COMPARED))
+    for gaps, name, marker in zip(percent, names, "s^o", strict=True):
+        ax.plot(gaps, places, marker, ms=5, label=name)
+    ax.axvline(0.0, color="0.4", lw=0.8)
+    labels = [f"{one.rig.name}, {one.inertia:.4f}: {one.speed:.0f} rpm" for one in _COMPARED]
+    ax.set_yticks(places, labels, fontsize=7)
+    ax.invert_yaxis()
+    panel_title(ax, "deviation from the quoted speeds")
+    rows: Rows = []
+    for i, one in enumerate(_COMPARED):
+        cells = [f"{v:.1f} ({p:+.1f} %)" for v, p in zip(speeds[:, i], percent[:, i], strict=True)]
+        read = contents("smith")["readings"][one.nonlinear[1]].format(*one.nonlinear[2:])
+        place = (one.rig.name, one.inertia, one.meaning, one.speed)
+        rows.append((*place, *cells, read, names[nearest[i]]))
+    # Without the resonance that the text names otherwise.
+    rest = [one.speed != 600.0 for one in _COMPARED]
+    rms = [np.sqrt(np.mean(part**2, axis=1)) for part in (percent, percent[:, rest])]
+    counts = [int(np.sum(nearest == i)) for i in range(len(names))]
+    return rows, list(zip(names, counts, *rms, speeds[:, 1] / speeds[:, 0], strict=True))
+
+
+def _speed(one: Observation, equation: str) -> float:
+    """Return the crank speed [rpm] that an equation sets against a quoted one."""
+    if equation != "nonlinear":
+        return one.predicted(equation)
+    name, *what = one.nonlinear
+    return BENCHES[name].reading(*what)
+
+
+class _Deflection:
+    """Largest deflections of a rig's coupler over its length, nonlinear and linear."""
+
+    def __init__(self, rig: Rig, crank: float = 1.0) -> None:
+        self.system = coupler(rig, _LEAST, crank=crank)
+        self.problem = Problem(self.system, "speed", 0.0)
+        self.rest = self.motion = first_motion(self.problem)
+        self.solver = Solver(self.problem, rig.frequency, 1e-6)
+
+    def nonlinear(self, speed: float) -> float:
+        """Return that of the motion next to the last one asked for."""
+        self.motion = self.solver.settled(speed, self.motion)
+        return self._largest(self.motion)
+
+    def linear(self, speed: float) -> float:
+        """Return that of the equation linearised about no deflection."""
+        return self._largest(linear_motion(self.problem, speed, self.rest))
+
+    def _largest(self, motion: Motion) -> float:
+        watch = self.system.watch
+        return float(np.max(watch(motion.at(_TURN)[0]))) if watch else float("nan")
+
+
+def _bins(ax: Axes) -> Rows:
+    """Draw how far the linear deflection of all rigs is off; return a row for each bin."""
+    pairs = []
+    for rig in RIGS:
+        one, mine = _Deflection(rig), []
+        for speed in rig.frequency * _SPEEDS:
+            try:
+                mine.append((one.linear(speed), one.nonlinear(speed)))
+            except (Lost, NotFinite):
+                break
+        linear, bent = np.array(mine).T
+        pairs.append((linear, 100.0 * np.abs(bent / linear - 1.0)))
+        ax.plot(100.0 * linear, pairs[-1][1], ".", label=rig.name)
+    panel_title(ax, "how far the linear deflection is off")
+    share, off = np.concatenate(pairs, axis=1)
+    rows: Rows = []
+    for low, high in pairwise(_BINS):
+        inside = off[(share >= low) & (share < high)]
+        place = f"{100 * low:g} to {100 * high:g} %"
+        rows.append((place, len(inside), np.median(inside), np.max(inside)))
+    return rows
+
+
+def _leaning(rig: Rig, crank: float) -> Sequence[Any]:
+    """Return crank, deflection [%], shift of the peak at Omega/2 and of its height [%], the law."""
+    one = _Deflection(rig, crank)
+    (at, before), (moved, after) = (
+        _top(size, 0.5 * rig.frequency) for size in (one.linear, one.nonlinear)
+    )
+    shift = moved / at - 1.0
+    return (crank, 100.0 * after, 100.0 * shift, 100.0 * (after / before - 1.0), shift / after**2)
+
+
+def _top(size: Callable[[float], float], near: float) -> tuple[float, float]:
+    """Return place and height of a maximum within 4 % of a speed."""
+    speeds = near * np.linspace(0.96, 1.04, 17)
+    place = float(speeds[np.argmax([size(speed) for speed in speeds])])
+    width = float(speeds[1] - speeds[0])
+    for _ in range(3):  # parabolas, each a fifth as wide
+        left, middle, right = (size(place + part * width) for part in (-1.0, 0.0, 1.0))
+        place += 0.5 * (left - right) / (left - 2.0 * middle + right) * width
+        width *= 0.2
+    return place, size(place)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi
@@ -14,7 +14,7 @@ from scipy.signal import find_peaks
 
 from ..hill import characteristic_exponents
 from ..periodic import simulate, steady_state
-from .drawing import COLOURS, Array, Panels, mark_fractions, panel_title, peak, turn
+from .drawing import COLOURS, Array, Looks, Panels, mark_fractions, panel_title, peak, turn
 from .records import Drawn
 from .smith_linkages import RIG, RPM, OfRig
 
@@ -32,21 +32,17 @@ def figure_45(axes: Panels) -> Drawn:
     return Drawn([100.0 * (1.0 - loaded[50] / sine[50])])
 
 
-def wave_form(axes: Panels, divisor: float) -> Drawn:
+def wave_form(axes: Panels, divisor: float, looks: Looks) -> Drawn:
     """Draw the wave-form at the speed Omega/divisor (Figs. 47 to 51)."""
     ax, speed = axes[0], _RIG.frequency / divisor
     # Between the least and the greatest logarithmic decrement measured at 1/16 in (9.5.5).
     damped = {name: _RIG.system(name, decrement=0.075) for name in ("reduced", "complete")}
     length = 1e3 * damped["complete"].reference_length
-    for equation, label, colour in (
-        ("reduced", "equation of the thesis (6.18)", COLOURS[0]),
-        ("complete", "complete equation", COLOURS[1]),
-    ):
-        state = steady_state(damped[equation], speed, samples=512)
-        turn(ax, state.theta, length * state.q[:, 0], color=colour, label=f"{label}, damped")
+    for system, look in zip(damped.values(), looks, strict=False):
+        state = steady_state(system, speed, samples=512)
+        turn(ax, state.theta, length * state.q[:, 0], **look)
     run = simulate(_RIG.system("reduced"), speed, 1.0, initial=(0.0, 0.0), samples=512)
-    label = "(6.18), undamped, from rest"
-    ax.plot(np.degrees(run.theta), length * run.q[:, 0], "--", color=COLOURS[4], label=label)
+    ax.plot(np.degrees(run.theta), length * run.q[:, 0], **looks[-1])
     values = [_vibrations(name, speed) for name in damped]
     if divisor == round(divisor):
         both = steady_state(damped["reduced"], speed * np.array([1.0, 0.97]), samples=512)
@@ -72,12 +68,54 @@ class Response(OfRig):
     """One recorded frequency response of chapter 9: chart of the rig, inertia, range of the speed.
 
     The follower's inertia [lbf in s^2]; speeds [rpm] as written in the text or beside the trace,
-    else chosen.
+    else chosen.  Methods that records name say what section 9.5.3 does of single figures.
     """
 
     inertia: float
     low: float
     high: float
+
+    def resonance(self, speed: float) -> float:
+        """Return the crank speed [rpm] of the greatest deflection's maximum nearest to a speed."""
+        ends = envelope(self, self.rig.decrements[0])
+        places = ends.speed[find_peaks(ends.height)[0]]
+        return float(places[np.argmin(np.abs(places - speed))]) if len(places) else float("nan")
+
+    def harmonics(self, first: int, last: int) -> list[float]:
+        """Return how far from Omega/n [%] each of some harmonics is greatest, at most."""
+        system = self.rig.system(decrement=self.rig.decrements[0], inertia=self.inertia)
+        factor, apart = np.linspace(0.94, 1.06, 61), []
+        for order in range(first, last + 1):
+            motion = steady_state(system, factor * self.rig.frequency / order)
+            size = np.abs(np.fft.rfft(motion.q[..., 0], axis=-1)[:, order])
+            apart.append(abs(float(factor[np.argmax(size)]) - 1.0))
+        return [100.0 * max(apart)]
+
+    def increment(self, before: float, at: float) -> list[float]:
+        """Return how an increment of the inertia, from one before, raises the amplitude."""
+        sizes = []
+        for inertia in (self.inertia, before):
+            ends = envelope(replace(self, inertia=inertia), self.rig.decrements[0])
+            sizes.append(float(np.interp(at, ends.speed, ends.height)))
+        return [sizes[0] / sizes[1]]
+
+    def unstable(self, which: str, damping: int, low: float, high: float) -> list[float]:
+        """Return ``first``, ``middle``, ``last`` unstable speed within a range, as many as named.
+
+        With the least measured decrement, the middle or the greatest one (0, 1, 2).
+        """
+        ends = envelope(self, self.rig.decrements[damping])
+        inside = ends.speed[~ends.stable & (ends.speed > low) & (ends.speed < high)]
+        first, last = float(inside[0]), float(inside[-1])
+        found = {"first": first, "middle": 0.5 * (first + last), "last": last}
+        return [found[name] for name in which.split()]
+
+    def largest(self, at: float, apart: float) -> list[float]:
+        """Return at how many speeds about one the periodic motion is largest."""
+        ends = envelope(self, self.rig.decrements[0])
+        inside = np.flatnonzero(np.abs(ends.speed - at) < apart)
+        beside = np.maximum(ends.height[inside - 1], ends.height[inside + 1])
+        return [int(np.count_nonzero(ends.height[inside] > beside))]
 
 
 class Envelope(NamedTuple):
@@ -113,19 +151,19 @@ def response(
     resonances: Sequence[float] = (),
     claim: Sequence[Any] = (),
 ) -> Drawn:
-    """Draw a frequency response; compute resonances near speeds [rpm] and one of the claims."""
+    """Draw a frequency response; compute resonances near speeds [rpm], and what the text says.
+
+    ``claim``: a method of :class:`Response` and what it takes.
+    """
     one, ax = Response(chart, inertia, low, high), axes[0]
-    least, middle, most = one.rig.decrements
-    for decrement, colour, width in (
-        (least, COLOURS[1], 0.8),
-        (middle, COLOURS[0], 1.3),
-        (most, COLOURS[2], 0.8),
+    for decrement, colour, width in zip(
+        one.rig.decrements, (1, 0, 2), (0.8, 1.3, 0.8), strict=True
     ):
         ends = envelope(one, decrement)
-        look: dict[str, Any] = {"color": colour, "lw": width, "zorder": 2.0 + width}
+        look: dict[str, Any] = {"color": COLOURS[colour], "lw": width, "zorder": 2.0 + width}
         ax.plot(ends.speed, ends.greatest, label=f"decrement {decrement:.3g}", **look)
         ax.plot(ends.speed, ends.least, **look)
-    ends = envelope(one, middle)
+    ends = envelope(one, one.rig.decrements[1])
     if not np.all(ends.stable):
         look = {"transform": ax.get_xaxis_transform(), "color": "#f7e3d3", "lw": 0, "zorder": 0}
         inside = ~ends.stable
@@ -140,64 +178,8 @@ def response(
             ax.axhline(level, color="0.5", lw=0.7, ls="--", zorder=1)
     mark_fractions(ax, one.rig.frequency / RPM, range(1, 13), "Ω/{}", (low, high), low=False)
     ax.set(xlim=(low, high), ylim=(-end, end))
-    values = [resonance(one, at) for at in resonances]
-    return Drawn([*values, *_CLAIMS[claim[0]](one, *claim[1:])] if claim else values)
-
-
-def resonance(one: Response, speed: float) -> float:
-    """Return the crank speed [rpm] of the greatest deflection's maximum nearest to a speed."""
-    ends = envelope(one, one.rig.decrements[0])
-    places = ends.speed[find_peaks(ends.height)[0]]
-    return float(places[np.argmin(np.abs(places - speed))]) if len(places) else float("nan")
-
-
-def _harmonics(one: Response, first: int, last: int) -> list[float]:
-    """Return how far from Omega/n [%] each of some harmonics is greatest, at most."""
-    system = one.rig.system(decrement=one.rig.decrements[0], inertia=one.inertia)
-    factor, apart = np.linspace(0.94, 1.06, 61), []
-    for order in range(first, last + 1):
-        motion = steady_state(system, factor * one.rig.frequency / order)
-        size = np.abs(np.fft.rfft(motion.q[..., 0], axis=-1)[:, order])
-        apart.append(abs(float(factor[np.argmax(size)]) - 1.0))
-    return [100.0 * max(apart)]
-
-
-def _increment(one: Response, before: float, at: float) -> list[float]:
-    """Return how an increment of the inertia, from one before, raises the amplitude at a speed."""
-    sizes = []
-    for inertia in (one.inertia, before):
-        ends = envelope(replace(one, inertia=inertia), one.rig.decrements[0])
-        sizes.append(float(np.interp(at, ends.speed, ends.height)))
-    return [sizes[0] / sizes[1]]
-
-
-def _unstable(one: Response, which: str, damping: int, low: float, high: float) -> list[float]:
-    """Return the ``first``, ``middle``, ``last`` unstable speed within a range, as many as named.
-
-    With the least measured decrement, the middle or the greatest one (0, 1, 2).
-    """
-    ends = envelope(one, one.rig.decrements[damping])
-    inside = ends.speed[~ends.stable & (ends.speed > low) & (ends.speed < high)]
-    first, last = float(inside[0]), float(inside[-1])
-    found = {"first": first, "middle": 0.5 * (first + last), "last": last}
-    return [found[name] for name in which.split()]
-
-
-def _largest(one: Response, at: float, apart: float) -> list[float]:
-    """Return at how many speeds about one the periodic motion is largest."""
-    ends = envelope(one, one.rig.decrements[0])
-    inside = np.flatnonzero(np.abs(ends.speed - at) < apart)
-    beside = np.maximum(ends.height[inside - 1], ends.height[inside + 1])
-    return [int(np.count_nonzero(ends.height[inside] > beside))]
-
-
-# What section 9.5.3 says of single figures, by the names in their records.
-_CLAIMS: dict[str, Callable[..., list[float]]] = {
-    "harmonics": _harmonics,
-    "increment": _increment,
-    "unstable": _unstable,
-    "largest": _largest,
-}
+    values = [one.resonance(at) for at in resonances]
+    return Drawn([*values, *getattr(one, claim[0])(*claim[1:])] if claim else values)
 
 
 def wave(chart: str, inertia: float, speed: float) -> tuple[Array, Array]:

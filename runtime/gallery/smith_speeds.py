@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
@@ -86,15 +86,17 @@ OBSERVATIONS = tuple(Observation(**row) for row in contents("smith")["observatio
 _COMPARED = tuple(one for one in OBSERVATIONS if one.region)
 
 
-def chart(axes: Panels, figure: str) -> Drawn:
+def chart(axes: Panels, figure: str, looks: Mapping[str, Mapping[str, Any]]) -> Drawn:
     """Draw the chart of one rig."""
     rig, ax = RIG[figure], axes[0]
     low, high = (end / RPM for end in load_scene(rig.scene).get("chart.x_range"))
     least, greatest = load_scene(rig.scene).get("chart.y_range")
     inertia = np.linspace(least, greatest, 61)
-    _boundaries(ax, rig, inertia, high)
+    _boundaries(ax, rig, inertia, high, looks)
     seen = [one for one in OBSERVATIONS if one.chart == figure]
-    _points(ax, seen)
+    for one in seen:
+        half = one.half_width or None
+        ax.errorbar(1e3 * one.si_inertia, one.speed, half, **looks["all"], **looks[one.kind])
     _margins(ax, rig, (low, high))
     ax.set(xlim=(1e3 * least, 1e3 * greatest), ylim=(low, high))
     compared = [one for one in seen if one.region]
@@ -115,7 +117,9 @@ def chart(axes: Panels, figure: str) -> Drawn:
     return Drawn(values, tables=[rows] if seen else ())
 
 
-def _boundaries(ax: Axes, rig: Rig, inertia: Array, high: float) -> None:
+def _boundaries(
+    ax: Axes, rig: Rig, inertia: Array, high: float, looks: Mapping[str, Mapping[str, Any]]
+) -> None:
     across = 1e3 * inertia
     # Beyond the picture every value does; infinite ones cannot be drawn.
     thesis, complete = (
@@ -125,30 +129,10 @@ def _boundaries(ax: Axes, rig: Rig, inertia: Array, high: float) -> None:
     ax.fill_between([], [], color=_FILL, label="complete equation, unstable")
     for i, n in enumerate(_REGIONS):
         ax.fill_between(across, complete[0, i], complete[1, i], color=_FILL, lw=0)
-        style, label = (
-            ("--", r"(6.18), with resonance $\Omega/n$")
-            if n % 2 == 0
-            else (":", r"(6.18), instability alone, $2\Omega/n$")
-        )
+        look = looks["odd" if n % 2 else "even"]
         for k in (0, 1):
             ax.plot(across, complete[k, i], color=COLOURS[1], lw=0.8)
-            named = label if i < 2 and k == 0 else None
-            ax.plot(across, thesis[k, i], style, color=COLOURS[0], lw=1.3, label=named)
-
-
-def _points(ax: Axes, seen: Sequence[Observation]) -> None:
-    marks = {
-        "resonance": ("o", "white", "resonance quoted"),
-        "onset": ("^", "black", "instability quoted: onset, range"),
-        "range": ("^", "black", "instability quoted: onset, range"),
-        "end": ("v", "white", "stable again, quoted"),
-        "stable": ("s", "white", "stable, quoted"),
-    }
-    edges: dict[str, Any] = {"ms": 6, "mec": "black", "ecolor": "black", "capsize": 3, "zorder": 5}
-    for one in seen:
-        shape, face, label = marks[one.kind]
-        place, half = (1e3 * one.si_inertia, one.speed), one.half_width or None
-        ax.errorbar(*place, yerr=half, fmt=shape, mfc=face, label=label, **edges)
+            ax.plot(across, thesis[k, i], color=COLOURS[0], lw=1.3, **look)
 
 
 def _margins(ax: Axes, rig: Rig, window: tuple[float, float]) -> None:

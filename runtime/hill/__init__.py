@@ -37,18 +37,4 @@ if TYPE_CHECKING:
     from .solutions import boundary_solution as boundary_solution
     from .thresholds import critical_damping as critical_damping
 
-__all__ = on_first_use(
-    globals(),
-    {
-        "boundaries": "Boundaries hill_boundaries",
-        "exponents": "characteristic_exponents",
-        "form": "HillForm hill_form",
-        "half_trace": "discriminant",
-        "mathieu": "Mathieu",
-        "meissner": "Meissner",
-        "perturbation": "PerturbationBoundaries perturbation_boundaries",
-        "series": "BoundarySeries boundary_series",
-        "solutions": "boundary_solution",
-        "thresholds": "critical_damping",
-    },
-)
+__all__ = on_first_use(globals())

@@ -24,19 +24,4 @@ if TYPE_CHECKING:
     from .slider_crank import SliderCrank as SliderCrank
     from .transmission import transmission_angle as transmission_angle
 
-__all__ = on_first_use(
-    globals(),
-    {
-        "classification": "classify",
-        "clearance": "clearance_range",
-        "curves": "coupler_curve",
-        "degrees_of_freedom": "mobility",
-        "four_bar": "FourBar FourBarMotion",
-        "harmonic_analysis": "harmonics",
-        "linkage": "Linkage Motion",
-        "pictures": "animate",
-        "quick_return": "QuickReturn",
-        "slider_crank": "SliderCrank",
-        "transmission": "transmission_angle",
-    },
-)
+__all__ = on_first_use(globals())

@@ -27,13 +27,4 @@ if TYPE_CHECKING:
     from .swept import basins as basins
     from .swept import sweep_response as sweep_response
 
-__all__ = on_first_use(
-    globals(),
-    {
-        "amplitude": "AmplitudeLaw amplitude_law",
-        "loci": "SpecialCurve special_curve",
-        "response": "ResponseCurve response_curve",
-        "search": "CoexistingMotions coexisting_motions",
-        "swept": "Basins SweepResponse basins sweep_response",
-    },
-)
+__all__ = on_first_use(globals())

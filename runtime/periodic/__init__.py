@@ -34,15 +34,4 @@ if TYPE_CHECKING:
     from .prepared import prepare as prepare
     from .reduced import reduced_system as reduced_system
 
-__all__ = on_first_use(
-    globals(),
-    {
-        "motion": "Trajectory simulate",
-        "multipliers": (
-            "FloquetMultipliers Monodromy cycles_to_settle floquet_multipliers monodromy"
-        ),
-        "periodic_motion": "SteadyState steady_state",
-        "prepared": "Prepared prepare",
-        "reduced": "reduced_system",
-    },
-)
+__all__ = on_first_use(globals())

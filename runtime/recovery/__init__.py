@@ -27,15 +27,4 @@ if TYPE_CHECKING:
     from .stresses import stress as stress
     from .stresses import stress_operator as stress_operator
 
-__all__ = on_first_use(
-    globals(),
-    {
-        "beam_forces": "recover",
-        "beam_motion": "BeamMotion",
-        "elastic_curve": "ElasticCurve elastic_coupler_curve",
-        "pin_forces": "pin_reactions",
-        "strain_energy": "beam_energies",
-        "stress_over_speed": "stress_curve",
-        "stresses": "stress stress_operator",
-    },
-)
+__all__ = on_first_use(globals())

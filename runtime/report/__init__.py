@@ -10,4 +10,4 @@ if TYPE_CHECKING:
     from .page import Report as Report
     from .page import make_report as make_report
 
-__all__ = on_first_use(globals(), {"page": "Report make_report"})
+__all__ = on_first_use(globals())

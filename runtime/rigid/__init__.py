@@ -36,17 +36,4 @@ if TYPE_CHECKING:
     from .peaks import ForcePeak as ForcePeak
     from .peaks import force_peaks as force_peaks
 
-__all__ = on_first_use(
-    globals(),
-    {
-        "balancing": "Balancing balance trade_off",
-        "counterweights": "Bounds Counterweight case_counterweights with_counterweights",
-        "flywheel": "flywheel_inertia torque_fluctuation",
-        "forces": "RigidForces driving_torque pin_forces rigid_forces shaking_force shaking_moment",
-        "loads": "Load Spring TorsionSpring",
-        "machine": "Machine",
-        "masses": "MassDistribution",
-        "motor_run": "RunUp TorqueLine run_up",
-        "peaks": "ForcePeak force_peaks",
-    },
-)
+__all__ = on_first_use(globals())

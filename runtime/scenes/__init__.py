@@ -15,10 +15,4 @@ if TYPE_CHECKING:
     from .scene import ReadOnlyTable as ReadOnlyTable
     from .scene import Scene as Scene
 
-__all__ = on_first_use(
-    globals(),
-    {
-        "loader": "list_scenes load_scene scene_from_document scene_titles with_numbers",
-        "scene": "ReadOnlyTable Scene",
-    },
-)
+__all__ = on_first_use(globals())

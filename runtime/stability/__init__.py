@@ -30,14 +30,4 @@ if TYPE_CHECKING:
     from .meetings import resonances as resonances
     from .tongues import tongue as tongue
 
-__all__ = on_first_use(
-    globals(),
-    {
-        "boundary_speeds": "speed_boundaries",
-        "chart": "StabilityChart stability_chart",
-        "edges": "StabilityEdges stability_edges",
-        "from_feet": "tongue_curves",
-        "meetings": "resonances",
-        "tongues": "tongue",
-    },
-)
+__all__ = on_first_use(globals())

@@ -13,7 +13,4 @@ if TYPE_CHECKING:
     from .sweeping import estimate_sweep as estimate_sweep
     from .sweeping import sweep as sweep
 
-__all__ = on_first_use(
-    globals(),
-    {".core.workers": "WorkersLost process_pool", "sweeping": "Sweep estimate_sweep sweep"},
-)
+__all__ = on_first_use(globals())

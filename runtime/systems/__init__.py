@@ -19,13 +19,4 @@ if TYPE_CHECKING:
     from .rod.floating import free_free_rod as free_free_rod
     from .rod.linear import rod_system as rod_system
 
-__all__ = on_first_use(
-    globals(),
-    {
-        ".core.families.modal_damping": "with_modal_damping",
-        ".core.modules": "find_module",
-        "assembly": "assemble",
-        "rod.floating": "free_free_rod",
-        "rod.linear": "rod_system",
-    },
-)
+__all__ = on_first_use(globals())

@@ -22,14 +22,4 @@ if TYPE_CHECKING:
     from .polynomials import PolynomialBasis as PolynomialBasis
     from .polynomials import TwoSegmentBasis as TwoSegmentBasis
 
-__all__ = on_first_use(
-    globals(),
-    {
-        "basis": "MovingBasis",
-        "floating": "FreeFreeRod free_free_rod",
-        "free_free": "FreeFreeBasis FreeFreeModes",
-        "linear": "rod_system",
-        "overhang": "OverhangBasis",
-        "polynomials": "PolynomialBasis TwoSegmentBasis",
-    },
-)
+__all__ = on_first_use(globals())

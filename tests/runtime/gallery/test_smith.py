@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.gallery import smith_equation, smith_responses, smith_speeds
+from elastolink.runtime.gallery import smith_equation, smith_speeds
 from elastolink.runtime.gallery.sketch import free_bodies
 from elastolink.runtime.gallery.smith_balancing import (
     INCH,
@@ -137,7 +137,7 @@ def test_extremes_are_those_of_the_steady_peaks():
     # Both take the largest of even angles, here 256 or more of them.
     assert size == pytest.approx(1e3 * peak, rel=1e-3)
     for speed, place in ((400.0, 391.0), (530.0, 520.0)):
-        assert smith_responses.resonance(LAST, speed) == pytest.approx(place, abs=2.0)
+        assert LAST.resonance(speed) == pytest.approx(place, abs=2.0)
 
 
 @pytest.mark.parametrize("k", [0.0, 0.02, 0.3, 0.5, 2.0])

@@ -16,11 +16,9 @@ if TYPE_CHECKING:
     from .frames import dynamic_stiffness as dynamic_stiffness
     from .frames import element_matrices as element_matrices
     from .frames import log_determinant as log_determinant
-    from .frames import member_matrices as member_matrices
     from .held import buckling_speed as buckling_speed
     from .link_study import LinkFrequencies as LinkFrequencies
     from .link_study import link_frequencies as link_frequencies
-    from .link_study import pinned_frequency as pinned_frequency
     from .natural import NaturalFrequencies as NaturalFrequencies
     from .natural import draw_mode as draw_mode
     from .natural import draw_modes as draw_modes
@@ -34,9 +32,9 @@ __all__ = on_first_use(
         "campbell_diagram": "campbell",
         "counting": "wittrick_williams",
         "critical": "critical_speeds",
-        "frames": "dynamic_stiffness element_matrices log_determinant member_matrices",
+        "frames": "dynamic_stiffness element_matrices log_determinant",
         "held": "buckling_speed",
-        "link_study": "LinkFrequencies link_frequencies pinned_frequency",
+        "link_study": "LinkFrequencies link_frequencies",
         "natural": "NaturalFrequencies draw_mode draw_modes natural_frequencies",
         "resonance_curves": "ResonanceCurve resonance_curve",
     },

@@ -21,15 +21,7 @@ from ..core.families import Array, Transcendental
 from ..core.inputs import is_finite, is_whole, numbers_in_a_row, require_kind
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
-from .frames import (
-    Assembly,
-    DynamicStiffness,
-    divided_for,
-    functions,
-    member_inertias,
-    narrow_enough,
-    phases,
-)
+from .frames import Assembly, DynamicStiffness, divided_for, functions
 
 UNIT = 2.0**-53
 
@@ -43,9 +35,9 @@ def quadratic_forms(
     included: u times them is what rounding does.
     """
     if mass is None:
-        _, mass = assembly.local_matrices(omega)
+        _, mass = assembly.members.matrices(omega)
     # (D(0) - D(omega)) / omega^2 of the pieces.
-    inertia = np.asarray(member_inertias(omega, *assembly.data))
+    inertia = assembly.members.inertias(omega)
     ends = assembly.local @ vectors
     felt = np.abs(assembly.local) @ np.abs(vectors)  # what rounding sees
     nodes = assembly.reduction @ vectors
@@ -64,7 +56,7 @@ def quadratic_forms(
 
 def _strain_forms(assembly: Assembly, ends: Array, felt: Array) -> tuple[Array, Array]:
     """Return the static strain energy, twice, by stretch and turning against the chord."""
-    length, bending, axial, _ = assembly.data
+    length, bending, axial, _ = assembly.members
     stiff = np.where(np.isinf(axial), 0.0, axial) / length
     span = length[:, None]
     stretch = ends[:, 3] - ends[:, 0]
@@ -90,7 +82,7 @@ def _symmetric(matrix: Array) -> Array:
 
 def signs(assembly: Assembly, omega: float) -> tuple[int, bool]:
     """Return the number of negative eigenvalues of D at a frequency, and whether it is certain."""
-    local, _ = assembly.local_matrices(omega)
+    local, _ = assembly.members.matrices(omega)
     lumps = assembly.springs - omega**2 * assembly.lumped_mass
     matrix = assembly.assembled(local, lumps)
     if not np.all(np.isfinite(matrix)):
@@ -106,19 +98,15 @@ def signs(assembly: Assembly, omega: float) -> tuple[int, bool]:
     return int(np.sum(values < 0.0)), certain
 
 
-@dataclass(frozen=True)
-class Modal:
-    """``D x = mu M x`` at one frequency: mu is what is missing to the squares of frequencies."""
+def modal(assembly: Assembly, omega: float) -> tuple[Array, Array]:
+    """Return mu, rising, and x of ``D x = mu M x`` at a frequency [rad/s] away from the poles.
 
-    values: Array  # mu, ascending, (n,)
-    vectors: Array  # x, of unit generalised mass, (size, n)
-
-
-def modal(assembly: Assembly, omega: float) -> Modal:
-    """Solve ``D x = mu M x`` at a frequency [rad/s] away from the poles."""
+    mu is what is missing to the squares of the frequencies; the columns x ``(size, n)`` have unit
+    generalised mass.
+    """
     from scipy.linalg import eigh
 
-    local, local_mass = assembly.local_matrices(omega)
+    local, local_mass = assembly.members.matrices(omega)
     lumps = assembly.springs - omega**2 * assembly.lumped_mass
     stiffness = assembly.assembled(local, lumps)
     mass = assembly.assembled(local_mass, assembly.lumped_mass)
@@ -130,13 +118,13 @@ def modal(assembly: Assembly, omega: float) -> Modal:
     near = np.abs(values) <= 30.0 * omega**2
     if near.any():
         values[near], vectors[:, near] = projected(assembly, omega, vectors[:, near], local_mass)
-    return Modal(values, vectors)
+    return values, vectors
 
 
 def projected(
     assembly: Assembly, omega: float, vectors: Array, mass: Array | None = None
 ) -> tuple[Array, Array]:
-    """Return the values and vectors of :class:`Modal` within the span of some columns."""
+    """Return the values and vectors of :func:`modal` within the span of some columns."""
     from scipy.linalg import eigh
 
     stiffness, heavy, _ = quadratic_forms(assembly, omega, vectors, mass)
@@ -177,7 +165,7 @@ def certain_count(problem: DynamicStiffness, omega: float) -> tuple[float, int]:
 
 def _count(finer: DynamicStiffness, omega: float) -> int:
     """Return how many frequencies lie below one that is no pole of the pieces."""
-    negative = np.sum(modal(finer.assembly, omega).values < 0.0)
+    negative = np.sum(modal(finer.assembly, omega)[0] < 0.0)
     return round(float(finer.poles(omega))) + int(negative)
 
 
@@ -208,7 +196,9 @@ def isolate(
 def _solvable(problem: DynamicStiffness, item: Interval) -> bool:
     """Return whether an interval is narrow enough for its frequencies to be computed."""
     width = (item.high - item.low) / item.high
-    narrow = narrow_enough(problem, item.high)
+    # Within this, 2 % at most, no member's phase changes by 0.3.
+    z, b = problem.assembly.members.phases(item.high)
+    narrow = float(min(0.02, 0.3 / max(np.max(z) / 2.0, np.max(b))))
     return width <= narrow and (item.last == item.first + 1 or width <= narrow**2)
 
 
@@ -236,9 +226,9 @@ def _newton(finer: DynamicStiffness, item: Interval, number: int) -> float:
     low, high = item.low, item.high
     omega = (low + high) / 2.0
     for _ in range(100):
-        found = modal(finer.assembly, omega)
+        values, _ = modal(finer.assembly, omega)
         index = number - round(float(finer.poles(omega))) - 1
-        step = float(found.values[min(max(index, 0), finer.size - 1)])
+        step = float(values[min(max(index, 0), finer.size - 1)])
         low, high = (omega, high) if step > 0.0 else (low, omega)
         square = omega**2 + step
         if abs(step) <= 1e-8 * omega**2:  # Newton's error is the square of this
@@ -251,10 +241,10 @@ def _newton(finer: DynamicStiffness, item: Interval, number: int) -> float:
 def _together(finer: DynamicStiffness, rough: list[float], before: int) -> list[Mode]:
     """Return modes that are close, or a single one, with error bounds that counts confirm."""
     omega = float(np.mean(rough))
-    found = modal(finer.assembly, omega)
+    _, every = modal(finer.assembly, omega)
     index = before - round(float(finer.poles(omega)))
     index = min(max(index, 0), finer.size - len(rough))
-    chosen = found.vectors[:, index : index + len(rough)]
+    chosen = every[:, index : index + len(rough)]
     values, vectors = projected(finer.assembly, omega, chosen)
     places = np.sqrt(np.maximum(omega**2 + values, 0.0))
     _, mass, sizes = quadratic_forms(finer.assembly, omega, vectors)
@@ -292,8 +282,7 @@ class MemberShape:
     """Displacement of a beam along its length, at m places."""
 
     eta: Array  # places, in lengths, (m,)
-    # displacement in the beam's own axes [m], (m,)
-    along: Array
+    along: Array  # displacement in the beam's own axes [m], (m,)
     across: Array
     # derivatives of ``across`` by the place [rad, 1/m, 1/m^2], (m,)
     slope: Array
@@ -314,7 +303,7 @@ def member_shape(
     if not own:
         known = ", ".join(dict.fromkeys(piece.beam.name for piece in assembly.pieces))
         raise bad("beam", repr(beam), f"one of {known}", "correct the name")
-    z, b = phases(omega, *assembly.data)
+    z, b = assembly.members.phases(omega)
     whole = assembly.pieces[own[0]].beam.length
     starts = np.array([assembly.pieces[k].start for k in own]) / whole
     which = np.clip(np.searchsorted(starts, places, side="right") - 1, 0, len(own) - 1)
@@ -324,20 +313,10 @@ def member_shape(
         length = assembly.pieces[k].length
         inner = np.clip((places[here] - starts[number]) * whole / length, 0.0, 1.0)
         ends = assembly.local[k] @ vector
-        rows[:4, here] = _across(inner, float(z[k]), length, ends)
-        rows[4:, here] = _along(inner, float(b[k]), length, ends)
-    angle = assembly.angles[own[0]]
-    turned = (rows[4] + 1j * rows[0]) * np.exp(1j * angle)
-    return MemberShape(
-        eta=places,
-        along=rows[4],
-        across=rows[0],
-        slope=rows[1],
-        curvature=rows[2],
-        third=rows[3],
-        strain=rows[5],
-        displacement=np.stack([turned.real, turned.imag], axis=-1),
-    )
+        rows[1:5, here] = _across(inner, float(z[k]), length, ends)
+        rows[np.ix_([0, 5], here)] = _along(inner, float(b[k]), length, ends)
+    turned = (rows[0] + 1j * rows[1]) * np.exp(1j * assembly.angles[own[0]])
+    return MemberShape(places, *rows, np.stack([turned.real, turned.imag], axis=-1))
 
 
 def _across(xi: Array, z: float, length: float, ends: Array) -> Array:
@@ -536,7 +515,7 @@ def wittrick_williams(
 
 def rigid_motions(problem: DynamicStiffness) -> list[Mode]:
     """Return the motions that meet no stiffness, as modes of frequency 0."""
-    vectors = modal(problem.assembly, 0.0).vectors
+    _, vectors = modal(problem.assembly, 0.0)
     forms, _, sizes = quadratic_forms(problem.assembly, 0.0, vectors)
     # Motions whose strain energy is below this, over the sizes of its terms, meet no stiffness.
     soft = np.abs(np.diagonal(forms)) <= 1e-11 * sizes
@@ -545,7 +524,7 @@ def rigid_motions(problem: DynamicStiffness) -> list[Mode]:
 
 def _below_all(problem: DynamicStiffness, rigid: int) -> float:
     """Return a frequency below all that are not 0."""
-    length, bending, _, mass = problem.assembly.data
+    length, bending, _, mass = problem.assembly.members
     low = float(np.min(np.sqrt(bending / mass) / length**2))  # of the size of the members' own
     for _ in range(200):
         low, found = certain_count(problem, low)

@@ -7,6 +7,7 @@ mode by itself from intervals of constant frequency (Meissner's J_N, 7.11).
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic
+from ..core.maxima import local_maxima
 from ..core.results import Check
 from ..hill import Meissner, discriminant
 from ..periodic.lowest_modes import LowestModes
@@ -34,23 +36,24 @@ _BESIDE, _TURNED, _POLISHED = 1e-4, 3e-3, 2
 _ASIDE = 0.9
 
 
-class Maxima(NamedTuple):
-    """Local maxima over the speed of what the modes' multipliers say, ``(k,)`` each."""
+class Found(NamedTuple):
+    """Speeds that a method finds critical, ``(k,)`` each, in any order."""
 
-    speed: Array
-    """Crank speeds [rad/s]."""
-    mode: Whole
-    """Mode, from 1."""
-    value: Array
-    error: Array
-    """Absolute error of each speed [rad/s]."""
     method: str
-    checks: Mapping[str, Check]
+    speed: Array  # [rad/s]
+    mode: Whole  # from 1
+    error: Array  # absolute, of each speed [rad/s]
+    order: Whole | None = None  # None where the mode's mean frequency is to give it
+    # What the method measures there, 1 where it is nothing, and at the speeds that were scanned.
+    quantity: str = "none"
+    height: Array | None = None
+    scan: tuple[Array, Array] = (np.zeros(0), np.zeros(0))
+    checks: Mapping[str, Check] = MappingProxyType({})
 
 
 def multiplier_maxima(
     system: LinearPeriodic, speed_range: tuple[float, float], wanted: int
-) -> Maxima:
+) -> Found:
     """Return the local maxima over the speed [rad/s] of the real parts of the multipliers.
 
     Each mode's multiplier of the larger real part is followed over the speed; where its real part
@@ -102,7 +105,8 @@ def multiplier_maxima(
     sharp = 2.0 * np.abs(moved) + ROUNDED * noise * size * _BESIDE * at / np.abs(bend)
     # A multiplier's turn is its frequency over the speed: what it is off by, the speed is.
     error = np.where(smooth, np.minimum(sharp, rough), rough) + change * at
-    return Maxima(at, mode + 1, best, error, method, checks)
+    quantity = "real part of the multiplier"
+    return Found(method, at, mode + 1, error, quantity=quantity, height=best, checks=checks)
 
 
 def _blur(values: tuple[Array, Array, Array], across: Array, noise: float) -> Array:
@@ -186,7 +190,7 @@ def refined_maxima(
 
 def meissner_maxima(
     frequencies: Array, rounding: Array, period: float, speed_range: tuple[float, float]
-) -> Maxima:
+) -> Found:
     """Return the local maxima over the speed of Meissner's J_N, each mode by itself.
 
     Its frequency, in a column of ``(N, m)`` at even angles with N a multiple of 4, is constant in
@@ -213,7 +217,7 @@ def meissner_maxima(
         parts.append((place, np.full(len(place), mode + 1), value, error))
     speed, number, value, error = (np.concatenate(column) for column in zip(*parts, strict=True))
     method = f"local maxima of Meissner's J_{count}"
-    return Maxima(speed, number.astype(np.int64), value, error, method, {})
+    return Found(method, speed, number.astype(np.int64), error, quantity="J_N", height=value)
 
 
 def _nearest(places: Array, to: Array) -> Array:
@@ -238,8 +242,8 @@ def _meissner_maxima(
     number = int(np.ceil(waves * (1 / span[0] - 1 / span[1]) / 0.05)) + 8
     speed = 1.0 / np.linspace(1 / span[1], 1 / span[0], number)
     values = half_trace(speed)
-    row, mode = _peaks(values[:, None])
-    which = mode.astype(np.int64)
+    row = local_maxima(values)
+    which = np.zeros(len(row), dtype=np.int64)
     brackets = speed[row - 1], speed[row], speed[row + 1]
     around = values[row - 1], values[row], values[row + 1]
     at, best, _ = refined_maxima(half_trace, which, brackets, around)

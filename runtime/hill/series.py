@@ -208,7 +208,7 @@ def _uncertain(f: PeriodicFunction, n: int, k: int, size: float) -> float:
     point = np.array([[1.0], [0.0]])
     # Other phases, harmonic by harmonic: what cancels at one does not at another.
     others = [
-        effective_operator([_turned(f, phase, 2)], n, k, True).components(point)[1][-1, 0]
+        effective_operator((_turned(f, phase, 2),), n, k, True).components(point)[1][-1, 0]
         for phase in (0.7, 1.3, 2.1)
     ]
     return _ROUNDED * EPS * max(size, *(float(abs(other)) for other in others)) + given
@@ -219,7 +219,7 @@ def _alphas(f: PeriodicFunction, n: int, order: int, ratio: float) -> tuple[Arra
     # Also what the coefficients may be off by for a leading one that is zero or uncertain,
     # (order,).
     point = np.array([[1.0], [ratio]])
-    a, b = effective_operator([f], n, order, True).components(point)
+    a, b = effective_operator((f,), n, order, True).components(point)
     middle, drag = a[:, 0].real, a.imag
     half, doubt = np.zeros(order), np.zeros(order)
     # Damping is of the first order, and exact.

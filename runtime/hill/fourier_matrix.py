@@ -1,4 +1,4 @@
-"""Hill's matrix: where it is cut, how it is filled, its eigenvectors.
+"""Hill's matrix: where it is cut, and how it is filled.
 
 In the basis cos k theta, sin k theta (k whole, or half-whole: ``odd``) the matrix of the operator
 ``-d2/dtheta2 - 2 K d/dtheta - mu f`` is ``k^2 - 2 K d/dtheta - mu f``: symmetric without damping.
@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from functools import lru_cache
 from math import ceil, sqrt
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -81,16 +80,6 @@ def truncation(
         raise _too_large(reach, f)
     octave = 2.0 ** (0.25 * ceil(4.0 * math.log2(reach))) if reach > 1e-300 else 0.0
     return _truncation(f, max(octave, reach), highest, shift, goal)
-
-
-def finest(
-    f: PeriodicFunction, reach: float, highest: int, shift: float, goals: Sequence[float]
-) -> Truncation:
-    """Return the truncation at the first of some rising goals that can be reached."""
-    for goal in goals[:-1]:
-        with suppress(BadInput):
-            return truncation(f, reach, highest, shift, goal)
-    return truncation(f, reach, highest, shift, goals[-1])
 
 
 @lru_cache(maxsize=256)
@@ -256,25 +245,3 @@ def couplings(f: PeriodicFunction, size: int) -> Complex:
     """Return ``-c_(k-l)`` for all pairs of so many harmonics exp(i k theta), the mean left out."""
     every = np.arange(size)
     return np.asarray(-_waves(f, size)[np.subtract.outer(every, every)])
-
-
-def real_pairs(whole: Array) -> tuple[Array, Array, Array]:
-    """Return the real eigenvalues, rising, with right and left vectors of norm 1 as columns."""
-    import scipy.linalg
-
-    solved: Any = scipy.linalg.eig(whole, left=True, check_finite=False)
-    values, lefts, rights = solved
-    real = np.flatnonzero(values.imag == 0.0)
-    order = real[np.argsort(values[real].real)]
-    right, left = (
-        v[:, order].real / np.linalg.norm(v[:, order].real, axis=0) for v in (rights, lefts)
-    )
-    return values[order].real, right, left
-
-
-def exponentials(x: Array, odd: int) -> Complex:
-    """Turn coefficients of 1, sqrt 2 cos k theta, sqrt 2 sin k theta to those of exp(i k theta)."""
-    pairs = x[1 - odd :].reshape(-1, 2)
-    positive = np.sqrt(0.5) * (pairs[:, 0] - 1j * pairs[:, 1])
-    middle = np.zeros(0) if odd else x[:1]
-    return np.concatenate([positive[::-1].conj(), middle, positive])

@@ -153,7 +153,7 @@ class Closing(NamedTuple):
 
 def _closing(f: PeriodicFunction, n: int, mu: Array) -> Closing:
     """Return where region n closes, by perturbation where that has the smaller error."""
-    sharp = ends_at(f, mu, np.zeros_like(mu), (n,)).take(0)
+    sharp = ends_at(f, mu, np.zeros_like(mu), (n,))[:, 0]
     k, place, error = largest_exponent(f, n, mu, sharp)
     exact = Closing(k, place + k * k, error)
     coarse = np.flatnonzero(error > 1e-13 * k)

@@ -51,7 +51,7 @@ def quadratic_forms(
     sizes = strained_sizes + np.einsum("nak,nab,nbk->k", felt, entries, felt, optimize=True)
     weights = assembly.springs + omega**2 * assembly.lumped_mass
     sizes = sizes + np.sum(weights[:, None] * nodes**2, axis=0)
-    return _symmetric(plain), _symmetric(heavy), sizes
+    return (plain + plain.T) / 2.0, (heavy + heavy.T) / 2.0, sizes
 
 
 def _strain_forms(assembly: Assembly, ends: Array, felt: Array) -> tuple[Array, Array]:
@@ -74,10 +74,6 @@ def _strain_forms(assembly: Assembly, ends: Array, felt: Array) -> tuple[Array, 
 def _forms(matrices: Array, ends: Array) -> Array:
     count = ends.shape[-1]
     return np.asarray(ends.reshape(-1, count).T @ (matrices @ ends).reshape(-1, count))
-
-
-def _symmetric(matrix: Array) -> Array:
-    return np.asarray((matrix + matrix.T) / 2.0)
 
 
 def signs(assembly: Assembly, omega: float) -> tuple[int, bool]:
@@ -432,25 +428,6 @@ class FrameFrequencies(Result):
         return axes
 
 
-def bisected(problem: Transcendental, upto: float | None, count: int | None) -> FrameFrequencies:
-    """Return the frequencies of a problem by bisection on their number."""
-
-    def counted(omega: float) -> tuple[float, int]:
-        return omega, int(problem.count(omega))
-
-    high, total = counted(upto) if upto is not None else _above(counted, 1e-3, count or 1)
-    found = isolate(
-        counted,
-        Interval(0.0, high, 0, total),
-        lambda item: item.high - item.low <= 1e-12 * item.high,
-    )
-    number = [item.last - item.first for item in found]
-    places = np.repeat([(item.low + item.high) / 2.0 for item in found], number)
-    widths = np.repeat([(item.high - item.low) / 2.0 for item in found], number)
-    method = "Wittrick-Williams count, bisection"
-    return _result(problem, (places, widths), (), method, total, slice(count))
-
-
 def wittrick_williams(
     problem: Transcendental, *, upto: float | None = None, count: int | None = None
 ) -> FrameFrequencies:
@@ -494,9 +471,64 @@ def wittrick_williams(
     """
     _check(upto, count)
     require_kind("problem", problem, Transcendental, "make one with dynamic_stiffness")
-    if not isinstance(problem, DynamicStiffness):
-        return bisected(problem, upto, count)
-    modes = rigid_motions(problem)
+    modes: list[Mode] = []
+    if isinstance(problem, DynamicStiffness):
+        method = "Wittrick-Williams count, Newton's method on the eigenvalue of D"
+        modes, total = _solved(problem, upto, count)
+        omega, error = np.array([(mode.omega, mode.error) for mode in modes]).reshape(-1, 2).T
+    else:
+        method = "Wittrick-Williams count, bisection"
+        omega, error, total = _bisected(problem, upto, count)
+    chosen = slice(count if upto is None else int(np.sum(omega < upto)))
+    checks = {"frequencies not found": Check(float(abs(len(omega) - total)), 0.0)}
+    if isinstance(problem, DynamicStiffness):
+        uncertain = sum(not mode.certified for mode in modes[chosen])
+        checks["frequencies that counts do not confirm"] = Check(float(uncertain), 0.0)
+    # Those no farther from each other than their errors are a group.
+    apart = np.append(True, np.diff(omega) > error[1:] + error[:-1])
+    group = np.cumsum(apart[: len(omega)])
+    return FrameFrequencies(
+        frequencies=omega[chosen],
+        multiplicity=np.bincount(group)[group][chosen],
+        modes=tuple(modes[chosen]),
+        problem=problem,
+        method=method,
+        error=error[chosen],
+        error_norm="each frequency, absolute [rad/s]",
+        error_kind="bound",
+        checks=checks,
+        provenance=provenance(problem.provenance),
+    )
+
+
+def _bisected(
+    problem: Transcendental, upto: float | None, count: int | None
+) -> tuple[Array, Array, int]:
+    """Return the frequencies of a problem by bisection on their number, their errors, and it."""
+
+    def counted(omega: float) -> tuple[float, int]:
+        return omega, int(problem.count(omega))
+
+    high, total = counted(upto) if upto is not None else _above(counted, 1e-3, count or 1)
+    found = isolate(
+        counted,
+        Interval(0.0, high, 0, total),
+        lambda item: item.high - item.low <= 1e-12 * item.high,
+    )
+    number = [item.last - item.first for item in found]
+    ends = np.repeat([(item.low, item.high) for item in found], number, axis=0).reshape(-1, 2)
+    return ends.mean(axis=1), np.diff(ends)[:, 0] / 2.0, total
+
+
+def _solved(
+    problem: DynamicStiffness, upto: float | None, count: int | None
+) -> tuple[list[Mode], int]:
+    """Return the modes of a structure, and how many there are to be."""
+    _, vectors = modal(problem.assembly, 0.0)
+    forms, _, sizes = quadratic_forms(problem.assembly, 0.0, vectors)
+    # Motions whose strain energy is below this, over the sizes of its terms, meet no stiffness.
+    soft = np.abs(np.diagonal(forms)) <= 1e-11 * sizes
+    modes = [Mode(0.0, 0.0, problem, vector, True) for vector in vectors.T[soft]]
     counted = partial(certain_count, problem)
     low, total = _below_all(problem, len(modes)), len(modes)
     high = upto if upto is not None else _above(counted, low, count or 1)[0]
@@ -505,21 +537,7 @@ def wittrick_williams(
         whole = Interval(low, high, len(modes), total)
         for item in isolate(counted, whole, partial(_solvable, problem)):
             modes += solve(problem, item)
-    omega, error = (
-        np.array([getattr(mode, name) for mode in modes]) for name in ("omega", "error")
-    )
-    chosen = slice(count if upto is None else int(np.sum(omega < upto)))
-    method = "Wittrick-Williams count, Newton's method on the eigenvalue of D"
-    return _result(problem, (omega, error), tuple(modes), method, total, chosen)
-
-
-def rigid_motions(problem: DynamicStiffness) -> list[Mode]:
-    """Return the motions that meet no stiffness, as modes of frequency 0."""
-    _, vectors = modal(problem.assembly, 0.0)
-    forms, _, sizes = quadratic_forms(problem.assembly, 0.0, vectors)
-    # Motions whose strain energy is below this, over the sizes of its terms, meet no stiffness.
-    soft = np.abs(np.diagonal(forms)) <= 1e-11 * sizes
-    return [Mode(0.0, 0.0, problem, vector, True) for vector in vectors.T[soft]]
+    return modes, total
 
 
 def _below_all(problem: DynamicStiffness, rigid: int) -> float:
@@ -544,45 +562,6 @@ def _above(counted: Counted, low: float, count: int) -> tuple[float, int]:
         if found >= count:
             return high, found
     raise bad("count", str(count), "fewer frequencies", "ask for fewer")
-
-
-def _result(
-    problem: Transcendental,
-    found: tuple[Array, Array],
-    modes: tuple[Mode, ...],
-    method: str,
-    total: int,
-    chosen: slice,
-) -> FrameFrequencies:
-    """Return those chosen of the frequencies and errors that were found."""
-    omega, error = found
-    checks = {"frequencies not found": Check(float(abs(len(omega) - total)), 0.0)}
-    if isinstance(problem, DynamicStiffness):
-        uncertain = sum(not mode.certified for mode in modes[chosen])
-        checks["frequencies that counts do not confirm"] = Check(float(uncertain), 0.0)
-    return FrameFrequencies(
-        frequencies=omega[chosen],
-        multiplicity=multiplicities(omega, error)[chosen],
-        modes=modes[chosen],
-        problem=problem,
-        method=method,
-        error=error[chosen],
-        error_norm="each frequency, absolute [rad/s]",
-        error_kind="bound",
-        checks=checks,
-        provenance=provenance(problem.provenance),
-    )
-
-
-def multiplicities(omega: Array, error: Array) -> NDArray[np.int64]:
-    """Return for each frequency how many are no farther from each other than their errors."""
-    found = np.ones(len(omega), dtype=np.int64)
-    start = 0
-    for i in range(1, len(omega) + 1):
-        if i == len(omega) or omega[i] - omega[i - 1] > error[i] + error[i - 1]:
-            found[start:i] = i - start
-            start = i
-    return found
 
 
 def _check(upto: float | None, count: int | None) -> None:

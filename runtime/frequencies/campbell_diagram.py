@@ -22,7 +22,7 @@ from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
 from ..periodic.lowest_modes import FreeMotions, LowestModes, free_motions
-from .held import HeldModes, buckling_speed, held_modes, mean_frequencies
+from .held import HeldCrank, HeldModes, buckling_speed, mean_frequencies
 
 
 def running_frequencies(
@@ -39,7 +39,7 @@ def running_frequencies(
     frequency, growth, share = np.empty((3, *held.shape))
     count, before, farthest = held.shape[1], rest, 0.0
     truncated, error = LowestModes(system, count).required(float(speeds[-1]))
-    modes = held_modes(system, even_angles(system.period, _STATIONS), {})
+    modes = HeldCrank(system, {}).modes(even_angles(system.period, _STATIONS))
     for row, speed in enumerate(speeds.tolist()):
         found = free_motions(truncated, speed, _STATIONS)
         phase, rate, share[row] = _named(found, modes, speed, count)

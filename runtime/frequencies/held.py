@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,8 +20,7 @@ from ..periodic.moving_basis import flexible_modes
 _EPS = float(np.finfo(float).eps)
 
 
-@dataclass(frozen=True)
-class HeldModes:
+class HeldModes(NamedTuple):
     """Natural frequencies and shapes at crank angles."""
 
     frequency: Array  # natural frequencies [rad/s], rising, (nt, n)
@@ -29,47 +29,51 @@ class HeldModes:
     error: Array  # round-off of the frequencies [rad/s], (nt, n)
 
 
-def held_arrays(
-    system: LinearPeriodic, theta: Array, parameters: Mapping[str, float], speed: float
-) -> tuple[Array, Array]:
-    """Return M and K + Kg at crank angles, Kg with the axial forces of a crank speed."""
-    mass = system.array("M", theta, **parameters)
-    stiffness = system.array("K", theta, **parameters)
-    if system.has("Kg"):
-        stiffness = stiffness + system.array("Kg", theta, speed, **parameters)
-    return mass, stiffness
+@dataclass(frozen=True)
+class HeldCrank:
+    """A system with its crank held, under the axial forces of a crank speed [rad/s]."""
+
+    system: LinearPeriodic
+    parameters: Mapping[str, float]
+    speed: float = 0.0
+
+    def arrays(self, theta: Array) -> tuple[Array, Array]:
+        """Return M and K + Kg at crank angles."""
+        mass = self.system.array("M", theta, **self.parameters)
+        stiffness = self.system.array("K", theta, **self.parameters)
+        if self.system.has("Kg"):
+            added = self.system.array("Kg", theta, self.speed, **self.parameters)
+            stiffness = stiffness + added
+        return mass, stiffness
+
+    def modes(self, theta: Array) -> HeldModes:
+        """Return natural frequencies and shapes at crank angles ``(nt,)`` [rad].
+
+        A mass or stiffness that is not positive definite at some angle is refused.
+        """
+        mass, stiffness = self.arrays(theta)
+        try:
+            _, shape = flexible_modes(mass, stiffness)
+        except np.linalg.LinAlgError:
+            raise _indefinite(mass, stiffness, theta) from None
+        square, error = _quotients(mass, stiffness, shape)
+        shape = shape / np.sqrt(np.einsum("tik,tij,tjk->tk", shape, mass, shape))[:, None, :]
+        order = np.argsort(square, axis=1, kind="stable")
+        frequency, error = np.sqrt(square), 0.5 * error / np.sqrt(square)
+        return HeldModes(
+            np.take_along_axis(frequency, order, axis=1),
+            np.take_along_axis(shape, order[:, None, :], axis=2),
+            mass,
+            np.take_along_axis(error, order, axis=1),
+        )
 
 
 def held_frequencies(
     system: LinearPeriodic, theta: Array, parameters: Mapping[str, float], speed: float = 0.0
 ) -> tuple[Array, Array]:
     """Return natural frequencies [rad/s] at crank angles and their round-off, ``(nt, n)`` each."""
-    held = held_modes(system, theta, parameters, speed)
+    held = HeldCrank(system, parameters, speed).modes(theta)
     return held.frequency, held.error
-
-
-def held_modes(
-    system: LinearPeriodic, theta: Array, parameters: Mapping[str, float], speed: float = 0.0
-) -> HeldModes:
-    """Return natural frequencies and shapes at crank angles ``(nt,)`` [rad].
-
-    A mass or stiffness that is not positive definite at some angle is refused.
-    """
-    mass, stiffness = held_arrays(system, theta, parameters, speed)
-    try:
-        _, shape = flexible_modes(mass, stiffness)
-    except np.linalg.LinAlgError:
-        raise _indefinite(mass, stiffness, theta) from None
-    square, error = _quotients(mass, stiffness, shape)
-    shape = shape / np.sqrt(np.einsum("tik,tij,tjk->tk", shape, mass, shape))[:, None, :]
-    order = np.argsort(square, axis=1, kind="stable")
-    frequency, error = np.sqrt(square), 0.5 * error / np.sqrt(square)
-    return HeldModes(
-        np.take_along_axis(frequency, order, axis=1),
-        np.take_along_axis(shape, order[:, None, :], axis=2),
-        mass,
-        np.take_along_axis(error, order, axis=1),
-    )
 
 
 def _quotients(mass: Array, stiffness: Array, shape: Array) -> tuple[Array, Array]:
@@ -282,8 +286,8 @@ def buckling_speed(system: LinearPeriodic, **parameters: float) -> Buckling:
 
 def _softening(system: LinearPeriodic, theta: Array, parameters: dict[str, float]) -> Array:
     """Return, at each angle, the largest eigenvalue of -(what a unit speed adds) over K."""
-    mass, resting = held_arrays(system, theta, parameters, 0.0)
-    added = held_arrays(system, theta, parameters, 1.0)[1] - resting
+    mass, resting = HeldCrank(system, parameters).arrays(theta)
+    added = HeldCrank(system, parameters, 1.0).arrays(theta)[1] - resting
     try:
         half = np.linalg.inv(np.linalg.cholesky(resting))
     except np.linalg.LinAlgError:

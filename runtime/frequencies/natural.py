@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -19,8 +19,8 @@ from ..core.families import Array, LinearPeriodic, require_system
 from ..core.inputs import is_finite, require_whole
 from ..core.plotting import Axes, axes_or_new, new_figure
 from ..core.results import Check, Result, provenance
-from .held import assurance, crank_angles, cycle_mean, held_arrays, held_frequencies, held_modes
-from .tracking import CLEAR, Arrays, Curves, Encounter, Modes, Walk, followed_shapes, walk
+from .held import HeldCrank, assurance, crank_angles, cycle_mean
+from .tracking import CLEAR, Curves, Encounter, Walk, followed_shapes, walk
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -213,15 +213,14 @@ def natural_frequencies(
     if not (is_finite(speed) and 0.0 <= speed <= 1e100):
         raise bad("speed", repr(speed), "a crank speed [rad/s], 0 or more", "correct it")
     period, start = system.period, float(angles[0])
-    modes = partial(held_modes, system, parameters=parameters, speed=float(speed))
-    arrays = partial(held_arrays, system, parameters=parameters, speed=float(speed))
-    path = _walk(modes, arrays, period, count, start)
-    held = modes(angles)
+    crank = HeldCrank(system, parameters, float(speed))
+    path = _walk(crank, count, start)
+    held = crank.modes(angles)
     curves = Curves(path, start, system.size, count, period)
     tracked, branch = curves.follow(angles, held.frequency), curves.labels(angles)[:, :count]
-    shape, sign = followed_shapes(modes, curves, angles)
-    values = partial(_values, system, parameters, float(speed), curves)
-    means, errors = cycle_mean(values, period, [one.angle for one in path.encounters])
+    shape, sign = followed_shapes(crank, curves, angles)
+    breaks = [one.angle for one in path.encounters]
+    means, errors = cycle_mean(partial(_values, crank, curves), period, breaks)
     closure = curves.closure
     return NaturalFrequencies(
         method="generalised eigenvalue problem of K + Kg and M, followed by modal assurance",
@@ -250,29 +249,23 @@ def natural_frequencies(
     )
 
 
-def _walk(modes: Modes, arrays: Arrays, period: float, count: int, start: float) -> Walk:
+def _walk(crank: HeldCrank, count: int, start: float) -> Walk:
     """Return a turn of the crank, of so many modes that no requested curve leaves them."""
-    size = modes(np.array([start])).frequency.shape[-1]
+    size, period = crank.system.size, crank.system.period
     watched = min(count, size)
     while True:
-        path = walk(modes, arrays, period, watched)
+        path = walk(crank, watched)
         if Curves(path, start, size, count, period).highest < watched or watched == size:
             kept = tuple(one for one in path.encounters if one.lower <= max(count, watched))
             return Walk(kept, path.theta, path.assured)
         watched = min(watched + 4, size)
 
 
-def _values(
-    system: LinearPeriodic,
-    parameters: Mapping[str, float],
-    speed: float,
-    curves: Curves,
-    theta: Array,
-) -> tuple[Array, Array]:
+def _values(crank: HeldCrank, curves: Curves, theta: Array) -> tuple[Array, Array]:
     """Return frequencies by rank and by curve, and their round-off, ``(nt, 2 count)`` each."""
-    frequency, error = held_frequencies(system, theta, parameters, speed)
+    held = crank.modes(theta)
     both = []
-    for part in (frequency, error):
+    for part in (held.frequency, held.error):
         # A curve that comes back only after several turns has its mean over all of them.
         turns = [curves.follow(theta + k * curves.period, part) for k in range(curves.turns)]
         both.append(np.concatenate([part[:, : curves.count], np.mean(turns, axis=0)], axis=1))

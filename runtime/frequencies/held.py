@@ -217,11 +217,8 @@ def _panel_integrals(values: Values, panels: Array, nodes: int) -> tuple[Array, 
     place, weight = np.polynomial.legendre.leggauss(nodes)
     half = 0.5 * (panels[:, 1] - panels[:, 0])[:, None]
     theta = panels.mean(axis=1)[:, None] + half * place
-    value, error = values(theta.ravel())
-    shape = (*theta.shape, -1)
-    scaled = half * weight
-    found = np.einsum("pn,pnk->pk", scaled, value.reshape(shape))
-    rounding = np.einsum("pn,pnk->pk", scaled, error.reshape(shape))
+    both = np.reshape(values(theta.ravel()), (2, *theta.shape, -1))
+    found, rounding = np.einsum("pn,vpnk->vpk", half * weight, both)
     return found, rounding + 4 * _EPS * np.abs(found)
 
 

@@ -77,10 +77,10 @@ def multiplier_maxima(
     speed = np.clip(1.0 / np.linspace(1 / high, 1 / low, number), low, high)
     truncated, change = LowestModes(system, wanted).required(high)
     few = MatricesOverSpeed(truncated, (low, high), {}, _RTOL)
-    real = _larger(_multipliers(few, speed, wanted))
+    real = _multipliers(few, speed, wanted)
 
     def value(at: Array, mode: Whole) -> Array:
-        return np.asarray(_larger(_multipliers(few, at, wanted))[np.arange(len(at)), mode])
+        return np.asarray(_multipliers(few, at, wanted)[np.arange(len(at)), mode])
 
     row, mode = _peaks(real)
     brackets = speed[row - 1], speed[row], speed[row + 1]
@@ -90,7 +90,9 @@ def multiplier_maxima(
     matrices, relative = few(speed[row])
     noise = float(np.max(relative, initial=0.0))
     size = float(np.max(np.abs(matrices), initial=1.0))
-    blur = _blur(around, span, noise * size)
+    # Rounding leaves the place of a maximum open by its root.
+    curve = np.maximum(np.abs(around[0] - 2 * around[1] + around[2]), 1e-300)
+    blur = np.sqrt(2 * noise * size * (span**2 / 4) / curve)
     method = "local maxima of the real parts of the multipliers"
     if truncated.size < system.size:
         method += f", on {truncated.size} natural modes"
@@ -107,19 +109,6 @@ def multiplier_maxima(
     error = np.where(smooth, np.minimum(sharp, rough), rough) + change * at
     quantity = "real part of the multiplier"
     return Found(method, at, mode + 1, error, quantity=quantity, height=best, checks=checks)
-
-
-def _blur(values: tuple[Array, Array, Array], across: Array, noise: float) -> Array:
-    """Return how far the place of a maximum is open: rounding leaves it so by its root."""
-    # From the values before, at and after the highest sample, and how far the outer two are apart.
-    curve = np.abs(values[0] - 2 * values[1] + values[2])
-    return np.asarray(np.sqrt(2 * noise * (across**2 / 4) / np.maximum(curve, 1e-300)))
-
-
-def _larger(values: ComplexArray) -> Array:
-    """Return the larger real part of each mode's two multipliers, ``(ns, m)``."""
-    pairs = values.real.reshape(len(values), values.shape[-1] // 2, 2)
-    return np.asarray(np.max(pairs, axis=-1))
 
 
 def _peaks(values: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
@@ -257,15 +246,15 @@ def _meissner_maxima(
     return at, best, np.abs(moved) + np.minimum(noise, step)
 
 
-def _multipliers(few: MatricesOverSpeed, speed: Array, count: int) -> ComplexArray:
-    """Return the multipliers of the lowest modes ``(ns, 2 count)``, two to a mode."""
+def _multipliers(few: MatricesOverSpeed, speed: Array, count: int) -> Array:
+    """Return the larger real part of the two multipliers of each of the lowest modes."""
     half = few.system.size
     values, vectors = np.linalg.eig(few(speed)[0])
     # In velocities of time, not of angle, a state is the same at all speeds.
     states = np.asarray(vectors.astype(complex) * few.scale[:, None], dtype=np.complex128)
     states[:, half:] *= speed[:, None, None]
     order = np.argsort(_level(few.system, states), axis=-1, kind="stable")[:, : 2 * count]
-    return np.take_along_axis(values.astype(complex), order, axis=-1)
+    return np.take_along_axis(values.real, order, axis=-1).reshape(len(speed), count, 2).max(-1)
 
 
 def _level(system: LinearPeriodic, states: ComplexArray) -> Array:

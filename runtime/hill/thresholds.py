@@ -302,19 +302,18 @@ def _opening(closing: Solver, n: int, damping: Array, top: float) -> tuple[Array
     return out, float(grid[-1])
 
 
-def _sure(closing: Solver, mu: Array) -> Array:
-    known = closing(mu)
-    return known.damping - known.error
-
-
 def _climb(closing: Solver, grid: Array, most: float) -> tuple[Array, Array]:
     """Return the grid with the running maximum of the critical damping, as far as needed."""
-    # With the peaks between the values of the grid.  A decade at a time: small values of mu need
-    # small matrices.
+
+    def sure(mu: Array) -> Array:
+        known = closing(mu.ravel())
+        return np.reshape(known.damping - known.error, mu.shape)
+
+    # A decade at a time: small values of mu need small matrices.
     value = np.zeros(0)
     for part in np.array_split(grid, -(-grid.size // _PER_DECADE)):
         try:
-            value = np.concatenate([value, _sure(closing, part)])
+            value = np.concatenate([value, sure(part)])
         except BadInput:
             # Hill's matrix would be too large: the search ends here.
             if not value.size:
@@ -323,24 +322,14 @@ def _climb(closing: Solver, grid: Array, most: float) -> tuple[Array, Array]:
         if value.max() > most:
             break
     grid = grid[: value.size]
-    peaks, tops = _peaks(closing, grid, value)
-    order = np.argsort(np.concatenate([grid, peaks]), kind="stable")
-    grid, value = (np.concatenate(pair)[order] for pair in ((grid, peaks), (value, tops)))
-    return grid, np.maximum.accumulate(value)
-
-
-def _peaks(closing: Solver, grid: Array, value: Array) -> tuple[Array, Array]:
-    """Return the places of maxima near those on a grid, and the values there."""
+    # With the peaks between the values of the grid.
     inner = local_maxima(value)
-    if not inner.size:
-        return np.zeros(0), np.zeros(0)
-
-    def tops(x: Array) -> Array:
-        return _sure(closing, np.exp(x.ravel())).reshape(x.shape)
-
-    low, high = narrowed(tops, np.log(grid[inner - 1]), np.log(grid[inner + 1]), 3)
-    place = 0.5 * (low + high)
-    return np.exp(place), tops(place)
+    ends = np.log(grid[inner - 1]), np.log(grid[inner + 1])
+    low, high = narrowed(lambda x: sure(np.exp(x)), *ends, 3)
+    peaks = np.exp(0.5 * (low + high))
+    grid, value = np.append(grid, peaks), np.append(value, sure(peaks))
+    order = np.argsort(grid, kind="stable")
+    return grid[order], np.maximum.accumulate(value[order])
 
 
 def _refined(closing: Solver, wanted: Array, low: Array, high: Array) -> Array:

@@ -230,15 +230,14 @@ def transfer(f: PeriodicFunction, lam2: Range, mu: Range) -> Transfer:
     else:
         centre_m, half_m = 0.0, reach
     segments, q = _resolution(short, spread, size, reach)
-    table, degree, truncation = _expand(
-        short, (0.5 * (lam2[0] + lam2[1]), half_l), (centre_m, half_m), segments, q
-    )
+    middle = (0.5 * (lam2[0] + lam2[1]), half_l), (centre_m, half_m)
+    table, degree, truncation = _expand(short, *middle, segments, q)
     return Transfer(
         table=table,
         degree=degree,
         segments=segments,
-        lam2=(0.5 * (lam2[0] + lam2[1]), half_l),
-        mu=(centre_m, half_m),
+        lam2=middle[0],
+        mu=middle[1],
         truncation=truncation,
         size=size,
         spread=(half_l, half_m * bound),

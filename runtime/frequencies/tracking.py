@@ -7,7 +7,6 @@ shapes is clear, and every swap, and every least gap, is examined.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -327,13 +326,10 @@ class Curves:
     @property
     def turns(self) -> int:
         """Whole turns after which every requested curve has come back."""
-        step = np.argsort(self._passed[1][-1])
+        step = at = np.argsort(self._passed[1][-1])
         found = 1
-        for curve in range(self.count):
-            length, at = 1, int(step[curve])
-            while at != curve:
-                length, at = length + 1, int(step[at])
-            found = math.lcm(found, length)
+        while np.any(at[: self.count] != np.arange(self.count)):
+            at, found = step[at], found + 1
         return found
 
     def labels(self, theta: Array) -> Indices:

@@ -31,7 +31,7 @@ from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, provenance
 from .boundaries import Boundaries
 from .checks import Array, Mask
-from .fourier_matrix import by_parity, layout, stacked, truncation
+from .fourier_matrix import by_parity, squares, stacked, truncation
 
 # Integers of any length.  A wave holds real and imaginary parts, ``(2, L)``, of the coefficients of
 # exp(i k theta), k = -(L-1)/2 ... (L-1)/2, which is whole or half-whole.
@@ -223,7 +223,7 @@ class Spectrum(NamedTuple):
     # Approximate eigenvalues, rising, ``(count,)``; each true one lies within ``reach`` of its own
     # (proved).
     values: Array
-    vectors: Array  # in the basis of :func:`.fourier_matrix.layout`, ``(size, count)``
+    vectors: Array  # in the basis of :func:`.fourier_matrix.squares`, ``(size, count)``
     reach: float
     norm: float
     odd: int
@@ -267,7 +267,7 @@ def spectrum(
     matrix = stacked(f, odd, harmonic, np.array([mu]))[0]
     values, vectors = np.linalg.eigh(matrix)
     size = len(values)
-    wide = float(np.linalg.norm(layout(odd, harmonic).squares))
+    wide = float(np.linalg.norm(squares(odd, harmonic)))
     wide += np.sqrt(size) * abs(mu) * float(f.amplitudes[1:].sum())
     # Products of n terms, a few roundings more for the entries of the matrix and the scaling.
     gamma = 1.01 * (size + 16) * _U
@@ -329,7 +329,7 @@ class HillOperator:
 
 
 def wave(odd: int, column: Array) -> Exact:
-    """Round an eigenvector in the basis of :func:`.fourier_matrix.layout` to integers."""
+    """Round an eigenvector in the basis of :func:`.fourier_matrix.squares` to integers."""
     # From coefficients of 1, sqrt 2 cos k theta, sqrt 2 sin k theta to those of exp(i k theta).
     pairs = column[1 - odd :].reshape(-1, 2)
     positive = np.sqrt(0.5) * (pairs[:, 0] - 1j * pairs[:, 1])
@@ -457,7 +457,7 @@ class DampedProblem:
 
         self.coarse, self.k = coarse, k
         odd, harmonic = coarse.odd, coarse.harmonic
-        size = len(layout(odd, harmonic).squares)
+        size = len(squares(odd, harmonic))
         reach = harmonic + max(1, f.harmonics)
         # The damping couples no harmonics to those beyond.
         wide = stacked(f, odd, reach, np.array([mu]), k)[0]

@@ -155,34 +155,25 @@ def _too_large(reach: float, f: PeriodicFunction) -> BadInput:
     return bad("hill_boundaries", found, expected, "truncate the function or take a smaller mu")
 
 
-class Layout(NamedTuple):
-    """The squares of k in the basis of Hill's matrix, and the matrix of 2 d/dtheta in it."""
-
-    squares: Array
-    slope: Array
-
-
-@lru_cache(maxsize=64)
-def layout(odd: int, harmonic: int) -> Layout:
-    """Return the basis for k up to ``harmonic`` (whole) or so many half-whole k.
+def squares(odd: int, harmonic: int) -> Array:
+    """Return k^2 of each function of the basis, for k up to ``harmonic``, or so many half-whole k.
 
     It runs cos 0, cos 1, sin 1, ... or cos 1/2, sin 1/2, cos 3/2, ...
     """
     twice = np.arange(odd, 2 * harmonic + 1, 2)
-    slope = np.zeros((2 * twice.size, 2 * twice.size))
+    return np.repeat(np.square(0.5 * twice), 2)[1 - odd :]
+
+
+@lru_cache(maxsize=64)
+def slope(odd: int, harmonic: int) -> Array:
+    """Return the matrix of 2 d/dtheta in the basis of :func:`squares`, read-only."""
+    twice = np.arange(odd, 2 * harmonic + 1, 2)
+    out = np.zeros((2 * twice.size, 2 * twice.size))
     cos = 2 * np.arange(twice.size)
     # d/d theta takes cos k to -k sin k and sin k to k cos k, which stand side by side.
-    slope[cos + 1, cos], slope[cos, cos + 1] = -twice, twice
-    out = Layout(_squares(odd, harmonic), slope[1 - odd :, 1 - odd :])
-    for item in out:
-        item.setflags(write=False)
-    return out
-
-
-def _squares(odd: int, harmonic: int) -> Array:
-    """Return k^2 of each function of the basis; there is no sin 0."""
-    twice = np.arange(odd, 2 * harmonic + 1, 2)
-    return np.repeat(np.square(0.5 * twice), 2)[1 - odd :]
+    out[cos + 1, cos], out[cos, cos + 1] = -twice, twice
+    out.setflags(write=False)
+    return out[1 - odd :, 1 - odd :]
 
 
 def _waves(f: PeriodicFunction, size: int) -> Complex:
@@ -196,7 +187,7 @@ def _waves(f: PeriodicFunction, size: int) -> Complex:
 
 @lru_cache(maxsize=64)
 def matrix(f: PeriodicFunction, odd: int, harmonic: int) -> Array:
-    """Return the matrix of ``f - mean`` in the basis of :func:`layout`, read-only."""
+    """Return the matrix of ``f - mean`` in the basis of :func:`squares`, read-only."""
     twice = np.arange(odd, 2 * harmonic + 1, 2)
     c = _waves(f, 2 * harmonic + 1)
     apart, total = c[(twice[:, None] - twice) // 2], c[(twice[:, None] + twice) // 2]
@@ -216,12 +207,11 @@ def stacked(
     f: PeriodicFunction, odd: int, harmonic: int, mu: Array, damping: Array | float = 0.0
 ) -> Array:
     """Return ``k^2 - 2 K d/d theta - mu (f - mean)`` for mu and K ``(n,)``, one matrix each."""
-    where = layout(odd, harmonic)
     out: Array = np.negative(mu)[:, None, None] * matrix(f, odd, harmonic)
     size = out.shape[1]
-    out.reshape(mu.size, size * size)[:, :: size + 1] += where.squares
+    out.reshape(mu.size, size * size)[:, :: size + 1] += squares(odd, harmonic)
     if np.any(damping):
-        out -= np.reshape(damping, (-1, 1, 1)) * where.slope
+        out -= np.reshape(damping, (-1, 1, 1)) * slope(odd, harmonic)
     return out
 
 
@@ -231,13 +221,13 @@ def banded(f: PeriodicFunction, odd: int, harmonic: int, mu: float) -> Array:
     In this order of the basis the matrix has ``2 f.harmonics + 1`` diagonals below the main one,
     which from ``k = f.harmonics`` on repeat with each k.
     """
-    squares = _squares(odd, harmonic)
+    levels = squares(odd, harmonic)
     first, width = 2 * f.harmonics + 2 - odd, 2 * f.harmonics + 1
     corner = matrix(f, odd, 2 * f.harmonics + 2)
     band = np.array([np.append(corner.diagonal(-i), np.zeros(i)) for i in range(width + 1)])
-    columns = np.arange(squares.size)
+    columns = np.arange(levels.size)
     out = -mu * band[:, np.where(columns < first, columns, first + (columns - first) % 2)]
-    out[0] += squares
+    out[0] += levels
     return np.asarray(out)
 
 

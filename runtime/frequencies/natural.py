@@ -25,6 +25,8 @@ from .tracking import CLEAR, Curves, Encounter, Walk, followed_shapes, walk
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+ComplexArray = NDArray[np.complex128]
+
 _ENCOUNTERS = ("encounter_angle", "encounter_rank", "encounter_gap", "encounter_width")
 
 
@@ -278,28 +280,22 @@ def _kept(shape: Array, mass: Array) -> Array:
     return np.asarray(np.diagonal(found, axis1=-2, axis2=-1))
 
 
-def deflected_links(
-    structure: Structure, theta: float, shape: Array
-) -> dict[str, tuple[Array, Array]]:
-    """Return places on each rigid link and their displacements in a shape, ``(np, 2)`` each [m]."""
+def _deflected(structure: Structure, theta: float, shape: Array) -> dict[str, ComplexArray]:
+    """Return places on each rigid link and their displacements in a shape, ``(2, np)`` [m]."""
     full = np.zeros(len(structure.freedoms.all))
     full[structure.freedoms.free] = shape
     motion = structure.configuration(np.array([theta]))
-    found: dict[str, tuple[list[Array], list[Array]]] = {}
+    found: dict[str, ComplexArray] = {}
     places = np.linspace(0.0, 1.0, 17)
     for element in structure.elements:
-        beam = element.beam
+        name = element.beam.name
         along, across = placed_shapes(element, places)
-        own = motion[beam.name]
-        angle = float(own.angle[0])
-        axes = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-        local = in_own_axes(full[None, element.indices], axes[0, 0], axes[0, 1])[0]
-        moved = np.stack([along @ local, across @ local], axis=-1) @ axes
-        at = element.start + element.length * places
-        rigid, bent = found.setdefault(beam.name, ([], []))
-        rigid.append(own.origin[0] + at[:, None] * axes[0])
-        bent.append(moved)
-    return {name: (np.concatenate(a), np.concatenate(b)) for name, (a, b) in found.items()}
+        turn = np.exp(1j * float(motion[name].angle[0]))
+        local = in_own_axes(full[None, element.indices], turn.real, turn.imag)[0]
+        rigid = complex(*motion[name].origin[0]) + (element.start + element.length * places) * turn
+        both = np.stack([rigid, (along @ local + 1j * (across @ local)) * turn])
+        found[name] = np.concatenate([found.get(name, both[:, :0]), both], axis=1)
+    return found
 
 
 def draw_mode(
@@ -325,15 +321,16 @@ def draw_mode(
     at = int(np.argmin(np.abs(held.theta - theta)))
     if abs(held.theta[at] - theta) > 1e-9 or mode > held.shape.shape[-1]:
         raise bad("found", "no such angle or mode", "frequencies that have both", "leave it out")
-    links = deflected_links(structure, float(theta), held.shape[at, :, mode - 1])
+    links = _deflected(structure, float(theta), held.shape[at, :, mode - 1])
     longest = max(beam.length for beam in structure.beams)
-    largest = max(float(np.max(np.linalg.norm(bent, axis=1))) for _, bent in links.values())
+    largest = max(float(np.max(np.abs(bent))) for _, bent in links.values())
     # The largest deflection is drawn as an eighth of the longest link.
     factor = 0.12 * longest / largest
     ax = axes_or_new(ax)
     for rigid, bent in links.values():
-        ax.plot(*rigid.T, "--", color="0.6", lw=0.8)
-        ax.plot(*(rigid + factor * bent).T, color="C0", lw=1.5)
+        drawn = rigid + factor * bent
+        ax.plot(rigid.real, rigid.imag, "--", color="0.6", lw=0.8)
+        ax.plot(drawn.real, drawn.imag, color="C0", lw=1.5)
     for place in structure.places(np.array([theta])).values():
         ax.plot(*place[0], "o", color="0.3", ms=3, mfc="w")
     ax.set_aspect("equal")

@@ -385,19 +385,19 @@ def divided_for(
     z, b = members.phases(ends)
     for beam in problem.structure.beams:
         own = [k for k, p in enumerate(problem.assembly.pieces) if p.beam.name == beam.name]
-        whole_z = z[:, own[0]] * beam.length / members.length[own[0]]
-        whole_b = b[:, own[0]] * beam.length / members.length[own[0]]
-        scores = []
         offered = [shares for shares in _SHARES if len(shares) >= len(own)]
+        whole = beam.length / members.length[own[0]]
+        scores = []
         for shares in offered:
-            scores.append(_distance(np.outer(whole_z, shares), np.outer(whole_b, shares)))
+            phases = (np.outer(phase[:, own[0]] * whole, shares) for phase in (z, b))
+            scores.append(_distance(*phases))
             if scores[-1] > 0.6:
                 break
         best = offered[int(np.argmax(scores))]
         if len(best) > 1:
             chosen[beam.name] = best
-    whole = len(problem.assembly.pieces) == len(problem.structure.beams)
-    return problem if whole and not chosen else problem.divided(chosen)
+    undivided = len(problem.assembly.pieces) == len(problem.structure.beams)
+    return problem if undivided and not chosen else problem.divided(chosen)
 
 
 def _distance(z: Array, b: Array) -> float:

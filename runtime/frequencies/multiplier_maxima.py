@@ -83,10 +83,10 @@ def multiplier_maxima(
         return np.asarray(_multipliers(few, at, wanted)[np.arange(len(at)), mode])
 
     row, mode = _peaks(real)
-    brackets = speed[row - 1], speed[row], speed[row + 1]
-    around = real[row - 1, mode], real[row, mode], real[row + 1, mode]
-    at, best, width = refined_maxima(value, mode, brackets, around)
-    span = np.abs(brackets[2] - brackets[0])
+    near = np.add.outer([-1, 0, 1], row)
+    around = real[near, mode]
+    at, best, width = refined_maxima(value, mode, speed[near], around)
+    span = np.abs(speed[row + 1] - speed[row - 1])
     matrices, relative = few(speed[row])
     noise = float(np.max(relative, initial=0.0))
     size = float(np.max(np.abs(matrices), initial=1.0))
@@ -137,18 +137,19 @@ def _quartic(
 def refined_maxima(
     call: Callable[[Array, Whole], Array],
     which: Whole,
-    brackets: tuple[Array, Array, Array],
-    values: tuple[Array, Array, Array],
+    brackets: Array,
+    values: Array,
     *,
     steps: int = 24,
     rtol: float = 1e-7,
 ) -> tuple[Array, Array, Array]:
     """Refine maxima of many functions by parabolas; return places, values and errors ``(k,)``.
 
-    ``call`` takes places and ``which`` functions; ``brackets`` and ``values`` stand before, at and
-    after each maximum.  One has settled where a step is below ``rtol``: the values say no more.
+    ``call`` takes places and ``which`` functions; ``brackets`` and ``values``, ``(3, k)``, stand
+    before, at and after each maximum.  One has settled where a step is below ``rtol``: the values
+    say no more.
     """
-    x, f = np.stack(brackets), np.stack(values)
+    x, f = brackets.copy(), values.copy()
     moved = np.max(np.abs(x - x[1]), axis=0)
     for _ in range(steps):
         wide = moved > rtol * x[1]
@@ -233,9 +234,8 @@ def _meissner_maxima(
     values = half_trace(speed)
     row = local_maxima(values)
     which = np.zeros(len(row), dtype=np.int64)
-    brackets = speed[row - 1], speed[row], speed[row + 1]
-    around = values[row - 1], values[row], values[row + 1]
-    at, best, _ = refined_maxima(half_trace, which, brackets, around)
+    near = np.add.outer([-1, 0, 1], row)
+    at, best, _ = refined_maxima(half_trace, which, speed[near], values[near])
     step = _TURNED * at**2 / waves
     for _ in range(_POLISHED):
         moved, bend, _ = _quartic(half_trace, at, step, which, best)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil, log, pi, sqrt
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -226,16 +226,16 @@ class _Work:
         series = _series(direct, limits)
         if isinstance(series, int):
             return series
+        coefficients, everywhere, profile, defect = series
         self.interpolated = True
-        self.defect = max(self.defect, series.defect)
+        self.defect = max(self.defect, defect)
         u, v = chebyshev.unit(x, *limits[:2]), chebyshev.unit(y, *limits[2:])
-        rising = chebyshev.nodes(series.profile.size)[::-1]
-        error = np.interp(u, rising, series.profile[::-1]) + series.everywhere
+        error = np.interp(u, chebyshev.nodes(profile.size)[::-1], profile[::-1]) + everywhere
         if self.grid:
-            value = chebyshev.tensor_values(series.coefficients, u, v)
+            value = chebyshev.tensor_values(coefficients, u, v)
             error, scale = error[:, None], scale[:, None]
         else:
-            value = chebyshev.point_values(series.coefficients, u, v)
+            value = chebyshev.point_values(coefficients, u, v)
         if scale.any():
             factor = np.exp2(scale)
             value, error = value * factor, error * factor
@@ -258,20 +258,12 @@ class _Work:
         return value.reshape(shape), error.reshape(shape)
 
 
-class _Series(NamedTuple):
-    """Double Chebyshev series of the half trace over a box, with its error.
+def _series(polynomials: Transfer, limits: Box) -> tuple[Array, float, Array, float] | int:
+    """Interpolate over a box; the number of the axis to split where that would not do.
 
-    The error depends on lam2 alone: ``everywhere`` plus a profile over the nodes.
+    Return the coefficients of the double Chebyshev series; its error, which depends on lam2 alone,
+    as what it is everywhere and a profile over the nodes; and the defect of determinants.
     """
-
-    coefficients: Array
-    everywhere: float
-    profile: Array
-    defect: float
-
-
-def _series(polynomials: Transfer, limits: Box) -> _Series | int:
-    """Interpolate over a box; the number of the axis to split where that would not do."""
     x0, x1, y0, y1 = limits
     n = _guess(x1 - x0, x0) if x1 > x0 else 1
     m = _guess(polynomials.swing, 0.0) if y1 > y0 else 1
@@ -319,7 +311,7 @@ def _series(polynomials: Transfer, limits: Box) -> _Series | int:
         if tails[0] <= allowed * columns and tails[1] <= allowed * rows:
             # Errors of the nodal values stay where they are, but for a few per cent.
             everywhere = sum(tails) + 2.0 * EPS * float(sizes.sum()) + 0.05 * above * noise
-            return _Series(c, everywhere, above * profile, float(defect.max()))
+            return c, everywhere, above * profile, float(defect.max())
     return 0 if tails[0] > allowed * columns else 1
 
 

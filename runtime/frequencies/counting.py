@@ -202,16 +202,11 @@ def solve(problem: DynamicStiffness, item: Interval) -> list[Mode]:
     """Return the modes of an interval to full precision."""
     finer = divided_for(problem, item.low, item.high)
     numbers = range(item.first + 1, item.last + 1)
-    rough = sorted(_newton(finer, item, number) for number in numbers)
+    rough = np.sort([_newton(finer, item, number) for number in numbers])
     modes: list[Mode] = []
-    done = 0
-    while done < len(rough):
-        end = done + 1
-        # Nearer ones are computed together, in the span of their vectors.
-        while end < len(rough) and rough[end] - rough[end - 1] < 1e-7 * rough[end]:
-            end += 1
-        modes += _together(finer, rough[done:end], item.first + done)
-        done = end
+    # Near ones are computed together, in the span of their vectors.
+    for near in np.split(rough, np.flatnonzero(np.diff(rough) >= 1e-7 * rough[1:]) + 1):
+        modes += _together(finer, near, item.first + len(modes))
     return modes
 
 
@@ -234,7 +229,7 @@ def _newton(finer: DynamicStiffness, item: Interval, number: int) -> float:
     return omega
 
 
-def _together(finer: DynamicStiffness, rough: list[float], before: int) -> list[Mode]:
+def _together(finer: DynamicStiffness, rough: Array, before: int) -> list[Mode]:
     """Return modes that are close, or a single one, with error bounds that counts confirm."""
     omega = float(np.mean(rough))
     _, every = modal(finer.assembly, omega)

@@ -167,13 +167,11 @@ def refined_maxima(
         moved = np.where(wide, np.abs(trial - x[1]), moved)
         better = wide & (got > f[1])
         beyond = (trial - x[1]) * (x[2] - x[1]) > 0
-        for side, chosen in ((0, beyond), (2, ~beyond)):
-            # The old middle closes the bracket behind a better place.
-            own = better & chosen
-            x[side, own], f[side, own] = x[1, own], f[1, own]
-        for side, chosen in ((2, beyond), (0, ~beyond)):
-            own = wide & ~better & chosen
-            x[side, own], f[side, own] = trial[own], got[own]
+        # The worse one of the old middle and the new place closes the bracket on its side.
+        own = np.flatnonzero(wide)
+        side = np.where(better == beyond, 0, 2)[own]
+        x[side, own] = np.where(better, x[1], trial)[own]
+        f[side, own] = np.where(better, f[1], got)[own]
         x[1], f[1] = np.where(better, trial, x[1]), np.where(better, got, f[1])
     return x[1], f[1], moved
 

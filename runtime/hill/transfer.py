@@ -174,11 +174,6 @@ def product(b: Array, a: Array) -> Array:
     return out
 
 
-def _turned(m: Array, step: int) -> Array:
-    """Return the matrices renumbered from ``step`` (np.roll, at a fraction of its overhead)."""
-    return np.concatenate([m[:, :, step:], m[:, :, :step]], axis=2)
-
-
 def _halved(m: Array, blocks: int) -> Array:
     """Multiply neighbours until ``blocks`` matrices round the circle are left."""
     while m.shape[2] > blocks:
@@ -197,7 +192,8 @@ def _all_cuts(m: Array, cuts: int, scaled: bool) -> tuple[Array, Exponents]:
         m, exponent = normalised(m, exponent[1::2] + exponent[0::2])
     step = 1
     while step < m.shape[2]:
-        m = product(_turned(m, step), m)
+        # np.roll, at a fraction of its overhead.
+        m = product(np.concatenate([m[:, :, step:], m[:, :, :step]], axis=2), m)
         if scaled:
             exponent = np.concatenate([exponent[step:], exponent[:step]]) + exponent
             m, exponent = normalised(m, exponent)

@@ -527,8 +527,7 @@ def _wide(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: Ends) -> Arr
         tail, most = np.abs(c[-2:]).sum(axis=0), np.abs(value).max(axis=0)
         done = (tail <= 1e-13 * most + error.max(axis=0)) | (count >= _MOST_NODES)
         if done.any():
-            place = _peak(c[:, done])
-            x = np.maximum(_at(c[:, done], place), 0.0)
+            place, x = _summit(c[:, done])
             doubt = tail[done] + error[:, done].max(axis=0) + 4.0 * EPS * most[done]
             k, steep = _exponent(x, drag[left[done]])
             reply = doubt / np.maximum(2.0 * np.pi * steep, EPS)
@@ -542,15 +541,12 @@ def _at(c: Array, x: Array) -> Array:
     return np.asarray(series.chebval(x, c, tensor=False))
 
 
-def _peak(c: Array) -> Array:
-    """Return the place of the largest value of each series on [-1, 1]."""
-    grid = np.linspace(-1.0, 1.0, 8 * len(c) + 1)
-    values = np.asarray(series.chebval(grid, c))
-    place: Array = grid[np.argmax(values, axis=1)]
-    first, second = series.chebder(c), series.chebder(c, 2)
-    step = 2.0 / (8 * len(c))
-    for _ in range(4):
-        bend = _at(second, place)
-        move = np.where(bend < 0.0, -_at(first, place) / np.where(bend < 0.0, bend, 1.0), 0.0)
-        place = np.asarray(np.clip(place + np.clip(move, -step, step), -1.0, 1.0))
-    return place
+def _summit(c: Array) -> tuple[Array, Array]:
+    """Return place and value, not below 0, of the one maximum of each series on [-1, 1]."""
+    slope, last = series.chebder(c), np.ones(c.shape[1])
+
+    def rise(which: Index, x: Array) -> tuple[Array, float]:
+        return _at(slope[:, which], x), 0.0
+
+    place = bracketed_roots(rise, -last, last)[0]
+    return place, np.maximum(_at(c, place), 0.0)

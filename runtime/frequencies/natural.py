@@ -20,7 +20,7 @@ from ..core.inputs import is_finite, require_whole
 from ..core.plotting import Axes, axes_or_new, new_figure
 from ..core.results import Check, Result, provenance
 from .held import HeldCrank, assurance, crank_angles, cycle_mean
-from .tracking import CLEAR, Curves, Encounter, Walk, followed_shapes, walk
+from .tracking import CLEAR, Curves, Encounter, followed_shapes, walk
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -216,14 +216,21 @@ def natural_frequencies(
         raise bad("speed", repr(speed), "a crank speed [rad/s], 0 or more", "correct it")
     period, start = system.period, float(angles[0])
     crank = HeldCrank(system, parameters, float(speed))
-    path = _walk(crank, count, start)
+    watched = count
+    while True:
+        # So many modes that no requested curve leaves them.
+        path = walk(crank, watched)
+        curves = Curves(path, start, system.size, count, period)
+        if curves.highest < watched or watched == system.size:
+            break
+        watched = min(watched + 4, system.size)
     held = crank.modes(angles)
-    curves = Curves(path, start, system.size, count, period)
     tracked, branch = curves.follow(angles, held.frequency), curves.labels(angles)[:, :count]
     shape, sign = followed_shapes(crank, curves, angles)
     breaks = [one.angle for one in path.encounters]
     means, errors = cycle_mean(partial(_values, crank, curves), period, breaks)
     closure = curves.closure
+    kept = assurance(shape[:1], shape, 0.5 * (held.mass[:1] + held.mass))
     return NaturalFrequencies(
         method="generalised eigenvalue problem of K + Kg and M, followed by modal assurance",
         error=held.error[:, :count],
@@ -238,7 +245,7 @@ def natural_frequencies(
         tracked=tracked,
         branch=branch + 1,
         shape=shape,
-        mac=_kept(shape, held.mass),
+        mac=np.diagonal(kept, axis1=-2, axis2=-1),
         encounters=path.encounters,
         closure=closure + 1,
         sign=np.where(closure == np.arange(count), sign, 0.0),
@@ -251,18 +258,6 @@ def natural_frequencies(
     )
 
 
-def _walk(crank: HeldCrank, count: int, start: float) -> Walk:
-    """Return a turn of the crank, of so many modes that no requested curve leaves them."""
-    size, period = crank.system.size, crank.system.period
-    watched = min(count, size)
-    while True:
-        path = walk(crank, watched)
-        if Curves(path, start, size, count, period).highest < watched or watched == size:
-            kept = tuple(one for one in path.encounters if one.lower <= max(count, watched))
-            return Walk(kept, path.theta, path.assured)
-        watched = min(watched + 4, size)
-
-
 def _values(crank: HeldCrank, curves: Curves, theta: Array) -> tuple[Array, Array]:
     """Return frequencies by rank and by curve, and their round-off, ``(nt, 2 count)`` each."""
     held = crank.modes(theta)
@@ -272,12 +267,6 @@ def _values(crank: HeldCrank, curves: Curves, theta: Array) -> tuple[Array, Arra
         turns = [curves.follow(theta + k * curves.period, part) for k in range(curves.turns)]
         both.append(np.concatenate([part[:, : curves.count], np.mean(turns, axis=0)], axis=1))
     return both[0], both[1]
-
-
-def _kept(shape: Array, mass: Array) -> Array:
-    """Return the assurance of each shape and that of its curve at the first angle."""
-    found = assurance(np.broadcast_to(shape[:1], shape.shape), shape, 0.5 * (mass[:1] + mass))
-    return np.asarray(np.diagonal(found, axis1=-2, axis2=-1))
 
 
 def _deflected(structure: Structure, theta: float, shape: Array) -> dict[str, ComplexArray]:

@@ -152,7 +152,7 @@ def walk(crank: HeldCrank, count: int) -> Walk:
     found += more
     # Where several meet at one angle their order counts.
     found.sort(key=lambda one: one.angle)
-    return Walk(tuple(found), theta, assured)
+    return Walk(tuple(one for one in found if one.lower <= count), theta, assured)
 
 
 Swaps = list[tuple[int, tuple[int, ...]]]

@@ -28,7 +28,7 @@ from numpy.polynomial import chebyshev as series
 from numpy.typing import ArrayLike
 
 from ..core.chebyshev import analysis, nodes
-from ..core.errors import BadInput, bad
+from ..core.errors import BadInput
 from ..core.inputs import require_flag
 from ..core.maxima import bracketed_roots
 from ..core.periodic_function import PeriodicFunction
@@ -170,10 +170,10 @@ def hill_boundaries(
     """
     require_flag("certified", certified)
     if certified or not isinstance(f, Meissner):
-        check_function(f)
+        f = check_function(f)
     numbers = check_regions(regions)
     (flat, friction), shape = points(mu=mu, damping=damping)
-    if certified and isinstance(f, PeriodicFunction):
+    if certified:
         from .certified import certified_boundaries
 
         return certified_boundaries(f, flat.reshape(shape), friction.reshape(shape), numbers)
@@ -305,9 +305,6 @@ def _damped(
     f: PeriodicFunction | Meissner, mu: Array, k: Array, regions: tuple[int, ...], sharp: Ends
 ) -> Ends:
     """Return the ends for mu and K ``(n,)`` from the undamped ones, which serve where K = 0."""
-    if float(k.max()) > 1e100:
-        # The square of K is added to lam2.
-        raise bad("damping", f"{k.max():.3g}", "K up to 1e+100", "scale the equation")
     ends = sharp.copy()
     # Beyond this K the condition of the eigenvalues, of the size of exp(2 pi K) at worst, matters.
     strong = (k > 0.0) if isinstance(f, Meissner) else (k > 0.5)

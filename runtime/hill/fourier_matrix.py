@@ -118,7 +118,7 @@ def _majorant(
     """Return sums over all k >= start, start + 1, ... of ``2 M_k^2`` and of the energy in them."""
     # `taps` runs from the highest harmonic down to the first.  None where the sums do not come
     # below the goal within a few times the largest matrix.
-    width = len(taps)
+    width, together = len(taps), float(taps.sum())
     # Component k stands at index width + k; all that lies below the start is bounded by 1.
     size = np.ones(width + 4 * LARGEST + 1)
     for k in range(start, 4 * LARGEST):
@@ -126,7 +126,13 @@ def _majorant(
         size[width + k] = min(1.0, float(taps @ size[k : width + k]) / gap)
         if (k - start) % 16 != 8:
             continue
-        rest = _remainder(taps, size[k + 1 : width + k + 1], (k + 1) ** 2 - ceiling, k, bound)
+        # The energy beyond k, by a geometric series: as many components as there are taps are each
+        # at most sum(taps) / gap times the largest before them.
+        first = float(size[k + 1 : width + k + 1].max(initial=0.0))
+        ratio = (together / ((k + 1) ** 2 - ceiling)) ** 2 * math.exp(2.0 * width / (k + 1))
+        if ratio >= 1.0:
+            continue
+        rest = 2.0 * width * first * first * ((k + 1.0) ** 2 + 2.0 * bound) * ratio / (1.0 - ratio)
         if rest <= 0.1 * goal:
             squares = 2.0 * np.square(size[width + start : width + k + 1])
             # Half-whole k stand half a step higher than the whole k whose majorant they take.
@@ -137,16 +143,6 @@ def _majorant(
             )
             return squares, energy
     return None
-
-
-def _remainder(taps: Array, last: Array, gap: float, k: int, bound: float) -> float:
-    """Bound the energy in all harmonics beyond k by a geometric series."""
-    # As many as there are taps are each at most sum(taps) / gap times the largest before them.
-    first, width = float(last.max(initial=0.0)), len(taps)
-    ratio = (float(taps.sum()) / gap) ** 2 * math.exp(2.0 * width / (k + 1))
-    if ratio >= 1.0:
-        return math.inf
-    return 2.0 * width * first * first * ((k + 1.0) ** 2 + 2.0 * bound) * ratio / (1.0 - ratio)
 
 
 def _too_large(reach: float, f: PeriodicFunction) -> BadInput:

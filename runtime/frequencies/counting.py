@@ -306,8 +306,10 @@ def member_shape(
         ends = assembly.local[k] @ vector
         rows[1:5, here] = _across(inner, float(z[k]), length, ends)
         rows[np.ix_([0, 5], here)] = _along(inner, float(b[k]), length, ends)
-    turned = (rows[0] + 1j * rows[1]) * np.exp(1j * assembly.angles[own[0]])
-    return MemberShape(places, *rows, np.stack([turned.real, turned.imag], axis=-1))
+    along, across, slope, curvature, third, strain = rows
+    turned = (along + 1j * across) * np.exp(1j * assembly.angles[own[0]])
+    fixed = np.stack([turned.real, turned.imag], axis=-1)
+    return MemberShape(places, along, across, slope, curvature, third, strain, fixed)
 
 
 def _across(xi: Array, z: float, length: float, ends: Array) -> Array:

@@ -334,24 +334,24 @@ def critical_speeds(
     if not (isinstance(speeds, int) and speeds >= 3):
         raise bad("speeds", repr(speeds), "a whole number, 3 or more", "choose 240")
     mean, mean_error = mean_frequencies(system, count, _ENOUGH)
-    found = METHODS[method](Request(system, low, high, mean, mean_error, speeds, progress))
-    rising = np.argsort(found.speed, kind="stable")
-    speed, mode = found.speed[rising], found.mode[rising]
+    answer = METHODS[method](Request(system, low, high, mean, mean_error, speeds, progress))
+    rising = np.argsort(answer.speed, kind="stable")
+    speed, mode = answer.speed[rising], answer.mode[rising]
     nearest = np.maximum(1, np.round(mean[mode - 1] / speed)).astype(np.int64)
-    order = nearest if found.order is None else found.order[rising]
+    order = nearest if answer.order is None else answer.order[rising]
     return CriticalSpeeds(
-        method=found.method,
-        error=found.error[rising],
+        method=answer.method,
+        error=answer.error[rising],
         error_norm="absolute, of each speed [rad/s], as this method defines it",
-        checks=found.checks,
+        checks=answer.checks,
         provenance=provenance(system.provenance),
         speed=speed,
         mode=mode,
         order=order,
         ratio=mean[mode - 1] / (order * speed),
-        height=np.ones(len(rising)) if found.height is None else found.height[rising],
+        height=np.ones(len(rising)) if answer.height is None else answer.height[rising],
         mean_frequency=mean,
-        scan_speed=found.scan[0],
-        scan=found.scan[1],
-        quantity=found.quantity,
+        scan_speed=answer.scan[0],
+        scan=answer.scan[1],
+        quantity=answer.quantity,
     )

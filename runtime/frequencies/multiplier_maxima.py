@@ -252,7 +252,8 @@ def _multipliers(few: MatricesOverSpeed, speed: Array, count: int) -> Array:
     states = np.asarray(vectors.astype(complex) * few.scale[:, None], dtype=np.complex128)
     states[:, half:] *= speed[:, None, None]
     order = np.argsort(_level(few.system, states), axis=-1, kind="stable")[:, : 2 * count]
-    return np.take_along_axis(values.real, order, axis=-1).reshape(len(speed), count, 2).max(-1)
+    real = np.take_along_axis(values.real, order, axis=-1).reshape(len(speed), count, 2)
+    return np.asarray(np.max(real, axis=-1))
 
 
 def _level(system: LinearPeriodic, states: ComplexArray) -> Array:

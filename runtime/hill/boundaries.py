@@ -21,11 +21,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.polynomial import chebyshev as series
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..core.chebyshev import analysis, nodes
 from ..core.errors import BadInput
@@ -170,10 +170,10 @@ def hill_boundaries(
     """
     require_flag("certified", certified)
     if certified or not isinstance(f, Meissner):
-        f = check_function(f)
+        check_function(f)
     numbers = check_regions(regions)
     (flat, friction), shape = points(mu=mu, damping=damping)
-    if certified:
+    if certified and isinstance(f, PeriodicFunction):
         from .certified import certified_boundaries
 
         return certified_boundaries(f, flat.reshape(shape), friction.reshape(shape), numbers)
@@ -533,7 +533,7 @@ def _wide(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: Ends) -> Arr
     return out
 
 
-def _at(c: Array, x: Array) -> Array:
+def _at(c: NDArray[Any], x: Array) -> Array:
     """Evaluate one Chebyshev series per point."""
     return np.asarray(series.chebval(x, c, tensor=False))
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,7 +20,7 @@ from ..core.maxima import bracketed_roots, local_maxima, narrowed
 from ..core.periodic_function import PeriodicFunction
 from ..core.plotting import Axes
 from ..core.results import Check, DeferredChecks, Result, provenance
-from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
+from .bloch import BEYOND, HIGHEST, effective_operator, level_distance
 from .boundaries import ends_at, hill_boundaries, largest_exponent, sample_of
 from .checks import EPS, Array, Index, Mask, axes_over, check_function, check_regions, points
 from .perturbation import CONTRACTION, Sums
@@ -143,32 +143,27 @@ def critical_damping(
     return _least(f, 0.0 if damping is None else damping, numbers)
 
 
-class Closing(NamedTuple):
-    """Where one region closes, at points ``(n,)``: K, lam2 and the error of K."""
-
-    damping: Array
-    lam2: Array
-    error: Array
+# Where one region closes: K, lam2 and the error of K, ``(3, n)``.
+Closing = Array
 
 
 def _closing(f: PeriodicFunction, n: int, mu: Array) -> Closing:
     """Return where region n closes, by perturbation where that has the smaller error."""
     sharp = ends_at(f, mu, np.zeros_like(mu), (n,))[:, 0]
-    k, place, error = largest_exponent(f, n, mu, sharp)
-    exact = Closing(k, place + k * k, error)
-    coarse = np.flatnonzero(error > 1e-13 * k)
+    found = largest_exponent(f, n, mu, sharp)
+    found[1] += np.square(found[0])
+    coarse = np.flatnonzero(found[2] > 1e-13 * found[0])
     # With more harmonics order 8 takes longer than the half trace.
     if coarse.size and f.harmonics <= 200:
-        high, outside = _to_order(f, n, mu[coarse])
+        high = _to_order(f, n, mu[coarse])
         # An order that does not see a tongue is not wrong about its width: the errors decide.
-        better = ~outside & (high.error < error[coarse])
-        for mine, other in zip(exact, high, strict=True):
-            mine[coarse[better]] = other[better]
-    return exact
+        better = high[2] < found[2, coarse]
+        found[:, coarse[better]] = high[:, better]
+    return found
 
 
-def _to_order(f: PeriodicFunction, n: int, mu: Array) -> tuple[Closing, Mask]:
-    """Return the critical damping to order 8, ``|B| = |Im A|``, and where that does not settle."""
+def _to_order(f: PeriodicFunction, n: int, mu: Array) -> Closing:
+    """Return the critical damping to order 8, ``|B| = |Im A|``; infinite errors: not settled."""
     operator = effective_operator((f,), n, HIGHEST + BEYOND, damped=True)
 
     def excess(which: Index, k: Array) -> tuple[Array, float]:
@@ -182,26 +177,20 @@ def _to_order(f: PeriodicFunction, n: int, mu: Array) -> tuple[Closing, Mask]:
         split = np.where(np.isfinite(split), split, 0.0)
         k = bracketed_roots(excess, np.zeros_like(mu), 4.0 * split / n)[0]
         rate = np.where(k > 0.0, np.clip(split / k, 0.25 * n, 4.0 * n), n)
-        sums = _sums(operator, f, mu, k)
+        a, b = operator.components(np.stack([mu, k]))
+        # The level n^2/4 takes no part in B and Im A, and neither does its round-off.
+        strength = np.abs(mu) * float(f.amplitudes[1:].sum())
+        noise = f.error * np.abs(mu) + 8.0 * EPS * np.abs(a.imag).sum(axis=0)
+        for power, coupling in enumerate(operator.coupling):
+            # Components that vanish term by term carry no round-off either.
+            if np.any(coupling != 0.0):
+                noise = noise + 8.0 * EPS * strength * (strength / level_distance(n)) ** power
+        sums = Sums.of(n, HIGHEST, a, b, noise, strength)
         left = sums.turned + sums.spread
-        outside = ~(sums.ratio < CONTRACTION) | ~(left < 0.5 * max(n - 1, 1))
-        settled = np.abs(sums.split - sums.drag) <= np.maximum(left, 1e-9 * sums.split)
-        return Closing(k, sums.centre, left / rate + 4.0 * EPS * k), outside | ~settled
-
-
-def _sums(operator: EffectiveOperator, f: PeriodicFunction, mu: Array, damping: Array) -> Sums:
-    """Return the sums of A and B with the round-off that a coupling without detours has."""
-    # The level n^2/4 takes no part in B and Im A, and neither does its round-off.
-    n, order = operator.n, operator.order - BEYOND
-    a, b = operator.components(np.stack([mu, damping]))
-    strength = np.abs(mu) * float(f.amplitudes[1:].sum())
-    distance = level_distance(n)
-    noise = f.error * np.abs(mu) + 8.0 * EPS * np.abs(a.imag).sum(axis=0)
-    for k in range(len(b)):
-        # Components that vanish term by term carry no round-off either.
-        if np.any(operator.coupling[k] != 0.0):
-            noise = noise + 8.0 * EPS * strength * (strength / distance) ** k
-    return Sums.of(n, order, a, b, noise, strength)
+        settled = (sums.ratio < CONTRACTION) & (left < 0.5 * max(n - 1, 1))
+        settled &= np.abs(sums.split - sums.drag) <= np.maximum(left, 1e-9 * sums.split)
+        error = np.where(settled, left / rate + 4.0 * EPS * k, np.inf)
+        return np.stack([k, sums.centre, error])
 
 
 # ---------------------------------------------------------------- the critical damping
@@ -210,9 +199,7 @@ def _sums(operator: EffectiveOperator, f: PeriodicFunction, mu: Array, damping: 
 def _critical(f: PeriodicFunction, mu: ArrayLike, regions: tuple[int, ...]) -> Thresholds:
     (flat, _), shape = points(mu=mu, damping=0.0)
     rows = [_closing(f, n, flat) for n in regions]
-    k, lam2, error = (
-        np.reshape([row[i] for row in rows], (len(regions), flat.size)) for i in range(3)
-    )
+    k, lam2, error = np.reshape(rows, (len(regions), 3, flat.size)).swapaxes(0, 1)
     full = (len(regions), *shape)
     return Thresholds(
         method="largest half trace",
@@ -306,8 +293,8 @@ def _climb(closing: Solver, grid: Array, most: float) -> tuple[Array, Array]:
     """Return the grid with the running maximum of the critical damping, as far as needed."""
 
     def sure(mu: Array) -> Array:
-        known = closing(mu.ravel())
-        return np.reshape(known.damping - known.error, mu.shape)
+        k, _, error = closing(mu.ravel())
+        return np.reshape(k - error, mu.shape)
 
     # A decade at a time: small values of mu need small matrices.
     value = np.zeros(0)
@@ -336,14 +323,14 @@ def _refined(closing: Solver, wanted: Array, low: Array, high: Array) -> Array:
     """Solve ``log K_crit(mu) = log K`` in log mu; the rows are those of :func:`_opening`."""
 
     def excess(which: Index, x: Array) -> tuple[Array, float]:
-        k = closing(np.exp(x)).damping
+        k, *_ = closing(np.exp(x))
         return np.asarray(np.log(np.maximum(k / wanted[which], 1e-3))), 0.0
 
     x = bracketed_roots(excess, low, high)[0]
-    at, step = closing(np.exp(x)), 1e-4
+    (k, lam2, error), step = closing(np.exp(x)), 1e-4
     with np.errstate(divide="ignore", invalid="ignore"):
-        up, down = (closing(np.exp(x + d)).damping for d in (step, -step))
+        up, down = (closing(np.exp(x + d))[0] for d in (step, -step))
         slope = np.maximum((np.log(up) - np.log(down)) / (2.0 * step), 1e-3)
-    noise = at.error + 8.0 * EPS * wanted * (1.0 + slope * np.abs(x))
+    noise = error + 8.0 * EPS * wanted * (1.0 + slope * np.abs(x))
     error = np.exp(x) * (noise / (wanted * slope) + 4.0 * EPS)
-    return np.stack([np.exp(x), at.lam2, error, np.abs(at.damping - wanted) / noise])
+    return np.stack([np.exp(x), lam2, error, np.abs(k - wanted) / noise])

@@ -348,9 +348,8 @@ def element_matrices(
 def log_determinant(problem: Transcendental, omega: ArrayLike) -> tuple[Array, Array]:
     """Return ``log10 |det D|`` and the sign of the determinant at positive frequencies [rad/s].
 
-    Zeros are frequencies at which the nodes move, poles those of the members with held ends; a
-    frequency at which all nodes stand still is a pole for whole members and a zero for divided
-    ones.
+    Zeros are frequencies at which the nodes move, poles those of the members with held ends; where
+    all nodes stand still there is a pole for whole members, and a zero for divided ones.
     """
     require_kind("problem", problem, Transcendental, "make one with dynamic_stiffness")
     rates = numbers("omega", omega)

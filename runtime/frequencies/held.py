@@ -235,8 +235,7 @@ def buckling_speed(system: LinearPeriodic, **parameters: float) -> Buckling:
 
     Beyond it a link that is pressed has, over a part of the turn, no natural frequency: frozen
     analyses end there.  The moving mechanism need not be unstable, as it passes that part quickly.
-    The geometric stiffness is to grow with the square of the speed, constant loads aside.  The
-    speed is exact to round-off at its angle, which is the worst one to 1e-6 of the period.
+    The speed is exact to round-off at its angle, which is the worst one to 1e-6 of the period.
 
     Parameters
     ----------

@@ -61,8 +61,7 @@ def multiplier_maxima(
     unstable band with real multipliers beyond +1 it is the speed of greatest growth.  The speeds
     are swept on a modal truncation; what that costs at the highest speed is in the error.  A
     maximum between two samples, of which the highest mode turns by 0.35 rad at most, may be missed.
-    Where two modes trade their names, one's real part jumps: such a maximum lies where the modes
-    that are kept put it.
+    One at which two modes trade their names lies where the modes that are kept put it.
     """
     low, high = speed_range
     held = np.sqrt(still_modes(system, 256).squares[:, :wanted])
@@ -146,8 +145,7 @@ def refined_maxima(
     """Refine maxima of many functions by parabolas; return places, values and errors ``(k,)``.
 
     ``call`` takes places and ``which`` functions; ``brackets`` and ``values``, ``(3, k)``, stand
-    before, at and after each maximum.  One has settled where a step is below ``rtol``: the values
-    say no more.
+    before, at and after each maximum.  One has settled where a step is below ``rtol``.
     """
     x, f = brackets.copy(), values.copy()
     moved = np.max(np.abs(x - x[1]), axis=0)

@@ -25,9 +25,8 @@ class Encounter:
     """Two neighbouring natural frequencies that cross or veer away from each other.
 
     Near it the squares differ by ``sqrt(gap^2 + slope^2 (theta - angle)^2)``.  A crossing has no
-    gap beyond round-off: each shape goes on along its own curve.  At a veering the curves stay
-    apart and the modes trade their shapes; of a crossing width, coupling, curvature and trade are
-    0.
+    gap beyond round-off: each shape goes on along its own curve, and width, coupling, curvature and
+    trade are 0.  At a veering the curves stay apart and the modes trade their shapes.
     """
 
     kind: Literal["crossing", "veering"]

@@ -476,8 +476,7 @@ class DampedProblem:
         """Return the enclosed ends of region n; True where it is proved closed, None if undecided.
 
         Region n without damping stands at numbers n - 1 and n of the spectrum; with damping its
-        ends are the real eigenvalues there, moved up by K^2: two of them, or none (one in region
-        0).
+        ends are the real eigenvalues there, moved up by K^2: two or none (one in region 0).
         """
         values, reach, k = self.coarse.values, self.coarse.reach, self.k
         low, high = values[n - 1] if n else -inf, values[n]

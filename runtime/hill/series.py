@@ -278,9 +278,9 @@ def boundary_latex(order: int, n: int | None = None, damped: bool = False) -> st
     """Return both boundaries of a region as a formula, to an order from 1 to 6.
 
     An ``aligned`` environment (amsmath), without dollar signs: lam2, then the homogeneous parts of
-    A and B.  Sums run over all whole numbers other than 0 and n; between equal harmonics stands
-    what damping does, or nothing.  Without a number of the region the letter n stands for any from
-    1.  Smith (7.25), (7.35), (7.49) are orders 1 and 2, expanded in the parameter.
+    A and B.  Sums run over all whole numbers but 0 and n; between equal harmonics stands what
+    damping does, or nothing.  Without a number the letter n stands for any region from 1.  Smith
+    (7.25), (7.35), (7.49) are orders 1 and 2, expanded in the parameter.
     """
     fix = "the terms of higher orders are many: use perturbation_boundaries for their values"
     require_whole("order", order, 1, HIGHEST_FORMULA, fix)

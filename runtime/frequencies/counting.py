@@ -283,40 +283,10 @@ class MemberShape:
     displacement: Array  # in the fixed axes [m], (m, 2)
 
 
-def member_shape(
-    assembly: Assembly, omega: float, vector: Array, beam: str, eta: ArrayLike
-) -> MemberShape:
-    """Return the shape of a beam in a harmonic motion, at places ``(m,)`` in lengths."""
-    places = numbers_in_a_row("eta", eta)
-    if not np.all((places >= 0.0) & (places <= 1.0)):
-        raise bad("eta", repr(eta), "places from 0 to 1 in a row", "divide by the length")
-    own = [k for k, piece in enumerate(assembly.pieces) if piece.beam.name == beam]
-    if not own:
-        known = ", ".join(dict.fromkeys(piece.beam.name for piece in assembly.pieces))
-        raise bad("beam", repr(beam), f"one of {known}", "correct the name")
-    z, b = assembly.members.phases(omega)
-    whole = assembly.pieces[own[0]].beam.length
-    starts = np.array([assembly.pieces[k].start for k in own]) / whole
-    which = np.clip(np.searchsorted(starts, places, side="right") - 1, 0, len(own) - 1)
-    rows = np.zeros((6, len(places)))
-    for number, k in enumerate(own):
-        here = which == number
-        length = assembly.pieces[k].length
-        inner = np.clip((places[here] - starts[number]) * whole / length, 0.0, 1.0)
-        ends = assembly.local[k] @ vector
-        rows[1:5, here] = _across(inner, float(z[k]), length, ends)
-        rows[np.ix_([0, 5], here)] = _along(inner, float(b[k]), length, ends)
-    along, across, slope, curvature, third, strain = rows
-    turned = (along + 1j * across) * np.exp(1j * assembly.angles[own[0]])
-    fixed = np.stack([turned.real, turned.imag], axis=-1)
-    return MemberShape(places, along, across, slope, curvature, third, strain, fixed)
-
-
 def _across(xi: Array, z: float, length: float, ends: Array) -> Array:
     """Return deflection and three derivatives: the left end's shapes are mirrored ones."""
     phase = np.full_like(xi, z)
-    right = np.array(functions.bending_shapes(phase, xi))
-    left = np.array(functions.bending_shapes(phase, 1.0 - xi))
+    right, left = (np.array(functions.bending_shapes(phase, at)) for at in (xi, 1.0 - xi))
     mirror = np.array([1.0, -1.0, 1.0, -1.0])[:, None]
     total = right[:4] * ends[4] + right[4:] * (length * ends[5])
     total += mirror * (left[:4] * ends[1] - left[4:] * (length * ends[2]))
@@ -325,8 +295,7 @@ def _across(xi: Array, z: float, length: float, ends: Array) -> Array:
 
 def _along(xi: Array, b: float, length: float, ends: Array) -> Array:
     phase = np.full_like(xi, b)
-    right = np.array(functions.axial_shapes(phase, xi))
-    left = np.array(functions.axial_shapes(phase, 1.0 - xi))
+    right, left = (np.array(functions.axial_shapes(phase, at)) for at in (xi, 1.0 - xi))
     total = right * ends[3] + np.array([[1.0], [-1.0]]) * left * ends[0]
     return np.asarray(total / length ** np.arange(2.0)[:, None])
 
@@ -403,7 +372,30 @@ class FrameFrequencies(Result):
         if not known or not 0 <= mode < len(self.modes):
             raise bad("mode", repr(mode), f"0 to {len(self.modes) - 1}", "ask for more frequencies")
         chosen = self.modes[mode]
-        return member_shape(chosen.problem.assembly, chosen.omega, chosen.vector, beam, eta)
+        places = numbers_in_a_row("eta", eta)
+        if not np.all((places >= 0.0) & (places <= 1.0)):
+            raise bad("eta", repr(eta), "places from 0 to 1 in a row", "divide by the length")
+        assembly = chosen.problem.assembly
+        own = [k for k, piece in enumerate(assembly.pieces) if piece.beam.name == beam]
+        if not own:
+            known = ", ".join(dict.fromkeys(piece.beam.name for piece in assembly.pieces))
+            raise bad("beam", repr(beam), f"one of {known}", "correct the name")
+        z, b = assembly.members.phases(chosen.omega)
+        whole = assembly.pieces[own[0]].beam.length
+        starts = np.array([assembly.pieces[k].start for k in own]) / whole
+        which = np.clip(np.searchsorted(starts, places, side="right") - 1, 0, len(own) - 1)
+        rows = np.zeros((6, len(places)))
+        for number, k in enumerate(own):
+            here = which == number
+            length = assembly.pieces[k].length
+            inner = np.clip((places[here] - starts[number]) * whole / length, 0.0, 1.0)
+            ends = assembly.local[k] @ chosen.vector
+            rows[1:5, here] = _across(inner, float(z[k]), length, ends)
+            rows[np.ix_([0, 5], here)] = _along(inner, float(b[k]), length, ends)
+        along, across, slope, curvature, third, strain = rows
+        turned = (along + 1j * across) * np.exp(1j * assembly.angles[own[0]])
+        fixed = np.stack([turned.real, turned.imag], axis=-1)
+        return MemberShape(places, along, across, slope, curvature, third, strain, fixed)
 
     def _members(self) -> DynamicStiffness:
         if not isinstance(self.problem, DynamicStiffness):

@@ -138,9 +138,37 @@ def critical_damping(
     if (mu is None) == (damping is None):
         given = "neither" if mu is None else "both"
         raise bad("mu, damping", given, "one of them", "pass damping= to have the least mu")
+    checks: Mapping[str, Check]
     if mu is not None:
-        return _critical(f, mu, numbers)
-    return _least(f, 0.0 if damping is None else damping, numbers)
+        (flat, _), shape = points(mu=mu, damping=0.0)
+        closing = [_closing(f, n, flat) for n in numbers]
+        k, lam2, error = np.reshape(closing, (len(numbers), 3, *shape)).swapaxes(0, 1)
+        checks = DeferredChecks(partial(_either_side, f, flat, numbers, k, error))
+        least, searched = flat.reshape(shape), np.zeros(0)
+    else:
+        (flat,), shape = points(damping=0.0 if damping is None else damping)
+        reach = float(f.amplitudes[1:].sum())
+        scale = max(max(numbers, default=1), float(flat.max(initial=0.0)))
+        top = _FARTHEST * scale**2 / reach if reach > 0.0 else 0.0
+        opening = [_opening(partial(_closing, f, n), n, flat, top) for n in numbers]
+        rows = [row for row, _ in opening]
+        least, lam2, error, gap = np.reshape(rows, (len(numbers), 4, *shape)).swapaxes(0, 1)
+        worst = float(gap[np.isfinite(gap)].max(initial=0.0))
+        checks = {"critical damping there less K, over its error": Check(worst, 4.0)}
+        k, searched = flat.reshape(shape), np.array([highest for _, highest in opening])
+    return Thresholds(
+        method="largest half trace",
+        error=error,
+        error_norm=f"absolute, entrywise, of {'mu' if mu is None else 'K'}",
+        checks=checks,
+        provenance=provenance(),
+        damping=k,
+        mu=least,
+        lam2=lam2,
+        absent=np.isinf(np.broadcast_to(least, lam2.shape)),
+        regions=numbers,
+        searched=searched,
+    )
 
 
 # Where one region closes: K, lam2 and the error of K, ``(3, n)``.
@@ -193,36 +221,13 @@ def _to_order(f: PeriodicFunction, n: int, mu: Array) -> Closing:
         return np.stack([k, sums.centre, error])
 
 
-# ---------------------------------------------------------------- the critical damping
-
-
-def _critical(f: PeriodicFunction, mu: ArrayLike, regions: tuple[int, ...]) -> Thresholds:
-    (flat, _), shape = points(mu=mu, damping=0.0)
-    rows = [_closing(f, n, flat) for n in regions]
-    k, lam2, error = np.reshape(rows, (len(regions), 3, flat.size)).swapaxes(0, 1)
-    full = (len(regions), *shape)
-    return Thresholds(
-        method="largest half trace",
-        error=error.reshape(full),
-        error_norm="absolute, entrywise, of K",
-        checks=DeferredChecks(partial(_either_side, f, flat, regions, k, error)),
-        provenance=provenance(),
-        damping=k.reshape(full),
-        mu=flat.reshape(shape),
-        lam2=lam2.reshape(full),
-        absent=np.zeros(full, dtype=bool),
-        regions=regions,
-        searched=np.zeros(0),
-    )
-
-
 def _either_side(
     f: PeriodicFunction, mu: Array, regions: tuple[int, ...], critical: Array, error: Array
 ) -> Mapping[str, Check]:
     """Count the contradictions with the damped boundaries just below and just above."""
     wrong, seen = 0, 0
-    for i, n in enumerate(regions):
-        k, slack = critical[i], np.maximum(1e-4 * critical[i], 100.0 * error[i])
+    for n, row, doubt in zip(regions, critical, error, strict=True):
+        k, slack = row.ravel(), np.maximum(1e-4 * row, 100.0 * doubt).ravel()
         # Narrow regions open with a square root: Hill's matrix needs some width to see it.
         sure = np.argwhere((k > 2.0 * slack) & (k > 1e-6))
         if not sure.size:
@@ -236,30 +241,6 @@ def _either_side(
 
 
 # ---------------------------------------------------------------- the least parameter
-
-
-def _least(f: PeriodicFunction, damping: ArrayLike, regions: tuple[int, ...]) -> Thresholds:
-    (flat,), shape = points(damping=damping)
-    reach = float(f.amplitudes[1:].sum())
-    scale = max(max(regions, default=1), float(flat.max(initial=0.0)))
-    top = _FARTHEST * scale**2 / reach if reach > 0.0 else 0.0
-    rows = [_opening(partial(_closing, f, n), n, flat, top) for n in regions]
-    full = (len(regions), *shape)
-    least, lam2, error, gap = (np.reshape([row[0][i] for row in rows], full) for i in range(4))
-    worst = float(gap[np.isfinite(gap)].max(initial=0.0))
-    return Thresholds(
-        method="largest half trace",
-        error=error,
-        error_norm="absolute, entrywise, of mu",
-        checks={"critical damping there less K, over its error": Check(worst, 4.0)},
-        provenance=provenance(),
-        damping=flat.reshape(shape),
-        mu=least,
-        lam2=lam2,
-        absent=np.isinf(least),
-        regions=regions,
-        searched=np.array([row[1] for row in rows]),
-    )
 
 
 Solver = Callable[[Array], Closing]

@@ -234,11 +234,17 @@ def dynamic_stiffness(
     1
     """
     rigid = rigid_beams("dynamic_stiffness", structure, theta, inextensible)
-    if pieces is not None:
-        require_mapping("pieces", pieces, 'say {"crank": (0.5, 0.5)}')
-    for name in sorted(pieces or {}):
+    shares = {} if pieces is None else pieces
+    require_mapping("pieces", shares, 'say {"crank": (0.5, 0.5)}')
+    for name in sorted(shares):
         structure.beam(name)  # refuses one that there is not
-    freedoms = _numbered(structure, pieces or {})
+    held = all({"x", "y", "rotation"} <= set(node.held) for node in structure.nodes)
+    usual: tuple[float, ...] = (0.5, 0.5) if held else (1.0,)
+    beams = [
+        replace(beam, elements=tuple(shares.get(beam.name, usual)), kind="cubic")
+        for beam in structure.beams
+    ]
+    freedoms = number_freedoms(beams, structure.nodes)
     assembly = _assembly(structure, float(theta), freedoms, rigid)
     return DynamicStiffness(
         size=assembly.size,
@@ -273,17 +279,6 @@ def rigid_beams(
     for name in sorted(inextensible):
         structure.beam(name)  # refuses one that there is not
     return tuple(inextensible)
-
-
-def _numbered(structure: Structure, pieces: Pieces) -> Freedoms:
-    """Return the coordinates with one element for each beam, or the requested pieces."""
-    held = all({"x", "y", "rotation"} <= set(node.held) for node in structure.nodes)
-    usual: tuple[float, ...] = (0.5, 0.5) if held else (1.0,)
-    beams = [
-        replace(beam, elements=tuple(pieces.get(beam.name, usual)), kind="cubic")
-        for beam in structure.beams
-    ]
-    return number_freedoms(beams, structure.nodes)
 
 
 def _assembly(

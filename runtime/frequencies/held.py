@@ -56,15 +56,19 @@ class HeldCrank:
             _, shape = flexible_modes(mass, stiffness)
         except np.linalg.LinAlgError:
             raise _indefinite(mass, stiffness, theta) from None
-        square, error = _quotients(mass, stiffness, shape)
-        shape = shape / np.sqrt(np.einsum("tik,tij,tjk->tk", shape, mass, shape))[:, None, :]
+        # Rayleigh's quotients: what the shapes are wrong by enters squared; what is left is the
+        # round-off of the sums.
+        size, kinetic = np.abs(shape), np.sum(shape * (mass @ shape), axis=1)
+        square = np.sum(shape * (stiffness @ shape), axis=1) / kinetic
+        summed = np.sum(size * (np.abs(stiffness) @ size), axis=1)
+        summed += square * np.sum(size * (np.abs(mass) @ size), axis=1)
+        shape, frequency = shape / np.sqrt(kinetic)[:, None, :], np.sqrt(square)
         order = np.argsort(square, axis=1, kind="stable")
-        frequency, error = np.sqrt(square), 0.5 * error / np.sqrt(square)
         return HeldModes(
             np.take_along_axis(frequency, order, axis=1),
             np.take_along_axis(shape, order[:, None, :], axis=2),
             mass,
-            np.take_along_axis(error, order, axis=1),
+            np.take_along_axis(_EPS * summed / (kinetic * frequency), order, axis=1),
         )
 
 
@@ -74,20 +78,6 @@ def held_frequencies(
     """Return natural frequencies [rad/s] at crank angles and their round-off, ``(nt, n)`` each."""
     held = HeldCrank(system, parameters, speed).modes(theta)
     return held.frequency, held.error
-
-
-def _quotients(mass: Array, stiffness: Array, shape: Array) -> tuple[Array, Array]:
-    """Return the squares of the frequencies as Rayleigh's quotients, and their round-off.
-
-    What the shapes are wrong by enters squared; what is left is the round-off of the sums.
-    """
-    size = np.abs(shape)
-    kinetic = np.sum(shape * (mass @ shape), axis=1)
-    square = np.sum(shape * (stiffness @ shape), axis=1) / kinetic
-    summed = np.sum(size * (np.abs(stiffness) @ size), axis=1)
-    summed += square * np.sum(size * (np.abs(mass) @ size), axis=1)
-    # Round-offs of the terms of a sum that make its error.
-    return square, 2.0 * _EPS * summed / kinetic
 
 
 def _indefinite(mass: Array, stiffness: Array, theta: Array) -> BadInput:

@@ -23,7 +23,6 @@ from ..periodic.moving_basis import still_modes
 from ..periodic.multipliers import ROUNDED
 from ..periodic.over_speed import MatricesOverSpeed
 
-ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
 
 _MOST_SAMPLES = 4000
@@ -246,20 +245,15 @@ def _multipliers(few: MatricesOverSpeed, speed: Array, count: int) -> Array:
     """Return the larger real part of the two multipliers of each of the lowest modes."""
     half = few.system.size
     values, vectors = np.linalg.eig(few(speed)[0])
-    # In velocities of time, not of angle, a state is the same at all speeds.
+    # In velocities of time, not of angle, a state (q, M qd) is the same at all speeds.
     states = np.asarray(vectors.astype(complex) * few.scale[:, None], dtype=np.complex128)
     states[:, half:] *= speed[:, None, None]
-    order = np.argsort(_level(few.system, states), axis=-1, kind="stable")[:, : 2 * count]
+    # The lowest modes are told by energy over action, by the modes held at 0.
+    still = still_modes(few.system, 1)
+    shapes, rate = still.shapes[0], np.sqrt(still.squares[0])[:, None]
+    rest = np.abs(np.linalg.solve(shapes, states[:, :half])) ** 2
+    energy = rate**2 * rest + np.abs(shapes.T @ states[:, half:]) ** 2
+    level = np.sum(energy, axis=1) / np.sum(energy / rate, axis=1)
+    order = np.argsort(level, axis=-1, kind="stable")[:, : 2 * count]
     real = np.take_along_axis(values.real, order, axis=-1).reshape(len(speed), count, 2)
     return np.asarray(np.max(real, axis=-1))
-
-
-def _level(system: LinearPeriodic, states: ComplexArray) -> Array:
-    """Return energy over action of states (q, M qd) in columns, by the modes held at 0."""
-    still = still_modes(system, 1)
-    shapes, rate = still.shapes[0], np.sqrt(still.squares[0])[:, None]
-    half = len(shapes)
-    rest = np.abs(np.linalg.solve(shapes, states[:, :half])) ** 2
-    moved = np.abs(shapes.T @ states[:, half:]) ** 2
-    energy = rate**2 * rest + moved
-    return np.asarray(np.sum(energy, axis=1) / np.sum(energy / rate, axis=1))

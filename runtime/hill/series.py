@@ -271,9 +271,6 @@ class _Chain(NamedTuple):
     powers: tuple[int, ...]
 
 
-_Terms = dict[tuple[_Chain, ...], int]
-
-
 def boundary_latex(order: int, n: int | None = None, damped: bool = False) -> str:
     """Return both boundaries of a region as a formula, to an order from 1 to 6.
 
@@ -340,7 +337,9 @@ def _parts(
             lead = r"&\quad "
 
 
-def _terms(order: int, end: str, start: str, damped: bool, region: str) -> _Terms:
+def _terms(
+    order: int, end: str, start: str, damped: bool, region: str
+) -> dict[tuple[_Chain, ...], int]:
     """Return the words of an order between two harmonics, sums over P written out."""
     found: Counter[tuple[_Chain, ...]] = Counter()
     resonant = ("0",) if region == "0" else ("0", "n")

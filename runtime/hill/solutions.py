@@ -153,40 +153,24 @@ def boundary_solution(
     >>> print(round(solution.lam2, 6), round(solution.period, 4))
     0.198781 12.5664
     """
-    functions, (*amps, k), shape = parameters_of(f, mu, damping)
-    (number,) = check_regions((n,))
-    if not is_one_of(end, ("lower", "upper")) or (end == "lower" and number == 0):
-        expected = "'upper'" if number == 0 else "'lower' or 'upper'"
+    functions, (*amps, friction), shape = parameters_of(f, mu, damping)
+    (n,) = check_regions((n,))
+    if not is_one_of(end, ("lower", "upper")) or (end == "lower" and n == 0):
+        expected = "'upper'" if n == 0 else "'lower' or 'upper'"
         raise bad("end", repr(end), expected, "region 0 has an upper end alone")
     if shape:
         raise bad("mu, damping", f"arrays of shape {shape}", "numbers", "call once for each point")
     point = np.concatenate(amps)
     if float(np.sum(np.abs(point) * [item.bound() for item in functions])) > 1e100:
         raise bad("mu", "a product mu f beyond 1e100", "a moderate one", "scale the equation")
-    whole = combined(functions, point)
+    whole, damping = combined(functions, point), float(friction[0])
     if order is None:
-        solution = _exact(whole, number, end, float(k[0]))
+        solution = _exact(whole, n, end, damping)
     else:
         check_order(order)
-        solution = _to_order(whole, number, end, int(order), float(k[0]))
-    return _result(solution, point, float(k[0]), number, end, order)
-
-
-class _Solution(NamedTuple):
-    """A solution as coefficients of ``exp(i (m - n/2) theta)``, m = -r ... n + r."""
-
-    lam2: float
-    coefficients: Complex
-    error: float
-    residual: float
-    predicted: float
-    degenerate: bool
-
-
-def _result(
-    solution: _Solution, point: Array, damping: float, n: int, end: str, order: int | None
-) -> BoundarySolution:
-    """Normalise, and turn into cosines and sines."""
+        order = int(order)
+        solution = _to_order(whole, n, end, order, damping)
+    # Normalised, and turned into cosines and sines.
     v = solution.coefficients
     k = _wave_numbers(v)
     there = k >= 0.0
@@ -217,10 +201,21 @@ def _result(
         damping=damping,
         n=n,
         end=end,
-        order=None if order is None else int(order),
+        order=order,
         residual=solution.residual / size,
         degenerate=solution.degenerate,
     )
+
+
+class _Solution(NamedTuple):
+    """A solution as coefficients of ``exp(i (m - n/2) theta)``, m = -r ... n + r."""
+
+    lam2: float
+    coefficients: Complex
+    error: float
+    residual: float
+    predicted: float
+    degenerate: bool
 
 
 def _wave_numbers(v: Complex) -> Array:

@@ -63,17 +63,24 @@ def describe(crank: HeldCrank, angle: float, doubt: float, rank: int) -> Encount
     period = crank.system.period
     at = crank.modes(np.array([angle]))
     one, two = at.frequency[0, rank : rank + 2]
-    gap = float(two - one)
+    gap, frequency = float(two - one), 0.5 * float(one + two)
     step = 1e-3 * period / (2.0 * np.pi)
-    turning = _coupling(crank, at, angle, rank, step)
+    # ``|u_2^T (K' - omega_1^2 M') u_1|`` by differences of the fourth order.
+    weight = np.array([1.0, -8.0, 8.0, -1.0]) / (12.0 * step)
+    mass, stiffness = crank.arrays(angle + step * np.array([-2.0, -1.0, 1.0, 2.0]))
+    change = np.tensordot(weight, stiffness - one**2 * mass, axes=1)
+    turning = float(abs(at.shape[0, :, rank + 1] @ change @ at.shape[0, :, rank]))
     rate = turning / max(two**2 - one**2, float(np.finfo(float).eps) * two**2)
     # Over a part of what the shapes need to trade the square of the gap is a parabola.
     reach = min(0.25 / rate, step) if rate > 0.0 else step
-    slope, gap_error = _slope(crank, angle, reach, rank)
+    around = crank.modes(angle + reach * np.array([-1.0, 0.0, 1.0]))
+    square = (around.frequency[:, rank + 1] - around.frequency[:, rank]) ** 2
+    slope = float(np.sqrt(max((square[0] + square[2]) / 2.0 - square[1], 0.0)) / reach)
+    # Gaps smaller than so many round-offs are none.
+    gap_error = 8.0 * float(np.max(around.error[:, rank : rank + 2]))
     # At a veering the gap is flat, and hardly wrong for the angle's doubt.
     drift = slope * doubt
     gap_error += min(drift, drift**2 / gap) if gap > 0.0 else drift
-    frequency = 0.5 * float(one + two)
     crossing = gap <= gap_error
     width = 0.0 if crossing or not slope > 0.0 else gap / slope
     coupling = 0.0 if crossing else float(rate)
@@ -87,28 +94,9 @@ def describe(crank: HeldCrank, angle: float, doubt: float, rank: int) -> Encount
         slope=slope,
         width=width,
         coupling=coupling,
-        curvature=0.0 if crossing else float(turning * rate / frequency),
+        curvature=turning * coupling / frequency,
         trade=2.0 * coupling * width,
     )
-
-
-def _coupling(crank: HeldCrank, at: HeldModes, angle: float, rank: int, step: float) -> float:
-    """Return ``|u_2^T (K' - omega_1^2 M') u_1|`` by differences of the fourth order."""
-    theta = angle + step * np.array([-2.0, -1.0, 1.0, 2.0])
-    weight = np.array([1.0, -8.0, 8.0, -1.0]) / (12.0 * step)
-    mass, stiffness = crank.arrays(theta)
-    slope = np.tensordot(weight, stiffness - at.frequency[0, rank] ** 2 * mass, axes=1)
-    return float(abs(at.shape[0, :, rank + 1] @ slope @ at.shape[0, :, rank]))
-
-
-def _slope(crank: HeldCrank, angle: float, reach: float, rank: int) -> tuple[float, float]:
-    """Return the difference of the slopes, from the gap's square, and the gap's round-off."""
-    around = crank.modes(angle + reach * np.array([-1.0, 0.0, 1.0]))
-    gap = around.frequency[:, rank + 1] - around.frequency[:, rank]
-    # Gaps smaller than so many round-offs are none.
-    error = 8.0 * float(np.max(around.error[:, rank : rank + 2]))
-    bend = (gap[0] ** 2 + gap[2] ** 2) / 2.0 - gap[1] ** 2
-    return float(np.sqrt(max(bend, 0.0)) / reach), error
 
 
 Indices = NDArray[np.int64]

@@ -285,20 +285,14 @@ def _crossings(speeds: Array, values: Array, mode: int) -> list[tuple[float, int
             if j > i + 1:
                 out.append((float(0.5 * (w[i] + w[j])), mode, n, float(0.5 * (w[j] - w[i]))))
                 continue
-            fine = _root(curves[0], n, w[i], w[j])
-            coarse = _root(curves[1], n, w[i], w[j])
-            unseen = _unevenness(w, f, int(i)) / abs(n - (f[j] - f[i]) / (w[j] - w[i]))
+            fine, coarse = (_root(curve, n, w[i], w[j]) for curve in curves)
+            # What the two rows to either side do beside the chord, meeting other frequencies, this
+            # one may do inside unseen.
+            near, slope = slice(max(0, i - 2), i + 4), (f[j] - f[i]) / (w[j] - w[i])
+            off = np.max(np.abs(f[near] - f[i] - slope * (w[near] - w[i])))
+            unseen = float(off) / abs(n - slope)
             out.append((fine, mode, n, abs(fine - coarse) + unseen + 1e-12 * fine))
     return out
-
-
-def _unevenness(speeds: Array, values: Array, first: int) -> float:
-    """Return how far the two rows to either side of an interval lie off the chord of its ends."""
-    # What they do beside it, meeting other frequencies, a frequency may do inside it unseen.
-    w, f = speeds[first : first + 2], values[first : first + 2]
-    near = slice(max(0, first - 2), first + 4)
-    chord = f[0] + (f[1] - f[0]) / (w[1] - w[0]) * (speeds[near] - w[0])
-    return float(np.max(np.abs(values[near] - chord)))
 
 
 def _root(curve: Any, order: int, low: float, high: float) -> float:

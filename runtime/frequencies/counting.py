@@ -242,9 +242,12 @@ def _together(finer: DynamicStiffness, rough: Array, before: int) -> list[Mode]:
     # To first order, an entry of a local matrix being off by 6 u of its size, functions, products
     # and turn together: of 500 frequencies of random frames the least bound was 5 times the error.
     spread = 6.0 * UNIT * sizes / (2.0 * omega * np.diagonal(mass))
+    # The largest component of each is positive.
+    largest = np.argmax(np.abs(vectors), axis=0)[None]
+    vectors = vectors * np.sign(np.take_along_axis(vectors, largest, axis=0))
     width, certified = _confirmed(finer, places, before, np.max(spread))
     return [
-        Mode(float(place), float(width + own), finer, _signed(vector), certified)
+        Mode(float(place), float(width + own), finer, vector, certified)
         for place, own, vector in zip(places, spread, vectors.T, strict=True)
     ]
 
@@ -261,11 +264,6 @@ def _confirmed(
             return float(width), True
         width *= 4.0
     return float(width), False
-
-
-def _signed(vector: Array) -> Array:
-    """Return a vector with its largest component positive."""
-    return np.asarray(vector * np.sign(vector[np.argmax(np.abs(vector))]))
 
 
 @dataclass(frozen=True)

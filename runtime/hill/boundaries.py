@@ -195,29 +195,22 @@ def hill_boundaries(
 
 def ends_at(f: PeriodicFunction | Meissner, mu: Array, k: Array, regions: tuple[int, ...]) -> Ends:
     """Return the ends for mu and K ``(n,)``."""
-    if not regions or not mu.size:
-        return np.full((3, len(regions), mu.size), np.nan)
+    ends = np.full((3, len(regions), mu.size), np.nan)
+    if not ends.size:
+        return ends
     if isinstance(f, Meissner):
-        ends = np.stack([meissner_ends(f, mu, n) for n in regions], axis=1)
+        ends[:] = np.stack([meissner_ends(f, mu, n) for n in regions], axis=1)
     else:
-        ends = _undamped(f, mu, regions)
+        cut = truncation(f, float(np.abs(mu).max()), max(regions))
+        mean = -f.a[0] * mu
+        for odd, rows in by_parity(regions):
+            count = max(regions[i] for i in rows) + 1
+            values = _spectra(f, odd, cut.harmonic + odd, mu, count) + mean[:, None]
+            for i in rows:
+                ends[0, i] = values[:, regions[i] - 1] if regions[i] else -np.inf
+                ends[1, i] = values[:, regions[i]]
+        ends[2] = cut.left_out + cut.rounding + EPS * np.abs(mean) + f.error * np.abs(mu)
     return _damped(f, mu, k, regions, ends) if k.any() else ends
-
-
-def _undamped(f: PeriodicFunction, mu: Array, regions: tuple[int, ...]) -> Ends:
-    cut = truncation(f, float(np.abs(mu).max()), max(regions))
-    mean = -f.a[0] * mu
-    ends = np.empty((3, len(regions), mu.size))
-    for odd, rows in by_parity(regions):
-        count = max(regions[i] for i in rows) + 1
-        values = _spectra(f, odd, cut.harmonic + odd, mu, count)
-        values += mean[:, None]
-        for i in rows:
-            n = regions[i]
-            ends[0, i] = values[:, n - 1] if n else -np.inf
-            ends[1, i] = values[:, n]
-    ends[2] = cut.left_out + cut.rounding + EPS * np.abs(mean) + f.error * np.abs(mu)
-    return ends
 
 
 def _spectra(f: PeriodicFunction, odd: int, harmonic: int, mu: Array, count: int) -> Array:

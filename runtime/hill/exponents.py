@@ -144,11 +144,10 @@ def characteristic_exponents(
         for side in (-1.0, 1.0):
             other, turned = _exponent(half.value + side * half.error, k)
             error = np.maximum(error, np.hypot(other - growth, turned - turn))
-    error = np.where(np.isfinite(growth), error, np.inf)
-    size = np.abs(np.where(np.isfinite(growth), growth, 0.0)) + 2.0 * k + 1.0
+    error = np.where(np.isfinite(growth), error + EPS * (np.abs(growth) + 2.0 * k + 1.0), np.inf)
     return CharacteristicExponents(
         method="half trace by " + half.method,
-        error=error + EPS * size,
+        error=error,
         error_norm="absolute, entrywise, of the complex exponent",
         checks=half.checks,
         provenance=provenance(),

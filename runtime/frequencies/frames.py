@@ -365,26 +365,27 @@ _SHARES: tuple[tuple[float, ...], ...] = (
 )
 
 
-def divided_for(
-    problem: DynamicStiffness, low: float, high: float | None = None
-) -> DynamicStiffness:
+def divided_for(problem: DynamicStiffness, *omega: float) -> DynamicStiffness:
     """Return a structure whose pieces have no pole near some frequencies [rad/s].
 
     One piece for a member wherever that will do; otherwise unequal ones (the fictitious joint of
     Aannaque 5.4.1).
     """
-    ends = np.array([low, low if high is None else high])
     chosen: dict[str, tuple[float, ...]] = {}
     members = problem.assembly.members
-    z, b = members.phases(ends)
+    z, b = members.phases(omega)
     for beam in problem.structure.beams:
         own = [k for k, p in enumerate(problem.assembly.pieces) if p.beam.name == beam.name]
         offered = [shares for shares in _SHARES if len(shares) >= len(own)]
         whole = beam.length / members.length[own[0]]
         scores = []
         for shares in offered:
-            phases = (np.outer(phase[:, own[0]] * whole, shares) for phase in (z, b))
-            scores.append(_distance(*phases))
+            # How far the nearest pole is, over a quarter of the distance between poles.
+            zs, bs = (np.outer(phase[:, own[0]] * whole, shares) for phase in (z, b))
+            bending = np.abs(np.cos(zs) - 1.0 / np.cosh(np.minimum(zs, 700.0)))
+            bending = np.where(zs < 3.0, 1.0, bending)
+            axial = np.where(bs < 1.5, 1.0, np.abs(np.sin(bs)))
+            scores.append(float(min(bending.min(), axial.min())))
             if scores[-1] > 0.6:
                 break
         best = offered[int(np.argmax(scores))]
@@ -392,11 +393,3 @@ def divided_for(
             chosen[beam.name] = best
     undivided = len(problem.assembly.pieces) == len(problem.structure.beams)
     return problem if undivided and not chosen else problem.divided(chosen)
-
-
-def _distance(z: Array, b: Array) -> float:
-    """Return how far the nearest pole is, over a quarter of the distance between poles."""
-    bending = np.abs(np.cos(z) - 1.0 / np.cosh(np.minimum(z, 700.0)))
-    bending = np.where(z < 3.0, 1.0, bending)
-    axial = np.where(b < 1.5, 1.0, np.abs(np.sin(b)))
-    return float(min(bending.min(), axial.min()))

@@ -80,7 +80,9 @@ def multiplier_maxima(
     def value(at: Array, mode: Whole) -> Array:
         return np.asarray(_multipliers(few, at, wanted)[np.arange(len(at)), mode])
 
-    row, mode = _peaks(real)
+    inner = real[1:-1]
+    mode, row = np.nonzero(((inner >= real[:-2]) & (inner > real[2:])).T)
+    row = row + 1
     near = np.add.outer([-1, 0, 1], row)
     around = real[near, mode]
     at, best, width = refined_maxima(value, mode, speed[near], around)
@@ -107,14 +109,6 @@ def multiplier_maxima(
     error = np.where(smooth, np.minimum(sharp, rough), rough) + change * at
     quantity = "real part of the multiplier"
     return Found(method, at, mode + 1, error, quantity=quantity, height=best, checks=checks)
-
-
-def _peaks(values: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return row and column of the entries above both neighbours in their column."""
-    inner = values[1:-1]
-    above = (inner >= values[:-2]) & (inner > values[2:])
-    column, row = np.nonzero(above.T)
-    return row + 1, column
 
 
 def _quartic(

@@ -366,8 +366,7 @@ class FrameFrequencies(Result):
             If there are no shapes, no such mode or beam, or a place lies outside.
         """
         self._members()
-        known = isinstance(mode, (int, np.integer)) and not isinstance(mode, bool)
-        if not known or not 0 <= mode < len(self.modes):
+        if not is_whole(mode, 0, len(self.modes) - 1):
             raise bad("mode", repr(mode), f"0 to {len(self.modes) - 1}", "ask for more frequencies")
         chosen = self.modes[mode]
         places = numbers_in_a_row("eta", eta)

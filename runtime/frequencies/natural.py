@@ -19,6 +19,7 @@ from ..core.families import Array, LinearPeriodic, require_system
 from ..core.inputs import is_finite, require_whole
 from ..core.plotting import Axes, axes_or_new, new_figure
 from ..core.results import Check, Result, provenance
+from ..core.trigonometric import even_angles
 from .held import HeldCrank, assurance, crank_angles, cycle_mean
 from .tracking import CLEAR, Curves, Encounter, followed_shapes, walk
 
@@ -361,10 +362,7 @@ def draw_modes(
     4
     """
     required_structure(system)
-    if theta is None:
-        angles = np.linspace(0.0, system.period, 10, endpoint=False)
-    else:
-        angles = crank_angles(system, theta)
+    angles = crank_angles(system, even_angles(system.period, 10) if theta is None else theta)
     found = natural_frequencies(system, angles, require_whole("modes", modes, 1, system.size))
     figure = new_figure(2.6 * modes, 1.7 * len(angles))
     axes = figure.subplots(len(angles), modes, squeeze=False)

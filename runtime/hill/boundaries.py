@@ -459,7 +459,7 @@ def _excess(
     """Return ``(|D| - 1) exp(-2 pi drag)`` inside the region (negative beyond it) and its error."""
     shape = lam2.shape
     x, y, k = (np.broadcast_to(item, shape).ravel() for item in (lam2, mu, drag))
-    value, error = np.empty(x.size), np.empty(x.size)
+    value, error = np.empty((2, x.size))
     for start in range(0, x.size, _POINTS):
         part = slice(start, start + _POINTS)
         half = discriminant(f, x[part] + np.square(k[part]), y[part], k[part])

@@ -135,16 +135,17 @@ def cycle_mean(
     their error is: near a veering the values are analytic in a narrow strip, at a crossing their
     order changes.
     """
-    count = 64
-    found, rounding = _even(values, period, count)
-    while True:
-        before, count = found, 2 * count
-        found, rounding = _even(values, period, count)
+    before: Array | float = np.inf
+    for count in (64, 128, 256) if len(breaks) else (64, 128, 256, 512, 1024):
+        value, error = values(even_angles(period, count))
+        # Row by row a plain sum would add a round-off for every angle.
+        found = np.array([math.fsum(column) for column in value.T]) / count
+        rounding = error.mean(axis=0) + _EPS * np.abs(found)
         change = np.abs(found - before)
         if np.all(change <= enough * np.abs(found) + rounding):
             return found, change + rounding
-        if count >= (256 if len(breaks) > 0 else 1024):
-            return _by_panels(values, period, breaks, enough)
+        before = found
+    return _by_panels(values, period, breaks, enough)
 
 
 def mean_frequencies(
@@ -161,13 +162,6 @@ def mean_frequencies(
         return frequency[:, :count], error[:, :count]
 
     return cycle_mean(lowest, system.period, enough=enough)
-
-
-def _even(values: Values, period: float, count: int) -> tuple[Array, Array]:
-    value, error = values(even_angles(period, count))
-    # Row by row a plain sum would add a round-off for every angle.
-    found = np.array([math.fsum(column) for column in value.T]) / count
-    return found, error.mean(axis=0) + _EPS * np.abs(found)
 
 
 def _by_panels(

@@ -345,7 +345,7 @@ def contraction(sizes: Array, reference: Array | float) -> Array:
 def _geometric(sizes: Array, ratio: Array) -> Array:
     """Return the sum of what follows the last component at a ratio, infinite from 1 on."""
     # The last two may both be small by chance: those before them count as well.
-    last = np.maximum(sizes[-1], sizes[-min(2, len(sizes))])
+    last = np.maximum(sizes[-1], sizes[-2])
     for k in range(3, min(len(sizes), 4) + 1):
         last = np.maximum(last, sizes[-k] * ratio ** (k - 1))
     below = np.minimum(ratio, 1.0)

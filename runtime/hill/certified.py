@@ -120,10 +120,7 @@ class CertifiedBoundaries(Boundaries):
 def certified_boundaries(
     f: PeriodicFunction, mu: Array, damping: Array, regions: tuple[int, ...]
 ) -> CertifiedBoundaries:
-    """Return proved enclosures of the ends; see :func:`.boundaries.hill_boundaries`.
-
-    For an f taken with its coefficients as they stand, mu and K of one shape, all checked.
-    """
+    """Return proved enclosures of the ends, of mu and K of one shape, all checked."""
     size = (len(regions), *mu.shape)
     # Value, rest and radius of the lower and of the upper end.
     found = np.full((*size, 2, 3), np.nan)
@@ -374,10 +371,7 @@ def _root_above(value: Fraction) -> Fraction:
 
 
 def enclosures(coarse: Spectrum, operator: HillOperator, first: int, last: int) -> list[Ball]:
-    """Enclose the eigenvalues number first ... last, which stand clear of all others.
-
-    Refused where the residuals are too large for the distance from the others.
-    """
+    """Enclose the eigenvalues number first ... last, which stand clear of all others."""
     waves = [wave(coarse.odd, coarse.vectors[:, j]) for j in range(first, last + 1)]
     images = [operator(x) for x in waves]
     coupling = np.array([[inner(x, h) for h in images] for x in waves], dtype=object)

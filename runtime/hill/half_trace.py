@@ -85,9 +85,8 @@ class HalfTrace(Result):
             ax.set(xlabel=r"$\lambda^2$", ylabel=r"$\mu$")
             return ax
         if self.value.ndim == 1:
-            across = lam2 if lam2.ndim == 1 else mu
+            across, label = (lam2, r"$\lambda^2$") if lam2.ndim == 1 else (mu, r"$\mu$")
             ax.plot(across, self.value)
-            label = r"$\lambda^2$" if lam2.ndim == 1 else r"$\mu$"
             ax.set(xlabel=label, ylabel="half trace")
             return ax
         found = f"values of shape {self.value.shape}"

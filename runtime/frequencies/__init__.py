@@ -16,11 +16,9 @@ if TYPE_CHECKING:
     from .frames import dynamic_stiffness as dynamic_stiffness
     from .frames import element_matrices as element_matrices
     from .frames import log_determinant as log_determinant
-    from .frames import member_matrices as member_matrices
     from .held import buckling_speed as buckling_speed
     from .link_study import LinkFrequencies as LinkFrequencies
     from .link_study import link_frequencies as link_frequencies
-    from .link_study import pinned_frequency as pinned_frequency
     from .natural import NaturalFrequencies as NaturalFrequencies
     from .natural import draw_mode as draw_mode
     from .natural import draw_modes as draw_modes

@@ -22,7 +22,7 @@ from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
 from ..periodic.lowest_modes import FreeMotions, LowestModes, free_motions
-from .held import HeldModes, buckling_speed, held_modes, mean_frequencies
+from .held import HeldCrank, HeldModes, buckling_speed, mean_frequencies
 
 
 def running_frequencies(
@@ -39,7 +39,7 @@ def running_frequencies(
     frequency, growth, share = np.empty((3, *held.shape))
     count, before, farthest = held.shape[1], rest, 0.0
     truncated, error = LowestModes(system, count).required(float(speeds[-1]))
-    modes = held_modes(system, even_angles(system.period, _STATIONS), {})
+    modes = HeldCrank(system, {}).modes(even_angles(system.period, _STATIONS))
     for row, speed in enumerate(speeds.tolist()):
         found = free_motions(truncated, speed, _STATIONS)
         phase, rate, share[row] = _named(found, modes, speed, count)
@@ -285,20 +285,14 @@ def _crossings(speeds: Array, values: Array, mode: int) -> list[tuple[float, int
             if j > i + 1:
                 out.append((float(0.5 * (w[i] + w[j])), mode, n, float(0.5 * (w[j] - w[i]))))
                 continue
-            fine = _root(curves[0], n, w[i], w[j])
-            coarse = _root(curves[1], n, w[i], w[j])
-            unseen = _unevenness(w, f, int(i)) / abs(n - (f[j] - f[i]) / (w[j] - w[i]))
+            fine, coarse = (_root(curve, n, w[i], w[j]) for curve in curves)
+            # What the two rows to either side do beside the chord, meeting other frequencies, this
+            # one may do inside unseen.
+            near, slope = slice(max(0, i - 2), i + 4), (f[j] - f[i]) / (w[j] - w[i])
+            off = np.max(np.abs(f[near] - f[i] - slope * (w[near] - w[i])))
+            unseen = float(off) / abs(n - slope)
             out.append((fine, mode, n, abs(fine - coarse) + unseen + 1e-12 * fine))
     return out
-
-
-def _unevenness(speeds: Array, values: Array, first: int) -> float:
-    """Return how far the two rows to either side of an interval lie off the chord of its ends."""
-    # What they do beside it, meeting other frequencies, a frequency may do inside it unseen.
-    w, f = speeds[first : first + 2], values[first : first + 2]
-    near = slice(max(0, first - 2), first + 4)
-    chord = f[0] + (f[1] - f[0]) / (w[1] - w[0]) * (speeds[near] - w[0])
-    return float(np.max(np.abs(values[near] - chord)))
 
 
 def _root(curve: Any, order: int, low: float, high: float) -> float:

@@ -21,15 +21,7 @@ from ..core.families import Array, Transcendental
 from ..core.inputs import is_finite, is_whole, numbers_in_a_row, require_kind
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
-from .frames import (
-    Assembly,
-    DynamicStiffness,
-    divided_for,
-    functions,
-    member_inertias,
-    narrow_enough,
-    phases,
-)
+from .frames import Assembly, DynamicStiffness, divided_for, functions
 
 UNIT = 2.0**-53
 
@@ -43,9 +35,9 @@ def quadratic_forms(
     included: u times them is what rounding does.
     """
     if mass is None:
-        _, mass = assembly.local_matrices(omega)
+        _, mass = assembly.members.matrices(omega)
     # (D(0) - D(omega)) / omega^2 of the pieces.
-    inertia = np.asarray(member_inertias(omega, *assembly.data))
+    inertia = assembly.members.inertias(omega)
     ends = assembly.local @ vectors
     felt = np.abs(assembly.local) @ np.abs(vectors)  # what rounding sees
     nodes = assembly.reduction @ vectors
@@ -59,12 +51,12 @@ def quadratic_forms(
     sizes = strained_sizes + np.einsum("nak,nab,nbk->k", felt, entries, felt, optimize=True)
     weights = assembly.springs + omega**2 * assembly.lumped_mass
     sizes = sizes + np.sum(weights[:, None] * nodes**2, axis=0)
-    return _symmetric(plain), _symmetric(heavy), sizes
+    return (plain + plain.T) / 2.0, (heavy + heavy.T) / 2.0, sizes
 
 
 def _strain_forms(assembly: Assembly, ends: Array, felt: Array) -> tuple[Array, Array]:
     """Return the static strain energy, twice, by stretch and turning against the chord."""
-    length, bending, axial, _ = assembly.data
+    length, bending, axial, _ = assembly.members
     stiff = np.where(np.isinf(axial), 0.0, axial) / length
     span = length[:, None]
     stretch = ends[:, 3] - ends[:, 0]
@@ -84,13 +76,9 @@ def _forms(matrices: Array, ends: Array) -> Array:
     return np.asarray(ends.reshape(-1, count).T @ (matrices @ ends).reshape(-1, count))
 
 
-def _symmetric(matrix: Array) -> Array:
-    return np.asarray((matrix + matrix.T) / 2.0)
-
-
 def signs(assembly: Assembly, omega: float) -> tuple[int, bool]:
     """Return the number of negative eigenvalues of D at a frequency, and whether it is certain."""
-    local, _ = assembly.local_matrices(omega)
+    local, _ = assembly.members.matrices(omega)
     lumps = assembly.springs - omega**2 * assembly.lumped_mass
     matrix = assembly.assembled(local, lumps)
     if not np.all(np.isfinite(matrix)):
@@ -106,19 +94,15 @@ def signs(assembly: Assembly, omega: float) -> tuple[int, bool]:
     return int(np.sum(values < 0.0)), certain
 
 
-@dataclass(frozen=True)
-class Modal:
-    """``D x = mu M x`` at one frequency: mu is what is missing to the squares of frequencies."""
+def modal(assembly: Assembly, omega: float) -> tuple[Array, Array]:
+    """Return mu, rising, and x of ``D x = mu M x`` at a frequency [rad/s] away from the poles.
 
-    values: Array  # mu, ascending, (n,)
-    vectors: Array  # x, of unit generalised mass, (size, n)
-
-
-def modal(assembly: Assembly, omega: float) -> Modal:
-    """Solve ``D x = mu M x`` at a frequency [rad/s] away from the poles."""
+    mu is what is missing to the squares of the frequencies; the columns x ``(size, n)`` have unit
+    generalised mass.
+    """
     from scipy.linalg import eigh
 
-    local, local_mass = assembly.local_matrices(omega)
+    local, local_mass = assembly.members.matrices(omega)
     lumps = assembly.springs - omega**2 * assembly.lumped_mass
     stiffness = assembly.assembled(local, lumps)
     mass = assembly.assembled(local_mass, assembly.lumped_mass)
@@ -130,13 +114,13 @@ def modal(assembly: Assembly, omega: float) -> Modal:
     near = np.abs(values) <= 30.0 * omega**2
     if near.any():
         values[near], vectors[:, near] = projected(assembly, omega, vectors[:, near], local_mass)
-    return Modal(values, vectors)
+    return values, vectors
 
 
 def projected(
     assembly: Assembly, omega: float, vectors: Array, mass: Array | None = None
 ) -> tuple[Array, Array]:
-    """Return the values and vectors of :class:`Modal` within the span of some columns."""
+    """Return the values and vectors of :func:`modal` within the span of some columns."""
     from scipy.linalg import eigh
 
     stiffness, heavy, _ = quadratic_forms(assembly, omega, vectors, mass)
@@ -177,7 +161,7 @@ def certain_count(problem: DynamicStiffness, omega: float) -> tuple[float, int]:
 
 def _count(finer: DynamicStiffness, omega: float) -> int:
     """Return how many frequencies lie below one that is no pole of the pieces."""
-    negative = np.sum(modal(finer.assembly, omega).values < 0.0)
+    negative = np.sum(modal(finer.assembly, omega)[0] < 0.0)
     return round(float(finer.poles(omega))) + int(negative)
 
 
@@ -208,7 +192,9 @@ def isolate(
 def _solvable(problem: DynamicStiffness, item: Interval) -> bool:
     """Return whether an interval is narrow enough for its frequencies to be computed."""
     width = (item.high - item.low) / item.high
-    narrow = narrow_enough(problem, item.high)
+    # Within this, 2 % at most, no member's phase changes by 0.3.
+    z, b = problem.assembly.members.phases(item.high)
+    narrow = float(min(0.02, 0.3 / max(np.max(z) / 2.0, np.max(b))))
     return width <= narrow and (item.last == item.first + 1 or width <= narrow**2)
 
 
@@ -216,16 +202,11 @@ def solve(problem: DynamicStiffness, item: Interval) -> list[Mode]:
     """Return the modes of an interval to full precision."""
     finer = divided_for(problem, item.low, item.high)
     numbers = range(item.first + 1, item.last + 1)
-    rough = sorted(_newton(finer, item, number) for number in numbers)
+    rough = np.sort([_newton(finer, item, number) for number in numbers])
     modes: list[Mode] = []
-    done = 0
-    while done < len(rough):
-        end = done + 1
-        # Nearer ones are computed together, in the span of their vectors.
-        while end < len(rough) and rough[end] - rough[end - 1] < 1e-7 * rough[end]:
-            end += 1
-        modes += _together(finer, rough[done:end], item.first + done)
-        done = end
+    # Near ones are computed together, in the span of their vectors.
+    for near in np.split(rough, np.flatnonzero(np.diff(rough) >= 1e-7 * rough[1:]) + 1):
+        modes += _together(finer, near, item.first + len(modes))
     return modes
 
 
@@ -236,9 +217,9 @@ def _newton(finer: DynamicStiffness, item: Interval, number: int) -> float:
     low, high = item.low, item.high
     omega = (low + high) / 2.0
     for _ in range(100):
-        found = modal(finer.assembly, omega)
+        values, _ = modal(finer.assembly, omega)
         index = number - round(float(finer.poles(omega))) - 1
-        step = float(found.values[min(max(index, 0), finer.size - 1)])
+        step = float(values[min(max(index, 0), finer.size - 1)])
         low, high = (omega, high) if step > 0.0 else (low, omega)
         square = omega**2 + step
         if abs(step) <= 1e-8 * omega**2:  # Newton's error is the square of this
@@ -248,22 +229,25 @@ def _newton(finer: DynamicStiffness, item: Interval, number: int) -> float:
     return omega
 
 
-def _together(finer: DynamicStiffness, rough: list[float], before: int) -> list[Mode]:
+def _together(finer: DynamicStiffness, rough: Array, before: int) -> list[Mode]:
     """Return modes that are close, or a single one, with error bounds that counts confirm."""
     omega = float(np.mean(rough))
-    found = modal(finer.assembly, omega)
+    _, every = modal(finer.assembly, omega)
     index = before - round(float(finer.poles(omega)))
     index = min(max(index, 0), finer.size - len(rough))
-    chosen = found.vectors[:, index : index + len(rough)]
+    chosen = every[:, index : index + len(rough)]
     values, vectors = projected(finer.assembly, omega, chosen)
     places = np.sqrt(np.maximum(omega**2 + values, 0.0))
     _, mass, sizes = quadratic_forms(finer.assembly, omega, vectors)
     # To first order, an entry of a local matrix being off by 6 u of its size, functions, products
     # and turn together: of 500 frequencies of random frames the least bound was 5 times the error.
     spread = 6.0 * UNIT * sizes / (2.0 * omega * np.diagonal(mass))
+    # The largest component of each is positive.
+    largest = np.argmax(np.abs(vectors), axis=0)[None]
+    vectors = vectors * np.sign(np.take_along_axis(vectors, largest, axis=0))
     width, certified = _confirmed(finer, places, before, np.max(spread))
     return [
-        Mode(float(place), float(width + own), finer, _signed(vector), certified)
+        Mode(float(place), float(width + own), finer, vector, certified)
         for place, own, vector in zip(places, spread, vectors.T, strict=True)
     ]
 
@@ -282,18 +266,12 @@ def _confirmed(
     return float(width), False
 
 
-def _signed(vector: Array) -> Array:
-    """Return a vector with its largest component positive."""
-    return np.asarray(vector * np.sign(vector[np.argmax(np.abs(vector))]))
-
-
 @dataclass(frozen=True)
 class MemberShape:
     """Displacement of a beam along its length, at m places."""
 
     eta: Array  # places, in lengths, (m,)
-    # displacement in the beam's own axes [m], (m,)
-    along: Array
+    along: Array  # displacement in the beam's own axes [m], (m,)
     across: Array
     # derivatives of ``across`` by the place [rad, 1/m, 1/m^2], (m,)
     slope: Array
@@ -303,48 +281,10 @@ class MemberShape:
     displacement: Array  # in the fixed axes [m], (m, 2)
 
 
-def member_shape(
-    assembly: Assembly, omega: float, vector: Array, beam: str, eta: ArrayLike
-) -> MemberShape:
-    """Return the shape of a beam in a harmonic motion, at places ``(m,)`` in lengths."""
-    places = numbers_in_a_row("eta", eta)
-    if not np.all((places >= 0.0) & (places <= 1.0)):
-        raise bad("eta", repr(eta), "places from 0 to 1 in a row", "divide by the length")
-    own = [k for k, piece in enumerate(assembly.pieces) if piece.beam.name == beam]
-    if not own:
-        known = ", ".join(dict.fromkeys(piece.beam.name for piece in assembly.pieces))
-        raise bad("beam", repr(beam), f"one of {known}", "correct the name")
-    z, b = phases(omega, *assembly.data)
-    whole = assembly.pieces[own[0]].beam.length
-    starts = np.array([assembly.pieces[k].start for k in own]) / whole
-    which = np.clip(np.searchsorted(starts, places, side="right") - 1, 0, len(own) - 1)
-    rows = np.zeros((6, len(places)))
-    for number, k in enumerate(own):
-        here = which == number
-        length = assembly.pieces[k].length
-        inner = np.clip((places[here] - starts[number]) * whole / length, 0.0, 1.0)
-        ends = assembly.local[k] @ vector
-        rows[:4, here] = _across(inner, float(z[k]), length, ends)
-        rows[4:, here] = _along(inner, float(b[k]), length, ends)
-    angle = assembly.angles[own[0]]
-    turned = (rows[4] + 1j * rows[0]) * np.exp(1j * angle)
-    return MemberShape(
-        eta=places,
-        along=rows[4],
-        across=rows[0],
-        slope=rows[1],
-        curvature=rows[2],
-        third=rows[3],
-        strain=rows[5],
-        displacement=np.stack([turned.real, turned.imag], axis=-1),
-    )
-
-
 def _across(xi: Array, z: float, length: float, ends: Array) -> Array:
     """Return deflection and three derivatives: the left end's shapes are mirrored ones."""
     phase = np.full_like(xi, z)
-    right = np.array(functions.bending_shapes(phase, xi))
-    left = np.array(functions.bending_shapes(phase, 1.0 - xi))
+    right, left = (np.array(functions.bending_shapes(phase, at)) for at in (xi, 1.0 - xi))
     mirror = np.array([1.0, -1.0, 1.0, -1.0])[:, None]
     total = right[:4] * ends[4] + right[4:] * (length * ends[5])
     total += mirror * (left[:4] * ends[1] - left[4:] * (length * ends[2]))
@@ -353,8 +293,7 @@ def _across(xi: Array, z: float, length: float, ends: Array) -> Array:
 
 def _along(xi: Array, b: float, length: float, ends: Array) -> Array:
     phase = np.full_like(xi, b)
-    right = np.array(functions.axial_shapes(phase, xi))
-    left = np.array(functions.axial_shapes(phase, 1.0 - xi))
+    right, left = (np.array(functions.axial_shapes(phase, at)) for at in (xi, 1.0 - xi))
     total = right * ends[3] + np.array([[1.0], [-1.0]]) * left * ends[0]
     return np.asarray(total / length ** np.arange(2.0)[:, None])
 
@@ -427,11 +366,33 @@ class FrameFrequencies(Result):
             If there are no shapes, no such mode or beam, or a place lies outside.
         """
         self._members()
-        known = isinstance(mode, (int, np.integer)) and not isinstance(mode, bool)
-        if not known or not 0 <= mode < len(self.modes):
+        if not is_whole(mode, 0, len(self.modes) - 1):
             raise bad("mode", repr(mode), f"0 to {len(self.modes) - 1}", "ask for more frequencies")
         chosen = self.modes[mode]
-        return member_shape(chosen.problem.assembly, chosen.omega, chosen.vector, beam, eta)
+        places = numbers_in_a_row("eta", eta)
+        if not np.all((places >= 0.0) & (places <= 1.0)):
+            raise bad("eta", repr(eta), "places from 0 to 1 in a row", "divide by the length")
+        assembly = chosen.problem.assembly
+        own = [k for k, piece in enumerate(assembly.pieces) if piece.beam.name == beam]
+        if not own:
+            known = ", ".join(dict.fromkeys(piece.beam.name for piece in assembly.pieces))
+            raise bad("beam", repr(beam), f"one of {known}", "correct the name")
+        z, b = assembly.members.phases(chosen.omega)
+        whole = assembly.pieces[own[0]].beam.length
+        starts = np.array([assembly.pieces[k].start for k in own]) / whole
+        which = np.clip(np.searchsorted(starts, places, side="right") - 1, 0, len(own) - 1)
+        rows = np.zeros((6, len(places)))
+        for number, k in enumerate(own):
+            here = which == number
+            length = assembly.pieces[k].length
+            inner = np.clip((places[here] - starts[number]) * whole / length, 0.0, 1.0)
+            ends = assembly.local[k] @ chosen.vector
+            rows[1:5, here] = _across(inner, float(z[k]), length, ends)
+            rows[np.ix_([0, 5], here)] = _along(inner, float(b[k]), length, ends)
+        along, across, slope, curvature, third, strain = rows
+        turned = (along + 1j * across) * np.exp(1j * assembly.angles[own[0]])
+        fixed = np.stack([turned.real, turned.imag], axis=-1)
+        return MemberShape(places, along, across, slope, curvature, third, strain, fixed)
 
     def _members(self) -> DynamicStiffness:
         if not isinstance(self.problem, DynamicStiffness):
@@ -451,25 +412,6 @@ class FrameFrequencies(Result):
         axes.locator_params(axis="x", integer=True)
         axes.set(xlabel="mode", ylabel="natural frequency [Hz]")
         return axes
-
-
-def bisected(problem: Transcendental, upto: float | None, count: int | None) -> FrameFrequencies:
-    """Return the frequencies of a problem by bisection on their number."""
-
-    def counted(omega: float) -> tuple[float, int]:
-        return omega, int(problem.count(omega))
-
-    high, total = counted(upto) if upto is not None else _above(counted, 1e-3, count or 1)
-    found = isolate(
-        counted,
-        Interval(0.0, high, 0, total),
-        lambda item: item.high - item.low <= 1e-12 * item.high,
-    )
-    number = [item.last - item.first for item in found]
-    places = np.repeat([(item.low + item.high) / 2.0 for item in found], number)
-    widths = np.repeat([(item.high - item.low) / 2.0 for item in found], number)
-    method = "Wittrick-Williams count, bisection"
-    return _result(problem, (places, widths), (), method, total, slice(count))
 
 
 def wittrick_williams(
@@ -515,9 +457,64 @@ def wittrick_williams(
     """
     _check(upto, count)
     require_kind("problem", problem, Transcendental, "make one with dynamic_stiffness")
-    if not isinstance(problem, DynamicStiffness):
-        return bisected(problem, upto, count)
-    modes = rigid_motions(problem)
+    modes: list[Mode] = []
+    if isinstance(problem, DynamicStiffness):
+        method = "Wittrick-Williams count, Newton's method on the eigenvalue of D"
+        modes, total = _solved(problem, upto, count)
+        omega, error = np.array([(mode.omega, mode.error) for mode in modes]).reshape(-1, 2).T
+    else:
+        method = "Wittrick-Williams count, bisection"
+        omega, error, total = _bisected(problem, upto, count)
+    chosen = slice(count if upto is None else int(np.sum(omega < upto)))
+    checks = {"frequencies not found": Check(float(abs(len(omega) - total)), 0.0)}
+    if isinstance(problem, DynamicStiffness):
+        uncertain = sum(not mode.certified for mode in modes[chosen])
+        checks["frequencies that counts do not confirm"] = Check(float(uncertain), 0.0)
+    # Those no farther from each other than their errors are a group.
+    apart = np.append(True, np.diff(omega) > error[1:] + error[:-1])
+    group = np.cumsum(apart[: len(omega)])
+    return FrameFrequencies(
+        frequencies=omega[chosen],
+        multiplicity=np.bincount(group)[group][chosen],
+        modes=tuple(modes[chosen]),
+        problem=problem,
+        method=method,
+        error=error[chosen],
+        error_norm="each frequency, absolute [rad/s]",
+        error_kind="bound",
+        checks=checks,
+        provenance=provenance(problem.provenance),
+    )
+
+
+def _bisected(
+    problem: Transcendental, upto: float | None, count: int | None
+) -> tuple[Array, Array, int]:
+    """Return the frequencies of a problem by bisection on their number, their errors, and it."""
+
+    def counted(omega: float) -> tuple[float, int]:
+        return omega, int(problem.count(omega))
+
+    high, total = counted(upto) if upto is not None else _above(counted, 1e-3, count or 1)
+    found = isolate(
+        counted,
+        Interval(0.0, high, 0, total),
+        lambda item: item.high - item.low <= 1e-12 * item.high,
+    )
+    number = [item.last - item.first for item in found]
+    ends = np.repeat([(item.low, item.high) for item in found], number, axis=0).reshape(-1, 2)
+    return ends.mean(axis=1), np.diff(ends)[:, 0] / 2.0, total
+
+
+def _solved(
+    problem: DynamicStiffness, upto: float | None, count: int | None
+) -> tuple[list[Mode], int]:
+    """Return the modes of a structure, and how many there are to be."""
+    _, vectors = modal(problem.assembly, 0.0)
+    forms, _, sizes = quadratic_forms(problem.assembly, 0.0, vectors)
+    # Motions whose strain energy is below this, over the sizes of its terms, meet no stiffness.
+    soft = np.abs(np.diagonal(forms)) <= 1e-11 * sizes
+    modes = [Mode(0.0, 0.0, problem, vector, True) for vector in vectors.T[soft]]
     counted = partial(certain_count, problem)
     low, total = _below_all(problem, len(modes)), len(modes)
     high = upto if upto is not None else _above(counted, low, count or 1)[0]
@@ -526,26 +523,12 @@ def wittrick_williams(
         whole = Interval(low, high, len(modes), total)
         for item in isolate(counted, whole, partial(_solvable, problem)):
             modes += solve(problem, item)
-    omega, error = (
-        np.array([getattr(mode, name) for mode in modes]) for name in ("omega", "error")
-    )
-    chosen = slice(count if upto is None else int(np.sum(omega < upto)))
-    method = "Wittrick-Williams count, Newton's method on the eigenvalue of D"
-    return _result(problem, (omega, error), tuple(modes), method, total, chosen)
-
-
-def rigid_motions(problem: DynamicStiffness) -> list[Mode]:
-    """Return the motions that meet no stiffness, as modes of frequency 0."""
-    vectors = modal(problem.assembly, 0.0).vectors
-    forms, _, sizes = quadratic_forms(problem.assembly, 0.0, vectors)
-    # Motions whose strain energy is below this, over the sizes of its terms, meet no stiffness.
-    soft = np.abs(np.diagonal(forms)) <= 1e-11 * sizes
-    return [Mode(0.0, 0.0, problem, vector, True) for vector in vectors.T[soft]]
+    return modes, total
 
 
 def _below_all(problem: DynamicStiffness, rigid: int) -> float:
     """Return a frequency below all that are not 0."""
-    length, bending, _, mass = problem.assembly.data
+    length, bending, _, mass = problem.assembly.members
     low = float(np.min(np.sqrt(bending / mass) / length**2))  # of the size of the members' own
     for _ in range(200):
         low, found = certain_count(problem, low)
@@ -565,45 +548,6 @@ def _above(counted: Counted, low: float, count: int) -> tuple[float, int]:
         if found >= count:
             return high, found
     raise bad("count", str(count), "fewer frequencies", "ask for fewer")
-
-
-def _result(
-    problem: Transcendental,
-    found: tuple[Array, Array],
-    modes: tuple[Mode, ...],
-    method: str,
-    total: int,
-    chosen: slice,
-) -> FrameFrequencies:
-    """Return those chosen of the frequencies and errors that were found."""
-    omega, error = found
-    checks = {"frequencies not found": Check(float(abs(len(omega) - total)), 0.0)}
-    if isinstance(problem, DynamicStiffness):
-        uncertain = sum(not mode.certified for mode in modes[chosen])
-        checks["frequencies that counts do not confirm"] = Check(float(uncertain), 0.0)
-    return FrameFrequencies(
-        frequencies=omega[chosen],
-        multiplicity=multiplicities(omega, error)[chosen],
-        modes=modes[chosen],
-        problem=problem,
-        method=method,
-        error=error[chosen],
-        error_norm="each frequency, absolute [rad/s]",
-        error_kind="bound",
-        checks=checks,
-        provenance=provenance(problem.provenance),
-    )
-
-
-def multiplicities(omega: Array, error: Array) -> NDArray[np.int64]:
-    """Return for each frequency how many are no farther from each other than their errors."""
-    found = np.ones(len(omega), dtype=np.int64)
-    start = 0
-    for i in range(1, len(omega) + 1):
-        if i == len(omega) or omega[i] - omega[i - 1] > error[i] + error[i - 1]:
-            found[start:i] = i - start
-            start = i
-    return found
 
 
 def _check(upto: float | None, count: int | None) -> None:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.families import DAMPING, Array, LinearPeriodic, require_system
@@ -18,7 +18,7 @@ from ..core.plotting import ABOVE, Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
 from .held import buckling_speed, held_frequencies, mean_frequencies
-from .multiplier_maxima import Maxima, meissner_maxima, multiplier_maxima
+from .multiplier_maxima import Found, meissner_maxima, multiplier_maxima
 from .response_maxima import response_maxima, scanned_deflections
 
 Indices = NDArray[np.int64]
@@ -123,49 +123,11 @@ class Request:
     speeds: int
     progress: bool
 
-    @property
-    def count(self) -> int:
-        """Number of modes."""
-        return len(self.mean)
-
-    def answered(
-        self,
-        method: str,
-        speed: ArrayLike,
-        mode: ArrayLike,
-        order: ArrayLike,
-        error: ArrayLike,
-        *,
-        height: Array | None = None,
-        scan: tuple[Array, Array] = (np.zeros(0), np.zeros(0)),
-        quantity: str = "none",
-        checks: Mapping[str, Check] | None = None,
-    ) -> CriticalSpeeds:
-        """Return the result, by rising speed."""
-        rising = np.argsort(speed, kind="stable")
-        speed, error = np.asarray(speed)[rising], np.asarray(error)[rising]
-        mode, order = (np.asarray(column, dtype=np.int64)[rising] for column in (mode, order))
-        return CriticalSpeeds(
-            method=method,
-            error=error,
-            error_norm="absolute, of each speed [rad/s], as this method defines it",
-            checks=checks or {},
-            provenance=provenance(self.system.provenance),
-            speed=speed,
-            mode=mode,
-            order=order,
-            ratio=self.mean[mode - 1] / (order * speed),
-            height=np.ones(len(rising)) if height is None else height[rising],
-            mean_frequency=self.mean,
-            scan_speed=scan[0],
-            scan=scan[1],
-            quantity=quantity,
-        )
-
-    def listed(self, method: str, rows: Sequence[tuple[float, int, int, float]]) -> CriticalSpeeds:
-        """Return the result of speed, mode, order and error in rows, of those within the range."""
-        kept = [row for row in sorted(rows) if self.low <= row[0] <= self.high]
-        return self.answered(method, *np.array(kept, dtype=float).reshape(-1, 4).T)
+    def listed(self, method: str, rows: Sequence[tuple[float, int, int, float]]) -> Found:
+        """Return those within the range of speed, mode, order and error in rows."""
+        kept = [row for row in rows if self.low <= row[0] <= self.high]
+        speed, mode, order, error = np.array(kept, dtype=float).reshape(-1, 4).T
+        return Found(method, speed, mode.astype(np.int64), error, order.astype(np.int64))
 
 
 def label_speeds(mean: Array, speed: Array) -> tuple[Indices, Indices]:
@@ -200,7 +162,7 @@ _NODES = 12
 _SHORT = 0.98
 
 
-def by_mean_frequency(request: Request) -> CriticalSpeeds:
+def by_mean_frequency(request: Request) -> Found:
     """Return the means of the natural frequencies over n = 1, 2, ..., crank held."""
     means = zip(request.mean, request.mean_error, strict=True)
     rows = [
@@ -211,7 +173,7 @@ def by_mean_frequency(request: Request) -> CriticalSpeeds:
     return request.listed("mean natural frequencies over n", rows)
 
 
-def by_running_mean(request: Request) -> CriticalSpeeds:
+def by_running_mean(request: Request) -> Found:
     """Return the speeds w = mean(w)/n, the means with the axial forces of the speed itself.
 
     They end where those forces buckle the held mechanism at some angle.
@@ -225,11 +187,11 @@ def by_running_mean(request: Request) -> CriticalSpeeds:
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     place = np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
     runs = [
-        mean_frequencies(request.system, request.count, _ENOUGH, float(middle + half * x))
+        mean_frequencies(request.system, len(request.mean), _ENOUGH, float(middle + half * x))
         for x in place
     ]
     rows = []
-    for mode in range(1, request.count + 1):
+    for mode in range(1, len(request.mean) + 1):
         values = np.array([mean[mode - 1] for mean, _ in runs])
         curve = np.polynomial.Chebyshev.fit(place, values, _NODES - 1, domain=[-1, 1])
         # The mean is smooth in the square of the speed: twice its last terms tell what is left out.
@@ -247,10 +209,9 @@ def by_running_mean(request: Request) -> CriticalSpeeds:
     return request.listed("mean natural frequencies at the speed over n", rows)
 
 
-def by_multipliers(request: Request) -> CriticalSpeeds:
+def by_multipliers(request: Request) -> Found:
     """Return the local maxima of the real part of each mode's multiplier (Aannaque 7.2.3)."""
-    maxima = multiplier_maxima(request.system, (request.low, request.high), request.count)
-    return _marked(request, maxima, "real part of the multiplier")
+    return multiplier_maxima(request.system, (request.low, request.high), len(request.mean))
 
 
 # Of the fastest mode's motion at the lowest speed an interval of Meissner's is to hold so much at
@@ -258,7 +219,7 @@ def by_multipliers(request: Request) -> CriticalSpeeds:
 _INTERVAL, _MOST_INTERVALS = 0.4, 2**13
 
 
-def by_meissner(request: Request) -> CriticalSpeeds:
+def by_meissner(request: Request) -> Found:
     """Return the local maxima of J_N of each mode by itself, N = 256 or more (Aannaque 7.11)."""
     period = request.system.period
     turned = float(np.max(request.mean)) * period / request.low
@@ -269,20 +230,11 @@ def by_meissner(request: Request) -> CriticalSpeeds:
         fix = f"raise the lowest speed to {least:.4g} rad/s or ask for fewer modes"
         raise bad("speed_range", found, f"at most {_MOST_INTERVALS}", fix)
     held = held_frequencies(request.system, even_angles(period, intervals), {})
-    frequency, rounding = (part[:, : request.count] for part in held)
-    maxima = meissner_maxima(frequency, rounding, period, (request.low, request.high))
-    return _marked(request, maxima, "J_N")
+    frequency, rounding = (part[:, : len(request.mean)] for part in held)
+    return meissner_maxima(frequency, rounding, period, (request.low, request.high))
 
 
-def _marked(request: Request, maxima: Maxima, quantity: str) -> CriticalSpeeds:
-    """Return maxima that know their mode; its mean frequency gives the order."""
-    order = np.maximum(1, np.round(request.mean[maxima.mode - 1] / maxima.speed))
-    found = maxima.method, maxima.speed, maxima.mode, order, maxima.error
-    told: dict[str, Any] = {"height": maxima.value, "checks": maxima.checks}
-    return request.answered(*found, quantity=quantity, **told)
-
-
-def by_response(request: Request) -> CriticalSpeeds:
+def by_response(request: Request) -> Found:
     """Return the speeds of the local maxima of a measure of the periodic motion."""
     system = request.system
     if not any(system.has(name) for name in DAMPING) or not system.is_damped():
@@ -292,19 +244,21 @@ def by_response(request: Request) -> CriticalSpeeds:
     values = scanned_deflections(system, speeds, request.progress)
     top = local_maxima(values)
     speed, height, error = response_maxima(system, speeds[top - 1], speeds[top + 1])
-    return request.answered(
+    mode, order = label_speeds(request.mean, speed)
+    return Found(
         f"local maxima of the steady state, {len(speeds)} speeds scanned",
         speed,
-        *label_speeds(request.mean, speed),
+        mode,
         error,
+        order,
+        quantity="r.m.s. deflection over length",
         height=height,
         scan=(speeds, values),
-        quantity="r.m.s. deflection over length",
         checks={"placed": Check(float(np.max(error / speed, initial=0.0)), 1e-3)},
     )
 
 
-METHODS: Mapping[str, Callable[[Request], CriticalSpeeds]] = MappingProxyType(
+METHODS: Mapping[str, Callable[[Request], Found]] = MappingProxyType(
     {
         "mean_frequency": by_mean_frequency,
         "running_mean": by_running_mean,
@@ -379,5 +333,25 @@ def critical_speeds(
     count = require_whole("modes", wanted, 1, system.size)
     if not (isinstance(speeds, int) and speeds >= 3):
         raise bad("speeds", repr(speeds), "a whole number, 3 or more", "choose 240")
-    means = mean_frequencies(system, count, _ENOUGH)
-    return METHODS[method](Request(system, low, high, *means, speeds, progress))
+    mean, mean_error = mean_frequencies(system, count, _ENOUGH)
+    answer = METHODS[method](Request(system, low, high, mean, mean_error, speeds, progress))
+    rising = np.argsort(answer.speed, kind="stable")
+    speed, mode = answer.speed[rising], answer.mode[rising]
+    nearest = np.maximum(1, np.round(mean[mode - 1] / speed)).astype(np.int64)
+    order = nearest if answer.order is None else answer.order[rising]
+    return CriticalSpeeds(
+        method=answer.method,
+        error=answer.error[rising],
+        error_norm="absolute, of each speed [rad/s], as this method defines it",
+        checks=answer.checks,
+        provenance=provenance(system.provenance),
+        speed=speed,
+        mode=mode,
+        order=order,
+        ratio=mean[mode - 1] / (order * speed),
+        height=np.ones(len(rising)) if answer.height is None else answer.height[rising],
+        mean_frequency=mean,
+        scan_speed=answer.scan[0],
+        scan=answer.scan[1],
+        quantity=answer.quantity,
+    )

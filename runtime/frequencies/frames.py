@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,7 +17,7 @@ from ..beams.assembly import AngleArrays
 from ..beams.frames import eliminated
 from ..beams.linear import lumped_values
 from ..beams.structure import Freedoms, PlacedElement, Structure, number_freedoms
-from ..core.errors import Problem, bad, refuse
+from ..core.errors import bad
 from ..core.families import Array, Transcendental
 from ..core.inputs import is_finite, names_problems, numbers, require_kind, require_mapping
 
@@ -42,72 +42,53 @@ _BENDING = (
 _AXIAL = ((0, 0, 0), (0, 3, 1), (3, 3, 0))
 
 
-def phases(
-    omega: ArrayLike,
-    length: ArrayLike,
-    bending_stiffness: ArrayLike,
-    axial_stiffness: ArrayLike,
-    mass_per_length: ArrayLike,
-) -> tuple[Values, Values]:
-    """Return ``z = lambda L`` (Aannaque (5.4)) and ``b = beta L`` (5.9) of beams, ``(..., n)``."""
-    rate = np.asarray(omega)[..., None]
-    mass, span = np.asarray(mass_per_length), np.asarray(length)
-    z = np.sqrt(rate) * (span * np.sqrt(np.sqrt(mass / np.asarray(bending_stiffness))))
-    b = rate * (span * np.sqrt(mass / np.asarray(axial_stiffness)))
-    # Phases are kept above these; the functions are at their static values long before.
-    return np.where(np.abs(z) < 1e-30, 1e-30, z), np.where(np.abs(b) < 1e-100, 1e-100, b)
+class Members(NamedTuple):
+    """Uniform beams, ``(n,)`` numbers each.
 
-
-def member_matrices(
-    omega: ArrayLike,
-    length: ArrayLike,
-    bending_stiffness: ArrayLike,
-    axial_stiffness: ArrayLike,
-    mass_per_length: ArrayLike,
-) -> tuple[Values, Values]:
-    """Return dynamic stiffness and mass of uniform beams in their own axes, ``(..., n, 6, 6)``.
-
-    Aannaque (5.18) and (5.19): ``D(omega)`` gives the end forces of a harmonic motion, and ``M =
-    -dD/d(omega^2)`` its generalised mass; ``K = D + omega^2 M`` (5.17).  Rows are u1, v1, r1, u2,
-    v2, r2: displacement along and across the beam, rotation, of either end.
-
-    Frequencies [rad/s] have any shape; L [m], EI [N m^2], EA [N] and rho A [kg/m] shape ``(n,)``.
     Complex stiffnesses stand for sections that lose energy.  An infinite EA gives an inextensible
     beam: of the axial part the mass alone is left, for displacements that are equal at both ends.
-    Refused are frequencies that are not finite, and other numbers that are not positive.
     """
-    rates = np.asarray(omega)
-    if rates.dtype.kind not in "fciu" or not rates.size or not np.all(np.isfinite(rates)):
-        raise bad("omega", repr(omega), "finite frequencies [rad/s]", "correct them")
-    names = ("length", "bending_stiffness", "axial_stiffness", "mass_per_length")
-    given = (length, bending_stiffness, axial_stiffness, mass_per_length)
-    _require_positive(dict(zip(names, given, strict=True)))
-    span, ei, ea, m = np.broadcast_arrays(*(np.atleast_1d(np.asarray(v)) for v in given))
-    z, b = phases(omega, span, ei, ea, m)
-    weight = m * span
-    stretch, stretch_rates = np.array(functions.axial(b)), np.array(functions.axial_rates(b))
-    rigid = np.isinf(ea)
-    square = np.asarray(omega)[..., None] ** 2
-    elastic = np.where(rigid, 1.0, ea) / span * stretch
-    along = np.where(rigid, -square * weight * stretch_rates, elastic)
-    stiffness = _placed((ei / span**3) * np.array(functions.bending(z)), along, span)
-    bend_rates = np.array(functions.bending_rates(z))
-    return stiffness, _placed(weight * bend_rates, weight * stretch_rates, span)
 
+    length: Values  # [m]
+    bending: Values  # EI [N m^2]
+    axial: Values  # EA [N]
+    mass: Values  # per length [kg/m]
 
-def member_inertias(
-    omega: float,
-    length: Values,
-    bending_stiffness: Values,
-    axial_stiffness: Values,
-    mass_per_length: Values,
-) -> Values:
-    """Return ``H = (D(0) - D(omega)) / omega^2`` of beams, no difference of large numbers."""
-    given = (length, bending_stiffness, axial_stiffness, mass_per_length)
-    z, b = phases(omega, *given)
-    weight = mass_per_length * length
-    across, along = functions.bending_inertias(z), functions.axial_inertias(b)
-    return _placed(weight * np.array(across), weight * np.array(along), length)
+    def phases(self, omega: ArrayLike) -> tuple[Values, Values]:
+        """Return ``z = lambda L`` (Aannaque (5.4)) and ``b = beta L`` (5.9), ``(..., n)``."""
+        rate = np.asarray(omega)[..., None]
+        z = np.sqrt(rate) * (self.length * np.sqrt(np.sqrt(self.mass / self.bending)))
+        b = rate * (self.length * np.sqrt(self.mass / self.axial))
+        # Phases are kept above these; the functions are at their static values long before.
+        return np.where(np.abs(z) < 1e-30, 1e-30, z), np.where(np.abs(b) < 1e-100, 1e-100, b)
+
+    def matrices(self, omega: ArrayLike) -> tuple[Values, Values]:
+        """Return dynamic stiffness and mass in the beams' own axes, ``(..., n, 6, 6)``.
+
+        Aannaque (5.18) and (5.19): ``D(omega)`` gives the end forces of a harmonic motion, and ``M
+        = -dD/d(omega^2)`` its generalised mass; ``K = D + omega^2 M`` (5.17).  Rows are u1, v1, r1,
+        u2, v2, r2: displacement along and across the beam, rotation, of either end.
+        """
+        rates = np.asarray(omega)
+        if not rates.size or not np.all(np.isfinite(rates)):
+            raise bad("omega", repr(omega), "finite frequencies [rad/s]", "correct them")
+        z, b = self.phases(rates)
+        weight = self.mass * self.length
+        stretch, stretch_rates = np.array(functions.axial(b)), np.array(functions.axial_rates(b))
+        rigid = np.isinf(self.axial)
+        elastic = np.where(rigid, 1.0, self.axial) / self.length * stretch
+        along = np.where(rigid, -(rates[..., None] ** 2) * weight * stretch_rates, elastic)
+        across = (self.bending / self.length**3) * np.array(functions.bending(z))
+        bend_rates = np.array(functions.bending_rates(z))
+        mass = _placed(weight * bend_rates, weight * stretch_rates, self.length)
+        return _placed(across, along, self.length), mass
+
+    def inertias(self, omega: float) -> Values:
+        """Return ``H = (D(0) - D(omega)) / omega^2``, no difference of large numbers."""
+        z, b = self.phases(omega)
+        weight = self.mass * self.length
+        across, along = functions.bending_inertias(z), functions.axial_inertias(b)
+        return _placed(weight * np.array(across), weight * np.array(along), self.length)
 
 
 def _placed(across: Values, along: Values, length: Values) -> Values:
@@ -120,17 +101,6 @@ def _placed(across: Values, along: Values, length: Values) -> Values:
     return found
 
 
-def _require_positive(values: dict[str, ArrayLike]) -> None:
-    problems = []
-    for name, value in values.items():
-        array = np.asarray(value)
-        usable = array.dtype.kind in "fciu" and array.size
-        if not usable or not bool(np.all(array.real > 0)):
-            fix = "give SI units; a beam of no length joins its nodes"
-            problems.append(Problem(name, repr(value), "positive numbers", fix))
-    refuse(problems)
-
-
 Pieces = Mapping[str, tuple[float, ...]]
 
 
@@ -139,7 +109,7 @@ class Assembly:
     """Members, what joins them, and the coordinates left."""
 
     pieces: tuple[PlacedElement, ...]  # members, or parts of them, each one exact element
-    axial_stiffness: Array  # EA [N] of each piece, (n,); infinite where it cannot stretch
+    members: Members  # the numbers of the pieces
     angles: Array  # of each piece against the fixed axes [rad], (n,)
     # (n, 6, size): displacements of the ends along and across each piece by the coordinates left
     local: Array
@@ -154,21 +124,6 @@ class Assembly:
         """Number of coordinates."""
         return int(self.reduction.shape[1])
 
-    @property
-    def data(self) -> tuple[Array, Array, Array, Array]:
-        """Length, EI, EA and mass per length of the pieces, shape (n,) each."""
-        sections = [piece.beam.section for piece in self.pieces]
-        return (
-            np.array([piece.length for piece in self.pieces]),
-            np.array([section.bending_stiffness for section in sections]),
-            self.axial_stiffness,
-            np.array([section.mass_per_length for section in sections]),
-        )
-
-    def local_matrices(self, omega: ArrayLike) -> tuple[Array, Array]:
-        """Return D and M of the pieces in their own axes, ``(..., n, 6, 6)``."""
-        return member_matrices(omega, *self.data)
-
     def assembled(self, matrices: Array, diagonal: Array) -> Array:
         """Return ``(..., size, size)`` from local matrices and values on the free coordinates."""
         size = self.size
@@ -182,17 +137,17 @@ class Assembly:
         """Return D at frequencies ``(...)`` [rad/s]: ``(..., size, size)``."""
         rate = np.asarray(omega, dtype=float)
         lumps = self.springs - rate[..., None] ** 2 * self.lumped_mass
-        return self.assembled(self.local_matrices(rate)[0], lumps)
+        return self.assembled(self.members.matrices(rate)[0], lumps)
 
     def mass(self, omega: ArrayLike) -> Array:
         """Return ``M = -dD/d(omega^2)`` at frequencies ``(...)``: ``(..., size, size)``."""
         rate = np.asarray(omega, dtype=float)
         lumps = np.broadcast_to(self.lumped_mass, (*rate.shape, len(self.lumped_mass)))
-        return self.assembled(self.local_matrices(rate)[1], lumps)
+        return self.assembled(self.members.matrices(rate)[1], lumps)
 
     def poles(self, omega: ArrayLike) -> Array:
         """Return how many frequencies lie below with every node held, ``(...)``."""
-        z, b = phases(np.asarray(omega, dtype=float), *self.data)
+        z, b = self.members.phases(np.asarray(omega, dtype=float))
         return np.asarray(np.sum(functions.bending_poles(z) + functions.axial_poles(b), axis=-1))
 
 
@@ -279,11 +234,17 @@ def dynamic_stiffness(
     1
     """
     rigid = rigid_beams("dynamic_stiffness", structure, theta, inextensible)
-    if pieces is not None:
-        require_mapping("pieces", pieces, 'say {"crank": (0.5, 0.5)}')
-    for name in sorted(pieces or {}):
+    shares = {} if pieces is None else pieces
+    require_mapping("pieces", shares, 'say {"crank": (0.5, 0.5)}')
+    for name in sorted(shares):
         structure.beam(name)  # refuses one that there is not
-    freedoms = _numbered(structure, pieces or {})
+    held = all({"x", "y", "rotation"} <= set(node.held) for node in structure.nodes)
+    usual: tuple[float, ...] = (0.5, 0.5) if held else (1.0,)
+    beams = [
+        replace(beam, elements=tuple(shares.get(beam.name, usual)), kind="cubic")
+        for beam in structure.beams
+    ]
+    freedoms = number_freedoms(beams, structure.nodes)
     assembly = _assembly(structure, float(theta), freedoms, rigid)
     return DynamicStiffness(
         size=assembly.size,
@@ -320,17 +281,6 @@ def rigid_beams(
     return tuple(inextensible)
 
 
-def _numbered(structure: Structure, pieces: Pieces) -> Freedoms:
-    """Return the coordinates with one element for each beam, or the requested pieces."""
-    held = all({"x", "y", "rotation"} <= set(node.held) for node in structure.nodes)
-    usual: tuple[float, ...] = (0.5, 0.5) if held else (1.0,)
-    beams = [
-        replace(beam, elements=tuple(pieces.get(beam.name, usual)), kind="cubic")
-        for beam in structure.beams
-    ]
-    return number_freedoms(beams, structure.nodes)
-
-
 def _assembly(
     structure: Structure, theta: float, freedoms: Freedoms, rigid: tuple[str, ...]
 ) -> Assembly:
@@ -344,14 +294,25 @@ def _assembly(
         turn = np.kron(np.eye(2), [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
         ends[:, element.indices[:6]] += turn
     local = local[:, :, free]
-    stiff = np.array(
-        [np.inf if e.beam.name in rigid else e.beam.section.axial_stiffness for e in elements]
+    sections = [element.beam.section for element in elements]
+    stiff = [np.inf if e.beam.name in rigid else e.beam.section.axial_stiffness for e in elements]
+    members = Members(
+        np.array([element.length for element in elements]),
+        np.array([section.bending_stiffness for section in sections]),
+        np.array(stiff),
+        np.array([section.mass_per_length for section in sections]),
     )
-    reduction = without_stretch(local, np.isinf(stiff))
+    # What makes the free coordinates of those that stretch no inextensible piece.
+    unstretched = np.isinf(members.axial)
+    kept, reduction = eliminated(local[unstretched, 3] - local[unstretched, 0])
+    if not kept.size:
+        found = "beams that leave no node free to move"
+        fix = "let a beam stretch, or divide one into pieces"
+        raise bad("inextensible", found, "at least one coordinate", fix)
     mass, springs, _ = lumped_values(structure, freedoms)
     return Assembly(
         pieces=elements,
-        axial_stiffness=stiff,
+        members=members,
         angles=angles,
         local=np.asarray(local @ reduction),
         reduction=reduction,
@@ -359,16 +320,6 @@ def _assembly(
         springs=springs[free],
         labels=freedoms.free_labels,
     )
-
-
-def without_stretch(local: Array, rigid: NDArray[np.bool_]) -> Array:
-    """Return what makes the free coordinates of those that stretch no inextensible piece."""
-    kept, spread = eliminated(local[rigid, 3] - local[rigid, 0])
-    if not kept.size:
-        found = "beams that leave no node free to move"
-        fix = "let a beam stretch, or divide one into pieces"
-        raise bad("inextensible", found, "at least one coordinate", fix)
-    return spread
 
 
 def element_matrices(
@@ -392,9 +343,8 @@ def element_matrices(
 def log_determinant(problem: Transcendental, omega: ArrayLike) -> tuple[Array, Array]:
     """Return ``log10 |det D|`` and the sign of the determinant at positive frequencies [rad/s].
 
-    Zeros are frequencies at which the nodes move, poles those of the members with held ends; a
-    frequency at which all nodes stand still is a pole for whole members and a zero for divided
-    ones.
+    Zeros are frequencies at which the nodes move, poles those of the members with held ends; where
+    all nodes stand still there is a pole for whole members, and a zero for divided ones.
     """
     require_kind("problem", problem, Transcendental, "make one with dynamic_stiffness")
     rates = numbers("omega", omega)
@@ -415,44 +365,31 @@ _SHARES: tuple[tuple[float, ...], ...] = (
 )
 
 
-def divided_for(
-    problem: DynamicStiffness, low: float, high: float | None = None
-) -> DynamicStiffness:
+def divided_for(problem: DynamicStiffness, *omega: float) -> DynamicStiffness:
     """Return a structure whose pieces have no pole near some frequencies [rad/s].
 
     One piece for a member wherever that will do; otherwise unequal ones (the fictitious joint of
     Aannaque 5.4.1).
     """
-    ends = np.array([low, low if high is None else high])
     chosen: dict[str, tuple[float, ...]] = {}
-    length, *_ = problem.assembly.data
-    z, b = phases(ends, *problem.assembly.data)
+    members = problem.assembly.members
+    z, b = members.phases(omega)
     for beam in problem.structure.beams:
         own = [k for k, p in enumerate(problem.assembly.pieces) if p.beam.name == beam.name]
-        whole_z = z[:, own[0]] * beam.length / length[own[0]]
-        whole_b = b[:, own[0]] * beam.length / length[own[0]]
-        scores = []
         offered = [shares for shares in _SHARES if len(shares) >= len(own)]
+        whole = beam.length / members.length[own[0]]
+        scores = []
         for shares in offered:
-            scores.append(_distance(np.outer(whole_z, shares), np.outer(whole_b, shares)))
+            # How far the nearest pole is, over a quarter of the distance between poles.
+            zs, bs = (np.outer(phase[:, own[0]] * whole, shares) for phase in (z, b))
+            bending = np.abs(np.cos(zs) - 1.0 / np.cosh(np.minimum(zs, 700.0)))
+            bending = np.where(zs < 3.0, 1.0, bending)
+            axial = np.where(bs < 1.5, 1.0, np.abs(np.sin(bs)))
+            scores.append(float(min(bending.min(), axial.min())))
             if scores[-1] > 0.6:
                 break
         best = offered[int(np.argmax(scores))]
         if len(best) > 1:
             chosen[beam.name] = best
-    whole = len(problem.assembly.pieces) == len(problem.structure.beams)
-    return problem if whole and not chosen else problem.divided(chosen)
-
-
-def narrow_enough(problem: DynamicStiffness, omega: float) -> float:
-    """Return the relative width, 2 % at most, within which no member's phase changes by 0.3."""
-    z, b = phases(omega, *problem.assembly.data)
-    return float(min(0.02, 0.3 / max(np.max(z) / 2.0, np.max(b))))
-
-
-def _distance(z: Array, b: Array) -> float:
-    """Return how far the nearest pole is, over a quarter of the distance between poles."""
-    bending = np.abs(np.cos(z) - 1.0 / np.cosh(np.minimum(z, 700.0)))
-    bending = np.where(z < 3.0, 1.0, bending)
-    axial = np.where(b < 1.5, 1.0, np.abs(np.sin(b)))
-    return float(min(bending.min(), axial.min()))
+    undivided = len(problem.assembly.pieces) == len(problem.structure.beams)
+    return problem if undivided and not chosen else problem.divided(chosen)

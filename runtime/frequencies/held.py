@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,8 +20,7 @@ from ..periodic.moving_basis import flexible_modes
 _EPS = float(np.finfo(float).eps)
 
 
-@dataclass(frozen=True)
-class HeldModes:
+class HeldModes(NamedTuple):
     """Natural frequencies and shapes at crank angles."""
 
     frequency: Array  # natural frequencies [rad/s], rising, (nt, n)
@@ -29,61 +29,55 @@ class HeldModes:
     error: Array  # round-off of the frequencies [rad/s], (nt, n)
 
 
-def held_arrays(
-    system: LinearPeriodic, theta: Array, parameters: Mapping[str, float], speed: float
-) -> tuple[Array, Array]:
-    """Return M and K + Kg at crank angles, Kg with the axial forces of a crank speed."""
-    mass = system.array("M", theta, **parameters)
-    stiffness = system.array("K", theta, **parameters)
-    if system.has("Kg"):
-        stiffness = stiffness + system.array("Kg", theta, speed, **parameters)
-    return mass, stiffness
+@dataclass(frozen=True)
+class HeldCrank:
+    """A system with its crank held, under the axial forces of a crank speed [rad/s]."""
+
+    system: LinearPeriodic
+    parameters: Mapping[str, float]
+    speed: float = 0.0
+
+    def arrays(self, theta: Array) -> tuple[Array, Array]:
+        """Return M and K + Kg at crank angles."""
+        mass = self.system.array("M", theta, **self.parameters)
+        stiffness = self.system.array("K", theta, **self.parameters)
+        if self.system.has("Kg"):
+            added = self.system.array("Kg", theta, self.speed, **self.parameters)
+            stiffness = stiffness + added
+        return mass, stiffness
+
+    def modes(self, theta: Array) -> HeldModes:
+        """Return natural frequencies and shapes at crank angles ``(nt,)`` [rad].
+
+        A mass or stiffness that is not positive definite at some angle is refused.
+        """
+        mass, stiffness = self.arrays(theta)
+        try:
+            _, shape = flexible_modes(mass, stiffness)
+        except np.linalg.LinAlgError:
+            raise _indefinite(mass, stiffness, theta) from None
+        # Rayleigh's quotients: what the shapes are wrong by enters squared; what is left is the
+        # round-off of the sums.
+        size, kinetic = np.abs(shape), np.sum(shape * (mass @ shape), axis=1)
+        square = np.sum(shape * (stiffness @ shape), axis=1) / kinetic
+        summed = np.sum(size * (np.abs(stiffness) @ size), axis=1)
+        summed += square * np.sum(size * (np.abs(mass) @ size), axis=1)
+        shape, frequency = shape / np.sqrt(kinetic)[:, None, :], np.sqrt(square)
+        order = np.argsort(square, axis=1, kind="stable")
+        return HeldModes(
+            np.take_along_axis(frequency, order, axis=1),
+            np.take_along_axis(shape, order[:, None, :], axis=2),
+            mass,
+            np.take_along_axis(_EPS * summed / (kinetic * frequency), order, axis=1),
+        )
 
 
 def held_frequencies(
     system: LinearPeriodic, theta: Array, parameters: Mapping[str, float], speed: float = 0.0
 ) -> tuple[Array, Array]:
     """Return natural frequencies [rad/s] at crank angles and their round-off, ``(nt, n)`` each."""
-    held = held_modes(system, theta, parameters, speed)
+    held = HeldCrank(system, parameters, speed).modes(theta)
     return held.frequency, held.error
-
-
-def held_modes(
-    system: LinearPeriodic, theta: Array, parameters: Mapping[str, float], speed: float = 0.0
-) -> HeldModes:
-    """Return natural frequencies and shapes at crank angles ``(nt,)`` [rad].
-
-    A mass or stiffness that is not positive definite at some angle is refused.
-    """
-    mass, stiffness = held_arrays(system, theta, parameters, speed)
-    try:
-        _, shape = flexible_modes(mass, stiffness)
-    except np.linalg.LinAlgError:
-        raise _indefinite(mass, stiffness, theta) from None
-    square, error = _quotients(mass, stiffness, shape)
-    shape = shape / np.sqrt(np.einsum("tik,tij,tjk->tk", shape, mass, shape))[:, None, :]
-    order = np.argsort(square, axis=1, kind="stable")
-    frequency, error = np.sqrt(square), 0.5 * error / np.sqrt(square)
-    return HeldModes(
-        np.take_along_axis(frequency, order, axis=1),
-        np.take_along_axis(shape, order[:, None, :], axis=2),
-        mass,
-        np.take_along_axis(error, order, axis=1),
-    )
-
-
-def _quotients(mass: Array, stiffness: Array, shape: Array) -> tuple[Array, Array]:
-    """Return the squares of the frequencies as Rayleigh's quotients, and their round-off.
-
-    What the shapes are wrong by enters squared; what is left is the round-off of the sums.
-    """
-    size = np.abs(shape)
-    kinetic = np.sum(shape * (mass @ shape), axis=1)
-    square = np.sum(shape * (stiffness @ shape), axis=1) / kinetic
-    summed = np.sum(size * (np.abs(stiffness) @ size), axis=1)
-    summed += square * np.sum(size * (np.abs(mass) @ size), axis=1)
-    # Round-offs of the terms of a sum that make its error.
-    return square, 2.0 * _EPS * summed / kinetic
 
 
 def _indefinite(mass: Array, stiffness: Array, theta: Array) -> BadInput:
@@ -141,16 +135,17 @@ def cycle_mean(
     their error is: near a veering the values are analytic in a narrow strip, at a crossing their
     order changes.
     """
-    count = 64
-    found, rounding = _even(values, period, count)
-    while True:
-        before, count = found, 2 * count
-        found, rounding = _even(values, period, count)
+    before: Array | float = np.inf
+    for count in (64, 128, 256) if len(breaks) else (64, 128, 256, 512, 1024):
+        value, error = values(even_angles(period, count))
+        # Row by row a plain sum would add a round-off for every angle.
+        found = np.array([math.fsum(column) for column in value.T]) / count
+        rounding = error.mean(axis=0) + _EPS * np.abs(found)
         change = np.abs(found - before)
         if np.all(change <= enough * np.abs(found) + rounding):
             return found, change + rounding
-        if count >= (256 if len(breaks) > 0 else 1024):
-            return _by_panels(values, period, breaks, enough)
+        before = found
+    return _by_panels(values, period, breaks, enough)
 
 
 def mean_frequencies(
@@ -167,13 +162,6 @@ def mean_frequencies(
         return frequency[:, :count], error[:, :count]
 
     return cycle_mean(lowest, system.period, enough=enough)
-
-
-def _even(values: Values, period: float, count: int) -> tuple[Array, Array]:
-    value, error = values(even_angles(period, count))
-    # Row by row a plain sum would add a round-off for every angle.
-    found = np.array([math.fsum(column) for column in value.T]) / count
-    return found, error.mean(axis=0) + _EPS * np.abs(found)
 
 
 def _by_panels(
@@ -213,11 +201,8 @@ def _panel_integrals(values: Values, panels: Array, nodes: int) -> tuple[Array, 
     place, weight = np.polynomial.legendre.leggauss(nodes)
     half = 0.5 * (panels[:, 1] - panels[:, 0])[:, None]
     theta = panels.mean(axis=1)[:, None] + half * place
-    value, error = values(theta.ravel())
-    shape = (*theta.shape, -1)
-    scaled = half * weight
-    found = np.einsum("pn,pnk->pk", scaled, value.reshape(shape))
-    rounding = np.einsum("pn,pnk->pk", scaled, error.reshape(shape))
+    both = np.reshape(values(theta.ravel()), (2, *theta.shape, -1))
+    found, rounding = np.einsum("pn,vpnk->vpk", half * weight, both)
     return found, rounding + 4 * _EPS * np.abs(found)
 
 
@@ -234,8 +219,7 @@ def buckling_speed(system: LinearPeriodic, **parameters: float) -> Buckling:
 
     Beyond it a link that is pressed has, over a part of the turn, no natural frequency: frozen
     analyses end there.  The moving mechanism need not be unstable, as it passes that part quickly.
-    The geometric stiffness is to grow with the square of the speed, constant loads aside.  The
-    speed is exact to round-off at its angle, which is the worst one to 1e-6 of the period.
+    The speed is exact to round-off at its angle, which is the worst one to 1e-6 of the period.
 
     Parameters
     ----------
@@ -282,8 +266,8 @@ def buckling_speed(system: LinearPeriodic, **parameters: float) -> Buckling:
 
 def _softening(system: LinearPeriodic, theta: Array, parameters: dict[str, float]) -> Array:
     """Return, at each angle, the largest eigenvalue of -(what a unit speed adds) over K."""
-    mass, resting = held_arrays(system, theta, parameters, 0.0)
-    added = held_arrays(system, theta, parameters, 1.0)[1] - resting
+    mass, resting = HeldCrank(system, parameters).arrays(theta)
+    added = HeldCrank(system, parameters, 1.0).arrays(theta)[1] - resting
     try:
         half = np.linalg.inv(np.linalg.cholesky(resting))
     except np.linalg.LinAlgError:

@@ -10,11 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..beams.element_forms import required_structure
-from ..beams.section import Section
 from ..beams.structure import Structure
 from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic
-from ..core.inputs import numbers, require_kind, require_positive, require_whole
+from ..core.inputs import numbers, require_whole
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
@@ -67,17 +66,6 @@ class LinkFrequencies(Result):
         ax.set(ylabel="natural frequency [rad/s]", ylim=(0.0, top))
         ax.legend(fontsize=8)
         return ax
-
-
-def pinned_frequency(section: Section, length: float) -> float:
-    """Return the first natural frequency [rad/s] of a beam of a length [m] pinned at both ends.
-
-    BadInput is raised if the section is none, or the length not positive.
-    """
-    require_kind("section", section, Section, "make one with Section or Section.rectangle")
-    require_positive("pinned_frequency", length=length)
-    root = np.sqrt(section.bending_stiffness / section.mass_per_length)
-    return float((np.pi / length) ** 2 * root)
 
 
 def link_frequencies(
@@ -133,8 +121,9 @@ def link_frequencies(
     rows, pinned = [], []
     for number in values:
         changed = _changed(system, link, quantity, float(number))
-        beams = required_structure(changed).beams
-        pinned.append([pinned_frequency(beam.section, beam.length) for beam in beams])
+        beams = [(beam.section, beam.length) for beam in required_structure(changed).beams]
+        squares = [s.bending_stiffness / s.mass_per_length / span**4 for s, span in beams]
+        pinned.append(factor * np.pi**2 * np.sqrt(squares))
         # Means, their errors, and least and largest values over the period.
         mean, error = mean_frequencies(changed, count, 1e-8)
         seen = held_frequencies(changed, even_angles(changed.period, 64), {})[0][:, :count]
@@ -152,7 +141,7 @@ def link_frequencies(
         mean=mean,
         least=least,
         largest=largest,
-        pinned=factor * np.array(pinned),
+        pinned=np.array(pinned),
         links=names,
     )
 

@@ -7,6 +7,7 @@ mode by itself from intervals of constant frequency (Meissner's J_N, 7.11).
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic
+from ..core.maxima import local_maxima
 from ..core.results import Check
 from ..hill import Meissner, discriminant
 from ..periodic.lowest_modes import LowestModes
@@ -21,7 +23,6 @@ from ..periodic.moving_basis import still_modes
 from ..periodic.multipliers import ROUNDED
 from ..periodic.over_speed import MatricesOverSpeed
 
-ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
 
 _MOST_SAMPLES = 4000
@@ -34,23 +35,24 @@ _BESIDE, _TURNED, _POLISHED = 1e-4, 3e-3, 2
 _ASIDE = 0.9
 
 
-class Maxima(NamedTuple):
-    """Local maxima over the speed of what the modes' multipliers say, ``(k,)`` each."""
+class Found(NamedTuple):
+    """Speeds that a method finds critical, ``(k,)`` each, in any order."""
 
-    speed: Array
-    """Crank speeds [rad/s]."""
-    mode: Whole
-    """Mode, from 1."""
-    value: Array
-    error: Array
-    """Absolute error of each speed [rad/s]."""
     method: str
-    checks: Mapping[str, Check]
+    speed: Array  # [rad/s]
+    mode: Whole  # from 1
+    error: Array  # absolute, of each speed [rad/s]
+    order: Whole | None = None  # None where the mode's mean frequency is to give it
+    # What the method measures there, 1 where it is nothing, and at the speeds that were scanned.
+    quantity: str = "none"
+    height: Array | None = None
+    scan: tuple[Array, Array] = (np.zeros(0), np.zeros(0))
+    checks: Mapping[str, Check] = MappingProxyType({})
 
 
 def multiplier_maxima(
     system: LinearPeriodic, speed_range: tuple[float, float], wanted: int
-) -> Maxima:
+) -> Found:
     """Return the local maxima over the speed [rad/s] of the real parts of the multipliers.
 
     Each mode's multiplier of the larger real part is followed over the speed; where its real part
@@ -58,8 +60,7 @@ def multiplier_maxima(
     unstable band with real multipliers beyond +1 it is the speed of greatest growth.  The speeds
     are swept on a modal truncation; what that costs at the highest speed is in the error.  A
     maximum between two samples, of which the highest mode turns by 0.35 rad at most, may be missed.
-    Where two modes trade their names, one's real part jumps: such a maximum lies where the modes
-    that are kept put it.
+    One at which two modes trade their names lies where the modes that are kept put it.
     """
     low, high = speed_range
     held = np.sqrt(still_modes(system, 256).squares[:, :wanted])
@@ -74,20 +75,24 @@ def multiplier_maxima(
     speed = np.clip(1.0 / np.linspace(1 / high, 1 / low, number), low, high)
     truncated, change = LowestModes(system, wanted).required(high)
     few = MatricesOverSpeed(truncated, (low, high), {}, _RTOL)
-    real = _larger(_multipliers(few, speed, wanted))
+    real = _multipliers(few, speed, wanted)
 
     def value(at: Array, mode: Whole) -> Array:
-        return np.asarray(_larger(_multipliers(few, at, wanted))[np.arange(len(at)), mode])
+        return np.asarray(_multipliers(few, at, wanted)[np.arange(len(at)), mode])
 
-    row, mode = _peaks(real)
-    brackets = speed[row - 1], speed[row], speed[row + 1]
-    around = real[row - 1, mode], real[row, mode], real[row + 1, mode]
-    at, best, width = refined_maxima(value, mode, brackets, around)
-    span = np.abs(brackets[2] - brackets[0])
+    inner = real[1:-1]
+    mode, row = np.nonzero(((inner >= real[:-2]) & (inner > real[2:])).T)
+    row = row + 1
+    near = np.add.outer([-1, 0, 1], row)
+    around = real[near, mode]
+    at, best, width = refined_maxima(value, mode, speed[near], around)
+    span = np.abs(speed[row + 1] - speed[row - 1])
     matrices, relative = few(speed[row])
     noise = float(np.max(relative, initial=0.0))
     size = float(np.max(np.abs(matrices), initial=1.0))
-    blur = _blur(around, span, noise * size)
+    # Rounding leaves the place of a maximum open by its root.
+    curve = np.maximum(np.abs(around[0] - 2 * around[1] + around[2]), 1e-300)
+    blur = np.sqrt(2 * noise * size * (span**2 / 4) / curve)
     method = "local maxima of the real parts of the multipliers"
     if truncated.size < system.size:
         method += f", on {truncated.size} natural modes"
@@ -102,28 +107,8 @@ def multiplier_maxima(
     sharp = 2.0 * np.abs(moved) + ROUNDED * noise * size * _BESIDE * at / np.abs(bend)
     # A multiplier's turn is its frequency over the speed: what it is off by, the speed is.
     error = np.where(smooth, np.minimum(sharp, rough), rough) + change * at
-    return Maxima(at, mode + 1, best, error, method, checks)
-
-
-def _blur(values: tuple[Array, Array, Array], across: Array, noise: float) -> Array:
-    """Return how far the place of a maximum is open: rounding leaves it so by its root."""
-    # From the values before, at and after the highest sample, and how far the outer two are apart.
-    curve = np.abs(values[0] - 2 * values[1] + values[2])
-    return np.asarray(np.sqrt(2 * noise * (across**2 / 4) / np.maximum(curve, 1e-300)))
-
-
-def _larger(values: ComplexArray) -> Array:
-    """Return the larger real part of each mode's two multipliers, ``(ns, m)``."""
-    pairs = values.real.reshape(len(values), values.shape[-1] // 2, 2)
-    return np.asarray(np.max(pairs, axis=-1))
-
-
-def _peaks(values: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return row and column of the entries above both neighbours in their column."""
-    inner = values[1:-1]
-    above = (inner >= values[:-2]) & (inner > values[2:])
-    column, row = np.nonzero(above.T)
-    return row + 1, column
+    quantity = "real part of the multiplier"
+    return Found(method, at, mode + 1, error, quantity=quantity, height=best, checks=checks)
 
 
 def _quartic(
@@ -144,18 +129,18 @@ def _quartic(
 def refined_maxima(
     call: Callable[[Array, Whole], Array],
     which: Whole,
-    brackets: tuple[Array, Array, Array],
-    values: tuple[Array, Array, Array],
+    brackets: Array,
+    values: Array,
     *,
     steps: int = 24,
     rtol: float = 1e-7,
 ) -> tuple[Array, Array, Array]:
     """Refine maxima of many functions by parabolas; return places, values and errors ``(k,)``.
 
-    ``call`` takes places and ``which`` functions; ``brackets`` and ``values`` stand before, at and
-    after each maximum.  One has settled where a step is below ``rtol``: the values say no more.
+    ``call`` takes places and ``which`` functions; ``brackets`` and ``values``, ``(3, k)``, stand
+    before, at and after each maximum.  One has settled where a step is below ``rtol``.
     """
-    x, f = np.stack(brackets), np.stack(values)
+    x, f = brackets.copy(), values.copy()
     moved = np.max(np.abs(x - x[1]), axis=0)
     for _ in range(steps):
         wide = moved > rtol * x[1]
@@ -173,20 +158,18 @@ def refined_maxima(
         moved = np.where(wide, np.abs(trial - x[1]), moved)
         better = wide & (got > f[1])
         beyond = (trial - x[1]) * (x[2] - x[1]) > 0
-        for side, chosen in ((0, beyond), (2, ~beyond)):
-            # The old middle closes the bracket behind a better place.
-            own = better & chosen
-            x[side, own], f[side, own] = x[1, own], f[1, own]
-        for side, chosen in ((2, beyond), (0, ~beyond)):
-            own = wide & ~better & chosen
-            x[side, own], f[side, own] = trial[own], got[own]
+        # The worse one of the old middle and the new place closes the bracket on its side.
+        own = np.flatnonzero(wide)
+        side = np.where(better == beyond, 0, 2)[own]
+        x[side, own] = np.where(better, x[1], trial)[own]
+        f[side, own] = np.where(better, f[1], got)[own]
         x[1], f[1] = np.where(better, trial, x[1]), np.where(better, got, f[1])
     return x[1], f[1], moved
 
 
 def meissner_maxima(
     frequencies: Array, rounding: Array, period: float, speed_range: tuple[float, float]
-) -> Maxima:
+) -> Found:
     """Return the local maxima over the speed of Meissner's J_N, each mode by itself.
 
     Its frequency, in a column of ``(N, m)`` at even angles with N a multiple of 4, is constant in
@@ -213,7 +196,7 @@ def meissner_maxima(
         parts.append((place, np.full(len(place), mode + 1), value, error))
     speed, number, value, error = (np.concatenate(column) for column in zip(*parts, strict=True))
     method = f"local maxima of Meissner's J_{count}"
-    return Maxima(speed, number.astype(np.int64), value, error, method, {})
+    return Found(method, speed, number.astype(np.int64), error, quantity="J_N", height=value)
 
 
 def _nearest(places: Array, to: Array) -> Array:
@@ -238,11 +221,10 @@ def _meissner_maxima(
     number = int(np.ceil(waves * (1 / span[0] - 1 / span[1]) / 0.05)) + 8
     speed = 1.0 / np.linspace(1 / span[1], 1 / span[0], number)
     values = half_trace(speed)
-    row, mode = _peaks(values[:, None])
-    which = mode.astype(np.int64)
-    brackets = speed[row - 1], speed[row], speed[row + 1]
-    around = values[row - 1], values[row], values[row + 1]
-    at, best, _ = refined_maxima(half_trace, which, brackets, around)
+    row = local_maxima(values)
+    which = np.zeros(len(row), dtype=np.int64)
+    near = np.add.outer([-1, 0, 1], row)
+    at, best, _ = refined_maxima(half_trace, which, speed[near], values[near])
     step = _TURNED * at**2 / waves
     for _ in range(_POLISHED):
         moved, bend, _ = _quartic(half_trace, at, step, which, best)
@@ -253,23 +235,19 @@ def _meissner_maxima(
     return at, best, np.abs(moved) + np.minimum(noise, step)
 
 
-def _multipliers(few: MatricesOverSpeed, speed: Array, count: int) -> ComplexArray:
-    """Return the multipliers of the lowest modes ``(ns, 2 count)``, two to a mode."""
+def _multipliers(few: MatricesOverSpeed, speed: Array, count: int) -> Array:
+    """Return the larger real part of the two multipliers of each of the lowest modes."""
     half = few.system.size
     values, vectors = np.linalg.eig(few(speed)[0])
-    # In velocities of time, not of angle, a state is the same at all speeds.
+    # In velocities of time, not of angle, a state (q, M qd) is the same at all speeds.
     states = np.asarray(vectors.astype(complex) * few.scale[:, None], dtype=np.complex128)
     states[:, half:] *= speed[:, None, None]
-    order = np.argsort(_level(few.system, states), axis=-1, kind="stable")[:, : 2 * count]
-    return np.take_along_axis(values.astype(complex), order, axis=-1)
-
-
-def _level(system: LinearPeriodic, states: ComplexArray) -> Array:
-    """Return energy over action of states (q, M qd) in columns, by the modes held at 0."""
-    still = still_modes(system, 1)
+    # The lowest modes are told by energy over action, by the modes held at 0.
+    still = still_modes(few.system, 1)
     shapes, rate = still.shapes[0], np.sqrt(still.squares[0])[:, None]
-    half = len(shapes)
     rest = np.abs(np.linalg.solve(shapes, states[:, :half])) ** 2
-    moved = np.abs(shapes.T @ states[:, half:]) ** 2
-    energy = rate**2 * rest + moved
-    return np.asarray(np.sum(energy, axis=1) / np.sum(energy / rate, axis=1))
+    energy = rate**2 * rest + np.abs(shapes.T @ states[:, half:]) ** 2
+    level = np.sum(energy, axis=1) / np.sum(energy / rate, axis=1)
+    order = np.argsort(level, axis=-1, kind="stable")[:, : 2 * count]
+    real = np.take_along_axis(values.real, order, axis=-1).reshape(len(speed), count, 2)
+    return np.asarray(np.max(real, axis=-1))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -19,11 +19,14 @@ from ..core.families import Array, LinearPeriodic, require_system
 from ..core.inputs import is_finite, require_whole
 from ..core.plotting import Axes, axes_or_new, new_figure
 from ..core.results import Check, Result, provenance
-from .held import assurance, crank_angles, cycle_mean, held_arrays, held_frequencies, held_modes
-from .tracking import CLEAR, Arrays, Curves, Encounter, Modes, Walk, followed_shapes, walk
+from ..core.trigonometric import even_angles
+from .held import HeldCrank, assurance, crank_angles, cycle_mean
+from .tracking import CLEAR, Curves, Encounter, followed_shapes, walk
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+ComplexArray = NDArray[np.complex128]
 
 _ENCOUNTERS = ("encounter_angle", "encounter_rank", "encounter_gap", "encounter_width")
 
@@ -213,16 +216,22 @@ def natural_frequencies(
     if not (is_finite(speed) and 0.0 <= speed <= 1e100):
         raise bad("speed", repr(speed), "a crank speed [rad/s], 0 or more", "correct it")
     period, start = system.period, float(angles[0])
-    modes = partial(held_modes, system, parameters=parameters, speed=float(speed))
-    arrays = partial(held_arrays, system, parameters=parameters, speed=float(speed))
-    path = _walk(modes, arrays, period, count, start)
-    held = modes(angles)
-    curves = Curves(path, start, system.size, count, period)
+    crank = HeldCrank(system, parameters, float(speed))
+    watched = count
+    while True:
+        # So many modes that no requested curve leaves them.
+        path = walk(crank, watched)
+        curves = Curves(path, start, system.size, count, period)
+        if curves.highest < watched or watched == system.size:
+            break
+        watched = min(watched + 4, system.size)
+    held = crank.modes(angles)
     tracked, branch = curves.follow(angles, held.frequency), curves.labels(angles)[:, :count]
-    shape, sign = followed_shapes(modes, curves, angles)
-    values = partial(_values, system, parameters, float(speed), curves)
-    means, errors = cycle_mean(values, period, [one.angle for one in path.encounters])
+    shape, sign = followed_shapes(crank, curves, angles)
+    breaks = [one.angle for one in path.encounters]
+    means, errors = cycle_mean(partial(_values, crank, curves), period, breaks)
     closure = curves.closure
+    kept = assurance(shape[:1], shape, 0.5 * (held.mass[:1] + held.mass))
     return NaturalFrequencies(
         method="generalised eigenvalue problem of K + Kg and M, followed by modal assurance",
         error=held.error[:, :count],
@@ -237,7 +246,7 @@ def natural_frequencies(
         tracked=tracked,
         branch=branch + 1,
         shape=shape,
-        mac=_kept(shape, held.mass),
+        mac=np.diagonal(kept, axis1=-2, axis2=-1),
         encounters=path.encounters,
         closure=closure + 1,
         sign=np.where(closure == np.arange(count), sign, 0.0),
@@ -250,63 +259,33 @@ def natural_frequencies(
     )
 
 
-def _walk(modes: Modes, arrays: Arrays, period: float, count: int, start: float) -> Walk:
-    """Return a turn of the crank, of so many modes that no requested curve leaves them."""
-    size = modes(np.array([start])).frequency.shape[-1]
-    watched = min(count, size)
-    while True:
-        path = walk(modes, arrays, period, watched)
-        if Curves(path, start, size, count, period).highest < watched or watched == size:
-            kept = tuple(one for one in path.encounters if one.lower <= max(count, watched))
-            return Walk(kept, path.theta, path.assured)
-        watched = min(watched + 4, size)
-
-
-def _values(
-    system: LinearPeriodic,
-    parameters: Mapping[str, float],
-    speed: float,
-    curves: Curves,
-    theta: Array,
-) -> tuple[Array, Array]:
+def _values(crank: HeldCrank, curves: Curves, theta: Array) -> tuple[Array, Array]:
     """Return frequencies by rank and by curve, and their round-off, ``(nt, 2 count)`` each."""
-    frequency, error = held_frequencies(system, theta, parameters, speed)
+    held = crank.modes(theta)
     both = []
-    for part in (frequency, error):
+    for part in (held.frequency, held.error):
         # A curve that comes back only after several turns has its mean over all of them.
         turns = [curves.follow(theta + k * curves.period, part) for k in range(curves.turns)]
         both.append(np.concatenate([part[:, : curves.count], np.mean(turns, axis=0)], axis=1))
     return both[0], both[1]
 
 
-def _kept(shape: Array, mass: Array) -> Array:
-    """Return the assurance of each shape and that of its curve at the first angle."""
-    found = assurance(np.broadcast_to(shape[:1], shape.shape), shape, 0.5 * (mass[:1] + mass))
-    return np.asarray(np.diagonal(found, axis1=-2, axis2=-1))
-
-
-def deflected_links(
-    structure: Structure, theta: float, shape: Array
-) -> dict[str, tuple[Array, Array]]:
-    """Return places on each rigid link and their displacements in a shape, ``(np, 2)`` each [m]."""
+def _deflected(structure: Structure, theta: float, shape: Array) -> dict[str, ComplexArray]:
+    """Return places on each rigid link and their displacements in a shape, ``(2, np)`` [m]."""
     full = np.zeros(len(structure.freedoms.all))
     full[structure.freedoms.free] = shape
     motion = structure.configuration(np.array([theta]))
-    found: dict[str, tuple[list[Array], list[Array]]] = {}
+    found: dict[str, ComplexArray] = {}
     places = np.linspace(0.0, 1.0, 17)
     for element in structure.elements:
-        beam = element.beam
+        name = element.beam.name
         shapes = shapes_of(element, places)
-        own = motion[beam.name]
-        angle = float(own.angle[0])
-        axes = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-        local = in_own_axes(full[None, element.indices], axes[0, 0], axes[0, 1])[0]
-        moved = np.stack([shapes["u"] @ local, shapes["v"] @ local], axis=-1) @ axes
-        at = element.start + element.length * places
-        rigid, bent = found.setdefault(beam.name, ([], []))
-        rigid.append(own.origin[0] + at[:, None] * axes[0])
-        bent.append(moved)
-    return {name: (np.concatenate(a), np.concatenate(b)) for name, (a, b) in found.items()}
+        turn = np.exp(1j * float(motion[name].angle[0]))
+        local = in_own_axes(full[None, element.indices], turn.real, turn.imag)[0]
+        rigid = complex(*motion[name].origin[0]) + (element.start + element.length * places) * turn
+        both = np.stack([rigid, (shapes["u"] @ local + 1j * (shapes["v"] @ local)) * turn])
+        found[name] = np.concatenate([found.get(name, both[:, :0]), both], axis=1)
+    return found
 
 
 def draw_mode(
@@ -332,15 +311,16 @@ def draw_mode(
     at = int(np.argmin(np.abs(held.theta - theta)))
     if abs(held.theta[at] - theta) > 1e-9 or mode > held.shape.shape[-1]:
         raise bad("found", "no such angle or mode", "frequencies that have both", "leave it out")
-    links = deflected_links(structure, float(theta), held.shape[at, :, mode - 1])
+    links = _deflected(structure, float(theta), held.shape[at, :, mode - 1])
     longest = max(beam.length for beam in structure.beams)
-    largest = max(float(np.max(np.linalg.norm(bent, axis=1))) for _, bent in links.values())
+    largest = max(float(np.max(np.abs(bent))) for _, bent in links.values())
     # The largest deflection is drawn as an eighth of the longest link.
     factor = 0.12 * longest / largest
     ax = axes_or_new(ax)
     for rigid, bent in links.values():
-        ax.plot(*rigid.T, "--", color="0.6", lw=0.8)
-        ax.plot(*(rigid + factor * bent).T, color="C0", lw=1.5)
+        drawn = rigid + factor * bent
+        ax.plot(rigid.real, rigid.imag, "--", color="0.6", lw=0.8)
+        ax.plot(drawn.real, drawn.imag, color="C0", lw=1.5)
     for place in structure.places(np.array([theta])).values():
         ax.plot(*place[0], "o", color="0.3", ms=3, mfc="w")
     ax.set_aspect("equal")
@@ -382,10 +362,7 @@ def draw_modes(
     4
     """
     required_structure(system)
-    if theta is None:
-        angles = np.linspace(0.0, system.period, 10, endpoint=False)
-    else:
-        angles = crank_angles(system, theta)
+    angles = crank_angles(system, even_angles(system.period, 10) if theta is None else theta)
     found = natural_frequencies(system, angles, require_whole("modes", modes, 1, system.size))
     figure = new_figure(2.6 * modes, 1.7 * len(angles))
     axes = figure.subplots(len(angles), modes, squeeze=False)

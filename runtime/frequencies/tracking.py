@@ -7,8 +7,6 @@ shapes is clear, and every swap, and every least gap, is examined.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -17,11 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.maxima import narrowed
-from .held import HeldModes, assurance
+from .held import HeldCrank, HeldModes, assurance
 
 Array = NDArray[np.float64]
-Modes = Callable[[Array], HeldModes]
-Arrays = Callable[[Array], tuple[Array, Array]]
 
 
 @dataclass(frozen=True)
@@ -29,9 +25,8 @@ class Encounter:
     """Two neighbouring natural frequencies that cross or veer away from each other.
 
     Near it the squares differ by ``sqrt(gap^2 + slope^2 (theta - angle)^2)``.  A crossing has no
-    gap beyond round-off: each shape goes on along its own curve.  At a veering the curves stay
-    apart and the modes trade their shapes; of a crossing width, coupling, curvature and trade are
-    0.
+    gap beyond round-off: each shape goes on along its own curve, and width, coupling, curvature and
+    trade are 0.  At a veering the curves stay apart and the modes trade their shapes.
     """
 
     kind: Literal["crossing", "veering"]
@@ -51,11 +46,11 @@ class Encounter:
     trade: float  # ``2 coupling width``: 1 where two modes veer and no third takes part
 
 
-def least_gap(modes: Modes, low: float, high: float, rank: int) -> tuple[float, float]:
+def least_gap(crank: HeldCrank, low: float, high: float, rank: int) -> tuple[float, float]:
     """Return the angle of the least gap above a rank (from 0) within a bracket, and its doubt."""
 
     def closeness(theta: Array) -> Array:
-        frequency = modes(theta[0]).frequency
+        frequency = crank.modes(theta[0]).frequency
         return (frequency[:, rank] - frequency[:, rank + 1])[None]
 
     # About a veering the gap is flat; down to a crossing it falls to nothing.
@@ -63,23 +58,29 @@ def least_gap(modes: Modes, low: float, high: float, rank: int) -> tuple[float, 
     return float(0.5 * (left + right)), float(right - left)
 
 
-def describe(
-    modes: Modes, arrays: Arrays, angle: float, doubt: float, rank: int, period: float
-) -> Encounter:
+def describe(crank: HeldCrank, angle: float, doubt: float, rank: int) -> Encounter:
     """Return the record of the least gap above a rank (from 0), known to be at an angle."""
-    at = modes(np.array([angle]))
+    period = crank.system.period
+    at = crank.modes(np.array([angle]))
     one, two = at.frequency[0, rank : rank + 2]
-    gap = float(two - one)
+    gap, frequency = float(two - one), 0.5 * float(one + two)
     step = 1e-3 * period / (2.0 * np.pi)
-    turning = _coupling(arrays, at, angle, rank, step)
+    # ``|u_2^T (K' - omega_1^2 M') u_1|`` by differences of the fourth order.
+    weight = np.array([1.0, -8.0, 8.0, -1.0]) / (12.0 * step)
+    mass, stiffness = crank.arrays(angle + step * np.array([-2.0, -1.0, 1.0, 2.0]))
+    change = np.tensordot(weight, stiffness - one**2 * mass, axes=1)
+    turning = float(abs(at.shape[0, :, rank + 1] @ change @ at.shape[0, :, rank]))
     rate = turning / max(two**2 - one**2, float(np.finfo(float).eps) * two**2)
     # Over a part of what the shapes need to trade the square of the gap is a parabola.
     reach = min(0.25 / rate, step) if rate > 0.0 else step
-    slope, gap_error = _slope(modes, angle, reach, rank)
+    around = crank.modes(angle + reach * np.array([-1.0, 0.0, 1.0]))
+    square = (around.frequency[:, rank + 1] - around.frequency[:, rank]) ** 2
+    slope = float(np.sqrt(max((square[0] + square[2]) / 2.0 - square[1], 0.0)) / reach)
+    # Gaps smaller than so many round-offs are none.
+    gap_error = 8.0 * float(np.max(around.error[:, rank : rank + 2]))
     # At a veering the gap is flat, and hardly wrong for the angle's doubt.
     drift = slope * doubt
     gap_error += min(drift, drift**2 / gap) if gap > 0.0 else drift
-    frequency = 0.5 * float(one + two)
     crossing = gap <= gap_error
     width = 0.0 if crossing or not slope > 0.0 else gap / slope
     coupling = 0.0 if crossing else float(rate)
@@ -93,28 +94,9 @@ def describe(
         slope=slope,
         width=width,
         coupling=coupling,
-        curvature=0.0 if crossing else float(turning * rate / frequency),
+        curvature=turning * coupling / frequency,
         trade=2.0 * coupling * width,
     )
-
-
-def _coupling(arrays: Arrays, at: HeldModes, angle: float, rank: int, step: float) -> float:
-    """Return ``|u_2^T (K' - omega_1^2 M') u_1|`` by differences of the fourth order."""
-    theta = angle + step * np.array([-2.0, -1.0, 1.0, 2.0])
-    weight = np.array([1.0, -8.0, 8.0, -1.0]) / (12.0 * step)
-    mass, stiffness = arrays(theta)
-    slope = np.tensordot(weight, stiffness - at.frequency[0, rank] ** 2 * mass, axes=1)
-    return float(abs(at.shape[0, :, rank + 1] @ slope @ at.shape[0, :, rank]))
-
-
-def _slope(modes: Modes, angle: float, reach: float, rank: int) -> tuple[float, float]:
-    """Return the difference of the slopes, from the gap's square, and the gap's round-off."""
-    around = modes(angle + reach * np.array([-1.0, 0.0, 1.0]))
-    gap = around.frequency[:, rank + 1] - around.frequency[:, rank]
-    # Gaps smaller than so many round-offs are none.
-    error = 8.0 * float(np.max(around.error[:, rank : rank + 2]))
-    bend = (gap[0] ** 2 + gap[2] ** 2) / 2.0 - gap[1] ** 2
-    return float(np.sqrt(max(bend, 0.0)) / reach), error
 
 
 Indices = NDArray[np.int64]
@@ -140,66 +122,61 @@ class Walk:
     assured: float  # least assurance of a shape between neighbouring angles
 
 
-def walk(modes: Modes, arrays: Arrays, period: float, count: int) -> Walk:
+def walk(crank: HeldCrank, count: int) -> Walk:
     """Return a turn of the crank with the encounters of the lowest ``count`` modes."""
-    step = period / _INTERVALS
+    step = crank.system.period / _INTERVALS
     # Not from 0: symmetric mechanisms meet at round angles, where shapes of equal frequency are
     # arbitrary.
     theta = np.asarray(step * (np.arange(_INTERVALS + 1) + 0.2718281828), dtype=np.float64)
-    held = modes(theta)
+    held = crank.modes(theta)
     while True:
-        theta, held, swaps, assured = _divided(modes, theta, held, period, count)
-        found = _swapped(modes, arrays, theta, swaps, period)
-        more, hidden = _narrows(modes, arrays, theta, held, count, period, found)
+        theta, held, swaps, assured = _divided(crank, theta, held, count)
+        found = _swapped(crank, theta, swaps)
+        more, hidden = _narrows(crank, theta, held, count, found)
         if not len(hidden) or len(theta) + len(hidden) > _MOST_ANGLES:
             break
-        theta, held = _with(modes, theta, held, hidden)
+        theta, held = _with(crank, theta, held, hidden)
     found += more
     # Where several meet at one angle their order counts.
     found.sort(key=lambda one: one.angle)
-    return Walk(tuple(found), theta, assured)
+    return Walk(tuple(one for one in found if one.lower <= count), theta, assured)
 
 
 Swaps = list[tuple[int, tuple[int, ...]]]
 
 
 def _divided(
-    modes: Modes, theta: Array, held: HeldModes, period: float, count: int
+    crank: HeldCrank, theta: Array, held: HeldModes, count: int
 ) -> tuple[Array, HeldModes, Swaps, float]:
     """Return angles among which each assignment of shapes is clear, and the swaps between them."""
+    tight = _TIGHT * crank.system.period
     while True:
         width = np.diff(theta)
-        unclear, swaps, assured = _status(held, count, width <= _TIGHT * period)
-        wide = unclear & (width > 1e-4 * _TIGHT * period)
+        unclear, swaps, assured = _status(held, count, width <= tight)
+        wide = unclear & (width > 1e-4 * tight)
         new = 0.5 * (theta[:-1] + theta[1:])[wide]
         if not len(new) or len(theta) + len(new) > _MOST_ANGLES:
             return theta, held, swaps, assured
-        theta, held = _with(modes, theta, held, new)
+        theta, held = _with(crank, theta, held, new)
 
 
-def _swapped(
-    modes: Modes, arrays: Arrays, theta: Array, swaps: Swaps, period: float
-) -> list[Encounter]:
+def _swapped(crank: HeldCrank, theta: Array, swaps: Swaps) -> list[Encounter]:
     """Return the encounters at which neighbours in rank swap their shapes."""
     out = []
     for index, ranks in swaps:
         apart = len(ranks) == len({*ranks}) and all(k + 1 not in ranks for k in ranks)
         # Of several that meet at once there is one angle for all, in the order of the swaps.
         for group in [(k,) for k in ranks] if apart else [ranks]:
-            at = least_gap(modes, float(theta[index]), float(theta[index + 1]), group[0])
-            out += [describe(modes, arrays, *at, k, period) for k in group]
+            at = least_gap(crank, float(theta[index]), float(theta[index + 1]), group[0])
+            out += [describe(crank, *at, k) for k in group]
     return out
 
 
-def _with(modes: Modes, theta: Array, held: HeldModes, new: Array) -> tuple[Array, HeldModes]:
+def _with(crank: HeldCrank, theta: Array, held: HeldModes, new: Array) -> tuple[Array, HeldModes]:
     """Return angles and modes with more of them, in order."""
-    more = modes(new)
     joined = np.concatenate([theta, new])
     order = np.argsort(joined, kind="stable")
-    parts = [
-        np.concatenate([getattr(held, name), getattr(more, name)])[order]
-        for name in ("frequency", "shape", "mass", "error")
-    ]
+    parts = (np.concatenate(pair)[order] for pair in zip(held, crank.modes(new), strict=True))
     return joined[order], HeldModes(*parts)
 
 
@@ -251,18 +228,12 @@ def _neighbour_swaps(matched: Indices, low: Indices) -> tuple[int, ...]:
 
 
 def _narrows(
-    modes: Modes,
-    arrays: Arrays,
-    theta: Array,
-    held: HeldModes,
-    count: int,
-    period: float,
-    known: list[Encounter],
+    crank: HeldCrank, theta: Array, held: HeldModes, count: int, known: list[Encounter]
 ) -> tuple[list[Encounter], Array]:
     """Return the veerings among the least gaps, and angles to add about crossings not yet seen."""
     out: list[Encounter] = []
     hidden: list[float] = []
-    size = held.frequency.shape[-1]
+    size, period = crank.system.size, crank.system.period
     for rank in range(min(count, size - 1)):
         gap = held.frequency[:, rank + 1] - held.frequency[:, rank]
         # The last angle is the first one, a turn later.
@@ -274,8 +245,8 @@ def _narrows(
             rise = max(before, after) ** 2 - here**2
             if here**2 * (theta[k + 1] - low) ** 2 > (2 * _WIDEST * period) ** 2 * rise:
                 continue
-            at = least_gap(modes, float(low), float(theta[k + 1]), rank)
-            found = describe(modes, arrays, *at, rank, period)
+            at = least_gap(crank, float(low), float(theta[k + 1]), rank)
+            found = describe(crank, *at, rank)
             # An encounter this close to the last one, over the period, is the same.
             near = [
                 one
@@ -342,13 +313,10 @@ class Curves:
     @property
     def turns(self) -> int:
         """Whole turns after which every requested curve has come back."""
-        step = np.argsort(self._passed[1][-1])
+        step = at = np.argsort(self._passed[1][-1])
         found = 1
-        for curve in range(self.count):
-            length, at = 1, int(step[curve])
-            while at != curve:
-                length, at = length + 1, int(step[at])
-            found = math.lcm(found, length)
+        while np.any(at[: self.count] != np.arange(self.count)):
+            at, found = step[at], found + 1
         return found
 
     def labels(self, theta: Array) -> Indices:
@@ -373,7 +341,7 @@ class Curves:
         return np.take_along_axis(values, ranks, axis=1)
 
 
-def followed_shapes(modes: Modes, curves: Curves, theta: Array) -> tuple[Array, Array]:
+def followed_shapes(crank: HeldCrank, curves: Curves, theta: Array) -> tuple[Array, Array]:
     """Return shapes along the curves, ``(nt, n, count)``, and their sign after a turn.
 
     Their sign is steady within a turn from the first angle on.
@@ -389,7 +357,7 @@ def followed_shapes(modes: Modes, curves: Curves, theta: Array) -> tuple[Array, 
         off = (aside - one.angle + period / 2) % period - period / 2
         near = (one.kind == "crossing") & (np.abs(off) < _ASIDE * period)
         aside = np.where(near, aside - off + _ASIDE * period * np.where(off < 0, -1, 1), aside)
-    held = modes(aside)
+    held = crank.modes(aside)
     ranks = np.argsort(curves.labels(aside), axis=1)[:, : curves.count]
     shape = np.take_along_axis(held.shape, ranks[:, None, :], axis=2)
     middle = 0.5 * (held.mass[1:] + held.mass[:-1])

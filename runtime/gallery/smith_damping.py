@@ -86,7 +86,7 @@ def closing(f: PeriodicFunction, n: int, order: int | None) -> float:
     # Up to K = 0.5, several times what was measured.
     scan = np.linspace(0.0, 0.5, 5001)
     points = np.stack([np.ones_like(scan), scan])
-    a, b = effective_operator([f], n, order, damped=True).components(points)
+    a, b = effective_operator((f,), n, order, damped=True).components(points)
     left = np.abs(b.sum(axis=0)) - np.abs(a.sum(axis=0).imag)
     (crossings,) = np.nonzero((left[:-1] > 0.0) & (left[1:] <= 0.0))
     if not crossings.size:

@@ -38,7 +38,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations_with_replacement
 from math import comb
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -55,26 +55,13 @@ HIGHEST_ORDER, BEYOND = len(hill_recursion.RETURNS), 2
 HIGHEST = HIGHEST_ORDER - BEYOND
 
 
-class Algebra(Protocol):
-    """What the recursion acts on: columns that can be subtracted, and five operations."""
+def recursion(algebra: Any, order: int) -> tuple[Sequence[Any], Sequence[Any]]:
+    """Return ``h_1 ... h_order`` and ``Omega_1 ... Omega_order``.
 
-    start: Any
-
-    def act(self, column: Any, /) -> Any:
-        """Return the part of V Omega that is one degree higher than the column."""
-
-    def resolve(self, column: Any, /) -> Any:
-        """Return R applied to a column."""
-
-    def project(self, column: Any, /) -> Any:
-        """Return P of a column."""
-
-    def combine(self, column: Any, effective: Any, /) -> Any:
-        """Return ``Omega_j h_i``."""
-
-
-def recursion(algebra: Algebra, order: int) -> tuple[Sequence[Any], Sequence[Any]]:
-    """Return ``h_1 ... h_order`` and ``Omega_1 ... Omega_order``."""
+    Of an algebra ``start`` is the column of degree 0, and columns can be subtracted; ``act`` gives
+    the part of V Omega that is one degree higher than a column, ``resolve`` R applied to it,
+    ``project`` P of it, and ``combine`` ``Omega_j h_i``.
+    """
     emitted = getattr(hill_recursion, f"order_{order}")
     effective, columns = emitted(
         algebra.start, algebra.act, algebra.resolve, algebra.project, algebra.combine
@@ -131,9 +118,6 @@ def level_distance(n: int) -> float:
     return float({0: 1, 1: 2}.get(n, n - 1))
 
 
-_Key = tuple[tuple[bytes, bytes], ...]
-
-
 @dataclass(frozen=True, eq=False)
 class EffectiveOperator:
     """A and B of region n as polynomials in the parameters, homogeneous component by component.
@@ -165,25 +149,17 @@ class EffectiveOperator:
         return both[0].reshape(shape), both[1].reshape(shape)
 
 
+# Damping and thresholds call for one operator again and again: 2 ms instead of 8 at order 8.
+@lru_cache(maxsize=256)
 def effective_operator(
-    parts: Sequence[PeriodicFunction], n: int, order: int, damped: bool = False
+    parts: tuple[PeriodicFunction, ...], n: int, order: int, damped: bool = False
 ) -> EffectiveOperator:
     """Return A and B of region n as polynomials in the parameters, to a total degree up to 10.
 
     The parameters multiply the functions ``parts``; where ``damped``, K of ``2 K y'`` is the last
     one.  Smith (7.16)-(7.36) and (8.39)-(8.43) to any order and number of parameters.
     """
-    return _operator(_key(parts), int(n), int(order), bool(damped))
-
-
-def _key(parts: Sequence[PeriodicFunction]) -> _Key:
-    return tuple((part.a.tobytes(), part.b.tobytes()) for part in parts)
-
-
-# Damping and thresholds call for one operator again and again: 2 ms instead of 8 at order 8.
-@lru_cache(maxsize=256)
-def _operator(key: _Key, n: int, order: int, damped: bool) -> EffectiveOperator:
-    algebra = _Columns(key, n, order // 2, damped)
+    algebra = _Columns(parts, n, order // 2, damped)
     with np.errstate(over="ignore", invalid="ignore"):
         effective, _ = recursion(algebra, order)
     diagonal = [np.array(a, dtype=complex) for a, _ in effective]
@@ -205,7 +181,7 @@ def wave_columns(f: PeriodicFunction, n: int, order: int, damping: float) -> Com
     ``exp(-i n theta/2)`` is its mirror ``columns[:, ::-1].conj()``.
     """
     damped = damping > 0.0
-    algebra = _Columns(_key([f]), n, order, damped)
+    algebra = _Columns((f,), n, order, damped)
     _, columns = recursion(algebra, order)
     at = np.array([[1.0], [damping]] if damped else [[1.0]])
     values = (row[:, 0] for row in monomial_values(at, order))
@@ -220,11 +196,12 @@ class _Columns:
     parts, those with ``reach`` steps from a resonant one.
     """
 
-    def __init__(self, key: _Key, n: int, reach: int, damped: bool) -> None:
-        pairs = [(np.frombuffer(a), np.frombuffer(b)) for a, b in key]
-        self.means = np.array([a[0] for a, _ in pairs])
-        self.taps = [_taps(a, b) for a, b in pairs]
-        self.damped, self.count = damped, len(pairs) + damped
+    def __init__(
+        self, parts: tuple[PeriodicFunction, ...], n: int, reach: int, damped: bool
+    ) -> None:
+        self.means = np.array([part.mean for part in parts])
+        self.taps = [_taps(part.a, part.b) for part in parts]
+        self.damped, self.count = damped, len(parts) + damped
         radius = reach * max(len(taps) // 2 for taps in self.taps)
         harmonics = np.arange(-radius, n + radius + 1)
         self.resonant = (radius + n, radius) if n else (radius,)
@@ -268,15 +245,12 @@ class _Columns:
         """Return ``Omega_j h_i``, for which the mirror of the column stands for the other one."""
         a, b = couple
         mirror = column[:, ::-1].conj() if len(self.resonant) == 2 else None
-        if self.count == 1:
-            out: NDArray[Any] = a[0] * column
-            return out if mirror is None else out + b[0].conj() * mirror
         degrees = degree_of(len(column), self.count), degree_of(len(a), self.count)
         table = product_table(self.count, *degrees)
         places = np.arange(len(column))[:, None]
         matrix = np.zeros((len(monomials(self.count, sum(degrees))), len(column)), dtype=a.dtype)
         matrix[table, places] = a
-        out = matrix @ column
+        out: NDArray[Any] = matrix @ column
         if mirror is not None:
             matrix[table, places] = b.conj()
             out += matrix @ mirror

@@ -21,14 +21,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.polynomial import chebyshev as series
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.chebyshev import analysis, nodes
-from ..core.errors import BadInput, bad
+from ..core.errors import BadInput
 from ..core.inputs import require_flag
 from ..core.maxima import bracketed_roots
 from ..core.periodic_function import PeriodicFunction
@@ -51,29 +51,9 @@ _NODES, _MOST_NODES = 16, 256
 # Half traces at a time: beyond some thousand scattered points they would be interpolated.
 _POINTS = 4096
 
-
-class Ends(NamedTuple):
-    """Ends of regions, ``(len(regions), n)``; NaN where a region is closed, or undecided."""
-
-    lower: Array
-    upper: Array
-    error: Array
-    undecided: Mask
-
-    @classmethod
-    def nothing(cls, shape: tuple[int, ...]) -> Ends:
-        """Return NaN everywhere."""
-        lower, upper, error = np.full((3, *shape), np.nan)
-        return cls(lower, upper, error, np.zeros(shape, dtype=bool))
-
-    def put(self, where: Any, other: Ends) -> None:
-        """Fill some entries with others'."""
-        for mine, given in zip(self, other, strict=True):
-            mine[where] = given
-
-    def take(self, where: Any) -> Ends:
-        """Return some of the entries."""
-        return Ends(*(item[where] for item in self))
+# Lower and upper ends of regions and their error, ``(3, len(regions), n)`` or ``(3, n)``: NaN where
+# a region is closed, and with an infinite error where it is not decided whether it is.
+Ends = Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -198,15 +178,15 @@ def hill_boundaries(
 
         return certified_boundaries(f, flat.reshape(shape), friction.reshape(shape), numbers)
     ends = ends_at(f, flat, friction, numbers)
-    full = (len(numbers), *shape)
+    lower, upper, error = ends.reshape(3, len(numbers), *shape)
     return Boundaries(
         method="zeros of Meissner's factors" if isinstance(f, Meissner) else "Hill matrix",
-        error=ends.error.reshape(full),
+        error=np.where(np.isinf(error), np.nan, error),
         error_norm="absolute, entrywise, for either end",
         checks=DeferredChecks(partial(_checks, f, flat, friction, numbers, ends)),
         provenance=provenance(),
-        lower=ends.lower.reshape(full),
-        upper=ends.upper.reshape(full),
+        lower=lower,
+        upper=upper,
         regions=numbers,
         mu=flat.reshape(shape),
         damping=friction.reshape(shape),
@@ -215,31 +195,22 @@ def hill_boundaries(
 
 def ends_at(f: PeriodicFunction | Meissner, mu: Array, k: Array, regions: tuple[int, ...]) -> Ends:
     """Return the ends for mu and K ``(n,)``."""
-    if not regions or not mu.size:
-        return Ends.nothing((len(regions), mu.size))
+    ends = np.full((3, len(regions), mu.size), np.nan)
+    if not ends.size:
+        return ends
     if isinstance(f, Meissner):
-        ends = Ends.nothing((len(regions), mu.size))
-        for i, n in enumerate(regions):
-            ends.put(i, Ends(*meissner_ends(f, mu, n), ends.undecided[i]))
+        ends[:] = np.stack([meissner_ends(f, mu, n) for n in regions], axis=1)
     else:
-        ends = _undamped(f, mu, regions)
+        cut = truncation(f, float(np.abs(mu).max()), max(regions))
+        mean = -f.a[0] * mu
+        for odd, rows in by_parity(regions):
+            count = max(regions[i] for i in rows) + 1
+            values = _spectra(f, odd, cut.harmonic + odd, mu, count) + mean[:, None]
+            for i in rows:
+                ends[0, i] = values[:, regions[i] - 1] if regions[i] else -np.inf
+                ends[1, i] = values[:, regions[i]]
+        ends[2] = cut.left_out + cut.rounding + EPS * np.abs(mean) + f.error * np.abs(mu)
     return _damped(f, mu, k, regions, ends) if k.any() else ends
-
-
-def _undamped(f: PeriodicFunction, mu: Array, regions: tuple[int, ...]) -> Ends:
-    ends = Ends.nothing((len(regions), mu.size))
-    cut = truncation(f, float(np.abs(mu).max()), max(regions))
-    mean = -f.a[0] * mu
-    for odd, rows in by_parity(regions):
-        count = max(regions[i] for i in rows) + 1
-        values = _spectra(f, odd, cut.harmonic + odd, mu, count)
-        values += mean[:, None]
-        for i in rows:
-            n = regions[i]
-            ends.lower[i] = values[:, n - 1] if n else -np.inf
-            ends.upper[i] = values[:, n]
-    ends.error[:] = cut.left_out + cut.rounding + EPS * np.abs(mean) + f.error * np.abs(mu)
-    return ends
 
 
 def _spectra(f: PeriodicFunction, odd: int, harmonic: int, mu: Array, count: int) -> Array:
@@ -264,18 +235,17 @@ def _checks(
 ) -> Mapping[str, Check]:
     """Count undecided regions, and compare half traces at a sample of ends with their level."""
     checks: dict[str, Check] = {}
-    if np.any(ends.undecided):
-        undecided = float(np.count_nonzero(ends.undecided))
-        checks["regions neither open nor closed"] = Check(undecided, 0.0)
-    both = np.stack([ends.lower, ends.upper])
-    places = np.argwhere(np.isfinite(both))
+    undecided = np.count_nonzero(np.isinf(ends[2]))
+    if undecided:
+        checks["regions neither open nor closed"] = Check(float(undecided), 0.0)
+    places = np.argwhere(np.isfinite(ends[:2]))
     if len(places):
         side, row, column = sample_of(places)
         sign = np.where(np.asarray(regions)[row] % 2 == 0, 1.0, -1.0)
         k = damping[column]
         level = sign * 0.5 * (1.0 + np.exp(-4.0 * np.pi * k))
         checks["half trace at the ends over what the errors explain"] = half_trace_check(
-            f, both[side, row, column], ends.error[row, column], mu[column], k, level
+            f, ends[side, row, column], ends[2, row, column], mu[column], k, level
         )
     return checks
 
@@ -328,21 +298,17 @@ def _damped(
     f: PeriodicFunction | Meissner, mu: Array, k: Array, regions: tuple[int, ...], sharp: Ends
 ) -> Ends:
     """Return the ends for mu and K ``(n,)`` from the undamped ones, which serve where K = 0."""
-    if float(k.max()) > 1e100:
-        # The square of K is added to lam2.
-        raise bad("damping", f"{k.max():.3g}", "K up to 1e+100", "scale the equation")
-    ends = Ends(sharp.lower.copy(), sharp.upper.copy(), sharp.error.copy(), sharp.undecided.copy())
+    ends = sharp.copy()
     # Beyond this K the condition of the eigenvalues, of the size of exp(2 pi K) at worst, matters.
     strong = (k > 0.0) if isinstance(f, Meissner) else (k > 0.5)
     weak = (k > 0.0) & ~strong
     if weak.any() and not isinstance(f, Meissner):
-        near = sharp.take(np.s_[:, weak])
-        ends.put(np.s_[:, weak], _from_matrix(f, mu[weak], k[weak], regions, near))
+        ends[..., weak] = _from_matrix(f, mu[weak], k[weak], regions, sharp[..., weak])
     for i, n in enumerate(regions):
-        unsure = strong | ends.undecided[i]
+        unsure = strong | np.isinf(ends[2, i])
         if unsure.any():
-            near = sharp.take(np.s_[i, unsure])
-            ends.put(np.s_[i, unsure], _from_half_trace(f, mu[unsure], k[unsure], n, near))
+            near = sharp[:, i, unsure]
+            ends[:, i, unsure] = _from_half_trace(f, mu[unsure], k[unsure], n, near)
     return ends
 
 
@@ -350,14 +316,14 @@ def _from_matrix(
     f: PeriodicFunction, mu: Array, k: Array, regions: tuple[int, ...], sharp: Ends
 ) -> Ends:
     """Return the ends by the real eigenvalues of the matrix; undecided are pairs almost real."""
-    low, high = sharp.lower, sharp.upper
+    low, high, _ = sharp
     shift = k * k
     cut = truncation(f, float(np.abs(mu).max()), max(regions), float(shift.max()))
     # The damping term is part of the norm.
     rounding = cut.rounding * (1.0 + 2.0 * float(k.max()) * (cut.harmonic + 1) / cut.norm)
     local = cut.left_out + rounding + f.error * np.abs(mu)
     slack = 4.0 * local
-    ends = Ends.nothing(low.shape)
+    ends = np.full(sharp.shape, np.nan)
     for odd, rows in by_parity(regions):
         harmonic = cut.harmonic + odd
         stacks = (
@@ -378,14 +344,15 @@ def _from_matrix(
             blur = 4.0 * np.sqrt(np.maximum(high[i] - low[i], slack) * slack)
             near = (place >= (low[i] - blur)[:, None]) & (place <= (high[i] + blur)[:, None])
             near &= np.abs(values.imag) <= blur[:, None]
-            ends.undecided[i] = ~whole & (near.any(axis=1) if regions[i] else True)
+            undecided = ~whole & (near.any(axis=1) if regions[i] else True)
+            ends[2, i, undecided] = np.inf
             first, last = first[whole], last[whole]
-            ends.upper[i, whole] = last + shift[whole]
+            ends[1, i, whole] = last + shift[whole]
             if regions[i] == 0:
-                ends.lower[i, whole], ends.error[i, whole] = -np.inf, local[whole]
+                ends[0, i, whole], ends[2, i, whole] = -np.inf, local[whole]
                 continue
-            ends.lower[i, whole] = first + shift[whole]
-            ends.error[i, whole] = near_tip(
+            ends[0, i, whole] = first + shift[whole]
+            ends[2, i, whole] = near_tip(
                 local[whole], 0.5 * (last - first), 0.5 * (high[i] - low[i])[whole]
             )
     return ends
@@ -448,24 +415,25 @@ def _from_half_trace(
     f: PeriodicFunction | Meissner, mu: Array, k: Array, n: int, sharp: Ends
 ) -> Ends:
     """Return the ends of region n for mu and K ``(n,)``; undecided where K may be critical."""
-    ends = Ends.nothing(mu.shape)
-    shift, slack = k * k, sharp.error
+    low, high, slack = sharp
+    shift = k * k
     if n == 0:
         # With z = y'/y the equation says that the mean of lam2 + mu f is that of -z^2 on the end;
         # where it is below zero all the way round, the solutions grow faster than K.
         reach = np.abs(mu) * f.bound() * (1.0 + 4.0 * EPS)
-        most = np.minimum(sharp.upper + shift + slack, EPS * reach + slack - mu * f.mean)
+        most = np.minimum(high + shift + slack, EPS * reach + slack - mu * f.mean)
         upper, error = _end(f, n, mu, k, most, -reach - 1.0)
-        return Ends(np.full(mu.shape, -np.inf), upper, error, ends.undecided)
+        return np.stack([np.full(mu.shape, -np.inf), upper, error])
     critical, peak, doubt = largest_exponent(f, n, mu, sharp)
-    ends.undecided[:] = ~(np.abs(k - critical) > doubt)
-    there = np.flatnonzero((k < critical) & ~ends.undecided)
+    decided = np.abs(k - critical) > doubt
+    ends = np.full(sharp.shape, np.nan)
+    ends[2, ~decided] = np.inf
+    there = np.flatnonzero((k < critical) & decided)
     if there.size:
         point, top = (f, n, mu[there], k[there]), (peak + shift)[there]
-        lower, first = _end(*point, (sharp.lower + shift - slack)[there], top)
-        upper, last = _end(*point, (sharp.upper + shift + slack)[there], top)
-        open_ = np.zeros(there.shape, dtype=bool)
-        ends.put(there, Ends(lower, upper, np.maximum(first, last), open_))
+        lower, first = _end(*point, (low + shift - slack)[there], top)
+        upper, last = _end(*point, (high + shift + slack)[there], top)
+        ends[:, there] = lower, upper, np.maximum(first, last)
     return ends
 
 
@@ -478,10 +446,10 @@ def largest_exponent(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: E
     For mu ``(n,)`` from the undamped ends there; shape ``(3, n)``.
     """
     out = np.zeros((3, mu.size))
-    narrow = sharp.upper - sharp.lower < _NARROW
+    narrow = sharp[1] - sharp[0] < _NARROW
     for these, solve in ((narrow, _narrow), (~narrow, _wide)):
         if these.any():
-            out[:, these] = solve(f, n, mu[these], sharp.take(these))
+            out[:, these] = solve(f, n, mu[these], sharp[:, these])
     return out
 
 
@@ -491,7 +459,7 @@ def _excess(
     """Return ``(|D| - 1) exp(-2 pi drag)`` inside the region (negative beyond it) and its error."""
     shape = lam2.shape
     x, y, k = (np.broadcast_to(item, shape).ravel() for item in (lam2, mu, drag))
-    value, error = np.empty(x.size), np.empty(x.size)
+    value, error = np.empty((2, x.size))
     for start in range(0, x.size, _POINTS):
         part = slice(start, start + _POINTS)
         half = discriminant(f, x[part] + np.square(k[part]), y[part], k[part])
@@ -515,7 +483,7 @@ def _narrow(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: Ends) -> A
     """Return K, the lam2 of the largest half trace and the error of K for narrow regions."""
     # |D| - 1 = (lam2 - low)(high - lam2) g with g smooth across the region: g comes from points
     # well outside, where nothing cancels, and the width from the two ends.
-    low, high = sharp.lower, sharp.upper
+    low, high, slack = sharp
     centre, half = 0.5 * (low + high), 0.5 * (high - low)
     lam2 = centre + _RESOLVED * nodes(_NODES)[:, None]
     value, error = _excess(f, n, lam2, mu)
@@ -531,13 +499,13 @@ def _narrow(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: Ends) -> A
     g = np.maximum(_at(c, place * half / _RESOLVED), 0.0)
     k, _ = _exponent(half * half * (1.0 - place * place) * g)
     rate = np.sqrt(2.0 * g) / (2.0 * np.pi)
-    doubt = rate * sharp.error + 0.5 * k * tail / np.maximum(g, EPS) + 4.0 * EPS * k
+    doubt = rate * slack + 0.5 * k * tail / np.maximum(g, EPS) + 4.0 * EPS * k
     return np.stack([k, centre + place * half, doubt])
 
 
 def _wide(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: Ends) -> Array:
     """Do the same for wide regions: the half trace is interpolated across the region itself."""
-    centre, half = 0.5 * (sharp.lower + sharp.upper), 0.5 * (sharp.upper - sharp.lower)
+    centre, half = 0.5 * (sharp[0] + sharp[1]), 0.5 * (sharp[1] - sharp[0])
     count, out = _NODES, np.empty((3, mu.size))
     growth = growth_rate(f, centre, mu)
     drag = np.where(growth > _GROWTH, growth, 0.0)
@@ -549,8 +517,7 @@ def _wide(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: Ends) -> Arr
         tail, most = np.abs(c[-2:]).sum(axis=0), np.abs(value).max(axis=0)
         done = (tail <= 1e-13 * most + error.max(axis=0)) | (count >= _MOST_NODES)
         if done.any():
-            place = _peak(c[:, done])
-            x = np.maximum(_at(c[:, done], place), 0.0)
+            place, x = _summit(c[:, done])
             doubt = tail[done] + error[:, done].max(axis=0) + 4.0 * EPS * most[done]
             k, steep = _exponent(x, drag[left[done]])
             reply = doubt / np.maximum(2.0 * np.pi * steep, EPS)
@@ -564,15 +531,12 @@ def _at(c: NDArray[Any], x: Array) -> Array:
     return np.asarray(series.chebval(x, c, tensor=False))
 
 
-def _peak(c: Array) -> Array:
-    """Return the place of the largest value of each series on [-1, 1]."""
-    grid = np.linspace(-1.0, 1.0, 8 * len(c) + 1)
-    values = np.asarray(series.chebval(grid, c))
-    place: Array = grid[np.argmax(values, axis=1)]
-    first, second = series.chebder(c), series.chebder(c, 2)
-    step = 2.0 / (8 * len(c))
-    for _ in range(4):
-        bend = _at(second, place)
-        move = np.where(bend < 0.0, -_at(first, place) / np.where(bend < 0.0, bend, 1.0), 0.0)
-        place = np.asarray(np.clip(place + np.clip(move, -step, step), -1.0, 1.0))
-    return place
+def _summit(c: Array) -> tuple[Array, Array]:
+    """Return place and value, not below 0, of the one maximum of each series on [-1, 1]."""
+    slope, last = series.chebder(c), np.ones(c.shape[1])
+
+    def rise(which: Index, x: Array) -> tuple[Array, float]:
+        return _at(slope[:, which], x), 0.0
+
+    place = bracketed_roots(rise, -last, last)[0]
+    return place, np.maximum(_at(c, place), 0.0)

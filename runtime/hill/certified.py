@@ -17,6 +17,7 @@ one for the low harmonics, checked by multiplication, and a Neumann series for t
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from math import inf, isqrt, nextafter, sqrt
@@ -30,7 +31,7 @@ from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, provenance
 from .boundaries import Boundaries
 from .checks import Array, Mask
-from .fourier_matrix import by_parity, exponentials, finest, layout, real_pairs, stacked
+from .fourier_matrix import by_parity, squares, stacked, truncation
 
 # Integers of any length.  A wave holds real and imaginary parts, ``(2, L)``, of the coefficients of
 # exp(i k theta), k = -(L-1)/2 ... (L-1)/2, which is whole or half-whole.
@@ -119,10 +120,7 @@ class CertifiedBoundaries(Boundaries):
 def certified_boundaries(
     f: PeriodicFunction, mu: Array, damping: Array, regions: tuple[int, ...]
 ) -> CertifiedBoundaries:
-    """Return proved enclosures of the ends; see :func:`.boundaries.hill_boundaries`.
-
-    For an f taken with its coefficients as they stand, mu and K of one shape, all checked.
-    """
+    """Return proved enclosures of the ends, of mu and K of one shape, all checked."""
     size = (len(regions), *mu.shape)
     # Value, rest and radius of the lower and of the upper end.
     found = np.full((*size, 2, 3), np.nan)
@@ -222,7 +220,7 @@ class Spectrum(NamedTuple):
     # Approximate eigenvalues, rising, ``(count,)``; each true one lies within ``reach`` of its own
     # (proved).
     values: Array
-    vectors: Array  # in the basis of :func:`.fourier_matrix.layout`, ``(size, count)``
+    vectors: Array  # in the basis of :func:`.fourier_matrix.squares`, ``(size, count)``
     reach: float
     norm: float
     odd: int
@@ -255,14 +253,18 @@ def spectrum(
     ``highest`` is even for the whole problem and odd for the half-whole one; ``shift`` asks for
     harmonics enough for eigenvalues that damping moves up by so much.
     """
-    goal = _GOAL * (1.0 + abs(mu) * float(f.amplitudes[1:].sum()))
-    goals = [min(_LOOSEST, 1e4**step * goal) for step in range(7)]
-    cut = finest(f, abs(mu), highest, shift, goals)
+    first = _GOAL * (1.0 + abs(mu) * float(f.amplitudes[1:].sum()))
+    for goal in (min(_LOOSEST, 1e4**step * first) for step in range(6)):
+        with suppress(BadInput):
+            cut = truncation(f, abs(mu), highest, shift, goal)
+            break
+    else:
+        cut = truncation(f, abs(mu), highest, shift, _LOOSEST)
     harmonic = cut.harmonic + odd
     matrix = stacked(f, odd, harmonic, np.array([mu]))[0]
     values, vectors = np.linalg.eigh(matrix)
     size = len(values)
-    wide = float(np.linalg.norm(layout(odd, harmonic).squares))
+    wide = float(np.linalg.norm(squares(odd, harmonic)))
     wide += np.sqrt(size) * abs(mu) * float(f.amplitudes[1:].sum())
     # Products of n terms, a few roundings more for the entries of the matrix and the scaling.
     gamma = 1.01 * (size + 16) * _U
@@ -324,8 +326,12 @@ class HillOperator:
 
 
 def wave(odd: int, column: Array) -> Exact:
-    """Round an eigenvector in the basis of :func:`.fourier_matrix.layout` to integers."""
-    z = exponentials(column, odd) * 2.0**_VECTOR_BITS
+    """Round an eigenvector in the basis of :func:`.fourier_matrix.squares` to integers."""
+    # From coefficients of 1, sqrt 2 cos k theta, sqrt 2 sin k theta to those of exp(i k theta).
+    pairs = column[1 - odd :].reshape(-1, 2)
+    positive = np.sqrt(0.5) * (pairs[:, 0] - 1j * pairs[:, 1])
+    middle = np.zeros(0) if odd else column[:1]
+    z = np.concatenate([positive[::-1].conj(), middle, positive]) * 2.0**_VECTOR_BITS
     return np.array([np.rint(z.real), np.rint(z.imag)]).astype(np.int64).astype(object)
 
 
@@ -365,10 +371,7 @@ def _root_above(value: Fraction) -> Fraction:
 
 
 def enclosures(coarse: Spectrum, operator: HillOperator, first: int, last: int) -> list[Ball]:
-    """Enclose the eigenvalues number first ... last, which stand clear of all others.
-
-    Refused where the residuals are too large for the distance from the others.
-    """
+    """Enclose the eigenvalues number first ... last, which stand clear of all others."""
     waves = [wave(coarse.odd, coarse.vectors[:, j]) for j in range(first, last + 1)]
     images = [operator(x) for x in waves]
     coupling = np.array([[inner(x, h) for h in images] for x in waves], dtype=object)
@@ -444,9 +447,11 @@ class DampedProblem:
     """The damped matrix in one of the two problems, without its mean, cut and uncut."""
 
     def __init__(self, f: PeriodicFunction, mu: float, k: float, coarse: Spectrum) -> None:
+        from scipy.linalg import eig
+
         self.coarse, self.k = coarse, k
         odd, harmonic = coarse.odd, coarse.harmonic
-        size = len(layout(odd, harmonic).squares)
+        size = len(squares(odd, harmonic))
         reach = harmonic + max(1, f.harmonics)
         # The damping couples no harmonics to those beyond.
         wide = stacked(f, odd, reach, np.array([mu]), k)[0]
@@ -455,14 +460,17 @@ class DampedProblem:
         self._beyond = (harmonic + (0.5 if odd else 1.0)) ** 2
         self._bound = abs(mu) * float(f.amplitudes[1:].sum()) * (1.0 + 1e-12)
         self._right, self._left = HillOperator(f, mu, k), HillOperator(f, mu, -k)
-        self._pairs = real_pairs(self._low)
+        values, lefts, rights = eig(self._low, left=True, check_finite=False)
+        self._real = [
+            (float(values[i].real), rights[:, i].real, lefts[:, i].real)
+            for i in np.flatnonzero(values.imag == 0.0)
+        ]
 
     def ends(self, n: int) -> tuple[Ball | None, Ball] | bool | None:
         """Return the enclosed ends of region n; True where it is proved closed, None if undecided.
 
         Region n without damping stands at numbers n - 1 and n of the spectrum; with damping its
-        ends are the real eigenvalues there, moved up by K^2: two of them, or none (one in region
-        0).
+        ends are the real eigenvalues there, moved up by K^2: two or none (one in region 0).
         """
         values, reach, k = self.coarse.values, self.coarse.reach, self.k
         low, high = values[n - 1] if n else -inf, values[n]
@@ -471,10 +479,10 @@ class DampedProblem:
         below = values[n - 2] + reach if n >= 2 else -inf
         above = values[n + 1] - reach
         balls = []
-        near = (self._pairs[0] - k * k >= low - slack) & (self._pairs[0] - k * k <= high + slack)
-        for i in np.flatnonzero(near):
-            value, right, left = (item[..., i] for item in self._pairs)
-            ball = self._eigenvalue(float(value), right, left)
+        for value, right, left in self._real:
+            if not low - slack <= value - k * k <= high + slack:
+                continue
+            ball = self._eigenvalue(value, *(v / np.linalg.norm(v) for v in (right, left)))
             if ball is None:
                 continue
             place = ball.middle - Fraction(k) ** 2

@@ -32,10 +32,7 @@ def finite(name: str, values: ArrayLike) -> Array:
 
 
 def arguments(**given: ArrayLike) -> tuple[tuple[Array, ...], tuple[int, ...]]:
-    """Return the arguments as arrays and their broadcast shape, or refuse by name.
-
-    ``damping`` must not be negative.
-    """
+    """Return the arguments as arrays and their broadcast shape, or refuse by name."""
     arrays = tuple(finite(name, value) for name, value in given.items())
     damping = arrays[list(given).index("damping")]
     if np.any(damping < 0.0):

@@ -144,11 +144,10 @@ def characteristic_exponents(
         for side in (-1.0, 1.0):
             other, turned = _exponent(half.value + side * half.error, k)
             error = np.maximum(error, np.hypot(other - growth, turned - turn))
-    error = np.where(np.isfinite(growth), error, np.inf)
-    size = np.abs(np.where(np.isfinite(growth), growth, 0.0)) + 2.0 * k + 1.0
+    error = np.where(np.isfinite(growth), error + EPS * (np.abs(growth) + 2.0 * k + 1.0), np.inf)
     return CharacteristicExponents(
         method="half trace by " + half.method,
-        error=error + EPS * size,
+        error=error,
         error_norm="absolute, entrywise, of the complex exponent",
         checks=half.checks,
         provenance=provenance(),
@@ -179,9 +178,23 @@ def _bands(
     """Return the lam2 of each band with a given multiplier ``exp(2 pi (i nu - K))``."""
     numbers = check_regions(bands, most=LARGEST - 1, name="bands")
     (flat, turn, friction), shape = points(mu=mu, nu=nu, damping=damping)
-    lam2, error = _eigenvalues(f, flat, turn, numbers)
-    lam2 = lam2 + friction * friction
-    error = error + EPS * friction * friction
+    lam2, error = np.zeros((2, len(numbers), flat.size))
+    if lam2.size:
+        cut = truncation(f, float(np.abs(flat).max()), max(numbers) + 1)
+        mean, shift = -f.a[0] * flat, friction * friction
+        # Between 0 and 1/2: a reflection of theta, or another count of the harmonics.
+        folded = np.abs(turn - np.rint(turn))
+        m = np.arange(-cut.harmonic - 1, cut.harmonic + 1)
+        coupling = couplings(f, m.size)
+        for part in chunks(flat.size, m.size):
+            stack = flat[part, None, None] * coupling
+            stack[:, np.arange(m.size), np.arange(m.size)] += np.square(m + folded[part, None])
+            lam2[:, part] = np.linalg.eigvalsh(stack)[:, list(numbers)].T
+        lam2 += mean + shift
+        # nu itself is rounded when it is folded.
+        slopes = (np.array(numbers)[:, None] + 1.0) * EPS * np.maximum(1.0, np.abs(turn))
+        error = cut.left_out + cut.rounding + EPS * (np.abs(mean) + shift) + slopes
+        error += f.error * np.abs(flat)
     full = (len(numbers), *shape)
     return CharacteristicExponents(
         method="Hermitian Hill matrix",
@@ -196,29 +209,6 @@ def _bands(
         damping=friction.reshape(shape),
         bands=numbers,
     )
-
-
-def _eigenvalues(
-    f: PeriodicFunction, mu: Array, nu: Array, bands: tuple[int, ...]
-) -> tuple[Array, Array]:
-    """Return the undamped lam2 and their errors, ``(len(bands), n)``."""
-    if not bands or not mu.size:
-        return np.zeros((len(bands), mu.size)), np.zeros((len(bands), mu.size))
-    cut = truncation(f, float(np.abs(mu).max()), max(bands) + 1)
-    mean = -f.a[0] * mu
-    # Between 0 and 1/2: a reflection of theta, or another count of the harmonics.
-    folded = np.abs(nu - np.rint(nu))
-    m = np.arange(-cut.harmonic - 1, cut.harmonic + 1)
-    coupling = couplings(f, m.size)
-    lam2 = np.empty((len(bands), mu.size))
-    for part in chunks(mu.size, m.size):
-        stack = mu[part, None, None] * coupling
-        stack[:, np.arange(m.size), np.arange(m.size)] += np.square(m + folded[part, None])
-        lam2[:, part] = np.linalg.eigvalsh(stack)[:, list(bands)].T
-    # nu itself is rounded when it is folded.
-    slopes = (np.array(bands)[:, None] + 1.0) * EPS * np.maximum(1.0, np.abs(nu))
-    error = cut.left_out + cut.rounding + EPS * np.abs(mean) + f.error * np.abs(mu) + slopes
-    return lam2 + mean, error
 
 
 def _checks(

@@ -1,4 +1,4 @@
-"""Hill's matrix: where it is cut, how it is filled, its eigenvectors.
+"""Hill's matrix: where it is cut, and how it is filled.
 
 In the basis cos k theta, sin k theta (k whole, or half-whole: ``odd``) the matrix of the operator
 ``-d2/dtheta2 - 2 K d/dtheta - mu f`` is ``k^2 - 2 K d/dtheta - mu f``: symmetric without damping.
@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from functools import lru_cache
 from math import ceil, sqrt
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -83,16 +82,6 @@ def truncation(
     return _truncation(f, max(octave, reach), highest, shift, goal)
 
 
-def finest(
-    f: PeriodicFunction, reach: float, highest: int, shift: float, goals: Sequence[float]
-) -> Truncation:
-    """Return the truncation at the first of some rising goals that can be reached."""
-    for goal in goals[:-1]:
-        with suppress(BadInput):
-            return truncation(f, reach, highest, shift, goal)
-    return truncation(f, reach, highest, shift, goals[-1])
-
-
 @lru_cache(maxsize=256)
 def _truncation(
     f: PeriodicFunction, reach: float, highest: int, shift: float, goal: float
@@ -129,7 +118,7 @@ def _majorant(
     """Return sums over all k >= start, start + 1, ... of ``2 M_k^2`` and of the energy in them."""
     # `taps` runs from the highest harmonic down to the first.  None where the sums do not come
     # below the goal within a few times the largest matrix.
-    width = len(taps)
+    width, together = len(taps), float(taps.sum())
     # Component k stands at index width + k; all that lies below the start is bounded by 1.
     size = np.ones(width + 4 * LARGEST + 1)
     for k in range(start, 4 * LARGEST):
@@ -137,7 +126,13 @@ def _majorant(
         size[width + k] = min(1.0, float(taps @ size[k : width + k]) / gap)
         if (k - start) % 16 != 8:
             continue
-        rest = _remainder(taps, size[k + 1 : width + k + 1], (k + 1) ** 2 - ceiling, k, bound)
+        # The energy beyond k, by a geometric series: as many components as there are taps are each
+        # at most sum(taps) / gap times the largest before them.
+        first = float(size[k + 1 : width + k + 1].max(initial=0.0))
+        ratio = (together / ((k + 1) ** 2 - ceiling)) ** 2 * math.exp(2.0 * width / (k + 1))
+        if ratio >= 1.0:
+            continue
+        rest = 2.0 * width * first * first * ((k + 1.0) ** 2 + 2.0 * bound) * ratio / (1.0 - ratio)
         if rest <= 0.1 * goal:
             squares = 2.0 * np.square(size[width + start : width + k + 1])
             # Half-whole k stand half a step higher than the whole k whose majorant they take.
@@ -150,50 +145,31 @@ def _majorant(
     return None
 
 
-def _remainder(taps: Array, last: Array, gap: float, k: int, bound: float) -> float:
-    """Bound the energy in all harmonics beyond k by a geometric series."""
-    # As many as there are taps are each at most sum(taps) / gap times the largest before them.
-    first, width = float(last.max(initial=0.0)), len(taps)
-    ratio = (float(taps.sum()) / gap) ** 2 * math.exp(2.0 * width / (k + 1))
-    if ratio >= 1.0:
-        return math.inf
-    return 2.0 * width * first * first * ((k + 1.0) ** 2 + 2.0 * bound) * ratio / (1.0 - ratio)
-
-
 def _too_large(reach: float, f: PeriodicFunction) -> BadInput:
     found = f"|mu| up to {reach:.3g}, {f.harmonics} harmonics"
     expected = f"a problem that {LARGEST} harmonics settle"
     return bad("hill_boundaries", found, expected, "truncate the function or take a smaller mu")
 
 
-class Layout(NamedTuple):
-    """The squares of k in the basis of Hill's matrix, and the matrix of 2 d/dtheta in it."""
-
-    squares: Array
-    slope: Array
-
-
-@lru_cache(maxsize=64)
-def layout(odd: int, harmonic: int) -> Layout:
-    """Return the basis for k up to ``harmonic`` (whole) or so many half-whole k.
+def squares(odd: int, harmonic: int) -> Array:
+    """Return k^2 of each function of the basis, for k up to ``harmonic``, or so many half-whole k.
 
     It runs cos 0, cos 1, sin 1, ... or cos 1/2, sin 1/2, cos 3/2, ...
     """
     twice = np.arange(odd, 2 * harmonic + 1, 2)
-    slope = np.zeros((2 * twice.size, 2 * twice.size))
+    return np.repeat(np.square(0.5 * twice), 2)[1 - odd :]
+
+
+@lru_cache(maxsize=64)
+def slope(odd: int, harmonic: int) -> Array:
+    """Return the matrix of 2 d/dtheta in the basis of :func:`squares`, read-only."""
+    twice = np.arange(odd, 2 * harmonic + 1, 2)
+    out = np.zeros((2 * twice.size, 2 * twice.size))
     cos = 2 * np.arange(twice.size)
     # d/d theta takes cos k to -k sin k and sin k to k cos k, which stand side by side.
-    slope[cos + 1, cos], slope[cos, cos + 1] = -twice, twice
-    out = Layout(_squares(odd, harmonic), slope[1 - odd :, 1 - odd :])
-    for item in out:
-        item.setflags(write=False)
-    return out
-
-
-def _squares(odd: int, harmonic: int) -> Array:
-    """Return k^2 of each function of the basis; there is no sin 0."""
-    twice = np.arange(odd, 2 * harmonic + 1, 2)
-    return np.repeat(np.square(0.5 * twice), 2)[1 - odd :]
+    out[cos + 1, cos], out[cos, cos + 1] = -twice, twice
+    out.setflags(write=False)
+    return out[1 - odd :, 1 - odd :]
 
 
 def _waves(f: PeriodicFunction, size: int) -> Complex:
@@ -207,7 +183,7 @@ def _waves(f: PeriodicFunction, size: int) -> Complex:
 
 @lru_cache(maxsize=64)
 def matrix(f: PeriodicFunction, odd: int, harmonic: int) -> Array:
-    """Return the matrix of ``f - mean`` in the basis of :func:`layout`, read-only."""
+    """Return the matrix of ``f - mean`` in the basis of :func:`squares`, read-only."""
     twice = np.arange(odd, 2 * harmonic + 1, 2)
     c = _waves(f, 2 * harmonic + 1)
     apart, total = c[(twice[:, None] - twice) // 2], c[(twice[:, None] + twice) // 2]
@@ -227,12 +203,11 @@ def stacked(
     f: PeriodicFunction, odd: int, harmonic: int, mu: Array, damping: Array | float = 0.0
 ) -> Array:
     """Return ``k^2 - 2 K d/d theta - mu (f - mean)`` for mu and K ``(n,)``, one matrix each."""
-    where = layout(odd, harmonic)
     out: Array = np.negative(mu)[:, None, None] * matrix(f, odd, harmonic)
     size = out.shape[1]
-    out.reshape(mu.size, size * size)[:, :: size + 1] += where.squares
+    out.reshape(mu.size, size * size)[:, :: size + 1] += squares(odd, harmonic)
     if np.any(damping):
-        out -= np.reshape(damping, (-1, 1, 1)) * where.slope
+        out -= np.reshape(damping, (-1, 1, 1)) * slope(odd, harmonic)
     return out
 
 
@@ -242,13 +217,13 @@ def banded(f: PeriodicFunction, odd: int, harmonic: int, mu: float) -> Array:
     In this order of the basis the matrix has ``2 f.harmonics + 1`` diagonals below the main one,
     which from ``k = f.harmonics`` on repeat with each k.
     """
-    squares = _squares(odd, harmonic)
+    levels = squares(odd, harmonic)
     first, width = 2 * f.harmonics + 2 - odd, 2 * f.harmonics + 1
     corner = matrix(f, odd, 2 * f.harmonics + 2)
     band = np.array([np.append(corner.diagonal(-i), np.zeros(i)) for i in range(width + 1)])
-    columns = np.arange(squares.size)
+    columns = np.arange(levels.size)
     out = -mu * band[:, np.where(columns < first, columns, first + (columns - first) % 2)]
-    out[0] += squares
+    out[0] += levels
     return np.asarray(out)
 
 
@@ -256,25 +231,3 @@ def couplings(f: PeriodicFunction, size: int) -> Complex:
     """Return ``-c_(k-l)`` for all pairs of so many harmonics exp(i k theta), the mean left out."""
     every = np.arange(size)
     return np.asarray(-_waves(f, size)[np.subtract.outer(every, every)])
-
-
-def real_pairs(whole: Array) -> tuple[Array, Array, Array]:
-    """Return the real eigenvalues, rising, with right and left vectors of norm 1 as columns."""
-    import scipy.linalg
-
-    solved: Any = scipy.linalg.eig(whole, left=True, check_finite=False)
-    values, lefts, rights = solved
-    real = np.flatnonzero(values.imag == 0.0)
-    order = real[np.argsort(values[real].real)]
-    right, left = (
-        v[:, order].real / np.linalg.norm(v[:, order].real, axis=0) for v in (rights, lefts)
-    )
-    return values[order].real, right, left
-
-
-def exponentials(x: Array, odd: int) -> Complex:
-    """Turn coefficients of 1, sqrt 2 cos k theta, sqrt 2 sin k theta to those of exp(i k theta)."""
-    pairs = x[1 - odd :].reshape(-1, 2)
-    positive = np.sqrt(0.5) * (pairs[:, 0] - 1j * pairs[:, 1])
-    middle = np.zeros(0) if odd else x[:1]
-    return np.concatenate([positive[::-1].conj(), middle, positive])

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil, log, pi, sqrt
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,7 +20,7 @@ from ..core.errors import bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
-from .checks import EPS, Array, Index, Mask, arguments, check_function
+from .checks import EPS, Array, Mask, arguments, check_function
 from .meissner import Meissner
 from .transfer import Transfer, transfer
 
@@ -85,9 +85,8 @@ class HalfTrace(Result):
             ax.set(xlabel=r"$\lambda^2$", ylabel=r"$\mu$")
             return ax
         if self.value.ndim == 1:
-            across = lam2 if lam2.ndim == 1 else mu
+            across, label = (lam2, r"$\lambda^2$") if lam2.ndim == 1 else (mu, r"$\mu$")
             ax.plot(across, self.value)
-            label = r"$\lambda^2$" if lam2.ndim == 1 else r"$\mu$"
             ax.set(xlabel=label, ylabel="half trace")
             return ax
         found = f"values of shape {self.value.shape}"
@@ -148,12 +147,15 @@ def discriminant(
     )
     x, log2_scale = np.broadcast_arrays(x, log2_scale)
     if all(min(n, m) == 1 for n, m in zip(x.shape, y.shape, strict=True)):
-        work = _Work(f, x.ravel(), y.ravel(), log2_scale.ravel(), grid=True)
-        value, error = (_ungrid(item, x.shape, y.shape, shape) for item in work.run())
+        work = _Work(f, grid=True)
+        pairs = work.values(x.ravel(), y.ravel(), log2_scale.ravel())
+        # Where the values of all pairs stand in the shape of the arguments.
+        at = np.arange(x.size).reshape(x.shape), np.arange(y.size).reshape(y.shape)
+        value, error = (np.broadcast_to(item[at], shape) for item in pairs)
     else:
-        x, y, s = (np.broadcast_to(item, shape).ravel() for item in (x, y, log2_scale))
-        work = _Work(f, x, y, s, grid=False)
-        value, error = (item.reshape(shape) for item in work.run())
+        work = _Work(f, grid=False)
+        x, y, log2_scale = (np.broadcast_to(v, shape).ravel() for v in (x, y, log2_scale))
+        value, error = (item.reshape(shape) for item in work.values(x, y, log2_scale))
     beyond = float(value.size - np.count_nonzero(np.isfinite(value)))
     return HalfTrace(
         method=method + (" at Chebyshev nodes, interpolated" if work.interpolated else ""),
@@ -179,40 +181,37 @@ def growth_rate(f: PeriodicFunction | Meissner, lam2: Array, mu: Array) -> Array
 
 
 class _Work:
-    """One evaluation: points or a grid, cut into boxes that a Chebyshev series can serve."""
+    """One evaluation at points or on a grid, cut into boxes that a Chebyshev series can serve."""
 
-    def __init__(
-        self, f: PeriodicFunction | Meissner, x: Array, y: Array, log2_scale: Array, grid: bool
-    ) -> None:
-        self.f, self.x, self.y, self.log2_scale, self.grid = f, x, y, log2_scale, grid
-        self.defect = 0.0
-        self.interpolated = False
+    def __init__(self, f: PeriodicFunction | Meissner, grid: bool) -> None:
+        self.f, self.grid = f, grid
+        self.defect, self.interpolated = 0.0, False
 
-    def run(self) -> tuple[Array, Array]:
+    def values(self, x: Array, y: Array, log2_scale: Array) -> tuple[Array, Array]:
         """Return value and error: shape ``(nx, ny)`` on a grid, ``(n,)`` at points."""
-        shape = (self.x.size, self.y.size) if self.grid else self.x.shape
+        shape = (x.size, y.size) if self.grid else x.shape
         if 0 in shape:
             return np.zeros(shape), np.zeros(shape)
-        whole = np.arange(self.x.size), np.arange(self.y.size)
-        first = self._box(*whole)
-        if not isinstance(first, int):
-            return first
-        value, error = np.empty(shape), np.empty(shape)
-        pending = self._halves(*whole, first)
-        while pending:
-            ix, iy = pending.pop()
-            done = self._box(ix, iy)
-            if isinstance(done, int):
-                pending.extend(self._halves(ix, iy, done))
-                continue
-            where = np.ix_(ix, iy) if self.grid else ix
-            value[where], error[where] = done
+        found = self._box(x, y, log2_scale)
+        if not isinstance(found, int):
+            return found
+        along = y if found else x
+        lower = along <= 0.5 * (along.min() + along.max())
+        if lower.all():
+            lower = np.arange(along.size) < along.size // 2
+        value, error = np.empty((2, *shape))
+        whole = slice(None)
+        for half in (lower, ~lower):
+            rows, columns = half, half
+            if self.grid:
+                rows, columns = (whole, half) if found else (half, whole)
+            where = (rows, columns) if self.grid else half
+            value[where], error[where] = self.values(x[rows], y[columns], log2_scale[rows])
         return value, error
 
-    def _box(self, ix: Index, iy: Index) -> tuple[Array, Array] | int:
+    def _box(self, x: Array, y: Array, scale: Array) -> tuple[Array, Array] | int:
         """Evaluate one box; the axis along which it should be split where it cannot be."""
-        count = ix.size * iy.size if self.grid else ix.size
-        x, y, scale = self.x[ix], self.y[iy], self.log2_scale[ix]
+        count = x.size * y.size if self.grid else x.size
         if isinstance(self.f, Meissner):
             return self._direct(self.f, x, y, scale)
         limits = float(x.min()), float(x.max()), float(y.min()), float(y.max())
@@ -226,16 +225,16 @@ class _Work:
         series = _series(direct, limits)
         if isinstance(series, int):
             return series
+        coefficients, everywhere, profile, defect = series
         self.interpolated = True
-        self.defect = max(self.defect, series.defect)
+        self.defect = max(self.defect, defect)
         u, v = chebyshev.unit(x, *limits[:2]), chebyshev.unit(y, *limits[2:])
-        rising = chebyshev.nodes(series.profile.size)[::-1]
-        error = np.interp(u, rising, series.profile[::-1]) + series.everywhere
+        error = np.interp(u, chebyshev.nodes(profile.size)[::-1], profile[::-1]) + everywhere
         if self.grid:
-            value = chebyshev.tensor_values(series.coefficients, u, v)
+            value = chebyshev.tensor_values(coefficients, u, v)
             error, scale = error[:, None], scale[:, None]
         else:
-            value = chebyshev.point_values(series.coefficients, u, v)
+            value = chebyshev.point_values(coefficients, u, v)
         if scale.any():
             factor = np.exp2(scale)
             value, error = value * factor, error * factor
@@ -257,32 +256,13 @@ class _Work:
             error = np.ldexp(error * np.exp2(scale - whole), power)
         return value.reshape(shape), error.reshape(shape)
 
-    def _halves(self, ix: Index, iy: Index, axis: int) -> list[tuple[Index, Index]]:
-        along = (self.x[ix], self.y[iy])[axis]
-        lower = along <= 0.5 * (along.min() + along.max())
-        if lower.all():
-            lower = np.arange(along.size) < along.size // 2
-        if not self.grid:
-            return [(ix[part], iy[part]) for part in (lower, ~lower)]
-        if axis == 0:
-            return [(ix[lower], iy), (ix[~lower], iy)]
-        return [(ix, iy[lower]), (ix, iy[~lower])]
 
+def _series(polynomials: Transfer, limits: Box) -> tuple[Array, float, Array, float] | int:
+    """Interpolate over a box; the number of the axis to split where that would not do.
 
-class _Series(NamedTuple):
-    """Double Chebyshev series of the half trace over a box, with its error.
-
-    The error depends on lam2 alone: ``everywhere`` plus a profile over the nodes.
+    Return the coefficients of the double Chebyshev series; its error, which depends on lam2 alone,
+    as what it is everywhere and a profile over the nodes; and the defect of determinants.
     """
-
-    coefficients: Array
-    everywhere: float
-    profile: Array
-    defect: float
-
-
-def _series(polynomials: Transfer, limits: Box) -> _Series | int:
-    """Interpolate over a box; the number of the axis to split where that would not do."""
     x0, x1, y0, y1 = limits
     n = _guess(x1 - x0, x0) if x1 > x0 else 1
     m = _guess(polynomials.swing, 0.0) if y1 > y0 else 1
@@ -330,7 +310,7 @@ def _series(polynomials: Transfer, limits: Box) -> _Series | int:
         if tails[0] <= allowed * columns and tails[1] <= allowed * rows:
             # Errors of the nodal values stay where they are, but for a few per cent.
             everywhere = sum(tails) + 2.0 * EPS * float(sizes.sum()) + 0.05 * above * noise
-            return _Series(c, everywhere, above * profile, float(defect.max()))
+            return c, everywhere, above * profile, float(defect.max())
     return 0 if tails[0] > allowed * columns else 1
 
 
@@ -348,22 +328,7 @@ def _guess(span: float, low: float) -> int:
 
 def _collapsed(values: Array) -> Array:
     """Cut every axis along which an array does not vary to length 1."""
-    for axis in range(values.ndim):
-        first = values.take([0], axis=axis) if values.shape[axis] > 1 else values
-        if first is values or not np.array_equal(first, values.take([-1], axis=axis)):
-            continue
-        if np.all(values == first):
+    for axis, count in enumerate(values.shape):
+        if count > 1 and np.all(values == (first := values.take([0], axis=axis))):
             values = first
     return values
-
-
-def _ungrid(
-    grid: Array, x_shape: tuple[int, ...], y_shape: tuple[int, ...], shape: tuple[int, ...]
-) -> Array:
-    """Bring values of all pairs into the shape of the arguments."""
-    n = len(shape)
-    apart = grid.reshape(x_shape + y_shape)
-    order = [axis if x_shape[axis] != 1 else n + axis for axis in range(n)]
-    rest = [axis for axis in range(2 * n) if axis not in order]
-    together = apart.transpose(order + rest).reshape([apart.shape[axis] for axis in order])
-    return np.broadcast_to(together, shape) if together.shape != shape else together

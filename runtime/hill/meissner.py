@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import log, pi
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -164,20 +163,6 @@ def _matrices(q: Array, t: Array, noise: Array) -> tuple[Array, Array]:
 # ---------------------------------------------------------------- boundaries of two levels
 
 
-class _Kind(NamedTuple):
-    """One of the four functions whose zeros are boundaries."""
-
-    # row, column: which of ``y1, y2`` (columns) or of their slopes at half a turn vanishes
-    row: int
-    column: int
-    start: float  # phase of the solution at the start: pi/2 for y1, 0 for y2
-    end: float  # phase at the end for the lowest boundary of its kind
-
-
-_Y1, _Y2 = _Kind(0, 0, 0.5 * pi, pi), _Kind(0, 1, 0.0, pi)
-_Y1_SLOPE, _Y2_SLOPE = _Kind(1, 0, 0.5 * pi, 0.5 * pi), _Kind(1, 1, 0.0, 0.5 * pi)
-
-
 def meissner_ends(f: Meissner, mu: Array, n: int) -> tuple[Array, Array, Array]:
     """Return lower and upper end of region n and their error, each ``(m,)``, without damping.
 
@@ -192,18 +177,22 @@ def meissner_ends(f: Meissner, mu: Array, n: int) -> tuple[Array, Array, Array]:
     if np.sqrt(most * np.ptp(levels)) * pi > 2.0 * _STEEPEST:
         raise bad("mu", most, f"sqrt(mu * jump) * pi <= {2.0 * _STEEPEST:g}", "take less")
     if n == 0:
-        root, error = _root(levels, lengths, mu, n, _Y1_SLOPE)
+        root, error = _root(levels, lengths, mu, n, 1, 0)
         return np.full(mu.shape, -np.inf), root, error
-    kinds = (_Y1, _Y2_SLOPE) if n % 2 else (_Y1_SLOPE, _Y2)
-    roots, errors = zip(*(_root(levels, lengths, mu, n, kind) for kind in kinds), strict=True)
+    kinds = ((0, 0), (1, 1)) if n % 2 else ((1, 0), (0, 1))
+    roots, errors = zip(*(_root(levels, lengths, mu, n, *kind) for kind in kinds), strict=True)
     return np.minimum(*roots), np.maximum(*roots), np.maximum(*errors)
 
 
-def _root(f: Array, t: Array, mu: Array, n: int, kind: _Kind) -> tuple[Array, Array]:
-    """Return the boundary of region n that belongs to one kind, with its error, each ``(m,)``."""
-    # y2 has its first zero where y1' has its second.
-    order = n // 2 - 1 if kind is _Y2 else n // 2
-    target = kind.end + order * pi
+def _root(f: Array, t: Array, mu: Array, n: int, row: int, column: int) -> tuple[Array, Array]:
+    """Return the boundary of region n of one kind, with its error, each ``(m,)``.
+
+    There y1 (``column`` 0) or y2 (1), or the slope of it (``row`` 1), vanishes at half a turn.
+    """
+    # The phase is pi/2 at the start for y1, 0 for y2; at half a turn it is pi, or pi/2 where the
+    # slope vanishes, on the lowest boundary.  y2 has its first zero where y1' has its second.
+    start, end = 0.5 * pi * (1 - column), 0.5 * pi * (2 - row)
+    target = end + (n // 2 - (row < column)) * pi
     reach = np.sort(-np.outer(f, mu), axis=0)
     size = np.abs(reach).max(axis=0)
     low, high = (
@@ -212,30 +201,32 @@ def _root(f: Array, t: Array, mu: Array, n: int, kind: _Kind) -> tuple[Array, Ar
     # Forty halvings of an interval of a few reach the resolution of doubles.
     for _ in range(40):
         middle = 0.5 * (low + high)
-        above = _phase(middle, mu, kind.start, f, t) >= target
+        above = _phase(middle, mu, start, f, t) >= target
         low, high = np.where(above, low, middle), np.where(above, middle, high)
     # Alone between the ends now, but for the round-off of the phase: the factor knows the zero to
     # the last digit.
     wide = (high - low) + 64.0 * EPS * (1.0 + n) * (1.0 + np.abs(high) + size)
 
     def factor(which: Index, lam2: Array) -> tuple[Array, float]:
-        return _factor(lam2, mu[which], kind, f, t)[0], 0.0
+        return _factor(lam2, mu[which], row, column, f, t)[0], 0.0
 
     root, width, _ = bracketed_roots(factor, low - wide, high + wide)
     step = 1e-6 * (1.0 + np.abs(root))
-    noise = _factor(root, mu, kind, f, t)[1]
-    ends = [_factor(root + side * step, mu, kind, f, t)[0] for side in (1.0, -1.0)]
+    noise = _factor(root, mu, row, column, f, t)[1]
+    ends = [_factor(root + side * step, mu, row, column, f, t)[0] for side in (1.0, -1.0)]
     slope = np.abs(ends[0] - ends[1]) / (2.0 * step)
     return root, noise / np.maximum(slope, 1e-300) + EPS * np.abs(root) + width
 
 
-def _factor(lam2: Array, mu: Array, kind: _Kind, f: Array, t: Array) -> tuple[Array, Array]:
-    """Return the value of a factor and its round-off, each ``(m,)``."""
+def _factor(
+    lam2: Array, mu: Array, row: int, column: int, f: Array, t: Array
+) -> tuple[Array, Array]:
+    """Return what vanishes on a boundary of a kind and its round-off, each ``(m,)``."""
     moved = np.outer(f, mu)
     q = lam2 + moved
     m, error = _matrices(q, 0.5 * t[:, None], EPS * (np.abs(lam2) + np.abs(moved) + np.abs(q)))
-    after, before = m[kind.row, :, 1], m[:, kind.column, 0]
-    lost = np.abs(after) * error[:, kind.column, 0] + error[kind.row, :, 1] * np.abs(before)
+    after, before = m[row, :, 1], m[:, column, 0]
+    lost = np.abs(after) * error[:, column, 0] + error[row, :, 1] * np.abs(before)
     return np.asarray((after * before).sum(axis=0)), np.asarray(lost.sum(axis=0))
 
 

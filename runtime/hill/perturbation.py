@@ -131,49 +131,44 @@ def perturbation_boundaries(
     check_order(order)
     if not is_one_of(outside, ("nan", "value")):
         raise bad("outside", shown(outside), "'nan' or 'value'", "choose one")
-    count = flat.shape[1]
-    lower, upper, error = np.empty((3, len(numbers), count))
-    flagged, closed, undecided = np.empty((3, len(numbers), count), dtype=bool)
-    share = 0.0
+    size = (3, len(numbers), flat.shape[1])
+    found, flags, share = np.empty(size), np.empty(size, dtype=bool), 0.0
     with np.errstate(all="ignore"):
         problem = _Points(functions, flat, int(order))
         for i, n in enumerate(numbers):
             operator = problem.operator(n)
-            for start in range(0, count, _CHUNK):
+            for start in range(0, size[2], _CHUNK):
                 part = slice(start, start + _CHUNK)
                 ends, split = problem.ends(operator, part)
                 share = max(share, split)
-                half = ends.half
-                if outside == "nan" and ends.outside.any():
-                    half = np.where(ends.outside, np.nan, half)
-                np.add(ends.centre, half, out=upper[i, part])
-                gone = np.isnan(upper[i, part])
-                lower[i, part] = ends.centre - half if n else np.where(gone, np.nan, -np.inf)
-                error[i, part] = np.where(ends.outside, np.inf, ends.error)
-                error[i, part][gone] = np.nan
-                flagged[i, part], undecided[i, part] = ends.outside, ends.undecided
-                closed[i, part] = gone & ~ends.outside
-    full = (len(numbers), *shape)
+                half = np.where(ends.outside, np.nan, ends.half) if outside == "nan" else ends.half
+                gone = np.isnan(ends.centre + half)
+                low = ends.centre - half if n else np.where(gone, np.nan, -np.inf)
+                error = np.where(ends.outside, np.inf, ends.error)
+                found[:, i, part] = low, ends.centre + half, np.where(gone, np.nan, error)
+                flags[:, i, part] = ends.outside, gone & ~ends.outside, ends.undecided
+    lower, upper, error = found.reshape(3, len(numbers), *shape)
+    flagged, closed, undecided = flags.reshape(3, len(numbers), *shape)
     checks = {"entries outside the estimated range": Check(float(np.count_nonzero(flagged)), 0.0)}
     if share > 0.0:
         checks["error over half the width"] = Check(share, 1.0)
     at = flat.reshape(len(flat), *shape)
     return PerturbationBoundaries(
         method=f"perturbation, order {order}",
-        error=error.reshape(full),
+        error=error,
         error_norm="absolute, entrywise, for either end",
         checks=checks,
         provenance=provenance(),
-        lower=lower.reshape(full),
-        upper=upper.reshape(full),
+        lower=lower,
+        upper=upper,
         regions=numbers,
         mu=np.asarray(at[0]),
         damping=np.asarray(at[-1]),
         order=int(order),
         parameters=at[:-1],
-        outside=flagged.reshape(full),
-        closed=closed.reshape(full),
-        undecided=undecided.reshape(full),
+        outside=flagged,
+        closed=closed,
+        undecided=undecided,
     )
 
 
@@ -229,13 +224,9 @@ class _Points:
                 functions = (combined(functions, points[:-1, 0]),)
                 points = np.stack([np.ones(1), points[-1]])
         size = np.abs(points[:-1])
-        bounds, errors, means = (
-            np.array(row)[:, None]
-            for row in zip(*((g.bound(), g.error, abs(g.mean)) for g in functions), strict=True)
-        )
-        self.reach = (bounds * size).sum(axis=0)
-        self.strength = ((bounds - means) * size).sum(axis=0)
-        self.data = (errors * size).sum(axis=0)
+        self.reach = np.array([part.bound() for part in functions]) @ size
+        self.strength = np.array([part.bound() - abs(part.mean) for part in functions]) @ size
+        self.data = np.array([part.error for part in functions]) @ size
         self.functions, self.points = functions, points
 
     def operator(self, n: int) -> EffectiveOperator:
@@ -354,7 +345,7 @@ def contraction(sizes: Array, reference: Array | float) -> Array:
 def _geometric(sizes: Array, ratio: Array) -> Array:
     """Return the sum of what follows the last component at a ratio, infinite from 1 on."""
     # The last two may both be small by chance: those before them count as well.
-    last = np.maximum(sizes[-1], sizes[-min(2, len(sizes))])
+    last = np.maximum(sizes[-1], sizes[-2])
     for k in range(3, min(len(sizes), 4) + 1):
         last = np.maximum(last, sizes[-k] * ratio ** (k - 1))
     below = np.minimum(ratio, 1.0)

@@ -15,7 +15,7 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
@@ -208,7 +208,7 @@ def _uncertain(f: PeriodicFunction, n: int, k: int, size: float) -> float:
     point = np.array([[1.0], [0.0]])
     # Other phases, harmonic by harmonic: what cancels at one does not at another.
     others = [
-        effective_operator([_turned(f, phase, 2)], n, k, True).components(point)[1][-1, 0]
+        effective_operator((_turned(f, phase, 2),), n, k, True).components(point)[1][-1, 0]
         for phase in (0.7, 1.3, 2.1)
     ]
     return _ROUNDED * EPS * max(size, *(float(abs(other)) for other in others)) + given
@@ -219,7 +219,7 @@ def _alphas(f: PeriodicFunction, n: int, order: int, ratio: float) -> tuple[Arra
     # Also what the coefficients may be off by for a leading one that is zero or uncertain,
     # (order,).
     point = np.array([[1.0], [ratio]])
-    a, b = effective_operator([f], n, order, True).components(point)
+    a, b = effective_operator((f,), n, order, True).components(point)
     middle, drag = a[:, 0].real, a.imag
     half, doubt = np.zeros(order), np.zeros(order)
     # Damping is of the first order, and exact.
@@ -263,8 +263,7 @@ def _root(drag: Array, coupling: Complex) -> Array:
 # ---------------------------------------------------------------- formulas
 
 
-@dataclass(frozen=True, order=True)
-class _Chain:
+class _Chain(NamedTuple):
     """Steps between two harmonics over others that are summed, with the powers of R there."""
 
     end: str
@@ -272,21 +271,22 @@ class _Chain:
     powers: tuple[int, ...]
 
 
-_Terms = dict[tuple[_Chain, ...], int]
-
-
 def boundary_latex(order: int, n: int | None = None, damped: bool = False) -> str:
     """Return both boundaries of a region as a formula, to an order from 1 to 6.
 
     An ``aligned`` environment (amsmath), without dollar signs: lam2, then the homogeneous parts of
-    A and B.  Sums run over all whole numbers other than 0 and n; between equal harmonics stands
-    what damping does, or nothing.  Without a number of the region the letter n stands for any from
-    1.  Smith (7.25), (7.35), (7.49) are orders 1 and 2, expanded in the parameter.
+    A and B.  Sums run over all whole numbers but 0 and n; between equal harmonics stands what
+    damping does, or nothing.  Without a number the letter n stands for any region from 1.  Smith
+    (7.25), (7.35), (7.49) are orders 1 and 2, expanded in the parameter.
     """
-    region = _checked(order, n)
+    fix = "the terms of higher orders are many: use perturbation_boundaries for their values"
+    require_whole("order", order, 1, HIGHEST_FORMULA, fix)
+    if not (n is None or is_whole(n, 0)):
+        raise bad("region", repr(n), "a whole number >= 0", "correct it")
+    region = "n" if n is None else str(int(n))
+    a, b = (" + ".join(f"{x}_{{{k}}}" for k in range(1, order + 1)) for x in "AB")
     if region == "0":
-        lines = [r"\lambda^2 &= " + _sum_of("A", order)]
-        lines += _parts("A", "0", "0", order, region, damped)
+        lines = [rf"\lambda^2 &= {a}", *_parts("A", "0", "0", order, region, damped)]
     else:
         if n is None:
             centre = r"\frac{n^2}{4}"
@@ -295,27 +295,12 @@ def boundary_latex(order: int, n: int | None = None, damped: bool = False) -> st
         lines = [
             rf"\lambda^2 &= {centre} + \operatorname{{Re}} A \pm "
             r"\sqrt{\left|B\right|^2 - \left(\operatorname{Im} A\right)^2}",
-            rf"A &= {_sum_of('A', order)}, \quad B = {_sum_of('B', order)}",
+            rf"A &= {a}, \quad B = {b}",
             *_parts("A", "n", "n", order, region, damped),
             *_parts("B", "n", "0", order, region, damped),
         ]
     body = " \\\\\n".join([*lines, *_where(order, region, damped)])
     return f"\\begin{{aligned}}\n{body}\n\\end{{aligned}}"
-
-
-def _checked(order: int, n: int | None) -> str:
-    """Return the region as it is written."""
-    fix = "the terms of higher orders are many: use perturbation_boundaries for their values"
-    require_whole("order", order, 1, HIGHEST_FORMULA, fix)
-    if n is None:
-        return "n"
-    if not is_whole(n, 0):
-        raise bad("region", repr(n), "a whole number >= 0", "correct it")
-    return str(int(n))
-
-
-def _sum_of(letter: str, order: int) -> str:
-    return " + ".join(f"{letter}_{{{k}}}" for k in range(1, order + 1))
 
 
 def _where(order: int, region: str, damped: bool) -> Iterator[str]:
@@ -333,14 +318,28 @@ def _where(order: int, region: str, damped: bool) -> Iterator[str]:
 def _parts(
     letter: str, end: str, start: str, order: int, region: str, damped: bool
 ) -> Iterator[str]:
-    """Yield the lines of ``A_1, A_2, ...`` or ``B_1, ...``."""
+    """Yield ``A_1, A_2, ...`` or ``B_1, ...``, sums as lines of a few terms each."""
     for k in range(1, order + 1):
-        terms = _terms(k, end, start, damped, region)
-        mean = ["-c_{0}"] if k == 1 and end == start else []
-        yield from _written(f"{letter}_{{{k}}}", terms, region, damped, mean)
+        texts = ["-c_{0}"] if k == 1 and end == start else []
+        for chains, coefficient in _terms(k, end, start, damped, region).items():
+            size = "" if abs(coefficient) == 1 else f"{abs(coefficient)} "
+            sign = "-" if coefficient < 0 else "+"
+            texts.append(f"{sign} {size}{_product(chains, region, damped)}")
+        texts = texts or ["0"]
+        texts[0] = texts[0].removeprefix("+ ").replace("- ", "-", 1)
+        lead = f"{letter}_{{{k}}} &= "
+        while texts:
+            line = texts.pop(0)
+            # Characters of source in a line of a sum.
+            while texts and len(line) + len(texts[0]) < 200:
+                line += " " + texts.pop(0)
+            yield lead + line
+            lead = r"&\quad "
 
 
-def _terms(order: int, end: str, start: str, damped: bool, region: str) -> _Terms:
+def _terms(
+    order: int, end: str, start: str, damped: bool, region: str
+) -> dict[tuple[_Chain, ...], int]:
     """Return the words of an order between two harmonics, sums over P written out."""
     found: Counter[tuple[_Chain, ...]] = Counter()
     resonant = ("0",) if region == "0" else ("0", "n")
@@ -383,27 +382,6 @@ def _canonical(chain: _Chain) -> _Chain:
     if {chain.end, chain.start} == {"0", "n"}:
         return _Chain(chain.end, chain.start, max(chain.powers, turned))
     return chain
-
-
-def _written(
-    left: str, terms: _Terms, region: str, damped: bool, before: list[str] | None = None
-) -> Iterator[str]:
-    """Yield a sum as lines of a few terms each."""
-    texts = list(before or [])
-    for chains, coefficient in terms.items():
-        size = "" if abs(coefficient) == 1 else f"{abs(coefficient)} "
-        sign = "-" if coefficient < 0 else "+"
-        texts.append(f"{sign} {size}{_product(chains, region, damped)}")
-    texts = texts or ["0"]
-    texts[0] = texts[0].removeprefix("+ ").replace("- ", "-", 1)
-    lead = f"{left} &= "
-    while texts:
-        line = texts.pop(0)
-        # Characters of source in a line of a sum.
-        while texts and len(line) + len(texts[0]) < 200:
-            line += " " + texts.pop(0)
-        yield lead + line
-        lead = r"&\quad "
 
 
 def _product(chains: tuple[_Chain, ...], region: str, damped: bool) -> str:

@@ -153,40 +153,24 @@ def boundary_solution(
     >>> print(round(solution.lam2, 6), round(solution.period, 4))
     0.198781 12.5664
     """
-    functions, (*amps, k), shape = parameters_of(f, mu, damping)
-    (number,) = check_regions((n,))
-    if not is_one_of(end, ("lower", "upper")) or (end == "lower" and number == 0):
-        expected = "'upper'" if number == 0 else "'lower' or 'upper'"
+    functions, (*amps, friction), shape = parameters_of(f, mu, damping)
+    (n,) = check_regions((n,))
+    if not is_one_of(end, ("lower", "upper")) or (end == "lower" and n == 0):
+        expected = "'upper'" if n == 0 else "'lower' or 'upper'"
         raise bad("end", repr(end), expected, "region 0 has an upper end alone")
     if shape:
         raise bad("mu, damping", f"arrays of shape {shape}", "numbers", "call once for each point")
     point = np.concatenate(amps)
     if float(np.sum(np.abs(point) * [item.bound() for item in functions])) > 1e100:
         raise bad("mu", "a product mu f beyond 1e100", "a moderate one", "scale the equation")
-    whole = combined(functions, point)
+    whole, damping = combined(functions, point), float(friction[0])
     if order is None:
-        solution = _exact(whole, number, end, float(k[0]))
+        solution = _exact(whole, n, end, damping)
     else:
         check_order(order)
-        solution = _to_order(whole, number, end, int(order), float(k[0]))
-    return _result(solution, point, float(k[0]), number, end, order)
-
-
-class _Solution(NamedTuple):
-    """A solution as coefficients of ``exp(i (m - n/2) theta)``, m = -r ... n + r."""
-
-    lam2: float
-    coefficients: Complex
-    error: float
-    residual: float
-    predicted: float
-    degenerate: bool
-
-
-def _result(
-    solution: _Solution, point: Array, damping: float, n: int, end: str, order: int | None
-) -> BoundarySolution:
-    """Normalise, and turn into cosines and sines."""
+        order = int(order)
+        solution = _to_order(whole, n, end, order, damping)
+    # Normalised, and turned into cosines and sines.
     v = solution.coefficients
     k = _wave_numbers(v)
     there = k >= 0.0
@@ -217,10 +201,21 @@ def _result(
         damping=damping,
         n=n,
         end=end,
-        order=None if order is None else int(order),
+        order=order,
         residual=solution.residual / size,
         degenerate=solution.degenerate,
     )
+
+
+class _Solution(NamedTuple):
+    """A solution as coefficients of ``exp(i (m - n/2) theta)``, m = -r ... n + r."""
+
+    lam2: float
+    coefficients: Complex
+    error: float
+    residual: float
+    predicted: float
+    degenerate: bool
 
 
 def _wave_numbers(v: Complex) -> Array:
@@ -302,19 +297,18 @@ def _direction(
 def _exact(f: PeriodicFunction, n: int, end: End, damping: float) -> _Solution:
     """Return the solution by Hill's matrix, cut where the harmonics left out do not matter."""
     bounds = hill_boundaries(f, 1.0, (n,), damping)
-    target, slack = float(getattr(bounds, end)[0]), float(bounds.error[0])
-    if np.isnan(target):
+    boundary = float(getattr(bounds, end)[0]), float(bounds.error[0])
+    if np.isnan(boundary[0]):
         raise _closed(n)
     harmonic = n + 8 + f.harmonics + int(np.sqrt(2.0 * f.bound()))
-    pair, gap = 0.5 * n, 0.0
+    pair = 0.5 * n, 0.0
     # While f is small the others are far from resonance.
     if float(f.amplitudes[1:].sum()) > 0.5 * max(n - 1, 1):
-        pair, gap = _leading_pair(f, n, harmonic, target, damping)
+        pair = _leading_pair(f, n, harmonic, boundary[0], damping)
     while harmonic <= LARGEST:
-        others = _Others(f, n, pair, harmonic, target, slack, damping)
-        # What the harmonics beyond the cut may hold, relative to the resonant ones.
-        if others.edge <= 1e-18:
-            return others.joined(end, gap)
+        solution = _joined(f, n, end, damping, boundary, pair, harmonic)
+        if solution is not None:
+            return solution
         harmonic += max(harmonic // 2, f.harmonics)
     found = f"{f.harmonics} harmonics, mu f up to {f.bound():.3g}"
     expected = f"a problem that {LARGEST} harmonics settle"
@@ -346,77 +340,75 @@ def _leading_pair(
     return float(k[chosen]), float(sizes[-2])
 
 
-class _Others:
-    """All harmonics but a pair ``+-k``, and what the upper one of the pair calls forth.
+def _joined(
+    f: PeriodicFunction,
+    n: int,
+    end: str,
+    damping: float,
+    boundary: tuple[float, float],
+    pair: tuple[float, float],
+    harmonic: int,
+) -> _Solution | None:
+    """Return the solution by the elimination of all harmonics but a pair ``+-k``.
 
-    ``(H - lam2) y = -H_up`` among the others, ``y = 1`` at the upper one.  The sizes of the entries
-    of their inverse bound, to first order, what round-off and the doubt of the boundary do to y.
+    ``boundary`` is lam2 and its error, ``pair`` what :func:`_leading_pair` gives.  None where the
+    harmonics beyond the cut may matter.
     """
-
-    def __init__(
-        self,
-        f: PeriodicFunction,
-        n: int,
-        pair: float,
-        harmonic: int,
-        lam2: float,
-        slack: float,
-        damping: float,
-    ) -> None:
-        self.f, self.n, self.lam2, self.damping = f, n, lam2, damping
-        self.k = k = np.arange(-harmonic - n, harmonic + 1) + 0.5 * n
-        self.up, self.down = (int(np.argmax(k == side * pair)) for side in (1, -1))
-        rest = np.delete(np.arange(k.size), [self.up, self.down])
-        self.slack, self.drag = slack + f.error, -2.0 * damping * k
-        # Roundings of one factor of a path: the coefficient, the elimination, its way back.
-        self.steps = 4.0 * (n + 2.0) * EPS
-        self.coupling = couplings(f, k.size)
-        self.sizes = np.abs(self.coupling)
-        self.levels = k * k - lam2 - f.mean + 1j * self.drag
-        matrix = self.coupling[np.ix_(rest, rest)]
-        matrix[np.diag_indices_from(matrix)] += self.levels[rest]
-        inverse = np.linalg.inv(matrix)
-        self.y = np.zeros(k.size, dtype=complex)
-        self.y[rest] = -inverse @ self.coupling[rest, self.up]
-        self.y[self.up] = 1.0
-        ends = [*range(f.harmonics + 1), *range(-f.harmonics - 1, 0)]
-        self.edge = float(np.abs(self.y[ends]).max())
-        self.weight = weight = np.abs(self.y)
-        weight[self.up] = 0.0
-        loss = self.steps * ((k * k + abs(lam2) + abs(f.mean)) * weight + self.sizes @ weight)
-        loss += self.steps * self.sizes[:, self.up] + self.slack * weight
-        loss += f.error * (1.0 + weight.sum())
-        self.doubt = np.zeros(k.size)
-        self.doubt[rest] = np.abs(inverse) @ loss[rest]
-
-    def joined(self, end: str, gap: float) -> _Solution:
-        """Return the solution: ``u y`` and its mirror, with ``u = exp(i phase)``."""
-        weight, drag = self.weight, np.abs(self.drag)
-        if self.up == self.down:
-            phase, turn, degenerate = 0.0, 0.0, False
-        else:
-            b = complex(self.coupling[self.down] @ self.y).conjugate()
-            # The Hermitian part of H leaves A real: no round-off of it enters.
-            a = float(self.drag @ np.abs(self.y) ** 2)
-            lost_a = self.steps * float(drag[self.up] + drag @ weight**2)
-            lost_a += 2.0 * float(drag @ (weight * self.doubt))
-            paths = float(self.sizes[self.down, self.up] + self.sizes[self.down] @ weight)
-            lost_b = self.steps * paths + self.slack * float(weight @ weight[::-1])
-            lost_b += self.f.error * float(1.0 + weight.sum()) ** 2
-            # Re A less lam2 shows which of the two eigenvalues is zero, except where both are.
-            centre = float((self.levels[self.up] + self.coupling[self.up] @ self.y).real)
-            size = self.k[self.up] ** 2 + abs(self.lam2) + self.f.bound()
-            if abs(centre) > 4.0 * (self.slack + EPS * size) * (1.0 + float(weight @ weight)):
-                end = "upper" if centre < 0.0 else "lower"
-            phase, turn, degenerate = _direction(a, b, (lost_a, lost_b), end)
-        v = np.exp(1j * phase) * self.y
-        v = v + v[::-1].conj()
-        norm = float(np.abs(v) @ (self.k * self.k + abs(self.lam2) + self.f.bound()))
-        predicted = 4.0 * EPS * norm + self.slack * float(np.linalg.norm(v))
-        residual = _residual(self.f, v, self.lam2, self.damping)
-        error = 4.0 * float(self.doubt.sum()) + (turn + 8.0 * EPS) * float(np.abs(v).sum())
-        # Or by the residual over the distance of the next solution, where that is far away.
-        largest = np.sqrt(2.0 * np.count_nonzero(np.abs(v) > EPS * np.abs(v).max()))
-        apart = max(gap - self.slack, 1e-300)
-        error = min(error, float(largest) * 2.0 * (residual + predicted) / apart)
-        return _Solution(self.lam2, v, error, residual, predicted, degenerate)
+    lam2, slack = boundary[0], boundary[1] + f.error
+    k = np.arange(-harmonic - n, harmonic + 1) + 0.5 * n
+    up, down = (int(np.argmax(k == side * pair[0])) for side in (1, -1))
+    rest = np.delete(np.arange(k.size), [up, down])
+    turned = -2.0 * damping * k
+    coupling = couplings(f, k.size)
+    sizes, drag = np.abs(coupling), np.abs(turned)
+    levels = k * k - lam2 - f.mean + 1j * turned
+    matrix = coupling[np.ix_(rest, rest)]
+    matrix[np.diag_indices_from(matrix)] += levels[rest]
+    inverse = np.linalg.inv(matrix)
+    # ``(H - lam2) y = -H_up`` among the others, ``y = 1`` at the upper one of the pair.
+    y = np.zeros(k.size, dtype=complex)
+    y[rest] = -inverse @ coupling[rest, up]
+    y[up] = 1.0
+    ends = [*range(f.harmonics + 1), *range(-f.harmonics - 1, 0)]
+    # What the harmonics beyond the cut may hold, relative to the resonant ones.
+    if float(np.abs(y[ends]).max()) > 1e-18:
+        return None
+    weight = np.abs(y)
+    weight[up] = 0.0
+    # Roundings of one factor of a path: the coefficient, the elimination, its way back.
+    steps = 4.0 * (n + 2.0) * EPS
+    # The sizes of the entries of the inverse bound, to first order, what round-off and the doubt of
+    # the boundary do to y.
+    loss = steps * ((k * k + abs(lam2) + abs(f.mean)) * weight + sizes @ weight)
+    loss += steps * sizes[:, up] + slack * weight
+    loss += f.error * (1.0 + weight.sum())
+    doubt = np.abs(inverse) @ loss[rest]
+    if up == down:
+        phase, turn, degenerate = 0.0, 0.0, False
+    else:
+        b = complex(coupling[down] @ y).conjugate()
+        # The Hermitian part of H leaves A real: no round-off of it enters.
+        a = float(turned @ np.abs(y) ** 2)
+        lost_a = steps * float(drag[up] + drag @ weight**2)
+        lost_a += 2.0 * float(drag[rest] @ (weight[rest] * doubt))
+        lost_b = steps * float(sizes[down, up] + sizes[down] @ weight)
+        lost_b += slack * float(weight @ weight[::-1])
+        lost_b += f.error * float(1.0 + weight.sum()) ** 2
+        # Re A less lam2 shows which of the two eigenvalues is zero, except where both are.
+        centre = float((levels[up] + coupling[up] @ y).real)
+        size = k[up] ** 2 + abs(lam2) + f.bound()
+        if abs(centre) > 4.0 * (slack + EPS * size) * (1.0 + float(weight @ weight)):
+            end = "upper" if centre < 0.0 else "lower"
+        phase, turn, degenerate = _direction(a, b, (lost_a, lost_b), end)
+    # ``u y`` and its mirror, with ``u = exp(i phase)``.
+    v = np.exp(1j * phase) * y
+    v = v + v[::-1].conj()
+    norm = float(np.abs(v) @ (k * k + abs(lam2) + f.bound()))
+    predicted = 4.0 * EPS * norm + slack * float(np.linalg.norm(v))
+    residual = _residual(f, v, lam2, damping)
+    error = 4.0 * float(doubt.sum()) + (turn + 8.0 * EPS) * float(np.abs(v).sum())
+    # Or by the residual over the distance of the next solution, where that is far away.
+    largest = np.sqrt(2.0 * np.count_nonzero(np.abs(v) > EPS * np.abs(v).max()))
+    apart = max(pair[1] - slack, 1e-300)
+    error = min(error, float(largest) * 2.0 * (residual + predicted) / apart)
+    return _Solution(lam2, v, error, residual, predicted, degenerate)

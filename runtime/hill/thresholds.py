@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,7 +20,7 @@ from ..core.maxima import bracketed_roots, local_maxima, narrowed
 from ..core.periodic_function import PeriodicFunction
 from ..core.plotting import Axes
 from ..core.results import Check, DeferredChecks, Result, provenance
-from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
+from .bloch import BEYOND, HIGHEST, effective_operator, level_distance
 from .boundaries import ends_at, hill_boundaries, largest_exponent, sample_of
 from .checks import EPS, Array, Index, Mask, axes_over, check_function, check_regions, points
 from .perturbation import CONTRACTION, Sums
@@ -138,37 +138,60 @@ def critical_damping(
     if (mu is None) == (damping is None):
         given = "neither" if mu is None else "both"
         raise bad("mu, damping", given, "one of them", "pass damping= to have the least mu")
+    checks: Mapping[str, Check]
     if mu is not None:
-        return _critical(f, mu, numbers)
-    return _least(f, 0.0 if damping is None else damping, numbers)
+        (flat, _), shape = points(mu=mu, damping=0.0)
+        closing = [_closing(f, n, flat) for n in numbers]
+        k, lam2, error = np.reshape(closing, (len(numbers), 3, *shape)).swapaxes(0, 1)
+        checks = DeferredChecks(partial(_either_side, f, flat, numbers, k, error))
+        least, searched = flat.reshape(shape), np.zeros(0)
+    else:
+        (flat,), shape = points(damping=0.0 if damping is None else damping)
+        reach = float(f.amplitudes[1:].sum())
+        scale = max(max(numbers, default=1), float(flat.max(initial=0.0)))
+        top = _FARTHEST * scale**2 / reach if reach > 0.0 else 0.0
+        opening = [_opening(partial(_closing, f, n), n, flat, top) for n in numbers]
+        rows = [row for row, _ in opening]
+        least, lam2, error, gap = np.reshape(rows, (len(numbers), 4, *shape)).swapaxes(0, 1)
+        worst = float(gap[np.isfinite(gap)].max(initial=0.0))
+        checks = {"critical damping there less K, over its error": Check(worst, 4.0)}
+        k, searched = flat.reshape(shape), np.array([highest for _, highest in opening])
+    return Thresholds(
+        method="largest half trace",
+        error=error,
+        error_norm=f"absolute, entrywise, of {'mu' if mu is None else 'K'}",
+        checks=checks,
+        provenance=provenance(),
+        damping=k,
+        mu=least,
+        lam2=lam2,
+        absent=np.isinf(np.broadcast_to(least, lam2.shape)),
+        regions=numbers,
+        searched=searched,
+    )
 
 
-class Closing(NamedTuple):
-    """Where one region closes, at points ``(n,)``: K, lam2 and the error of K."""
-
-    damping: Array
-    lam2: Array
-    error: Array
+# Where one region closes: K, lam2 and the error of K, ``(3, n)``.
+Closing = Array
 
 
 def _closing(f: PeriodicFunction, n: int, mu: Array) -> Closing:
     """Return where region n closes, by perturbation where that has the smaller error."""
-    sharp = ends_at(f, mu, np.zeros_like(mu), (n,)).take(0)
-    k, place, error = largest_exponent(f, n, mu, sharp)
-    exact = Closing(k, place + k * k, error)
-    coarse = np.flatnonzero(error > 1e-13 * k)
+    sharp = ends_at(f, mu, np.zeros_like(mu), (n,))[:, 0]
+    found = largest_exponent(f, n, mu, sharp)
+    found[1] += np.square(found[0])
+    coarse = np.flatnonzero(found[2] > 1e-13 * found[0])
     # With more harmonics order 8 takes longer than the half trace.
     if coarse.size and f.harmonics <= 200:
-        high, outside = _to_order(f, n, mu[coarse])
+        high = _to_order(f, n, mu[coarse])
         # An order that does not see a tongue is not wrong about its width: the errors decide.
-        better = ~outside & (high.error < error[coarse])
-        for mine, other in zip(exact, high, strict=True):
-            mine[coarse[better]] = other[better]
-    return exact
+        better = high[2] < found[2, coarse]
+        found[:, coarse[better]] = high[:, better]
+    return found
 
 
-def _to_order(f: PeriodicFunction, n: int, mu: Array) -> tuple[Closing, Mask]:
-    """Return the critical damping to order 8, ``|B| = |Im A|``, and where that does not settle."""
+def _to_order(f: PeriodicFunction, n: int, mu: Array) -> Closing:
+    """Return the critical damping to order 8, ``|B| = |Im A|``; infinite errors: not settled."""
     operator = effective_operator((f,), n, HIGHEST + BEYOND, damped=True)
 
     def excess(which: Index, k: Array) -> tuple[Array, float]:
@@ -182,51 +205,20 @@ def _to_order(f: PeriodicFunction, n: int, mu: Array) -> tuple[Closing, Mask]:
         split = np.where(np.isfinite(split), split, 0.0)
         k = bracketed_roots(excess, np.zeros_like(mu), 4.0 * split / n)[0]
         rate = np.where(k > 0.0, np.clip(split / k, 0.25 * n, 4.0 * n), n)
-        sums = _sums(operator, f, mu, k)
+        a, b = operator.components(np.stack([mu, k]))
+        # The level n^2/4 takes no part in B and Im A, and neither does its round-off.
+        strength = np.abs(mu) * float(f.amplitudes[1:].sum())
+        noise = f.error * np.abs(mu) + 8.0 * EPS * np.abs(a.imag).sum(axis=0)
+        for power, coupling in enumerate(operator.coupling):
+            # Components that vanish term by term carry no round-off either.
+            if np.any(coupling != 0.0):
+                noise = noise + 8.0 * EPS * strength * (strength / level_distance(n)) ** power
+        sums = Sums.of(n, HIGHEST, a, b, noise, strength)
         left = sums.turned + sums.spread
-        outside = ~(sums.ratio < CONTRACTION) | ~(left < 0.5 * max(n - 1, 1))
-        settled = np.abs(sums.split - sums.drag) <= np.maximum(left, 1e-9 * sums.split)
-        return Closing(k, sums.centre, left / rate + 4.0 * EPS * k), outside | ~settled
-
-
-def _sums(operator: EffectiveOperator, f: PeriodicFunction, mu: Array, damping: Array) -> Sums:
-    """Return the sums of A and B with the round-off that a coupling without detours has."""
-    # The level n^2/4 takes no part in B and Im A, and neither does its round-off.
-    n, order = operator.n, operator.order - BEYOND
-    a, b = operator.components(np.stack([mu, damping]))
-    strength = np.abs(mu) * float(f.amplitudes[1:].sum())
-    distance = level_distance(n)
-    noise = f.error * np.abs(mu) + 8.0 * EPS * np.abs(a.imag).sum(axis=0)
-    for k in range(len(b)):
-        # Components that vanish term by term carry no round-off either.
-        if np.any(operator.coupling[k] != 0.0):
-            noise = noise + 8.0 * EPS * strength * (strength / distance) ** k
-    return Sums.of(n, order, a, b, noise, strength)
-
-
-# ---------------------------------------------------------------- the critical damping
-
-
-def _critical(f: PeriodicFunction, mu: ArrayLike, regions: tuple[int, ...]) -> Thresholds:
-    (flat, _), shape = points(mu=mu, damping=0.0)
-    rows = [_closing(f, n, flat) for n in regions]
-    k, lam2, error = (
-        np.reshape([row[i] for row in rows], (len(regions), flat.size)) for i in range(3)
-    )
-    full = (len(regions), *shape)
-    return Thresholds(
-        method="largest half trace",
-        error=error.reshape(full),
-        error_norm="absolute, entrywise, of K",
-        checks=DeferredChecks(partial(_either_side, f, flat, regions, k, error)),
-        provenance=provenance(),
-        damping=k.reshape(full),
-        mu=flat.reshape(shape),
-        lam2=lam2.reshape(full),
-        absent=np.zeros(full, dtype=bool),
-        regions=regions,
-        searched=np.zeros(0),
-    )
+        settled = (sums.ratio < CONTRACTION) & (left < 0.5 * max(n - 1, 1))
+        settled &= np.abs(sums.split - sums.drag) <= np.maximum(left, 1e-9 * sums.split)
+        error = np.where(settled, left / rate + 4.0 * EPS * k, np.inf)
+        return np.stack([k, sums.centre, error])
 
 
 def _either_side(
@@ -234,8 +226,8 @@ def _either_side(
 ) -> Mapping[str, Check]:
     """Count the contradictions with the damped boundaries just below and just above."""
     wrong, seen = 0, 0
-    for i, n in enumerate(regions):
-        k, slack = critical[i], np.maximum(1e-4 * critical[i], 100.0 * error[i])
+    for n, row, doubt in zip(regions, critical, error, strict=True):
+        k, slack = row.ravel(), np.maximum(1e-4 * row, 100.0 * doubt).ravel()
         # Narrow regions open with a square root: Hill's matrix needs some width to see it.
         sure = np.argwhere((k > 2.0 * slack) & (k > 1e-6))
         if not sure.size:
@@ -249,30 +241,6 @@ def _either_side(
 
 
 # ---------------------------------------------------------------- the least parameter
-
-
-def _least(f: PeriodicFunction, damping: ArrayLike, regions: tuple[int, ...]) -> Thresholds:
-    (flat,), shape = points(damping=damping)
-    reach = float(f.amplitudes[1:].sum())
-    scale = max(max(regions, default=1), float(flat.max(initial=0.0)))
-    top = _FARTHEST * scale**2 / reach if reach > 0.0 else 0.0
-    rows = [_opening(partial(_closing, f, n), n, flat, top) for n in regions]
-    full = (len(regions), *shape)
-    least, lam2, error, gap = (np.reshape([row[0][i] for row in rows], full) for i in range(4))
-    worst = float(gap[np.isfinite(gap)].max(initial=0.0))
-    return Thresholds(
-        method="largest half trace",
-        error=error,
-        error_norm="absolute, entrywise, of mu",
-        checks={"critical damping there less K, over its error": Check(worst, 4.0)},
-        provenance=provenance(),
-        damping=flat.reshape(shape),
-        mu=least,
-        lam2=lam2,
-        absent=np.isinf(least),
-        regions=regions,
-        searched=np.array([row[1] for row in rows]),
-    )
 
 
 Solver = Callable[[Array], Closing]
@@ -302,19 +270,18 @@ def _opening(closing: Solver, n: int, damping: Array, top: float) -> tuple[Array
     return out, float(grid[-1])
 
 
-def _sure(closing: Solver, mu: Array) -> Array:
-    known = closing(mu)
-    return known.damping - known.error
-
-
 def _climb(closing: Solver, grid: Array, most: float) -> tuple[Array, Array]:
     """Return the grid with the running maximum of the critical damping, as far as needed."""
-    # With the peaks between the values of the grid.  A decade at a time: small values of mu need
-    # small matrices.
+
+    def sure(mu: Array) -> Array:
+        k, _, error = closing(mu.ravel())
+        return np.reshape(k - error, mu.shape)
+
+    # A decade at a time: small values of mu need small matrices.
     value = np.zeros(0)
     for part in np.array_split(grid, -(-grid.size // _PER_DECADE)):
         try:
-            value = np.concatenate([value, _sure(closing, part)])
+            value = np.concatenate([value, sure(part)])
         except BadInput:
             # Hill's matrix would be too large: the search ends here.
             if not value.size:
@@ -323,38 +290,28 @@ def _climb(closing: Solver, grid: Array, most: float) -> tuple[Array, Array]:
         if value.max() > most:
             break
     grid = grid[: value.size]
-    peaks, tops = _peaks(closing, grid, value)
-    order = np.argsort(np.concatenate([grid, peaks]), kind="stable")
-    grid, value = (np.concatenate(pair)[order] for pair in ((grid, peaks), (value, tops)))
-    return grid, np.maximum.accumulate(value)
-
-
-def _peaks(closing: Solver, grid: Array, value: Array) -> tuple[Array, Array]:
-    """Return the places of maxima near those on a grid, and the values there."""
+    # With the peaks between the values of the grid.
     inner = local_maxima(value)
-    if not inner.size:
-        return np.zeros(0), np.zeros(0)
-
-    def tops(x: Array) -> Array:
-        return _sure(closing, np.exp(x.ravel())).reshape(x.shape)
-
-    low, high = narrowed(tops, np.log(grid[inner - 1]), np.log(grid[inner + 1]), 3)
-    place = 0.5 * (low + high)
-    return np.exp(place), tops(place)
+    ends = np.log(grid[inner - 1]), np.log(grid[inner + 1])
+    low, high = narrowed(lambda x: sure(np.exp(x)), *ends, 3)
+    peaks = np.exp(0.5 * (low + high))
+    grid, value = np.append(grid, peaks), np.append(value, sure(peaks))
+    order = np.argsort(grid, kind="stable")
+    return grid[order], np.maximum.accumulate(value[order])
 
 
 def _refined(closing: Solver, wanted: Array, low: Array, high: Array) -> Array:
     """Solve ``log K_crit(mu) = log K`` in log mu; the rows are those of :func:`_opening`."""
 
     def excess(which: Index, x: Array) -> tuple[Array, float]:
-        k = closing(np.exp(x)).damping
+        k, *_ = closing(np.exp(x))
         return np.asarray(np.log(np.maximum(k / wanted[which], 1e-3))), 0.0
 
     x = bracketed_roots(excess, low, high)[0]
-    at, step = closing(np.exp(x)), 1e-4
+    (k, lam2, error), step = closing(np.exp(x)), 1e-4
     with np.errstate(divide="ignore", invalid="ignore"):
-        up, down = (closing(np.exp(x + d)).damping for d in (step, -step))
+        up, down = (closing(np.exp(x + d))[0] for d in (step, -step))
         slope = np.maximum((np.log(up) - np.log(down)) / (2.0 * step), 1e-3)
-    noise = at.error + 8.0 * EPS * wanted * (1.0 + slope * np.abs(x))
+    noise = error + 8.0 * EPS * wanted * (1.0 + slope * np.abs(x))
     error = np.exp(x) * (noise / (wanted * slope) + 4.0 * EPS)
-    return np.stack([np.exp(x), at.lam2, error, np.abs(at.damping - wanted) / noise])
+    return np.stack([np.exp(x), lam2, error, np.abs(k - wanted) / noise])

@@ -174,11 +174,6 @@ def product(b: Array, a: Array) -> Array:
     return out
 
 
-def _turned(m: Array, step: int) -> Array:
-    """Return the matrices renumbered from ``step`` (np.roll, at a fraction of its overhead)."""
-    return np.concatenate([m[:, :, step:], m[:, :, :step]], axis=2)
-
-
 def _halved(m: Array, blocks: int) -> Array:
     """Multiply neighbours until ``blocks`` matrices round the circle are left."""
     while m.shape[2] > blocks:
@@ -197,7 +192,8 @@ def _all_cuts(m: Array, cuts: int, scaled: bool) -> tuple[Array, Exponents]:
         m, exponent = normalised(m, exponent[1::2] + exponent[0::2])
     step = 1
     while step < m.shape[2]:
-        m = product(_turned(m, step), m)
+        # np.roll, at a fraction of its overhead.
+        m = product(np.concatenate([m[:, :, step:], m[:, :, :step]], axis=2), m)
         if scaled:
             exponent = np.concatenate([exponent[step:], exponent[:step]]) + exponent
             m, exponent = normalised(m, exponent)
@@ -230,15 +226,14 @@ def transfer(f: PeriodicFunction, lam2: Range, mu: Range) -> Transfer:
     else:
         centre_m, half_m = 0.0, reach
     segments, q = _resolution(short, spread, size, reach)
-    table, degree, truncation = _expand(
-        short, (0.5 * (lam2[0] + lam2[1]), half_l), (centre_m, half_m), segments, q
-    )
+    middle = (0.5 * (lam2[0] + lam2[1]), half_l), (centre_m, half_m)
+    table, degree, truncation = _expand(short, *middle, segments, q)
     return Transfer(
         table=table,
         degree=degree,
         segments=segments,
-        lam2=(0.5 * (lam2[0] + lam2[1]), half_l),
-        mu=(centre_m, half_m),
+        lam2=middle[0],
+        mu=middle[1],
         truncation=truncation,
         size=size,
         spread=(half_l, half_m * bound),

@@ -13,7 +13,7 @@ from ..core.families import Array, LinearPeriodic
 from ..core.periodic_function import PeriodicFunction
 from ..hill import HillForm, hill_boundaries, hill_form, perturbation_boundaries
 from ..hill.boundaries import near_tip
-from ..hill.fourier_matrix import by_parity, layout, stacked, truncation
+from ..hill.fourier_matrix import by_parity, slope, stacked, truncation
 from .boundary_speeds import inverse_roots
 from .chart_axes import is_stiffness, leaves_function_alone, on_grid
 
@@ -171,7 +171,7 @@ def _damped_speeds(
 
 def _inverse_speeds(f: PeriodicFunction, odd: int, harmonic: int, ratio: float) -> Array:
     """Return all real s > 0 with a solution of one parity."""
-    drag = -ratio * layout(odd, harmonic).slope
+    drag = -ratio * slope(odd, harmonic)
     unit = np.eye(len(drag))
     whole = stacked(f, odd, harmonic, np.ones(1))[0] - float(f.a[0]) * unit
     values, _ = inverse_roots([-unit, drag, whole], symmetric=False)

@@ -291,12 +291,9 @@ def _highest(matrices: MatricesOverSpeed, phase: Array, middle: Array, half: Arr
         return np.asarray(np.max(np.where(near, logarithm, -np.inf), axis=-1))
 
     value = growth(speed.ravel(), np.repeat(rows, count)).reshape(-1, count)
-    best = np.clip(np.argmax(value, axis=1), 1, count - 2)
-    brackets, around = (
-        (table[rows, best - 1], table[rows, best], table[rows, best + 1])
-        for table in (speed, value)
-    )
-    return refined_maxima(growth, rows, brackets, around, steps=4, rtol=0.0)[0]
+    near = np.add.outer([-1, 0, 1], np.clip(np.argmax(value, axis=1), 1, count - 2))
+    around = speed[rows, near], value[rows, near]
+    return refined_maxima(growth, rows, *around, steps=4, rtol=0.0)[0]
 
 
 def mended(

@@ -141,7 +141,7 @@ def evaluate(sums, name, f, n, order):
 @pytest.mark.parametrize("n", [0, 1, 2, 3])
 def test_formulas_of_the_boundaries_read_back(n, damped, letter):
     order = 4
-    operator = effective_operator([F], n, order, damped)
+    operator = effective_operator((F,), n, order, damped)
     values = [1.0, DRAG] if damped else [1.0]
     a, b = operator.components(values)
     found = lines(boundary_latex(order, None if letter and n else n, damped))
@@ -154,7 +154,7 @@ def test_formulas_of_the_boundaries_read_back(n, damped, letter):
 @pytest.mark.parametrize("order", [5, 6])
 def test_high_orders_read_back(order):
     """One harmonic: no path of six steps goes further than three from a resonant one."""
-    a, b = effective_operator([ONE], 1, order).components([1.0])
+    a, b = effective_operator((ONE,), 1, order).components([1.0])
     sums = lines(boundary_latex(order, 1))
     for name, value in (("A", a[-1]), ("B", b[-1])):
         found = evaluate(sums, f"{name}_{{{order}}}", ONE, 1, 3)

@@ -52,12 +52,12 @@ def test_maxima_swept_on_few_modes_are_those_of_the_whole_linkage():
     system = four_bar(0.02)
     found = multiplier_maxima(system, (66.0, 68.0), 4)
     assert "natural modes" in found.method
-    mode = int(np.argmax(found.value))
+    mode = int(np.argmax(found.height))
     centre, width = found.speed[mode], 0.05
     assert found.error[mode] < width
     speeds = [centre - width, centre, centre + width]
     before, there, after = floquet_multipliers(system, speeds).multipliers.real
-    assert np.min(np.abs(there - found.value[mode])) < 5e-3
+    assert np.min(np.abs(there - found.height[mode])) < 5e-3
     assert max(np.max(before), np.max(after)) <= np.max(there)
 
 

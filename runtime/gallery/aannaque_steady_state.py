@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.trigonometric import even_angles
-from ..frequencies.held import held_modes
+from ..frequencies.held import HeldCrank
 from ..periodic import SteadyState, cycles_to_settle, steady_state
 from .aannaque_beams import CRITICAL, FULL, THESIS, beams, midpoint, moved, rms
 from .algorithms import modal_motion, newmark_limit, newmark_maps, operation_count, printed_count
@@ -80,7 +80,7 @@ def _gap(link: str, modes: int) -> float:
 def _contributions(link: str) -> tuple[Array, Array]:
     """Return the displacement at a midpoint and the part of each mode, (nt,) and (nt, 9) [m]."""
     system, motion = beams(1), _whole()
-    row, held = midpoint(system, link, motion.theta), held_modes(system, motion.theta, {})
+    row, held = midpoint(system, link, motion.theta), HeldCrank(system, {}).modes(motion.theta)
     amplitudes = np.einsum("tnk,tnm,tm->tk", held.shape, held.mass, motion.q)
     return np.einsum("tn,tn->t", row, motion.q), np.einsum(
         "tn,tnk->tk", row, held.shape

@@ -13,8 +13,8 @@ import pytest
 from elastolink.derive.spec import read_manifest
 from elastolink.runtime import recovery
 from elastolink.runtime.cli.explanation import read_cost
-from elastolink.runtime.core import trigonometric
 from elastolink.runtime.rigid import evaluation, forces
+from elastolink.runtime.systems import assembly
 from fresh_process import python
 
 PACKAGED = Path(elastolink.generated.__path__[0])
@@ -87,13 +87,13 @@ def test_a_question_evaluates_the_functions_that_it_needs_alone(question, monkey
     system = el.load_scene(RIG, {"coupler.damping_ratio": 0.01}).system()
     kernels = {name for name in COSTS[FAMILY].functions if name.endswith("_functions")}
     assert kernels > needed | {"acceleration_functions"}
-    called, evaluate = set(), trigonometric.Remembered.__call__
+    called, compute = set(), assembly._AtAngles._computed
 
-    def noting(kernel, theta):
-        called.add(kernel._function.args[0].__name__)
-        return evaluate(kernel, theta)
+    def noting(arrays, name, theta):
+        called.add(arrays._functions[name][0].__name__)
+        return compute(arrays, name, theta)
 
-    monkeypatch.setattr(trigonometric.Remembered, "__call__", noting)
+    monkeypatch.setattr(assembly._AtAngles, "_computed", noting)
     ask(system)
     assert called == needed
 

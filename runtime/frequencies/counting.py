@@ -56,8 +56,9 @@ def quadratic_forms(
 
 def _strain_forms(assembly: Assembly, ends: Array, felt: Array) -> tuple[Array, Array]:
     """Return the static strain energy, twice, by stretch and turning against the chord."""
-    length, bending, axial, _ = assembly.members
-    stiff = np.where(np.isinf(axial), 0.0, axial) / length
+    members = assembly.members
+    length, bending = members.length, members.bending
+    stiff = np.where(np.isinf(members.axial), 0.0, members.axial) / length
     span = length[:, None]
     stretch = ends[:, 3] - ends[:, 0]
     chord = (ends[:, 4] - ends[:, 1]) / span
@@ -528,8 +529,9 @@ def _solved(
 
 def _below_all(problem: DynamicStiffness, rigid: int) -> float:
     """Return a frequency below all that are not 0."""
-    length, bending, _, mass = problem.assembly.members
-    low = float(np.min(np.sqrt(bending / mass) / length**2))  # of the size of the members' own
+    members = problem.assembly.members
+    # Of the size of the members' own.
+    low = float(np.min(np.sqrt(members.bending / members.mass) / members.length**2))
     for _ in range(200):
         low, found = certain_count(problem, low)
         if found <= rigid:

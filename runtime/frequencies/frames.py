@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -42,7 +42,8 @@ _BENDING = (
 _AXIAL = ((0, 0, 0), (0, 3, 1), (3, 3, 0))
 
 
-class Members(NamedTuple):
+@dataclass(frozen=True)
+class Members:
     """Uniform beams, ``(n,)`` numbers each.
 
     Complex stiffnesses stand for sections that lose energy.  An infinite EA gives an inextensible

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..core.errors import ElastolinkError, Problem, bad, refuse
 from ..core.inputs import number_problems, require_kind
-from ..core.maxima import missed_by_parabolas
+from ..core.maxima import turned_by_parabolas
 from ..core.results import Result
 from ..core.trigonometric import resampled
 from ..recovery.stresses import FIBRES, FINER, StressResult
@@ -161,8 +161,9 @@ def fatigue(stress: StressResult, material: Material) -> Fatigue:
         if not np.all(np.isfinite(fine)):
             fix = "choose a speed with a single periodic motion"
             raise bad("fatigue", "stresses that are not finite", "finite ones", fix)
-        topped, missed = _between(fine)
-        off = doubt + missed
+        around = (np.roll(fine, shift, axis=0) for shift in (2, 1, 0, -1, -2))
+        topped, missed = turned_by_parabolas(*around)
+        off = doubt + np.max(missed, axis=0)
         for column, own in enumerate(topped.T):
             size, mean, counts = _cycles(own)
             equivalent = _equivalent(size, mean, material)
@@ -188,17 +189,6 @@ def fatigue(stress: StressResult, material: Material) -> Fatigue:
         safety=safety,
         damage=damage,
     )
-
-
-def _between(fine: Array) -> tuple[Array, Array]:
-    """Return histories with their extremes where parabolas have them, and what these may miss."""
-    first, low, high, last = (np.roll(fine, shift, axis=0) for shift in (2, 1, -1, -2))
-    bend = low - 2.0 * fine + high
-    extreme = ((fine - low) * (fine - high) >= 0) & (bend != 0)
-    raised = (high - low) ** 2 / np.where(extreme, 8.0 * bend, 1.0)
-    missed = missed_by_parabolas(first, low, fine, high, last)
-    topped = np.where(extreme, fine - raised, fine)
-    return topped, np.max(np.where(extreme, missed, 0.0), axis=0)
 
 
 def _cycles(history: Array) -> tuple[Array, Array, Array]:

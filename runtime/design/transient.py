@@ -24,7 +24,7 @@ from ..core.collocation import gauss_maps
 from ..core.errors import LINEAR_RANGE, Problem, bad, refuse, warn_of_large_deflection
 from ..core.families import DAMPING, MATRICES, VECTORS, LinearPeriodic, require_system
 from ..core.inputs import is_one_of, is_whole, require_whole
-from ..core.maxima import missed_by_parabolas
+from ..core.maxima import turned_by_parabolas
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..frequencies.held import held_frequencies
@@ -175,7 +175,8 @@ class ChangingLength:
         at = np.clip(self.profile.lengths(self.name, time), places[0], places[-1])
         position = (at - places[0]) / (places[1] - places[0])
         first = np.clip(position.astype(int) - 1, 0, len(places) - _STENCIL)
-        weights = _cubic(position - first)
+        cubics = np.linalg.inv(np.vander(np.arange(float(_STENCIL))))
+        weights = np.vander(position - first, _STENCIL) @ cubics
         total: dict[str, Array] = {}
         for k in range(int(np.min(first)), int(np.max(first)) + _STENCIL):
             own = np.flatnonzero((first <= k) & (k < first + _STENCIL))
@@ -187,17 +188,6 @@ class ChangingLength:
                     total[name] = np.zeros((len(time), *value.shape[1:]))
                 total[name][own] += value * weight.reshape(-1, *(1,) * (value.ndim - 1))
         return total
-
-
-def _cubic(place: Array) -> Array:
-    """Return the weights of values at 0, 1, 2, 3 for a place between, ``(nt, 4)``."""
-    nodes = np.arange(_STENCIL, dtype=float)
-    weights = np.ones((len(place), _STENCIL))
-    for i in range(_STENCIL):
-        for j in range(_STENCIL):
-            if i != j:
-                weights[:, i] *= (place - nodes[j]) / (nodes[i] - nodes[j])
-    return weights
 
 
 _STAGES = 3
@@ -558,13 +548,9 @@ def _between(stress: Array) -> Array:
         quartic = np.array([5.0, -10.0, 10.0, -5.0, 1.0])
         beyond = [np.tensordot(quartic, part, 1)[None] for part in (wide[:5], wide[:-6:-1])]
         wide = np.concatenate([beyond[0], wide, beyond[1]])
-    first, low, top, high, last = (wide[k : len(wide) - 4 + k] for k in range(5))
-    bend = 2.0 * top - low - high
-    peaked = (top >= low) & (top >= high) & (bend > 0)
-    added = (low - high) ** 2 / (8.0 * np.where(peaked, bend, 1.0))
-    added += missed_by_parabolas(first, low, top, high, last)
+    top, missed = turned_by_parabolas(*(wide[k : len(wide) - 4 + k] for k in range(5)))
     largest = np.maximum(np.max(stress, axis=0), np.finfo(float).tiny)
-    beyond = np.max(top + np.where(peaked, added, 0.0), axis=0, initial=0.0) / largest - 1.0
+    beyond = np.max(top + missed, axis=0, initial=0.0) / largest - 1.0
     return np.asarray(2.0 * np.maximum(beyond, 0.0))  # with a margin of as much again
 
 

@@ -200,10 +200,8 @@ def _cycles(history: Array) -> tuple[Array, Array, Array]:
         ) from None
     start = int(np.argmax(history))
     closed = np.concatenate([history[start:], history[: start + 1]])
-    cycles = [(size, mean, count) for size, mean, count, _, _ in rainflow.extract_cycles(closed)]
-    if not cycles:
-        return np.zeros(0), np.zeros(0), np.zeros(0)
-    size, mean, count = np.array(cycles).T
+    cycles = [cycle[:3] for cycle in rainflow.extract_cycles(closed)]
+    size, mean, count = np.array(cycles, dtype=float).reshape(-1, 3).T
     return size, mean, count
 
 
@@ -216,8 +214,6 @@ def _equivalent(size: Array, mean: Array, material: Material) -> Array:
 
 def _damage(amplitude: Array, counts: Array, material: Material) -> float:
     beyond = amplitude > material.endurance_limit
-    if not np.any(beyond):
-        return 0.0
     ratio = amplitude[beyond] / material.endurance_limit
     with np.errstate(over="ignore"):
         return float(np.sum(counts[beyond] * ratio**material.exponent) / material.knee)

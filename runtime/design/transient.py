@@ -326,8 +326,9 @@ def run_through(
     found, before = run.solve(steps), None
     while True:
         finer = run.solve(2 * steps)
-        stepping, before = _stepping(_difference(finer, found), before)
-        found, steps = finer, 2 * steps
+        change = _difference(finer, found)
+        stepping = _stepping(change, before)
+        found, steps, before = finer, 2 * steps, change
         if np.max(stepping + found.between) <= 0.5 * rtol or 2 * steps > _MOST_STEPS:
             break
     truncation = np.zeros(len(run.links))
@@ -343,15 +344,15 @@ def run_through(
     return _result(run, found, error, rtol)
 
 
-def _stepping(change: Array, before: Array | None) -> tuple[Array, Array]:
+def _stepping(change: Array, before: Array | None) -> Array:
     """Return the error left by a number of steps, from the change that halving them made."""
     # It shrinks on as it has been seen to, at most as the order promises; unseen, as one halving of
     # an order of two does.
-    shrunk = 4.0 * np.ones_like(change)
+    shrunk = 4.0
     if before is not None:
         seen = float(np.max(before)) / max(float(np.max(change)), np.finfo(float).tiny)
-        shrunk[:] = np.clip(seen, 1.5, 2.0 ** (2 * _STAGES))
-    return change / (shrunk - 1.0), change
+        shrunk = float(np.clip(seen, 1.5, 2.0 ** (2 * _STAGES)))
+    return change / (shrunk - 1.0)
 
 
 @dataclass(frozen=True)
@@ -415,14 +416,15 @@ class _Run:
             return arrays_of(self.followed, drive)
         return self.changing.arrays(drive, time)
 
-    def _generator(self, time: Array) -> Array:
-        drive = Drive.of(self.profile, time)
-        return generator_of(self.arrays(drive, time), drive)
-
     def solve(self, steps: int) -> _Motion:
         """Return the run with a number of steps."""
+
+        def generator(time: Array) -> Array:
+            drive = Drive.of(self.profile, time)
+            return generator_of(self.arrays(drive, time), drive)
+
         time = np.linspace(self.profile.times[0], self.profile.times[-1], steps + 1)
-        states = march(self._generator, time, np.append(self._first, 1.0), _STAGES)
+        states = march(generator, time, np.append(self._first, 1.0), _STAGES)
         every = -(-len(time) // 20_000)  # as many samples are kept at most
         q = np.empty((-(-len(time) // every), self.full.size))
         qd = np.empty_like(q)

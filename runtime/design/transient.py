@@ -9,10 +9,10 @@ stiffness would.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from numbers import Real
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,8 +36,7 @@ from .speed_profile import Array, SpeedProfile
 FORCES = {"f": 2, "h": 1, "p": 0}
 
 
-@dataclass(frozen=True)
-class Drive:
+class Drive(NamedTuple):
     """Crank angle, speed and acceleration at points of time, ``(nt,)`` each."""
 
     angle: Array
@@ -144,9 +143,7 @@ class ChangingLength:
         """Return the arrays of the system at points of time, by name."""
 
         def find(system: LinearPeriodic, own: Places) -> ByName:
-            return arrays_of(
-                system, Drive(drive.angle[own], drive.speed[own], drive.acceleration[own])
-            )
+            return arrays_of(system, Drive(*(part[own] for part in drive)))
 
         return self._between(time, find)
 
@@ -321,7 +318,7 @@ def run_through(
     if name is not None and min(profile.geometry[name]) == max(profile.geometry[name]):
         system, name = system.with_geometry(**{name: profile.geometry[name][0]}), None
     # Of a changing length the structure is made anew at nine levels first.
-    run = _Run(system, profile, chosen, stations, start, name, levels=9)
+    run = _Run(system, profile, stations, start, name, chosen, levels=9)
     steps = run.first_steps()
     found, before = run.solve(steps), None
     while True:
@@ -367,35 +364,32 @@ class _Motion:
     between: Array  # what the largest stress is beyond that at the steps, over it, by links
 
 
+@dataclass
 class _Run:
     """What one number of modes needs."""
 
-    def __init__(
-        self,
-        system: LinearPeriodic,
-        profile: SpeedProfile,
-        modes: int | None,
-        stations: int,
-        start: str,
-        length: str | None,
-        levels: int,
-    ) -> None:
-        self.full, self.profile, self.stations, self.start = system, profile, stations, start
-        self.modes, self.length, self.levels = modes, length, levels
-        self.links = tuple(beam.name for beam in required_structure(system).beams)
-        self.turns = float(profile.angle(np.array(profile.times[-1]))) / (2.0 * np.pi)
-        self.followed: LinearPeriodic = system if modes is None else reduced_system(system, modes)
-        self.changing = None if length is None else ChangingLength(system, profile, length, levels)
-        # Of the state at the first time, with round-off.
-        self.start_error = 1e-14
+    full: LinearPeriodic
+    profile: SpeedProfile
+    stations: int
+    start: str
+    length: str | None  # the one that changes
+    modes: int | None
+    levels: int  # of the length that changes
+    start_error: float = field(default=1e-14, init=False)  # of the first state, with round-off
+
+    def __post_init__(self) -> None:
+        full, modes, length = self.full, self.modes, self.length
+        self.links = tuple(beam.name for beam in required_structure(full).beams)
+        self.followed: LinearPeriodic = full if modes is None else reduced_system(full, modes)
+        self.changing: ChangingLength | None = None
+        if length is not None:
+            self.changing = ChangingLength(full, self.profile, length, self.levels)
 
     def richer(self) -> _Run:
         """Return a run with more modes, or with more levels of a length that changes."""
-        modes: int | None = None
-        if self.modes is not None and self.modes + _MORE < self.full.size:
-            modes = self.modes + _MORE
-        levels = 2 * self.levels - 1
-        return _Run(self.full, self.profile, modes, self.stations, self.start, self.length, levels)
+        more = None if self.modes is None else self.modes + _MORE
+        modes = None if more is None or more >= self.full.size else more
+        return replace(self, modes=modes, levels=2 * self.levels - 1)
 
     def first_steps(self) -> int:
         """Return the number of steps of the first try."""
@@ -403,7 +397,8 @@ class _Run:
         ranked = held_frequencies(self.followed, theta, {})[0]
         fastest = float(np.max(ranked[:, min(_FOLLOWED, ranked.shape[1]) - 1]))
         periods = fastest * self.profile.duration / (2.0 * np.pi)
-        steps = int(np.ceil(max(48.0 * self.turns, 2.0 * periods, 16)))
+        turns = float(self.profile.angle(np.array(self.profile.times[-1]))) / (2.0 * np.pi)
+        steps = int(np.ceil(max(48.0 * turns, 2.0 * periods, 16)))
         if 4 * steps > _MOST_STEPS:
             found = f"{self.profile.duration:g} s, {periods:.0f} periods of the modes followed"
             fix = "shorten it, or follow fewer modes"

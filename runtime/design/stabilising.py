@@ -181,16 +181,14 @@ class _Search:
         found, left = [], [(np.inf, "its bounds leave it as it is")]
         for gap, end in product(gaps[:1] if number.damping else gaps, filter(None, number.ends)):
 
-            def machine(shift: float) -> _Machine | None:
-                return self.machine(shift * unit, not number.damping)
-
             def over(shift: float, gap: _Gap = gap) -> dict[str, float]:
-                return gap.over(machine(shift))
+                return gap.over(self.machine(shift * unit, not number.damping))
 
             shift, kept = _outwards(over, end)
             if kept:
                 found.append(shift * unit)
-            left.append((max(over(shift).values()), gap.reason(machine(shift))))
+            reason = gap.reason(self.machine(shift * unit, not number.damping))
+            left.append((max(over(shift).values()), reason))
         return found, "" if found else min(left)[1]
 
     def together(self, gap: _Gap, starts: Sequence[Array]) -> tuple[list[Array], str]:

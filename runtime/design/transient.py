@@ -472,17 +472,13 @@ class _Run:
         full = np.einsum("tnm,tm->tn", phi, q)
         rates = np.einsum("tnm,tm->tn", phi, qd)
         rates += drive.speed[:, None] * np.einsum("tnm,tm->tn", slope, q)
-        return full + self._left_out(drive, phi), rates
-
-    def _left_out(self, at: Drive, phi: Array) -> Array:
-        """Return the equilibrium of the modes left out under the inertia of the rigid motion."""
-        arrays = arrays_of(self.full, at, ("K", "g", *FORCES))
-        force = at.force(arrays)
-        stiffness = arrays["K"]
+        # The equilibrium of the modes left out under the inertia of the rigid motion.
+        arrays = arrays_of(self.full, drive, ("K", "g", *FORCES))
+        force, stiffness = drive.force(arrays), arrays["K"]
         whole = np.linalg.solve(stiffness, force[..., None])[..., 0]
         kept = np.einsum("tnm,tnk,tkj->tmj", phi, stiffness, phi)
-        own = np.linalg.solve(kept, np.einsum("tnm,tn->tm", phi, force)[..., None])[..., 0]
-        return np.asarray(whole - np.einsum("tnm,tm->tn", phi, own))
+        part = np.linalg.solve(kept, np.einsum("tnm,tn->tm", phi, force)[..., None])[..., 0]
+        return full + whole - np.einsum("tnm,tm->tn", phi, part), rates
 
     def deflection(self, found: _Motion) -> float:
         """Return the largest deflection over the length of a link."""

@@ -1,4 +1,4 @@
-"""Public names of a package that load with their module on first use."""
+"""Modules, and public names of a package with their module, that load on first use."""
 
 from __future__ import annotations
 
@@ -7,6 +7,19 @@ from collections.abc import Iterable
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
+
+
+class ModuleOnUse:
+    """Stands for a module of an extra, which loads with the first use of one of its names."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):  # what inspection asks of any object
+            raise AttributeError(name)
+        value = vars(self)[name] = getattr(import_module(self._name), name)
+        return value
 
 
 def unknown_name(package: str, name: str, names: Iterable[str]) -> AttributeError:

@@ -84,15 +84,20 @@ def largest_size(values: Array) -> tuple[float, float]:
     return top, 2.0 * float(missed) + 4.0 * _EPS * top
 
 
-def missed_by_parabolas(first: Array, low: Array, middle: Array, high: Array, last: Array) -> Array:
-    """Return the most by which parabolas through three even samples miss extremes near the middle.
+def turned_by_parabolas(
+    first: Array, low: Array, middle: Array, high: Array, last: Array
+) -> tuple[Array, Array]:
+    """Return the middle ones of five even samples, extremes by parabolas, and what these may miss.
 
     With s steps from the middle to the extreme, at most a half, the third difference counts
-    ``s (1 - s^2)/6`` and the fourth ``s^2 (1 - s^2)/8``.
+    ``s (1 - s^2)/6`` and the fourth ``s^2 (1 - s^2)/8``.  Beside no extreme nothing is missed.
     """
+    bend = low - 2.0 * middle + high
+    extreme = ((middle - low) * (middle - high) >= 0) & (bend != 0)
+    raised = (high - low) ** 2 / np.where(extreme, 8.0 * bend, 1.0)
     third = np.abs(last - 2.0 * high + 2.0 * low - first) / 32.0
     fourth = np.abs(first - 4.0 * low + 6.0 * middle - 4.0 * high + last) * (3.0 / 128.0)
-    return np.asarray(third + fourth)
+    return np.where(extreme, middle - raised, middle), np.where(extreme, third + fourth, 0.0)
 
 
 def narrowed(

@@ -198,16 +198,14 @@ class PeriodicFunction:
         return np.asarray(total.real + coefficients[0].real)
 
     def __add__(self, other: PeriodicFunction | float) -> PeriodicFunction:
-        if isinstance(other, PeriodicFunction):
-            size = max(len(self.a), len(other.a))
-            a = _filled(self.a, size) + _filled(other.a, size)
-            b = _filled(self.b, size) + _filled(other.b, size)
-            return PeriodicFunction(a, b, self.error + other.error)
-        if not isinstance(other, (int, float, np.integer, np.floating)):
+        if isinstance(other, (int, float, np.integer, np.floating)):
+            other = PeriodicFunction([float(other)])
+        if not isinstance(other, PeriodicFunction):
             return NotImplemented
-        a = self.a.copy()
-        a[0] += float(other)
-        return PeriodicFunction(a, self.b, self.error)
+        size = max(len(self.a), len(other.a))
+        a = _filled(self.a, size) + _filled(other.a, size)
+        b = _filled(self.b, size) + _filled(other.b, size)
+        return PeriodicFunction(a, b, self.error + other.error)
 
     __radd__ = __add__
 

@@ -259,14 +259,9 @@ def _root(x: TaylorModel) -> TaylorModel:
     return _composed(x, root, half, -0.5 * half / (2.0 * x.middle), _least(x) ** -2.5 / 16.0)
 
 
-def _sine(x: TaylorModel) -> TaylorModel:
-    sine, cosine = np.sin(x.middle), np.cos(x.middle)
-    return _composed(x, sine, cosine, -0.5 * sine, 1.0 / 6.0)
-
-
-def _cosine(x: TaylorModel) -> TaylorModel:
-    sine, cosine = np.sin(x.middle), np.cos(x.middle)
-    return _composed(x, cosine, -sine, -0.5 * cosine, 1.0 / 6.0)
+def _wave(x: TaylorModel, value: Array, slope: Array) -> TaylorModel:
+    """Return a sine or cosine by its value and derivative in the middle."""
+    return _composed(x, value, slope, -0.5 * value, 1.0 / 6.0)
 
 
 def _tangent(x: TaylorModel) -> TaylorModel:
@@ -302,8 +297,8 @@ _FUNCTIONS: Mapping[Any, Callable[..., Any]] = {
     np.less: lt,
     np.square: lambda x: x * x,
     np.sqrt: _root,
-    np.sin: _sine,
-    np.cos: _cosine,
+    np.sin: lambda x: _wave(x, np.sin(x.middle), np.cos(x.middle)),
+    np.cos: lambda x: _wave(x, np.cos(x.middle), -np.sin(x.middle)),
     np.tan: _tangent,
     np.arctan2: _angle,
 }

@@ -194,31 +194,21 @@ def _require_flint() -> None:
 
 
 def _pieces(
-    revolution: Revolution, low: float, high: float, least: float, coarse: float
+    source: Revolution | Band | Matrices, low: float, high: float, least: float, coarse: float
 ) -> Iterator[_Piece]:
     """Yield intervals that cover a range, rising."""
     # What is not enclosed over `coarse` is left open; `least`: of an interval not halved again.
-    band = revolution.band(low, high)
-    if band is not None:
-        yield from _pieces_of_band(band, low, high, least, coarse)
+    from .enclosures import Matrices
+
+    if isinstance(source, Matrices):
+        yield from _decided(source, low, high, least)
+    elif (found := source.over(low, high)) is not None:
+        yield from _pieces(found, low, high, least, coarse)
     elif high - low <= coarse:
         yield _Piece(low, high, None)
     else:
         for part in _halves(low, high):
-            yield from _pieces(revolution, *part, least, coarse)
-
-
-def _pieces_of_band(
-    band: Band, low: float, high: float, least: float, coarse: float
-) -> Iterator[_Piece]:
-    matrices = band.over(low, high)
-    if matrices is not None:
-        yield from _decided(matrices, low, high, least)
-    elif high - low <= coarse:
-        yield _Piece(low, high, None)
-    else:
-        for part in _halves(low, high):
-            yield from _pieces_of_band(band, *part, least, coarse)
+            yield from _pieces(source, *part, least, coarse)
 
 
 def _halves(low: float, high: float) -> tuple[tuple[float, float], tuple[float, float]]:

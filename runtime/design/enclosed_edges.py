@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from ..core.families import Array
 from ..core.taylor_models import TaylorModel, UndecidedError
+from ..core.trigonometric import even_angles
 
 Models = Mapping[str, TaylorModel]
 # Harmonics beyond the modes' own turns in a period; even angles for each; unknowns at
@@ -37,8 +38,7 @@ def harmonics_for(ends: Array, fastest: float, period: float) -> int:
 
 def angles_for(harmonics: int, period: float) -> Array:
     """Return even angles [rad] that see all products of two harmonics."""
-    count = _ANGLES * harmonics
-    return np.asarray(period * np.arange(float(count)) / count)
+    return even_angles(period, _ANGLES * harmonics)
 
 
 def enclosed_ends(models: Models, ends: Array, harmonics: int, period: float) -> list[TaylorModel]:

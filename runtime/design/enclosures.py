@@ -24,6 +24,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, exp, expm1, inf, log, nextafter
+from operator import add, mul, sub, truediv
 from typing import Any
 
 import numpy as np
@@ -32,9 +33,11 @@ from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.families import VECTORS, Array, LinearPeriodic
+from ..core.lazy import ModuleOnUse
 from ..core.trigonometric import BETWEEN
 from ..periodic.equation import SPEED_POWER
 
+flint = ModuleOnUse("flint")
 Balls = NDArray[Any]
 # Radius of the discs over the half-width of a segment; segments at first, at the most; G R at most.
 _REACH, _FEWEST, _MOST, _STEEP = 6, 64, 1024, 12.0
@@ -43,6 +46,19 @@ _COARSE, _FINE, _POINTS, _NODES = 64, 160, 16, 24
 # Goals for the errors of a segment and of the period; what is of no use; bounds of roundings.
 _SMALL, _GOAL, _LARGE, _UP, _EPS = 1e-13, 1e-9, 1e-3, 1.0 + 1e-11, 2.0**-53
 _ELLIPSES = (1.5, 2.0, 3.0, 4.0, 6.0, 10.0, 20.0, 50.0)
+
+
+def _operation(operation: Callable[[Any, Any], Any]) -> Callable[[Ball, object], Any]:
+    """Return an operation of a ball with another one, or with a number."""
+
+    def method(ball: Ball, other: object) -> Any:
+        if isinstance(other, Ball):
+            return Ball(operation(ball.value, other.value))
+        if isinstance(other, (int, float, np.integer)):
+            return Ball(operation(ball.value, flint.arb(float(other))))
+        return NotImplemented
+
+    return method
 
 
 class Ball:
@@ -57,34 +73,10 @@ class Ball:
     def __init__(self, value: Any) -> None:
         self.value = value
 
-    def _with(self, other: object, operation: Callable[[Any, Any], Any]) -> Any:
-        import flint
-
-        if isinstance(other, Ball):
-            return Ball(operation(self.value, other.value))
-        if isinstance(other, (int, float, np.integer)):
-            return Ball(operation(self.value, flint.arb(float(other))))
-        return NotImplemented
-
-    def __add__(self, other: object) -> Any:
-        return self._with(other, lambda a, b: a + b)
-
-    def __sub__(self, other: object) -> Any:
-        return self._with(other, lambda a, b: a - b)
-
-    def __mul__(self, other: object) -> Any:
-        return self._with(other, lambda a, b: a * b)
-
-    def __truediv__(self, other: object) -> Any:
-        return self._with(other, lambda a, b: a / b)
-
-    def __rsub__(self, other: object) -> Any:
-        return self._with(other, lambda a, b: b - a)
-
-    def __rtruediv__(self, other: object) -> Any:
-        return self._with(other, lambda a, b: b / a)
-
-    __radd__, __rmul__ = __add__, __mul__
+    __add__ = __radd__ = _operation(add)
+    __mul__ = __rmul__ = _operation(mul)
+    __sub__, __rsub__ = _operation(sub), _operation(lambda a, b: b - a)
+    __truediv__, __rtruediv__ = _operation(truediv), _operation(lambda a, b: b / a)
 
     def __eq__(self, other: object) -> bool:
         raise TypeError("balls are not compared")
@@ -255,8 +247,6 @@ def require_analytic(system: LinearPeriodic) -> None:
     At some angles the balls have to hold, and hold tightly, what the doubles are; doubles may be
     returned for balls by functions alone that do not depend on the angle.
     """
-    import flint
-
     angles = np.append(0.0, system.period * BETWEEN)
     for row, term in enumerate(system.terms):
         if term.array not in SPEED_POWER or term.constant or term.array in VECTORS:
@@ -288,8 +278,6 @@ class Revolution:
     """The equation over a period: bounds of its coefficients, and their power series."""
 
     def __init__(self, system: LinearPeriodic, low: float, high: float) -> None:
-        import flint
-
         self._system, self.size = system, 2 * system.size
         self._generator = Generator(system, 0.5 * (low + high))
         turns = round(2.0 * np.pi / system.period)
@@ -321,8 +309,6 @@ class Revolution:
 
     def _parts(self, angles: Balls, digits: int = _COARSE) -> dict[int, Balls]:
         """Return the parts of L; no function of the system remembers balls afterwards."""
-        import flint
-
         try:
             with flint.ctx.workprec(digits):
                 return self._generator(angles)
@@ -335,8 +321,6 @@ class Revolution:
 
     def _squares(self, row: int | None) -> Balls:
         """Return squares that cover the strip beside the real axis, or the segments of the axis."""
-        import flint
-
         side = self._half * flint.arb(0, 1)
         above = flint.arb(0) if row is None else (2 * row + 1) * self._half + side
         return _objects([Ball(flint.acb(middle + side, above)) for middle in self._middles()])
@@ -344,8 +328,6 @@ class Revolution:
     @cached_property
     def _series(self) -> list[dict[int, list[Any]]]:
         """L on each segment as power series from -1 to 1, times its half-width."""
-        import flint
-
         # So many terms that the rest is the goal.
         order = ceil((self._steep - log(_SMALL)) / log(_REACH))
         before, flint.ctx.cap = flint.ctx.cap, order
@@ -360,8 +342,6 @@ class Revolution:
         ]
 
     def _matrices(self, entries: Balls, order: int) -> list[Any]:
-        import flint
-
         rows = [[ball.value.coeffs() for ball in row] for row in entries]
         return [
             flint.arb_mat([[c[k] if k < len(c) else 0 for c in row] for row in rows]) * self._half
@@ -374,8 +354,6 @@ class Revolution:
         In discs about an inverse speed, in coordinates of which the first half is ``tilt**0.5``
         times larger, the other one as much smaller.
         """
-        import flint
-
         n = self.size // 2
         values = np.asarray(sum(part * Ball(middle**k) for k, part in self._axis.items()))
         values[:, :n, n:] *= Ball(flint.arb(tilt))
@@ -397,8 +375,6 @@ class Revolution:
 
     def _matrix(self, segment: int, u: Any) -> Any:
         """Return the matrix of a segment for a ball u, without the rest of the series."""
-        import flint
-
         parts = self._series[segment]
         one = flint.arb_mat([[int(i == j) for j in range(self.size)] for i in range(self.size)])
         factors = {power: u**power for power in parts}
@@ -425,10 +401,8 @@ class Revolution:
         e = _exp(0.5 * float(np.max(rates)))
         return left * e + 2.0 * left * e**2 * (e + left) if left * e < 0.5 else inf
 
-    def band(self, low: float, high: float) -> Band | None:
+    def over(self, low: float, high: float) -> Band | None:
         """Return the matrices of the segments over speeds; None where the range is too wide."""
-        import flint
-
         with flint.ctx.workprec(_FINE):
             place = _Place.of(low, high)
             bounds = [float(np.max(rates)) for rates in self.growth(place.middle, place.discs)]
@@ -459,8 +433,6 @@ class _Place:
     @classmethod
     def of(cls, low: float, high: float) -> _Place:
         """Return that of a range of speeds, a little wider."""
-        import flint
-
         ends = [flint.arb(1) / flint.arb(speed) for speed in (high, low)]
         half = (ends[1] - ends[0]) / 2 * (1 + flint.arb(2) ** -44)
         return cls((ends[1] + ends[0]) / 2, half, _upper(half))
@@ -476,8 +448,6 @@ class _Place:
 
 
 def _chebyshev(count: int) -> list[Any]:
-    import flint
-
     return [flint.arb.cos_pi_fmpq(flint.fmpq(2 * j + 1, 2 * count)) for j in range(count)]
 
 
@@ -508,8 +478,6 @@ class Band:
 
     def over(self, low: float, high: float) -> Matrices | None:
         """Return the matrix of the period over speeds; None where the range is too wide."""
-        import flint
-
         with flint.ctx.workprec(_FINE):
             place, m = _Place.of(low, high), self.of.size
             tilt = float((place.middle / self.place.middle).mid())
@@ -534,8 +502,6 @@ class Band:
 
     def _product(self, u: Any, tilt: float) -> Array:
         """Return the matrix of the period at an inverse speed, in doubles."""
-        import flint
-
         count = len(self.values)
         x = (u - self.place.middle) / self.place.half
         waves = [x.chebyshev_t(k) * (2 if k else 1) / count for k in range(count)]
@@ -559,8 +525,6 @@ class Matrices:
 
     def over(self, low: float, high: float) -> Balls:
         """Return polynomials on [-1, 1] whose values hold the matrices at speeds of a range."""
-        import flint
-
         with flint.ctx.workprec(_FINE):
             place = self._place
             ends = [(1 / flint.arb(w) - place.middle) / place.half for w in (low, high)]
@@ -591,8 +555,6 @@ def all_inside(matrices: Balls, radius: float, x: float | None = None) -> bool |
     are dominated by their diagonal.  Then all are below if P is positive definite, too, and one is
     above if P is negative in some direction (Stein): else the sum of what S takes would be P.
     """
-    import flint
-
     size, middle = len(matrices), _middle(matrices, x or 0.0) / radius
     try:
         # S is the unit matrix there, times the square of the radius.

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..core.errors import ElastolinkError, Problem, bad, refuse
 from ..core.inputs import number_problems, require_kind
-from ..core.maxima import missed_by_parabolas
+from ..core.maxima import turned_by_parabolas
 from ..core.results import Result
 from ..core.trigonometric import resampled
 from ..recovery.stresses import FIBRES, FINER, StressResult
@@ -161,8 +161,9 @@ def fatigue(stress: StressResult, material: Material) -> Fatigue:
         if not np.all(np.isfinite(fine)):
             fix = "choose a speed with a single periodic motion"
             raise bad("fatigue", "stresses that are not finite", "finite ones", fix)
-        topped, missed = _between(fine)
-        off = doubt + missed
+        around = (np.roll(fine, shift, axis=0) for shift in (2, 1, 0, -1, -2))
+        topped, missed = turned_by_parabolas(*around)
+        off = doubt + np.max(missed, axis=0)
         for column, own in enumerate(topped.T):
             size, mean, counts = _cycles(own)
             equivalent = _equivalent(size, mean, material)
@@ -190,17 +191,6 @@ def fatigue(stress: StressResult, material: Material) -> Fatigue:
     )
 
 
-def _between(fine: Array) -> tuple[Array, Array]:
-    """Return histories with their extremes where parabolas have them, and what these may miss."""
-    first, low, high, last = (np.roll(fine, shift, axis=0) for shift in (2, 1, -1, -2))
-    bend = low - 2.0 * fine + high
-    extreme = ((fine - low) * (fine - high) >= 0) & (bend != 0)
-    raised = (high - low) ** 2 / np.where(extreme, 8.0 * bend, 1.0)
-    missed = missed_by_parabolas(first, low, fine, high, last)
-    topped = np.where(extreme, fine - raised, fine)
-    return topped, np.max(np.where(extreme, missed, 0.0), axis=0)
-
-
 def _cycles(history: Array) -> tuple[Array, Array, Array]:
     try:
         import rainflow
@@ -210,10 +200,8 @@ def _cycles(history: Array) -> tuple[Array, Array, Array]:
         ) from None
     start = int(np.argmax(history))
     closed = np.concatenate([history[start:], history[: start + 1]])
-    cycles = [(size, mean, count) for size, mean, count, _, _ in rainflow.extract_cycles(closed)]
-    if not cycles:
-        return np.zeros(0), np.zeros(0), np.zeros(0)
-    size, mean, count = np.array(cycles).T
+    cycles = [cycle[:3] for cycle in rainflow.extract_cycles(closed)]
+    size, mean, count = np.array(cycles, dtype=float).reshape(-1, 3).T
     return size, mean, count
 
 
@@ -226,8 +214,6 @@ def _equivalent(size: Array, mean: Array, material: Material) -> Array:
 
 def _damage(amplitude: Array, counts: Array, material: Material) -> float:
     beyond = amplitude > material.endurance_limit
-    if not np.any(beyond):
-        return 0.0
     ratio = amplitude[beyond] / material.endurance_limit
     with np.errstate(over="ignore"):
         return float(np.sum(counts[beyond] * ratio**material.exponent) / material.knee)

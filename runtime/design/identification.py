@@ -430,10 +430,22 @@ class Machines:
         for i, point in enumerate(points):
             runs.setdefault(tuple(sorted(point.given.items())), []).append(i)
         self.names, self.size = names, len(points)
-        self._runs = [
-            _run_of(_run_with(system, names, given, at[0]), [(i, points[i]) for i in at], window)
-            for given, at in runs.items()
-        ]
+        self._runs: list[_Run | BranchRun] = []
+        for given, at in runs.items():
+            wrong = [name for name, _ in given if name in names or name not in system.parameters]
+            if wrong:
+                known = sorted(set(system.parameters) - set(names))
+                expected = f"one of {known}: known or unknown, not both"
+                raise bad(f"point {at[0] + 1}", repr(wrong[0]), expected, "correct the column")
+            own = system.with_parameters(**dict(given)) if given else system
+            numbered = [(i, points[i]) for i in at]
+            if isinstance(own, LinearPeriodic):
+                self._runs.append(_Run(own, numbered, window))
+                continue
+            # What stays in the linear range imports nothing of this.
+            from .measured_branches import BranchRun
+
+            self._runs.append(BranchRun(own, numbered, window))
 
     def __call__(self, values: Array, quiet: bool = True) -> Computed:
         """Return what is computed with values of the named parameters."""
@@ -445,26 +457,6 @@ class Machines:
             for run in self._runs:
                 run.fill(found, numbers)
         return found
-
-
-def _run_with(
-    system: Machine, names: tuple[str, ...], given: tuple[tuple[str, float], ...], place: int
-) -> Machine:
-    """Return the system with what the machine was run with, refused where that is not known."""
-    wrong = [name for name, _ in given if name in names or name not in system.parameters]
-    if wrong:
-        known = f"one of {sorted(set(system.parameters) - set(names))}: known or unknown, not both"
-        raise bad(f"point {place + 1}", repr(wrong[0]), known, "correct the column")
-    return system.with_parameters(**dict(given)) if given else system
-
-
-def _run_of(system: Machine, points: list[tuple[int, Point]], window: float) -> _Run | BranchRun:
-    if isinstance(system, LinearPeriodic):
-        return _Run(system, points, window)
-    # What stays in the linear range imports nothing of this.
-    from .measured_branches import BranchRun
-
-    return BranchRun(system, points, window)
 
 
 class _Run:

@@ -192,24 +192,31 @@ def running_speed(
     allowed = np.array(
         [limits[link] if isinstance(limits, Mapping) else limits for link in quiet.links]
     )
+    place = int(np.argmin(np.abs(quiet.speed - band.best)))
+    watched = [quiet.curve.links.index(link) for link in quiet.links]
+
+    def within(maximum: Array) -> bool:
+        return bool(np.all(maximum[:, watched] < allowed))
+
     damping = best = way = chosen = None
     first = len(_DAMPING) if "damping_ratio" in system.parameters else 0
     with bar(progress, first + len(tried)) as tick:
         if first:
             own = system.parameters["damping_ratio"]
             ratios = own * np.array(_DAMPING)
-            here = quiet.curve.at(np.array([_place(quiet, band)]))
+            here = quiet.curve.at(np.array([place]))
             damping = effect_of(system, "damping_ratio", ratios, here, rtol, tick=tick)
-            best = float(ratios[np.argmin(np.max(_ratios(damping, quiet, allowed), axis=(1, 2)))])
+            reached = np.max(damping.maximum[:, :, watched] / allowed, axis=(1, 2))
+            best = float(ratios[np.argmin(reached)])
         if band.above is not None:
             way, chosen = _way_up(
-                system, quiet, band, allowed, length, tried, rtol, lambda done: tick(first + done)
+                system, quiet, place, within, length, tried, rtol, lambda done: tick(first + done)
             )
     return RunningSpeed(
         method="stress curves over speed, damping and length",
         error=float(np.max(quiet.error)),
         error_norm="largest stress over its limit, relative, the worst speed",
-        checks=_checks(quiet, band),
+        checks=_checks(quiet, band, place),
         provenance=dict(quiet.provenance),
         quiet=quiet,
         band=band,
@@ -229,7 +236,7 @@ def effect_of(
     speeds: ArrayLike | StressCurve,
     rtol: float,
     *,
-    enough: Callable[[StressCurve], bool] = lambda curve: False,
+    enough: Callable[[Array], bool] = lambda maximum: False,
     tick: Callable[[int], None] | None = None,
 ) -> StressEffect:
     """Return the curves for values of a damping ratio or length, up to the first that is enough.
@@ -252,7 +259,7 @@ def effect_of(
         curves.append(curve)
         if tick is not None:
             tick(len(curves))
-        if enough(curve):
+        if enough(curve.maximum):
             break
     equation = first.checks["equation"]
     errors = np.array([curve.error for curve in curves])
@@ -271,14 +278,10 @@ def effect_of(
     )
 
 
-def _place(quiet: QuietSpeeds, band: Band) -> int:
-    return int(np.argmin(np.abs(quiet.speed - band.best)))
-
-
-def _checks(quiet: QuietSpeeds, band: Band) -> dict[str, Check]:
+def _checks(quiet: QuietSpeeds, band: Band, place: int) -> dict[str, Check]:
     """Return the checks of the running speed."""
     # The linear range is that of this speed alone: at the critical speeds it is left in any case.
-    curve, place = quiet.curve, _place(quiet, band)
+    curve = quiet.curve
     checks = dict(quiet.checks)
     if curve.deflection is not None:
         checks["linear range"] = Check(float(curve.deflection[place]), LINEAR_RANGE)
@@ -291,38 +294,27 @@ def _checks(quiet: QuietSpeeds, band: Band) -> dict[str, Check]:
     }
 
 
-def _ratios(effect: StressEffect, quiet: QuietSpeeds, allowed: Array) -> Array:
-    chosen = [effect.links.index(link) for link in quiet.links]
-    return np.asarray(effect.maximum[:, :, chosen] / allowed)
-
-
 def _way_up(
     system: LinearPeriodic,
     quiet: QuietSpeeds,
-    band: Band,
-    allowed: Array,
+    end: int,
+    within: Callable[[Array], bool],
     length: str,
     tried: Sequence[float],
     rtol: float,
     tick: Callable[[int], None],
 ) -> tuple[StressEffect, float | None]:
-    """Return stresses on the way to the band for several lengths, and the least change that does.
+    """Return stresses on the way to a speed for several lengths, and the least change that does.
 
     A value passes where the steady stresses at all speeds of the way are within the limits.
     """
-    own, end = system.geometry[length], _place(quiet, band)
+    own = system.geometry[length]
     every = max(1, end // 200)  # some 200 speeds of the way are looked at
     values = np.array(sorted(tried, key=lambda value: abs(value - own)))
     way = quiet.curve.at(np.arange(end % every, end + 1, every))
-    chosen = [way.links.index(link) for link in quiet.links]
-
-    def passes(curve: StressCurve) -> bool:
-        return bool(np.all(curve.maximum[:, chosen] < allowed))
-
     known = way if values[0] == own else way.speed
-    effect = effect_of(system, length, values, known, rtol, enough=passes, tick=tick)
-    passed = bool(np.all(effect.maximum[-1][:, chosen] < allowed))
-    return effect, float(effect.values[-1]) if passed else None
+    effect = effect_of(system, length, values, known, rtol, enough=within, tick=tick)
+    return effect, float(effect.values[-1]) if within(effect.maximum[-1]) else None
 
 
 def _tried(system: LinearPeriodic, name: str, values: Sequence[float] | None) -> list[float]:

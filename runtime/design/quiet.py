@@ -219,12 +219,10 @@ def _bands(
 ) -> tuple[Band, ...]:
     """Return the stable ranges where the worst ratio is below 1, their ends interpolated."""
     within = worst < 1.0
-    edges = np.flatnonzero(within[1:] != within[:-1])
-    crossings = []
-    for k in edges:
-        a, b = np.log(worst[k]), np.log(worst[k + 1])
-        crossings.append(float(speed[k] + (speed[k + 1] - speed[k]) * a / (a - b)))
-    ends = [float(speed[0]), *crossings, float(speed[-1])]
+    k = np.flatnonzero(within[1:] != within[:-1])
+    a, b = np.log(worst[k]), np.log(worst[k + 1])
+    crossings = speed[k] + (speed[k + 1] - speed[k]) * a / (a - b)
+    ends = [float(speed[0]), *crossings.tolist(), float(speed[-1])]
     allowed = [pair for i, pair in enumerate(pairwise(ends)) if within[0] == (i % 2 == 0)]
     bands = []
     for low, high in _without(allowed, unstable):

@@ -53,8 +53,7 @@ class SpeedProfile:
     def __post_init__(self) -> None:
         """Check the values, and hold copies that do not change."""
         require_mapping("SpeedProfile.geometry", self.geometry, 'say {"coupler": (0.3, 0.31)}')
-        problems = _problems(self.times, self.speeds, self.geometry)
-        refuse(problems)
+        refuse(_problems(self.times, self.speeds, self.geometry))
         object.__setattr__(self, "times", tuple(float(t) for t in self.times))
         object.__setattr__(self, "speeds", tuple(float(w) for w in self.speeds))
         fixed = {name: tuple(float(v) for v in given) for name, given in self.geometry.items()}

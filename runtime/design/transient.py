@@ -9,10 +9,10 @@ stiffness would.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from numbers import Real
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,7 @@ from ..core.collocation import gauss_maps
 from ..core.errors import LINEAR_RANGE, Problem, bad, refuse, warn_of_large_deflection
 from ..core.families import DAMPING, MATRICES, VECTORS, LinearPeriodic, require_system
 from ..core.inputs import is_one_of, is_whole, require_whole
-from ..core.maxima import missed_by_parabolas
+from ..core.maxima import turned_by_parabolas
 from ..core.plotting import Axes, axes_or_new
 from ..core.results import Check, Result, provenance
 from ..frequencies.held import held_frequencies
@@ -36,8 +36,7 @@ from .speed_profile import Array, SpeedProfile
 FORCES = {"f": 2, "h": 1, "p": 0}
 
 
-@dataclass(frozen=True)
-class Drive:
+class Drive(NamedTuple):
     """Crank angle, speed and acceleration at points of time, ``(nt,)`` each."""
 
     angle: Array
@@ -144,9 +143,7 @@ class ChangingLength:
         """Return the arrays of the system at points of time, by name."""
 
         def find(system: LinearPeriodic, own: Places) -> ByName:
-            return arrays_of(
-                system, Drive(drive.angle[own], drive.speed[own], drive.acceleration[own])
-            )
+            return arrays_of(system, Drive(*(part[own] for part in drive)))
 
         return self._between(time, find)
 
@@ -175,7 +172,8 @@ class ChangingLength:
         at = np.clip(self.profile.lengths(self.name, time), places[0], places[-1])
         position = (at - places[0]) / (places[1] - places[0])
         first = np.clip(position.astype(int) - 1, 0, len(places) - _STENCIL)
-        weights = _cubic(position - first)
+        cubics = np.linalg.inv(np.vander(np.arange(float(_STENCIL))))
+        weights = np.vander(position - first, _STENCIL) @ cubics
         total: dict[str, Array] = {}
         for k in range(int(np.min(first)), int(np.max(first)) + _STENCIL):
             own = np.flatnonzero((first <= k) & (k < first + _STENCIL))
@@ -187,17 +185,6 @@ class ChangingLength:
                     total[name] = np.zeros((len(time), *value.shape[1:]))
                 total[name][own] += value * weight.reshape(-1, *(1,) * (value.ndim - 1))
         return total
-
-
-def _cubic(place: Array) -> Array:
-    """Return the weights of values at 0, 1, 2, 3 for a place between, ``(nt, 4)``."""
-    nodes = np.arange(_STENCIL, dtype=float)
-    weights = np.ones((len(place), _STENCIL))
-    for i in range(_STENCIL):
-        for j in range(_STENCIL):
-            if i != j:
-                weights[:, i] *= (place - nodes[j]) / (nodes[i] - nodes[j])
-    return weights
 
 
 _STAGES = 3
@@ -331,13 +318,14 @@ def run_through(
     if name is not None and min(profile.geometry[name]) == max(profile.geometry[name]):
         system, name = system.with_geometry(**{name: profile.geometry[name][0]}), None
     # Of a changing length the structure is made anew at nine levels first.
-    run = _Run(system, profile, chosen, stations, start, name, levels=9)
+    run = _Run(system, profile, stations, start, name, chosen, levels=9)
     steps = run.first_steps()
     found, before = run.solve(steps), None
     while True:
         finer = run.solve(2 * steps)
-        stepping, before = _stepping(_difference(finer, found), before)
-        found, steps = finer, 2 * steps
+        change = _difference(finer, found)
+        stepping = _stepping(change, before)
+        found, steps, before = finer, 2 * steps, change
         if np.max(stepping + found.between) <= 0.5 * rtol or 2 * steps > _MOST_STEPS:
             break
     truncation = np.zeros(len(run.links))
@@ -353,15 +341,15 @@ def run_through(
     return _result(run, found, error, rtol)
 
 
-def _stepping(change: Array, before: Array | None) -> tuple[Array, Array]:
+def _stepping(change: Array, before: Array | None) -> Array:
     """Return the error left by a number of steps, from the change that halving them made."""
     # It shrinks on as it has been seen to, at most as the order promises; unseen, as one halving of
     # an order of two does.
-    shrunk = 4.0 * np.ones_like(change)
+    shrunk = 4.0
     if before is not None:
         seen = float(np.max(before)) / max(float(np.max(change)), np.finfo(float).tiny)
-        shrunk[:] = np.clip(seen, 1.5, 2.0 ** (2 * _STAGES))
-    return change / (shrunk - 1.0), change
+        shrunk = float(np.clip(seen, 1.5, 2.0 ** (2 * _STAGES)))
+    return change / (shrunk - 1.0)
 
 
 @dataclass(frozen=True)
@@ -376,35 +364,32 @@ class _Motion:
     between: Array  # what the largest stress is beyond that at the steps, over it, by links
 
 
+@dataclass
 class _Run:
     """What one number of modes needs."""
 
-    def __init__(
-        self,
-        system: LinearPeriodic,
-        profile: SpeedProfile,
-        modes: int | None,
-        stations: int,
-        start: str,
-        length: str | None,
-        levels: int,
-    ) -> None:
-        self.full, self.profile, self.stations, self.start = system, profile, stations, start
-        self.modes, self.length, self.levels = modes, length, levels
-        self.links = tuple(beam.name for beam in required_structure(system).beams)
-        self.turns = float(profile.angle(np.array(profile.times[-1]))) / (2.0 * np.pi)
-        self.followed: LinearPeriodic = system if modes is None else reduced_system(system, modes)
-        self.changing = None if length is None else ChangingLength(system, profile, length, levels)
-        # Of the state at the first time, with round-off.
-        self.start_error = 1e-14
+    full: LinearPeriodic
+    profile: SpeedProfile
+    stations: int
+    start: str
+    length: str | None  # the one that changes
+    modes: int | None
+    levels: int  # of the length that changes
+    start_error: float = field(default=1e-14, init=False)  # of the first state, with round-off
+
+    def __post_init__(self) -> None:
+        full, modes, length = self.full, self.modes, self.length
+        self.links = tuple(beam.name for beam in required_structure(full).beams)
+        self.followed: LinearPeriodic = full if modes is None else reduced_system(full, modes)
+        self.changing: ChangingLength | None = None
+        if length is not None:
+            self.changing = ChangingLength(full, self.profile, length, self.levels)
 
     def richer(self) -> _Run:
         """Return a run with more modes, or with more levels of a length that changes."""
-        modes: int | None = None
-        if self.modes is not None and self.modes + _MORE < self.full.size:
-            modes = self.modes + _MORE
-        levels = 2 * self.levels - 1
-        return _Run(self.full, self.profile, modes, self.stations, self.start, self.length, levels)
+        more = None if self.modes is None else self.modes + _MORE
+        modes = None if more is None or more >= self.full.size else more
+        return replace(self, modes=modes, levels=2 * self.levels - 1)
 
     def first_steps(self) -> int:
         """Return the number of steps of the first try."""
@@ -412,7 +397,8 @@ class _Run:
         ranked = held_frequencies(self.followed, theta, {})[0]
         fastest = float(np.max(ranked[:, min(_FOLLOWED, ranked.shape[1]) - 1]))
         periods = fastest * self.profile.duration / (2.0 * np.pi)
-        steps = int(np.ceil(max(48.0 * self.turns, 2.0 * periods, 16)))
+        turns = float(self.profile.angle(np.array(self.profile.times[-1]))) / (2.0 * np.pi)
+        steps = int(np.ceil(max(48.0 * turns, 2.0 * periods, 16)))
         if 4 * steps > _MOST_STEPS:
             found = f"{self.profile.duration:g} s, {periods:.0f} periods of the modes followed"
             fix = "shorten it, or follow fewer modes"
@@ -425,14 +411,15 @@ class _Run:
             return arrays_of(self.followed, drive)
         return self.changing.arrays(drive, time)
 
-    def _generator(self, time: Array) -> Array:
-        drive = Drive.of(self.profile, time)
-        return generator_of(self.arrays(drive, time), drive)
-
     def solve(self, steps: int) -> _Motion:
         """Return the run with a number of steps."""
+
+        def generator(time: Array) -> Array:
+            drive = Drive.of(self.profile, time)
+            return generator_of(self.arrays(drive, time), drive)
+
         time = np.linspace(self.profile.times[0], self.profile.times[-1], steps + 1)
-        states = march(self._generator, time, np.append(self._first, 1.0), _STAGES)
+        states = march(generator, time, np.append(self._first, 1.0), _STAGES)
         every = -(-len(time) // 20_000)  # as many samples are kept at most
         q = np.empty((-(-len(time) // every), self.full.size))
         qd = np.empty_like(q)
@@ -485,17 +472,13 @@ class _Run:
         full = np.einsum("tnm,tm->tn", phi, q)
         rates = np.einsum("tnm,tm->tn", phi, qd)
         rates += drive.speed[:, None] * np.einsum("tnm,tm->tn", slope, q)
-        return full + self._left_out(drive, phi), rates
-
-    def _left_out(self, at: Drive, phi: Array) -> Array:
-        """Return the equilibrium of the modes left out under the inertia of the rigid motion."""
-        arrays = arrays_of(self.full, at, ("K", "g", *FORCES))
-        force = at.force(arrays)
-        stiffness = arrays["K"]
+        # The equilibrium of the modes left out under the inertia of the rigid motion.
+        arrays = arrays_of(self.full, drive, ("K", "g", *FORCES))
+        force, stiffness = drive.force(arrays), arrays["K"]
         whole = np.linalg.solve(stiffness, force[..., None])[..., 0]
         kept = np.einsum("tnm,tnk,tkj->tmj", phi, stiffness, phi)
-        own = np.linalg.solve(kept, np.einsum("tnm,tn->tm", phi, force)[..., None])[..., 0]
-        return np.asarray(whole - np.einsum("tnm,tm->tn", phi, own))
+        part = np.linalg.solve(kept, np.einsum("tnm,tn->tm", phi, force)[..., None])[..., 0]
+        return full + whole - np.einsum("tnm,tm->tn", phi, part), rates
 
     def deflection(self, found: _Motion) -> float:
         """Return the largest deflection over the length of a link."""
@@ -558,13 +541,9 @@ def _between(stress: Array) -> Array:
         quartic = np.array([5.0, -10.0, 10.0, -5.0, 1.0])
         beyond = [np.tensordot(quartic, part, 1)[None] for part in (wide[:5], wide[:-6:-1])]
         wide = np.concatenate([beyond[0], wide, beyond[1]])
-    first, low, top, high, last = (wide[k : len(wide) - 4 + k] for k in range(5))
-    bend = 2.0 * top - low - high
-    peaked = (top >= low) & (top >= high) & (bend > 0)
-    added = (low - high) ** 2 / (8.0 * np.where(peaked, bend, 1.0))
-    added += missed_by_parabolas(first, low, top, high, last)
+    top, missed = turned_by_parabolas(*(wide[k : len(wide) - 4 + k] for k in range(5)))
     largest = np.maximum(np.max(stress, axis=0), np.finfo(float).tiny)
-    beyond = np.max(top + np.where(peaked, added, 0.0), axis=0, initial=0.0) / largest - 1.0
+    beyond = np.max(top + missed, axis=0, initial=0.0) / largest - 1.0
     return np.asarray(2.0 * np.maximum(beyond, 0.0))  # with a margin of as much again
 
 

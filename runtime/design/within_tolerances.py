@@ -88,12 +88,11 @@ class ToleranceBands(Result):
     slope: Array
     share: Array
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("half_width", "deviation"), ("number",)),
-        "place": ("place",),
-        **dict.fromkeys(("value", "lower", "upper", "reserve", "error"), ("row", "place")),
-        **dict.fromkeys(_SPREAD, ("row", "place")),
-        **dict.fromkeys(("slope", "share"), ("row", "place", "number")),
+    arrays_along: ClassVar = {
+        "number": "half_width deviation",
+        "place": "place",
+        "row place": " ".join(("value lower upper reserve error", *_SPREAD)),
+        "row place number": "slope share",
     }
 
     def plot(self, ax: Axes | None = None, row: str | None = None) -> Axes:

@@ -32,7 +32,7 @@ def mathieu(damping, depth=1.0):
 def test_enclosed_matrices_hold_the_computed_multipliers(modes):
     system = coupler(modes)
     low, high = 340.0 * RPM, 350.0 * RPM
-    matrices = Revolution(system, low, high).band(low, high).over(low, high)
+    matrices = Revolution(system, low, high).over(low, high).over(low, high)
     assert 0.0 < matrices._error < 1e-7
     for speed in np.random.default_rng(3).uniform(low, high, 5):
         point = matrices.over(speed, speed)

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.design import stabilise
+from elastolink.runtime.design.drawing import drawing_of
 from elastolink.runtime.rigid import shaking_force
 from elastolink.runtime.scenes import scene_from_document
 
@@ -234,3 +235,9 @@ def test_each_change_has_a_bar_of_its_own(found):
     ax = found.plot()
     assert len({bar.get_y() for bar in ax.patches}) == len(found.changes)
     assert ax.get_yticklabels()[0].get_text() in found.changes[0].words[0]
+
+
+def test_a_thickness_leaves_a_first_moment_of_nought_as_it_is():
+    scene = el.load_scene(SCENE, {"coupler.first_moment": 0.0})
+    moved = drawing_of(scene, ["coupler.thickness"], None).values([0.1])
+    assert moved["coupler.first_moment"] == 0.0

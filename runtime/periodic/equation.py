@@ -553,15 +553,8 @@ def _waves(harmonics: int, phase: Array) -> Array:
 
 def _rows(system: LinearPeriodic, terms: Sequence[Term], angles: Array) -> Array:
     """Return the values of all terms beside each other, one row per angle, finite."""
-    values = [np.asarray(term(angles), dtype=float) for term in terms]
-    for term, value in zip(terms, values, strict=True):
-        if value.shape != (len(angles),) + (system.size,) * (1 if term.array in "fhp" else 2):
-            _checked(system, term, angles)
-    table = np.concatenate([value.reshape(len(angles), -1) for value in values], axis=1)
-    if not np.all(np.isfinite(table)):
-        for term in terms:
-            _checked(system, term, angles)
-    return table
+    values = [_checked(system, term, angles).reshape(len(angles), -1) for term in terms]
+    return np.concatenate(values, axis=1)
 
 
 def _checked(system: LinearPeriodic, term: Term, angles: Array) -> Array:

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,7 @@ from ..core.families import Array, LinearPeriodic, Term
 from ..core.trigonometric import differentiated, interpolated, resampled
 from .equation import SPEED_POWER
 from .moving_basis import MovingBasis, still_modes
-from .reduced import projections
+from .reduced import projections, summed
 
 ComplexArray = NDArray[np.complex128]
 
@@ -98,19 +99,18 @@ def truncated_on(
     held = across @ stiffness @ phi
     compliance = np.asarray(np.linalg.inv(stiffness), dtype=np.float64)
     flexibility = _symmetric(compliance - phi @ np.linalg.solve(held, across))
-    sums: dict[tuple[str, int], Array] = {}
-    for (array, power), values in arrays.items():
-        for name, part in projections(array, values, phi, slope):
-            key = (name, power - 2 - SPEED_POWER[name])
-            sums[key] = sums[key] + part if key in sums else part
-    for name, power, part in _followed(arrays, phi, slope, flexibility, period):
-        sums[name, power] = sums[name, power] + part if (name, power) in sums else part
+    kept = (
+        ((name, power - 2 - SPEED_POWER[name]), part)
+        for (array, power), values in arrays.items()
+        for name, part in projections(array, values, phi, slope)
+    )
+    followed = _followed(_couplings(arrays, phi, slope, period), flexibility, period)
     size = phi.shape[-1]
     return TruncatedSystem(
         size=size,
         terms=tuple(
             Term(name, None, interpolated(values, period), power)
-            for (name, power), values in sums.items()
+            for (name, power), values in summed(chain(kept, followed)).items()
             if np.any(values)
         ),
         period=period,
@@ -133,17 +133,13 @@ def arrays_at(system: LinearPeriodic, theta: Array) -> dict[tuple[str, int], Arr
     The power is that with which the array stands in the equation of motion in time: 2 for M, A, B
     and f, 1 for C, D and h, 0 for K, Kg and p, and what the term adds to it.
     """
-    scales = system.scale_values()
-    sums: dict[tuple[str, int], Array] = {}
-    for term in system.terms:
-        if term.array not in SPEED_POWER:
-            continue
-        factor = 1.0 if term.scale is None else float(scales[term.scale])
-        key = (term.array, 2 + SPEED_POWER[term.array] + term.power)
-        part = factor * term(theta)
-        if np.any(part):
-            sums[key] = sums[key] + part if key in sums else part
-    return sums
+    scales = {None: 1.0, **system.scale_values()}
+    parts = (
+        ((term.array, 2 + SPEED_POWER[term.array] + term.power), scales[term.scale] * term(theta))
+        for term in system.terms
+        if term.array in SPEED_POWER
+    )
+    return summed((key, part) for key, part in parts if np.any(part))
 
 
 def unmet_forces(
@@ -246,33 +242,28 @@ def _couplings(
 
 
 def _followed(
-    arrays: Mapping[tuple[str, int], Array],
-    phi: Array,
-    slope: Array,
-    flexibility: Array,
-    period: float,
-) -> Iterator[tuple[str, int, Array]]:
-    """Yield what the modes left out add to those kept: array, extra power of the speed, values."""
+    couplings: Mapping[int, _Coupling], flexibility: Array, period: float
+) -> Iterator[tuple[tuple[str, int], Array]]:
+    """Yield what the modes left out add to those kept, by array and extra power of the speed."""
     # For powers k and l of the speed, back_k F (rate_l z' + place_l z + load_l) less the derivative
     # of forth_k F (...).  Where both are conservative the parts go to M, A and B, so that the
     # truncated system stays conservative; else to C and D.
-    couplings = _couplings(arrays, phi, slope, period)
     for k, one in couplings.items():
         forth, back = one.forth @ flexibility, one.back @ flexibility
         for j, other in couplings.items():
             power = k + j - 2
             load = (back @ other.load[..., None])[..., 0]
             pushed = (forth @ other.load[..., None])[..., 0]
-            yield "f", power, load - differentiated(pushed, period)
+            yield ("f", power), load - differentiated(pushed, period)
             if k == j and k != 1:
-                yield "M", power, _symmetric(forth @ other.rate)
-                yield "A", power, forth @ other.place
-                yield "B", power, _symmetric(back @ other.place)
+                yield ("M", power), _symmetric(forth @ other.rate)
+                yield ("A", power), forth @ other.place
+                yield ("B", power), _symmetric(back @ other.place)
                 continue
-            mass = forth @ other.rate
-            yield "M", power, _symmetric(mass)
-            yield "C", power + 1, forth @ other.place - back @ other.rate
-            yield "D", power + 1, differentiated(forth @ other.place, period) - back @ other.place
+            follows = forth @ other.place
+            yield ("M", power), _symmetric(forth @ other.rate)
+            yield ("C", power + 1), follows - back @ other.rate
+            yield ("D", power + 1), differentiated(follows, period) - back @ other.place
 
 
 def _symmetric(matrices: Array) -> Array:

@@ -10,13 +10,13 @@ import numpy as np
 
 from ..core.errors import bad
 from ..core.families import Array
-from ..core.inputs import is_finite, numbers, require_kind
+from ..core.inputs import require_kind
 from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.progress import bar
 from ..core.results import Result, provenance
 from .branch import TESTS, value_error
 from .orbit import FAILURES, Lost, Orbit, Solver, changed
-from .response import ResponseCurve
+from .response import ResponseCurve, rising_pair
 from .segments import Problem
 
 # Steps in the plane of both parameters, in parts of their ranges: the first, least and largest.
@@ -127,7 +127,7 @@ def special_curve(
     if parameter not in names or parameter == curve.parameter:
         expected = f"another than {curve.parameter!r}, of {names}"
         raise bad("parameter", repr(parameter), expected, "correct it")
-    low, high = _range(bounds)
+    low, high = rising_pair(bounds)
     here = speed if parameter == "speed" else system.parameters[parameter]
     if not low <= here <= high:
         raise bad("bounds", repr(bounds), f"a range that holds {here:.6g}", "widen it")
@@ -154,13 +154,6 @@ def special_curve(
         turns=start.orbit.motion.turns,
         ended=(ends[0], ends[1]),
     )
-
-
-def _range(bounds: tuple[float, float]) -> tuple[float, float]:
-    values = numbers("bounds", bounds)
-    if values.shape != (2,) or not all(map(is_finite, values.tolist())) or values[0] >= values[1]:
-        raise bad("bounds", repr(bounds), "(low, high) with low < high", "correct it")
-    return float(values[0]), float(values[1])
 
 
 @dataclass(frozen=True)

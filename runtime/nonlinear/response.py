@@ -279,10 +279,7 @@ def checked_problem(
     known = ["speed", *sorted(system.parameters)]
     if parameter not in known:
         raise bad("parameter", repr(parameter), f"one of {known}", "correct the name")
-    values = numbers("bounds", bounds)
-    if values.shape != (2,) or not np.all(np.isfinite(values)) or not values[0] < values[1]:
-        raise bad("bounds", repr(bounds), "(low, high) with low < high", "correct it")
-    low, high = map(float, values)
+    low, high = rising_pair(bounds)
     if parameter == "speed":
         if speed is not None:
             raise bad("speed", speed, "none, since the speed is varied", "leave it out")
@@ -294,6 +291,14 @@ def checked_problem(
     for value in (low, high):
         system.with_parameters(**{parameter: value})
     return Problem(system, parameter, float(speed)), low, high
+
+
+def rising_pair(bounds: tuple[float, float]) -> tuple[float, float]:
+    """Return the ends of a range; refuse what is none."""
+    values = numbers("bounds", bounds)
+    if values.shape != (2,) or not np.all(np.isfinite(values)) or not values[0] < values[1]:
+        raise bad("bounds", repr(bounds), "(low, high) with low < high", "correct it")
+    return float(values[0]), float(values[1])
 
 
 def first_motion(problem: Problem, turns: int = 1) -> Motion:
@@ -527,9 +532,7 @@ def _result(
         orbits=tuple(orbit for orbit, _ in points),
         special_orbits=tuple(point.orbit for point in special),
         source=solver,
-        linear_value=linearised.later("linear_value"),
-        linear_lowest=linearised.later("linear_lowest"),
-        linear_highest=linearised.later("linear_highest"),
+        **linearised.fields(_LINEARISED),
     )
 
 

@@ -19,7 +19,7 @@ from .compiled import CompiledTable, require_numba
 from .equation import SPEED_POWER, Equation, SampledSystem, at_geometry, equation_of, sampled
 from .motion import Trajectory, simulate, start_values
 from .multipliers import ROUNDED, Monodromy, eigenvalues, rounding_error
-from .periodic_motion import SteadyState, peaks
+from .periodic_motion import LATER, SteadyState, peaks
 from .tables import Table, flows_at, next_rung, octaves, table_of
 from .transition import cheapest
 
@@ -248,10 +248,7 @@ class Prepared:
             theta=self.theta,
             q=q.reshape(*batch, -1, n),
             qd=(flat[:, None, None] * slope).reshape(*batch, -1, n),
-            multipliers=later.later("multipliers"),
-            multiplier_error=later.later("multiplier_error"),
-            stable=later.later("stable"),
-            distance=later.later("distance"),
+            **later.fields(LATER),
             sensitivity=sensitivity.reshape(batch),
             period=self.system.period,
             labels=self.system.labels,

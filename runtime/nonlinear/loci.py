@@ -173,31 +173,32 @@ class _Plane:
     kind: str
     bounds: tuple[float, float]
 
+    @property
+    def span(self) -> float:
+        """Range of the second parameter."""
+        return self.bounds[1] - self.bounds[0]
+
     def solver(self, second: float) -> Solver:
         """Return the solver over the first parameter at a value of the second."""
-        problem = self.curve.source.problem
-        if self.parameter == "speed":
-            moved = replace(problem, speed=second)
-        else:
-            system = problem.system.with_parameters(**{self.parameter: second})
-            moved = replace(problem, system=system)
-        return replace(self.curve.source, problem=moved)
+        problem = self._held(self.parameter, second, self.curve.parameter)
+        return replace(self.curve.source, problem=problem)
 
     def across(self, first: float) -> Solver:
         """Return the solver over the second parameter at a value of the first."""
+        problem = self._held(self.curve.parameter, first, self.parameter)
+        return replace(self.curve.source, problem=problem, span=self.span)
+
+    def _held(self, name: str, value: float, varied: str) -> Problem:
+        """Return the problem over one parameter at a value of the other."""
         problem = self.curve.source.problem
-        if self.curve.parameter == "speed":
-            moved = Problem(problem.system, self.parameter, first)
-        else:
-            system = problem.system.with_parameters(**{self.curve.parameter: first})
-            moved = Problem(system, self.parameter, problem.speed)
-        span = self.bounds[1] - self.bounds[0]
-        return replace(self.curve.source, problem=moved, span=span)
+        if name == "speed":
+            return Problem(problem.system, varied, value)
+        system = problem.system.with_parameters(**{name: value})
+        return Problem(system, varied, problem.speed)
 
     def place(self, point: _Point) -> Array:
         """Return both parameters over their ranges."""
-        span = self.bounds[1] - self.bounds[0]
-        return np.array([point.orbit.value / self.curve.source.span, point.second / span])
+        return np.array([point.orbit.value / self.curve.source.span, point.second / self.span])
 
     def walked(self, start: _Point, sign: float) -> tuple[list[_Point], str]:
         """Return the points of the curve from a first one, one way, and why it ends."""
@@ -236,9 +237,8 @@ class _Plane:
 
     def _next(self, before: _Point | None, last: _Point, way: Array, step: float) -> _Point:
         """Return the next point: one parameter a step further, the other found."""
-        span = self.bounds[1] - self.bounds[0]
         first = last.orbit.value + step * way[0] * self.curve.source.span
-        second = last.second + step * way[1] * span
+        second = last.second + step * way[1] * self.span
         if abs(way[1]) >= abs(way[0]):
             return _Point(special_near(self.solver(second), last.orbit, first, self.kind), second)
         found = special_near(self.across(first), last.orbit, second, self.kind)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..core.families import Array
-from .orbit import STAGES, Lost, remaining
+from .orbit import STAGES, Lost, remaining, taken
 from .segments import Motion, NotFinite, Problem, Ramp, chained, sweep
 
 # Newton's iteration of a revolution: how many corrections, after how many none may be large, and
@@ -79,8 +79,7 @@ class Marcher:
             if not np.isfinite(large) or (count > _PATIENCE and large > 1.0):
                 return None
             part = 1.0 if large <= 1.0 else max(1.0 / large, 0.1)
-            a = swept.stage_loads[..., 0] + (swept.response @ change[:, None, :, None])[..., 0]
-            motion = motion.moved(part * change, part * a)
+            motion = taken(motion, swept, change, 0.0, part)
             left = remaining(large, before, _LEFT * self.rtol)
             if np.isfinite(left):
                 return replace(motion, left=left, map=whole[-1])

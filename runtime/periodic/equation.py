@@ -587,19 +587,17 @@ def _fields(known: SampledSystem, factors: Mapping[int, Array]) -> dict[str, Fie
         members = [place for place in acting if FIELD[system.terms[place].array][0] == name]
         if not members:
             continue
-        constant: Array | None = None
-        for place in members:
-            if system.terms[place].constant:
-                part = np.multiply.outer(factors[place], values[place])
-                constant = part if constant is None else constant + part
         varying = [place for place in members if not system.terms[place].constant]
-        count = len(factors[members[0]])
+        fixed = [
+            np.multiply.outer(factors[place], values[place])
+            for place in members
+            if system.terms[place].constant
+        ]
+        each = [factors[place] for place in varying]
         fields[name] = Field(
-            constant,
-            np.stack([factors[place] for place in varying], axis=1)
-            if varying
-            else np.zeros((count, 0)),
-            np.stack([values[place] for place in varying]) if varying else np.zeros((0, 0)),
+            sum(fixed[1:], start=fixed[0]) if fixed else None,
+            np.stack(each, axis=1) if each else np.zeros((len(factors[members[0]]), 0)),
+            np.array([values[place] for place in varying]),
             tuple(system.terms[place] for place in varying),
         )
     return fields

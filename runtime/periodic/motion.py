@@ -191,7 +191,7 @@ def simulate(
     """
     _check_arguments(method, revolutions, rtol, samples, bound, start)
     require_flag("forcing", forcing)
-    equation = equation_of(system, _number("speed", speed), parameters, forcing=forcing)
+    equation = equation_of(system, one_number("speed", speed), parameters, forcing=forcing)
     begin = _within(equation.period, float(start))
     start_state = begin, _start(equation, initial, begin)
     march = _March(equation, start_state, float(revolutions), int(samples), bound)
@@ -551,10 +551,11 @@ def start_values(
     return parts
 
 
-def _number(name: str, value: ArrayLike) -> float:
+def one_number(name: str, value: ArrayLike, fix: str = "simulate one speed at a time") -> float:
+    """Return a number; refuse an array of several."""
     array = numbers(name, value)
     if array.ndim:
-        raise bad(name, f"shape {array.shape}", "one number", "simulate one speed at a time")
+        raise bad(name, f"shape {array.shape}", "one number", fix)
     return float(array)
 
 
@@ -565,11 +566,11 @@ def _check_arguments(
     if not is_one_of(method, names):
         raise bad("method", repr(method), f"one of {names}", "choose 'auto'")
     for name, value, least in (("revolutions", revolutions, 1e-12), ("bound", bound, 1e-300)):
-        if not least <= _number(name, value) < np.inf:
+        if not least <= one_number(name, value) < np.inf:
             raise bad(name, value, f"a positive finite number, from {least:g}", "correct it")
-    if not np.isfinite(_number("start", start)):
+    if not np.isfinite(one_number("start", start)):
         raise bad("start", start, "a finite crank angle [rad]", "correct it")
-    given = _number("samples", samples)
+    given = one_number("samples", samples)
     if not 1 <= given <= _MOST_SAMPLES or given != int(given):
         expected = f"a whole number from 1 to {_MOST_SAMPLES}"
         raise bad("samples", samples, expected, "correct it")
@@ -577,7 +578,7 @@ def _check_arguments(
         found = f"{revolutions:.6g} of {samples} samples each"
         fix = "go on from at_end in parts, or lower samples"
         raise bad("revolutions", found, f"at most {_MOST_INTERVALS} given angles in all", fix)
-    if not 1e-14 <= _number("rtol", rtol) < 1:
+    if not 1e-14 <= one_number("rtol", rtol) < 1:
         raise bad("rtol", rtol, "a number from 1e-14 to 1", "choose 1e-8")
 
 

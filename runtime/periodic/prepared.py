@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
@@ -17,7 +18,7 @@ from ..core.inputs import numbers, require_between, require_whole
 from ..core.results import Check, DeferredChecks, DeferredGroup, provenance
 from .compiled import CompiledTable, require_numba
 from .equation import SPEED_POWER, Equation, SampledSystem, at_geometry, equation_of, sampled
-from .motion import Trajectory, simulate, start_values
+from .motion import Trajectory, one_number, simulate, start_values
 from .multipliers import ROUNDED, Monodromy, eigenvalues, rounding_error
 from .periodic_motion import LATER, SteadyState, peaks
 from .tables import Table, flows_at, next_rung, octaves, table_of
@@ -319,10 +320,7 @@ class Prepared:
         return given
 
     def _place(self, speed: float) -> int:
-        for place, table in enumerate(self.tables[:-1]):
-            if speed <= 1.0 / table.low:
-                return place
-        return len(self.tables) - 1
+        return bisect_left([1.0 / table.low for table in self.tables[:-1]], speed)
 
     def _compiled_at(self, speed: float) -> CompiledTable:
         return self.compiled[self._place(speed)]
@@ -408,7 +406,8 @@ def prepare(
         require_numba()
     require_whole("samples", samples, 1, 4096, "take 64")
     require_between("rtol", rtol, 1e-13, 1e-4, "choose 1e-10")
-    plain = {name: _one(name, value) for name, value in parameters.items()}
+    fix = "prepare once for each value"
+    plain = {name: one_number(name, value, fix) for name, value in parameters.items()}
     made, inside = at_geometry(system, plain)
     _check_inertia(made)
     maker = TableMaker(sampled(made, forcing=forcing), (low * high) ** 0.5, inside)
@@ -613,10 +612,3 @@ def _ends(speeds: tuple[float, float] | float) -> tuple[float, float]:
     if not fits or given[0] > given[-1]:
         raise bad("speeds", speeds, "a rising pair of positive speeds [rad/s]", "correct it")
     return float(given[0]), float(given[-1])
-
-
-def _one(name: str, value: ArrayLike) -> float:
-    given = numbers(name, value)
-    if given.ndim:
-        raise bad(name, f"shape {given.shape}", "one number", "prepare once for each value")
-    return float(given)

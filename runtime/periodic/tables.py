@@ -189,8 +189,15 @@ def flows_at(equation: Equation, count: int, way: Method, samples: int) -> tuple
     Shapes ``(n, samples, m, m)`` and ``(n, m, m)``; ``count`` segments, or the next multiple of
     the number of angles.
     """
-    every = -(-count // samples)
-    maps = segments_of(equation, samples * every, way).maps
+    return products_to(segments_of(equation, samples * -(-count // samples), way).maps, samples)
+
+
+def products_to(maps: Array, samples: int) -> tuple[Array, Array]:
+    """Return products of maps ``(n, count, m, m)``: to even places from the first on, and of all.
+
+    The number of maps is a multiple of that of the places.
+    """
+    every = maps.shape[1] // samples
     running = np.broadcast_to(np.eye(maps.shape[-1]), maps[:, 0].shape)
     flows = np.empty((len(maps), samples, *maps.shape[2:]))
     for k in range(samples * every):

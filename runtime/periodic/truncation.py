@@ -133,9 +133,12 @@ def arrays_at(system: LinearPeriodic, theta: Array) -> dict[tuple[str, int], Arr
     The power is that with which the array stands in the equation of motion in time: 2 for M, A, B
     and f, 1 for C, D and h, 0 for K, Kg and p, and what the term adds to it.
     """
-    scales = {None: 1.0, **system.scale_values()}
+    scales = system.scale_values()
     parts = (
-        ((term.array, 2 + SPEED_POWER[term.array] + term.power), scales[term.scale] * term(theta))
+        (
+            (term.array, 2 + SPEED_POWER[term.array] + term.power),
+            term(theta) * (1.0 if term.scale is None else float(scales[term.scale])),
+        )
         for term in system.terms
         if term.array in SPEED_POWER
     )

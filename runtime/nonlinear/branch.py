@@ -289,8 +289,7 @@ class _Between:
             [(o.value, o.motion.resampled(steps, STAGES), o.tangent) for o in (before, after)]
         )
         self._found = list(zip((0.0, 1.0), ends, strict=True))
-        states = ends[1].motion.states - ends[0].motion.states
-        chord = replace(ends[1].tangent, states=states, value=ends[1].value - ends[0].value)
+        chord = _change(ends[1], ends[0]).times(-1.0)
         self._length = float(np.sqrt(chord.dot(chord)))
         self._chord = chord.unit()
 

@@ -269,7 +269,8 @@ class Solver:
             sizes = []
             for i, (run, chain) in enumerate(zip(runs, chains, strict=True)):
                 change, moved = _bordered(*chain, directions[i])
-                sizes.append(self._size(change, moved, motions[i]))
+                own = float(np.max(np.abs(change) / self.scale(motions[i])))
+                sizes.append(max(own, abs(moved) / self.span))
                 motions[i] = taken(motions[i], run, change, moved)
                 values[i] += moved
             size = max(sizes)
@@ -283,9 +284,6 @@ class Solver:
                 return [self._orbit(*parts) for parts in found], first
             before = size
         raise Lost(f"not there after {_ITERATIONS} corrections")
-
-    def _size(self, change: Array, moved: float, motion: Motion) -> float:
-        return max(float(np.max(np.abs(change) / self.scale(motion))), abs(moved) / self.span)
 
     def _orbit(
         self,

@@ -302,14 +302,13 @@ class Equation:
             value = -damping if value is None else value - damping
         return value
 
-    def state(self, angle: float, q: Array, slope: Array) -> Array:
-        """Return the scaled state of the first member from coordinates and dq/dtheta, ``(2n,)``."""
-        place = np.array([angle])
-        unit = self.scale[0]
-        momentum = self.at("mass", place)[0, 0] @ (slope / unit)
+    def states(self, angles: Array, q: Array, slope: Array) -> Array:
+        """Return scaled states of the first member ``(nt, 2n)`` from coordinates and dq/dtheta."""
+        place, rate = q / self.scale[0], slope / self.scale[0]
+        momentum = (self.at("mass", angles)[0] @ rate[..., None])[..., 0]
         if "gyroscopic" in self.fields:
-            momentum = momentum + self.at("gyroscopic", place)[0, 0] @ (q / unit)
-        return np.concatenate([q / unit, momentum])
+            momentum += (self.at("gyroscopic", angles)[0] @ place[..., None])[..., 0]
+        return np.concatenate([place, momentum], axis=-1)
 
     def divergence(self) -> Array:
         """Return the integral of the trace of L over a period, ``(nb,)``; Liouville's exponent."""

@@ -110,27 +110,14 @@ def exponent_changes(truncated: TruncatedSystem, speed: float) -> Array:
 
 
 class LowestModes:
-    """Truncations of a stiff system whose exponents are known, each made once.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        The system, with its present parameters.
-    least : int
-        Fewest modes that are kept.
-
-    Attributes
-    ----------
-    rounding : ndarray, shape (n,)
-        Relative error of each mode's exponents by round-off of the stiffest one.
-    """
+    """Truncations of a stiff system, ``least`` modes or more, whose exponents are known."""
 
     def __init__(self, system: LinearPeriodic, least: int = 4) -> None:
         self.truncations = Truncations(system, min(least, system.size))
         still = still_modes(system, _FEWEST)
         self._top = np.sqrt(np.max(still.squares, axis=0))
         # Entries are rounded as the stiffest mode's are, those of slow modes too: of their
-        # exponents this is a sixteenth or less.
+        # exponents, (n,), this relative error is a sixteenth or less.
         slowest, stiffest = np.min(still.squares, axis=0), np.max(still.squares)
         self.rounding = _EPS / 16.0 * stiffest / np.maximum(slowest, _EPS * stiffest)
 

@@ -531,7 +531,7 @@ def _start(
             raise bad("initial", "nothing, and no forcing acts", "a start away from rest", fix)
         return np.concatenate([np.zeros(2 * n), [1.0]])
     q, qd = start_values(equation.system, initial)
-    state = equation.state(float(start), q, qd / float(equation.speed[0]))
+    (state,) = equation.states(np.array([start]), q[None], qd[None] / equation.speed[0])
     return np.append(state, 1.0) if equation.forced else state
 
 

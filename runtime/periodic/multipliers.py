@@ -129,7 +129,8 @@ def monodromy(
     >>> print(el.monodromy(system, speed=80.0).matrix.trace().round(4))
     2.0202
     """
-    equation = equation_of(system, speed, _checked(rtol, parameters))
+    require_between("rtol", rtol, 1e-13, 1e-2, "choose 1e-8")
+    equation = equation_of(system, speed, parameters)
     way, m = choose(equation, rtol), 2 * equation.size
     solutions, errors, segments = refined(equation, way, rtol, partial(_matrices, way), _gap)
     scaled, exponent, rounding = _stacked(solutions, (m, m), (), ())
@@ -261,7 +262,8 @@ def floquet_multipliers(
     >>> print(found.stable, abs(found.multipliers).max(axis=-1).round(4))
     [ True False] [1.     1.1526]
     """
-    equation = equation_of(system, speed, _checked(rtol, parameters))
+    require_between("rtol", rtol, 1e-13, 1e-2, "choose 1e-8")
+    equation = equation_of(system, speed, parameters)
     way, m = choose(equation, rtol), 2 * equation.size
     solutions, relative, segments = refined(
         equation, way, rtol, partial(_spectra, way), partial(_shifts, way)
@@ -339,11 +341,6 @@ def rounding_error(equation: Equation, segments: int) -> Array:
     turning = np.max(living, axis=1, initial=0.0) * equation.period
     value: Array = _EPS * (128.0 + 3.0 * segments + 3.0 * turning)
     return value
-
-
-def _checked(rtol: float, parameters: Mapping[str, ArrayLike]) -> Mapping[str, ArrayLike]:
-    require_between("rtol", rtol, 1e-13, 1e-2, "choose 1e-8")
-    return parameters
 
 
 def _matrices(way: Method, equation: Equation, segments: int) -> tuple[NDArray[Any], ...]:

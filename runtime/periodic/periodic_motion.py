@@ -477,11 +477,7 @@ def _residual(equation: Equation, theta: Array, q: Array, slope: Array, error: f
     # The derivative of the series has nothing to do with the method.  Limit: an error of the
     # highest harmonic kept, over the largest rate.
     count = len(theta)
-    unit = equation.scale[0]
-    momentum = (equation.at("mass", theta)[0] @ (slope / unit)[..., None])[..., 0]
-    if "gyroscopic" in equation.fields:
-        momentum += (equation.at("gyroscopic", theta)[0] @ (q / unit)[..., None])[..., 0]
-    states = np.concatenate([q / unit, momentum], axis=1)
+    states = equation.states(theta, q, slope)
     waves = np.arange(count // 2 + 1) * (2 * np.pi / equation.period)
     half_step = np.exp(0.5j * waves * equation.period / count)[:, None]
     series = np.fft.rfft(states, axis=0) * half_step

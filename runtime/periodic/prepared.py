@@ -260,10 +260,6 @@ class Prepared:
     def _stability(
         self, speeds: Array, whole: Array, batch: tuple[int, ...]
     ) -> Mapping[str, NDArray[Any]]:
-        """Return multipliers with their errors, whether all are inside, and their distance from 1.
-
-        The last is the distance of the nearest of them.
-        """
         m = 2 * self.system.size
         matrices = whole[:, :m, :m]
         size = self.errors.of_matrices(speeds) * np.max(np.abs(matrices), axis=(1, 2))

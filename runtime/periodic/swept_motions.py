@@ -111,15 +111,7 @@ class Trial:
 
 
 class Truncations:
-    """Modal truncations of one system by number of modes and of angles, each made once.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        The system.
-    least : int
-        Fewest modes that are offered.
-    """
+    """Modal truncations of one system, ``least`` modes or more, by modes and angles made once."""
 
     def __init__(self, system: LinearPeriodic, least: int = 4) -> None:
         self.system = system

@@ -439,19 +439,17 @@ def basins(
     sizes = np.max([np.max(np.abs(part), axis=0) for part in ends], axis=0) + system.small
     attractors = _Attractors(ends, sizes)
     wrong, mapped = 0.0, n == 1 and len(states) > _FEW
+    march = partial(_marched, marcher, speed)
     if mapped:
         step = _mapped(marcher, speed, columns, rows, progress)
         found = attractors.reached(step, states)
         some = np.random.default_rng(0).choice(len(states), _FEW, replace=False)
-        march = attractors.reached(partial(_marched, marcher, speed), states[some])
-        wrong = float(np.mean(march != found[some]))
+        wrong = float(np.mean(attractors.reached(march, states[some]) != found[some]))
     else:
         found = np.full(len(states), -1)
         with bar(progress, len(states), unit="state") as tick:
             for i in range(len(states)):
-                found[i] = attractors.reached(partial(_marched, marcher, speed), states[i : i + 1])[
-                    0
-                ]
+                (found[i],) = attractors.reached(march, states[i : i + 1])
                 tick(i + 1)
     return Basins(
         method="map of a revolution on a grid" if mapped else "marching by revolutions",

@@ -308,7 +308,8 @@ def _marched(marcher: Marcher, speed: float, state: Array, turns: int) -> Motion
             last = [*last, marcher.revolution(speed, states[-1], before)][-turns:]
             states.append(end(last[-1]))
             size = np.abs(states[-1]) + marcher.problem.system.small
-            near = [k for k in range(1, min(turns, len(states) - 1) + 1) if _back(states, k, size)]
+            gaps = [np.max(np.abs(states[-1] - one) / size) for one in states[-2 : -turns - 2 : -1]]
+            near = [k for k, gap in enumerate(gaps, 1) if gap < _NEAR]
             if near and len(last) >= near[0]:
                 last = last[-near[0] :]
                 break
@@ -317,11 +318,6 @@ def _marched(marcher: Marcher, speed: float, state: Array, turns: int) -> Motion
     steps = max(len(motion.x) for motion in last)
     whole = Motion.together([motion.resampled(steps, STAGES) for motion in last])
     return replace(whole, turns=len(last), runs=1)
-
-
-def _back(states: Sequence[Array], turns: int, size: Array) -> bool:
-    """Return True where the last state is all but that of some turns before."""
-    return bool(np.max(np.abs(states[-1] - states[-1 - turns]) / size) < _NEAR)
 
 
 def _turned_away(motion: Motion, change: Array, scale: Array, known: Sequence[Motion]) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from math import ceil, factorial, fmod
 from typing import Any, ClassVar
 
@@ -426,12 +426,8 @@ class _March:
             left = self.theta[begin + places][:, None] + h * np.arange(float(count))
             maps = segments_from(self.equation, left.ravel(), h, way).maps[0]
             single[places], _ = product(maps.reshape(len(places), count, m, m))
-        total = np.eye(m)
         with np.errstate(over="ignore", invalid="ignore"):
-            for k, one in enumerate(single):
-                total = one @ total
-                single[k] = total
-        return single
+            return np.array([*accumulate(single, lambda total, one: one @ total)])
 
     def gap(self, coarse: _Run, fine: _Run) -> Array:
         """Return the largest difference of each coordinate over its peak, ``(n,)``."""

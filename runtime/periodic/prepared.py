@@ -179,7 +179,7 @@ class Prepared:
         slope[-1] = self.readout[0] @ states[-1]
         theta = (self.system.period * np.arange(count)[:, None] + self.theta).reshape(-1)
         theta = np.append(theta, self.system.period * count)
-        flow = self.errors.of_flow(given)
+        flow = self.errors.at(np.array([given]), self.errors.flow)[0]
         error = (count + 1) * np.sqrt(flow**2 @ sizes**2) * self.scale[:n] / peaks(q[None])[0]
         if not np.max(error) <= _TRANSIENT:
             turn = 2 * np.pi / self.system.period
@@ -440,13 +440,9 @@ class TableErrors:
     @classmethod
     def joined(cls, parts: list[TableErrors]) -> TableErrors:
         """Return the errors of tables by rising speed."""
-        return cls(
-            speed=np.concatenate([part.speed for part in parts]),
-            matrix=np.concatenate([part.matrix for part in parts]),
-            size=np.concatenate([part.size for part in parts]),
-            flow=np.concatenate([part.flow for part in parts]),
-            rounding=max(part.rounding for part in parts),
-        )
+        rows = [(part.speed, part.matrix, part.size, part.flow) for part in parts]
+        arrays = map(np.concatenate, zip(*rows, strict=True))
+        return cls(*arrays, rounding=max(part.rounding for part in parts))
 
     @property
     def largest(self) -> float:
@@ -455,14 +451,9 @@ class TableErrors:
 
     def of_matrices(self, speeds: Array) -> Array:
         """Return errors of monodromy matrices over their largest entries, at speeds ``(ns,)``."""
-        return self._at(speeds, self.matrix)
+        return self.at(speeds, self.matrix)
 
-    def of_flow(self, speed: float) -> Array:
-        """Return the errors of the entries that give coordinates at a speed, ``(n, m)``."""
-        found: Array = self._at(np.array([speed]), self.flow)[0]
-        return found
-
-    def _at(self, speeds: Array, errors: Array) -> Array:
+    def at(self, speeds: Array, errors: Array) -> Array:
         """Return errors ``(k, ...)`` at speeds ``(ns,)``, ``(ns, ...)``."""
         # Between two speeds they fall with a power of the speed, as the segments' phases do.
         if len(self.speed) == 1:

@@ -326,18 +326,14 @@ def _turned_away(motion: Motion, change: Array, scale: Array, known: Sequence[Mo
     slope = 0.0
     for other in known:
         for shift in range(other.turns):
-            apart = motion.states - _at_beginnings(other, motion, shift)
+            # Where the steps of the motion begin, some turns later.
+            angles = motion.step * np.arange(len(motion.x)) + 2.0 * np.pi * shift
+            x, v, _ = other.at(np.mod(angles, other.span))
+            apart = motion.states - np.concatenate([x, v], axis=1)
             square = float(np.mean(np.sum((apart / scale) ** 2, axis=1))) + 1e-300
             along = float(np.mean(np.sum(apart * change / scale**2, axis=1)))
             slope -= 2.0 * along / (square * (1.0 + square))
     return 1.0 / (1.0 - slope) if slope != 1.0 else 1.0
-
-
-def _at_beginnings(other: Motion, motion: Motion, shift: int) -> Array:
-    """Return the states of one motion where the steps of another begin, some turns later."""
-    angles = motion.step * np.arange(len(motion.x)) + 2.0 * np.pi * shift
-    x, v, _ = other.at(np.mod(angles, other.span))
-    return np.concatenate([x, v], axis=1)
 
 
 def _shortest(motion: Motion) -> Motion:

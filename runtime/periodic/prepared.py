@@ -441,8 +441,8 @@ class TableErrors:
     def joined(cls, parts: list[TableErrors]) -> TableErrors:
         """Return the errors of tables by rising speed."""
         rows = [(part.speed, part.matrix, part.size, part.flow) for part in parts]
-        arrays = map(np.concatenate, zip(*rows, strict=True))
-        return cls(*arrays, rounding=max(part.rounding for part in parts))
+        speed, matrix, size, flow = map(np.concatenate, zip(*rows, strict=True))
+        return cls(speed, matrix, size, flow, max(part.rounding for part in parts))
 
     @property
     def largest(self) -> float:

@@ -89,10 +89,6 @@ class Limits:
     largest: float  # of the deflection over the length, where the system watches it
     points: int
 
-    def hold(self, value: float) -> bool:
-        """Return True for a value within the range."""
-        return self.low <= value <= self.high
-
 
 def followed(solver: Solver, begun: tuple[Orbit, Measure], limits: Limits) -> Branch:
     """Follow a branch from a motion along its tangent, locating special points on the way.
@@ -146,7 +142,7 @@ def _steps(
                 points, size = _ahead(solver, orbit, step, past)
             except FAILURES:
                 step *= _SHORTER
-        inside = [*takewhile(lambda point: limits.hold(point[0].value), points)]
+        inside = [*takewhile(lambda at: limits.low <= at[0].value <= limits.high, points)]
         if len(inside) < len(points):
             beyond = points[len(inside)]
             points = [*inside, _at_end(solver, orbit, beyond[0], limits) or beyond]

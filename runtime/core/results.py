@@ -117,6 +117,10 @@ class DeferredGroup:
         """Return one value to be."""
         return Deferred(partial(self.value, name))
 
+    def fields(self, names: Iterable[str]) -> dict[str, Any]:
+        """Return values to be by name."""
+        return {name: self.later(name) for name in names}
+
 
 class DeferredChecks(Mapping[str, Check]):
     """Self-checks that are made when they are first looked at, and then kept.

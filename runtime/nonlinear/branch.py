@@ -9,7 +9,6 @@ from itertools import takewhile
 
 import numpy as np
 
-from ..core.families import Array
 from .orbit import EPS, FAILURES, STAGES, Direction, Lost, Measure, Orbit, Solver, changed
 from .segments import Motion
 
@@ -41,31 +40,18 @@ class Special:
     value_error: float
 
 
-def fold(orbit: Orbit) -> float:
-    """Return what vanishes at a fold: the parameter's part of the tangent."""
-    return orbit.tangent.value / orbit.tangent.span
-
-
-def doubling(orbit: Orbit) -> float:
-    """Return what vanishes where a multiplier is -1."""
-    return float(np.linalg.det(orbit.matrix + np.eye(len(orbit.matrix))))
-
-
-def branch_point(orbit: Orbit) -> float:
-    """Return what vanishes where branches cross."""
-    return orbit.border
-
-
 def torus(orbit: Orbit) -> float:
     """Return what vanishes where a pair of complex multipliers passes the unit circle."""
     pairs = np.abs(orbit.multipliers[orbit.multipliers.imag > 1e-9])
     return float(np.log(pairs[np.argmin(np.abs(np.log(pairs)))])) if pairs.size else np.nan
 
 
+# What vanishes at a special point of a kind: the parameter's part of the tangent; the determinant
+# that is zero where a multiplier is -1; that of the bordered equations where branches cross.
 TESTS: dict[str, Callable[[Orbit], float]] = {
-    "fold": fold,
-    "doubling": doubling,
-    "branch point": branch_point,
+    "fold": lambda orbit: orbit.tangent.value / orbit.tangent.span,
+    "doubling": lambda orbit: float(np.linalg.det(orbit.matrix + np.eye(len(orbit.matrix)))),
+    "branch point": lambda orbit: orbit.border,
     "torus": torus,
 }
 
@@ -102,10 +88,6 @@ class Limits:
     high: float
     largest: float  # of the deflection over the length, where the system watches it
     points: int
-
-    def hold(self, value: float) -> bool:
-        """Return True for a value within the range."""
-        return self.low <= value <= self.high
 
 
 def followed(solver: Solver, begun: tuple[Orbit, Measure], limits: Limits) -> Branch:
@@ -160,7 +142,7 @@ def _steps(
                 points, size = _ahead(solver, orbit, step, past)
             except FAILURES:
                 step *= _SHORTER
-        inside = [*takewhile(lambda point: limits.hold(point[0].value), points)]
+        inside = [*takewhile(lambda at: limits.low <= at[0].value <= limits.high, points)]
         if len(inside) < len(points):
             beyond = points[len(inside)]
             points = [*inside, _at_end(solver, orbit, beyond[0], limits) or beyond]
@@ -231,18 +213,14 @@ def _passed(ahead: Orbit, orbit: Orbit, first: Orbit) -> bool:
     return step <= along <= 0.0 and square - along * along <= (0.1 * step) ** 2 and same_way
 
 
-def halves(motion: Motion) -> Array:
-    """Return how the first half of a motion differs from the second, ``(k, n)``."""
-    half = np.pi * motion.turns
-    angles = half * np.arange(64) / 64
-    return np.asarray(motion.at(angles)[0] - motion.at(angles + half)[0])
-
-
 def _fewer_turns(before: Motion, after: Motion) -> bool:
     """Return True where the halves of a motion have become equal between two points."""
     if before.turns % 2:
         return False
-    return bool(np.sum(halves(before) * halves(after)) <= 0.0)
+    half = np.pi * before.turns
+    angles = half * np.arange(64) / 64
+    first, last = (motion.at(angles)[0] - motion.at(angles + half)[0] for motion in (before, after))
+    return bool(np.sum(first * last) <= 0.0)
 
 
 def special_points(solver: Solver, before: Orbit, after: Orbit) -> Iterator[Special]:
@@ -307,8 +285,7 @@ class _Between:
             [(o.value, o.motion.resampled(steps, STAGES), o.tangent) for o in (before, after)]
         )
         self._found = list(zip((0.0, 1.0), ends, strict=True))
-        states = ends[1].motion.states - ends[0].motion.states
-        chord = replace(ends[1].tangent, states=states, value=ends[1].value - ends[0].value)
+        chord = _change(ends[1], ends[0]).times(-1.0)
         self._length = float(np.sqrt(chord.dot(chord)))
         self._chord = chord.unit()
 

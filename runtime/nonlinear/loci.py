@@ -10,13 +10,13 @@ import numpy as np
 
 from ..core.errors import bad
 from ..core.families import Array
-from ..core.inputs import is_finite, numbers, require_kind
+from ..core.inputs import require_kind
 from ..core.plotting import RPM, Axes, axes_or_new
 from ..core.progress import bar
 from ..core.results import Result, provenance
 from .branch import TESTS, value_error
 from .orbit import FAILURES, Lost, Orbit, Solver, changed
-from .response import ResponseCurve
+from .response import ResponseCurve, rising_pair
 from .segments import Problem
 
 # Steps in the plane of both parameters, in parts of their ranges: the first, least and largest.
@@ -127,7 +127,7 @@ def special_curve(
     if parameter not in names or parameter == curve.parameter:
         expected = f"another than {curve.parameter!r}, of {names}"
         raise bad("parameter", repr(parameter), expected, "correct it")
-    low, high = _range(bounds)
+    low, high = rising_pair(bounds)
     here = speed if parameter == "speed" else system.parameters[parameter]
     if not low <= here <= high:
         raise bad("bounds", repr(bounds), f"a range that holds {here:.6g}", "widen it")
@@ -156,13 +156,6 @@ def special_curve(
     )
 
 
-def _range(bounds: tuple[float, float]) -> tuple[float, float]:
-    values = numbers("bounds", bounds)
-    if values.shape != (2,) or not all(map(is_finite, values.tolist())) or values[0] >= values[1]:
-        raise bad("bounds", repr(bounds), "(low, high) with low < high", "correct it")
-    return float(values[0]), float(values[1])
-
-
 @dataclass(frozen=True)
 class _Point:
     """A special point in the plane of both parameters."""
@@ -180,31 +173,32 @@ class _Plane:
     kind: str
     bounds: tuple[float, float]
 
+    @property
+    def span(self) -> float:
+        """Range of the second parameter."""
+        return self.bounds[1] - self.bounds[0]
+
     def solver(self, second: float) -> Solver:
         """Return the solver over the first parameter at a value of the second."""
-        problem = self.curve.source.problem
-        if self.parameter == "speed":
-            moved = replace(problem, speed=second)
-        else:
-            system = problem.system.with_parameters(**{self.parameter: second})
-            moved = replace(problem, system=system)
-        return replace(self.curve.source, problem=moved)
+        problem = self._held(self.parameter, second, self.curve.parameter)
+        return replace(self.curve.source, problem=problem)
 
     def across(self, first: float) -> Solver:
         """Return the solver over the second parameter at a value of the first."""
+        problem = self._held(self.curve.parameter, first, self.parameter)
+        return replace(self.curve.source, problem=problem, span=self.span)
+
+    def _held(self, name: str, value: float, varied: str) -> Problem:
+        """Return the problem over one parameter at a value of the other."""
         problem = self.curve.source.problem
-        if self.curve.parameter == "speed":
-            moved = Problem(problem.system, self.parameter, first)
-        else:
-            system = problem.system.with_parameters(**{self.curve.parameter: first})
-            moved = Problem(system, self.parameter, problem.speed)
-        span = self.bounds[1] - self.bounds[0]
-        return replace(self.curve.source, problem=moved, span=span)
+        if name == "speed":
+            return Problem(problem.system, varied, value)
+        system = problem.system.with_parameters(**{name: value})
+        return Problem(system, varied, problem.speed)
 
     def place(self, point: _Point) -> Array:
         """Return both parameters over their ranges."""
-        span = self.bounds[1] - self.bounds[0]
-        return np.array([point.orbit.value / self.curve.source.span, point.second / span])
+        return np.array([point.orbit.value / self.curve.source.span, point.second / self.span])
 
     def walked(self, start: _Point, sign: float) -> tuple[list[_Point], str]:
         """Return the points of the curve from a first one, one way, and why it ends."""
@@ -243,9 +237,8 @@ class _Plane:
 
     def _next(self, before: _Point | None, last: _Point, way: Array, step: float) -> _Point:
         """Return the next point: one parameter a step further, the other found."""
-        span = self.bounds[1] - self.bounds[0]
         first = last.orbit.value + step * way[0] * self.curve.source.span
-        second = last.second + step * way[1] * span
+        second = last.second + step * way[1] * self.span
         if abs(way[1]) >= abs(way[0]):
             return _Point(special_near(self.solver(second), last.orbit, first, self.kind), second)
         found = special_near(self.across(first), last.orbit, second, self.kind)

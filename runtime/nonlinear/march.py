@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..core.families import Array
-from .orbit import STAGES, Lost, remaining
+from .orbit import STAGES, Lost, remaining, sizes_of, taken
 from .segments import Motion, NotFinite, Problem, Ramp, chained, sweep
 
 # Newton's iteration of a revolution: how many corrections, after how many none may be large, and
@@ -73,14 +73,13 @@ class Marcher:
             whole, added = chained(maps, loads)
             first = (states - motion.states.reshape(runs, m, size)[:, 0])[..., None]
             change = (whole[:-1] @ first + added[:-1])[..., 0].swapaxes(0, 1).reshape(-1, size)
-            own = _sizes(motion.x, motion.v, self.problem.system.small)
-            scale = np.maximum(own, _sizes(states[:, : size // 2], states[:, size // 2 :]))
+            own = sizes_of(motion.x, motion.v, self.problem.system.small)
+            scale = np.maximum(own, sizes_of(states[:, : size // 2], states[:, size // 2 :]))
             large = float(np.max(np.abs(change) / scale))
             if not np.isfinite(large) or (count > _PATIENCE and large > 1.0):
                 return None
             part = 1.0 if large <= 1.0 else max(1.0 / large, 0.1)
-            a = swept.stage_loads[..., 0] + (swept.response @ change[:, None, :, None])[..., 0]
-            motion = motion.moved(part * change, part * a)
+            motion = taken(motion, swept, change, 0.0, part)
             left = remaining(large, before, _LEFT * self.rtol)
             if np.isfinite(left):
                 return replace(motion, left=left, map=whole[-1])
@@ -107,12 +106,6 @@ def end(motion: Motion) -> Array:
     """Return the states at the end of a motion, ``(runs, 2n)``."""
     n = motion.x.shape[1]
     return motion.ends().reshape(motion.runs, -1, 2 * n)[:, -1]
-
-
-def _sizes(coordinates: Array, rates: Array, least: float = 0.0) -> Array:
-    """Return the sizes of coordinates and rates ``(m, n)``, ``(2n,)``."""
-    sizes = [max(float(np.max(np.abs(part))), least) for part in (coordinates, rates)]
-    return np.repeat(sizes, coordinates.shape[1])
 
 
 def unresolved(motion: Motion) -> float:

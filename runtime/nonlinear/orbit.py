@@ -185,6 +185,12 @@ class Measure:
     rough: Array  # (2n, 2n): monodromy matrix of the other motion
 
 
+def sizes_of(coordinates: Array, rates: Array, least: float = 0.0) -> Array:
+    """Return the sizes of coordinates and rates ``(m, n)``, ``(2n,)``: the largest of each kind."""
+    largest = [max(float(np.max(np.abs(part))), least) for part in (coordinates, rates)]
+    return np.repeat(largest, coordinates.shape[1])
+
+
 def remaining(size: float, before: float, last: float = _LAST) -> float:
     """Return what a correction leaves, infinite where another one is wanted.
 
@@ -217,9 +223,7 @@ class Solver:
 
     def scale(self, motion: Motion) -> Array:
         """Return the sizes of coordinates and rates, ``(2n,)``: the largest of each kind."""
-        n = motion.x.shape[1]
-        largest = (float(np.max(np.abs(values))) for values in (motion.x, motion.v))
-        return np.repeat([max(size, self.problem.system.small) for size in largest], n)
+        return sizes_of(motion.x, motion.v, self.problem.system.small)
 
     def settled(self, value: float, motion: Motion) -> Motion:
         """Return the periodic motion near a guess at a value, by damped steps of Newton.
@@ -269,7 +273,8 @@ class Solver:
             sizes = []
             for i, (run, chain) in enumerate(zip(runs, chains, strict=True)):
                 change, moved = _bordered(*chain, directions[i])
-                sizes.append(self._size(change, moved, motions[i]))
+                own = float(np.max(np.abs(change) / self.scale(motions[i])))
+                sizes.append(max(own, abs(moved) / self.span))
                 motions[i] = taken(motions[i], run, change, moved)
                 values[i] += moved
             size = max(sizes)
@@ -283,9 +288,6 @@ class Solver:
                 return [self._orbit(*parts) for parts in found], first
             before = size
         raise Lost(f"not there after {_ITERATIONS} corrections")
-
-    def _size(self, change: Array, moved: float, motion: Motion) -> float:
-        return max(float(np.max(np.abs(change) / self.scale(motion))), abs(moved) / self.span)
 
     def _orbit(
         self,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import groupby, pairwise
@@ -266,8 +267,9 @@ def response_curve(
     require_between("largest", largest, 1e-6, 10.0, "try 0.25")
     solver, limits = Solver(problem, high - low, rtol), Limits(low, high, largest, _POINTS)
     with bar(progress, _BRANCHES, unit="branch") as tick:
-        branches, missed = _all_branches(solver, limits, turns, list(starts), tick)
-    return _result(solver, branches, (low, high), missed)
+        tracer = _Tracer(solver, limits, turns, tick)
+        missed = tracer.trace(starts)
+    return _result(solver, tracer.branches, (low, high), missed)
 
 
 def checked_problem(
@@ -279,10 +281,7 @@ def checked_problem(
     known = ["speed", *sorted(system.parameters)]
     if parameter not in known:
         raise bad("parameter", repr(parameter), f"one of {known}", "correct the name")
-    values = numbers("bounds", bounds)
-    if values.shape != (2,) or not np.all(np.isfinite(values)) or not values[0] < values[1]:
-        raise bad("bounds", repr(bounds), "(low, high) with low < high", "correct it")
-    low, high = map(float, values)
+    low, high = rising_pair(bounds)
     if parameter == "speed":
         if speed is not None:
             raise bad("speed", speed, "none, since the speed is varied", "leave it out")
@@ -296,46 +295,82 @@ def checked_problem(
     return Problem(system, parameter, float(speed)), low, high
 
 
+def rising_pair(bounds: tuple[float, float]) -> tuple[float, float]:
+    """Return the ends of a range; refuse what is none."""
+    values = numbers("bounds", bounds)
+    if values.shape != (2,) or not np.all(np.isfinite(values)) or not values[0] < values[1]:
+        raise bad("bounds", repr(bounds), "(low, high) with low < high", "correct it")
+    return float(values[0]), float(values[1])
+
+
 def first_motion(problem: Problem, turns: int = 1) -> Motion:
     """Return no motion, on as many steps as the number of coordinates suggests."""
     steps = FIRST_STEPS * max(problem.system.size, 1) * turns
     return Motion.rest(problem.system, turns, min(steps, MOST_STEPS), STAGES)
 
 
-def _all_branches(
-    solver: Solver,
-    limits: Limits,
-    turns: int,
-    starts: list[tuple[float, Motion]],
-    tick: Callable[[int], None],
-) -> tuple[list[Branch], tuple[float, ...]]:
-    """Return the branch from either end of the range, and those that begin on it."""
-    # And the ends at which none was found.
-    branches: list[Branch] = []
-    queue: list[tuple[Orbit, Measure]] = []
-    missed: dict[float, str] = {}
-    for value, sign in ((limits.low, 1.0), (limits.high, -1.0)):
-        try:
-            motion = _begun(solver, value)
-            if any(_on(solver, value, motion, branch) for branch in branches):
+@dataclass(frozen=True)
+class _Tracer:
+    """Follows branches, each of them once, and those that begin on them."""
+
+    solver: Solver
+    limits: Limits
+    turns: int  # of motions after doublings, at the most
+    tick: Callable[[int], None]
+    branches: list[Branch] = field(default_factory=list)
+    # Where other branches begin.
+    queue: list[tuple[Orbit, Measure]] = field(default_factory=list)
+
+    def trace(self, starts: Iterable[tuple[float, Motion]]) -> tuple[float, ...]:
+        """Follow all branches; return the ends of the range at which no motion was found."""
+        solver, limits = self.solver, self.limits
+        missed: dict[float, str] = {}
+        for value, sign in ((limits.low, 1.0), (limits.high, -1.0)):
+            try:
+                motion = _begun(solver, value)
+                if self._known(value, motion):
+                    continue
+                begun = solver.fine(value, motion, solver.along_parameter(motion, sign))
+            except FAILURES as failure:
+                missed[value] = str(failure)
                 continue
-            begun = solver.fine(value, motion, solver.along_parameter(motion, sign))
-        except FAILURES as failure:
-            missed[value] = str(failure)
-            continue
-        _follow(solver, begun, limits, branches, queue, turns, tick)
-    for value, motion in starts:
-        begun, back = (
-            solver.fine(value, motion, solver.along_parameter(motion, sign)) for sign in (1.0, -1.0)
-        )
-        _follow(solver, begun, limits, branches, queue, turns, tick, back)
-    if not branches:
-        fix = "choose another range: begin where the motion is small"
-        found = f"no periodic motion at either end ({missed[limits.high]})"
-        raise bad("bounds", found, "one", fix)
-    while queue and len(branches) < _BRANCHES:
-        _follow(solver, queue.pop(0), limits, branches, queue, turns, tick)
-    return branches, tuple(missed)
+            self._follow(begun)
+        for value, motion in starts:
+            ahead, back = (
+                solver.fine(value, motion, solver.along_parameter(motion, sign))
+                for sign in (1.0, -1.0)
+            )
+            self._follow(ahead, back)
+        if not self.branches:
+            fix = "choose another range: begin where the motion is small"
+            found = f"no periodic motion at either end ({missed[limits.high]})"
+            raise bad("bounds", found, "one", fix)
+        while self.queue and len(self.branches) < _BRANCHES:
+            self._follow(self.queue.pop(0))
+        return tuple(missed)
+
+    def _known(self, value: float, motion: Motion) -> bool:
+        return any(_on(self.solver, value, motion, branch) for branch in self.branches)
+
+    def _follow(
+        self, begun: tuple[Orbit, Measure], back: tuple[Orbit, Measure] | None = None
+    ) -> None:
+        """Follow a branch unless it is known; ``back``: from the same motion the other way, too."""
+        first, _ = begun
+        if self._known(first.value, first.motion):
+            return
+        branch = followed(self.solver, begun, self.limits)
+        if back is not None and branch.ended != CLOSED:
+            branch = followed(self.solver, back, self.limits).joined(branch)
+        self.branches.append(branch)
+        self.tick(len(self.branches))
+        for point in branch.special:
+            with suppress(*FAILURES):
+                if point.kind == "doubling" and 2 * branch.turns <= self.turns:
+                    self.queue.append(doubled(self.solver, point.orbit))
+                elif point.kind == "branch point":
+                    ways = [crossing(self.solver, point.orbit, sign) for sign in (1.0, -1.0)]
+                    self.queue.extend(ways)
 
 
 def _begun(solver: Solver, value: float) -> Motion:
@@ -344,36 +379,6 @@ def _begun(solver: Solver, value: float) -> Motion:
         return solver.settled(value, first_motion(solver.problem))
     except FAILURES:
         return solver.settled(value, from_rest(Marcher(solver.problem, solver.rtol), value))
-
-
-def _follow(
-    solver: Solver,
-    begun: tuple[Orbit, Measure],
-    limits: Limits,
-    branches: list[Branch],
-    queue: list[tuple[Orbit, Measure]],
-    turns: int,
-    tick: Callable[[int], None],
-    back: tuple[Orbit, Measure] | None = None,
-) -> None:
-    """Follow a branch unless it is known, and add the beginnings of those that start on it."""
-    # `back`: the same motion with its tangent the other way, to follow it that way, too.
-    first, _ = begun
-    if any(_on(solver, first.value, first.motion, branch) for branch in branches):
-        return
-    branch = followed(solver, begun, limits)
-    if back is not None and branch.ended != CLOSED:
-        branch = followed(solver, back, limits).joined(branch)
-    branches.append(branch)
-    tick(len(branches))
-    for point in branch.special:
-        try:
-            if point.kind == "doubling" and 2 * branch.turns <= turns:
-                queue.append(doubled(solver, point.orbit))
-            elif point.kind == "branch point":
-                queue += [crossing(solver, point.orbit, sign) for sign in (1.0, -1.0)]
-        except FAILURES:
-            continue
 
 
 def _on(solver: Solver, value: float, motion: Motion, branch: Branch) -> bool:
@@ -527,9 +532,7 @@ def _result(
         orbits=tuple(orbit for orbit, _ in points),
         special_orbits=tuple(point.orbit for point in special),
         source=solver,
-        linear_value=linearised.later("linear_value"),
-        linear_lowest=linearised.later("linear_lowest"),
-        linear_highest=linearised.later("linear_highest"),
+        **linearised.fields(_LINEARISED),
     )
 
 

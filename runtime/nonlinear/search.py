@@ -16,9 +16,9 @@ from ..core.inputs import is_finite, require_whole
 from ..core.progress import bar
 from ..core.results import Result, provenance
 from .march import Marcher, end
-from .orbit import FAILURES, FIRST_STEPS, STAGES, Lost, Solver, closed, taken
+from .orbit import FAILURES, FIRST_STEPS, STAGES, Solver, taken
 from .response import checked_problem, extremes, first_motion, same_motion
-from .segments import Motion, Problem, chained, sweep
+from .segments import Motion, Problem, chained, evaluated, sweep
 
 # Amplitudes of the starts in the first coordinate that suits, over its largest trial; phases.
 _AMPLITUDES, _PHASES = (0.1, 0.2, 0.35, 0.5), 6
@@ -150,10 +150,9 @@ def coexisting_motions(
             tick(number + 1)
         counts["known ones, deflated"] = len(found) + 1
         for start in [first_motion(problem), *found]:
-            with suppress(*FAILURES):
-                near = start.moved(0.1 * largest * np.ones_like(start.states), 0.0 * start.a)
-                motion = _deflated(solver, value, near, found, bound)
-                _keep(solver, found, solver.settled(value, motion))
+            near = start.moved(0.1 * largest * np.ones_like(start.states), 0.0 * start.a)
+            for motion in _together(solver, value, [near], bound, found):
+                _keep(solver, found, motion)
     return _result(solver, value, found, counts)
 
 
@@ -165,15 +164,22 @@ def _keep(solver: Solver, found: list[Motion], motion: Motion) -> None:
 
 
 @np.errstate(all="ignore")
-def _together(solver: Solver, value: float, starts: Sequence[Motion], bound: float) -> list[Motion]:
+def _together(
+    solver: Solver,
+    value: float,
+    starts: Sequence[Motion],
+    bound: float,
+    known: Sequence[Motion] = (),
+) -> list[Motion]:
     """Return the periodic motions that starts of as many turns come to, all of them at once."""
+    # Known ones are deflated.
     arrived: list[Motion] = []
     queues: dict[tuple[int, ...], list[Motion]] = {}
     for start in starts:
         queues.setdefault((start.turns, *start.a.shape), []).append(start)
     for queue in queues.values():
         for first in range(0, len(queue), _AT_ONCE):
-            arrived += _newton(solver, value, queue[first : first + _AT_ONCE], bound)
+            arrived += _newton(solver, value, queue[first : first + _AT_ONCE], bound, known)
     settled = []
     for motion in arrived:
         with suppress(*FAILURES):
@@ -181,7 +187,9 @@ def _together(solver: Solver, value: float, starts: Sequence[Motion], bound: flo
     return settled
 
 
-def _newton(solver: Solver, value: float, starts: list[Motion], bound: float) -> list[Motion]:
+def _newton(
+    solver: Solver, value: float, starts: list[Motion], bound: float, known: Sequence[Motion]
+) -> list[Motion]:
     """Return what Newton's iteration makes of starts of one shape, damped each by itself."""
     arrived: list[Motion] = []
     size = 2 * solver.problem.system.size
@@ -200,7 +208,7 @@ def _newton(solver: Solver, value: float, starts: list[Motion], bound: float) ->
             return arrived + [
                 found
                 for part in (starts[:half], starts[half:])
-                for found in _newton(solver, value, part, bound)
+                for found in _newton(solver, value, part, bound, known)
             ]
         maps, loads = (
             part.reshape(runs, m, size, -1).swapaxes(0, 1) for part in (swept.maps, swept.loads)
@@ -209,14 +217,13 @@ def _newton(solver: Solver, value: float, starts: list[Motion], bound: float) ->
         first = _solved(np.eye(size) - whole[-1], added[-1])
         change = (whole[:-1] @ first + added[:-1])[..., 0].swapaxes(0, 1)
         going: list[Motion] = []
-        for run in range(runs):
-            here, scale = starts[run], solver.scale(starts[run])
-            large = float(np.max(np.abs(change[run]) / scale))
+        for here, run, step in zip(starts, swept.runs(runs), change, strict=True):
+            scale = solver.scale(here)
+            factor = _turned_away(here, step, scale, known)
+            large = abs(factor) * float(np.max(np.abs(step) / scale))
             if not np.isfinite(large) or float(np.max(np.abs(here.x))) > bound:
                 continue
-            part, at = min(1.0, 0.5 / max(large, 1e-300)), slice(run * m, (run + 1) * m)
-            moved = (swept.response[at] @ change[run][:, None, :, None])[..., 0]
-            ahead = here.moved(part * change[run], part * (swept.stage_loads[at, ..., 0] + moved))
+            ahead = taken(here, run, step, 0.0, factor * min(1.0, 0.5 / max(large, 1e-300)))
             (arrived if large <= _ARRIVED else going).append(ahead)
         starts = going
     return arrived
@@ -271,8 +278,6 @@ def _starts(
 
 def _frequencies(problem: Problem, value: float) -> Array:
     """Return natural frequencies about rest over the drive's speed, coefficients averaged."""
-    from .segments import evaluated
-
     rest = first_motion(problem)
     found = evaluated(problem, value, rest.angles, (*rest.stages(), rest.a))
     mass, stiffness = (np.mean(part, axis=(0, 1)) for part in (found.mass, found.stiffness))
@@ -303,7 +308,8 @@ def _marched(marcher: Marcher, speed: float, state: Array, turns: int) -> Motion
             last = [*last, marcher.revolution(speed, states[-1], before)][-turns:]
             states.append(end(last[-1]))
             size = np.abs(states[-1]) + marcher.problem.system.small
-            near = [k for k in range(1, min(turns, len(states) - 1) + 1) if _back(states, k, size)]
+            gaps = [np.max(np.abs(states[-1] - one) / size) for one in states[-2 : -turns - 2 : -1]]
+            near = [k for k, gap in enumerate(gaps, 1) if gap < _NEAR]
             if near and len(last) >= near[0]:
                 last = last[-near[0] :]
                 break
@@ -314,45 +320,20 @@ def _marched(marcher: Marcher, speed: float, state: Array, turns: int) -> Motion
     return replace(whole, turns=len(last), runs=1)
 
 
-def _back(states: Sequence[Array], turns: int, size: Array) -> bool:
-    """Return True where the last state is all but that of some turns before."""
-    return bool(np.max(np.abs(states[-1] - states[-1 - turns]) / size) < _NEAR)
-
-
-def _deflated(
-    solver: Solver, value: float, start: Motion, known: Sequence[Motion], bound: float
-) -> Motion:
-    """Return a periodic motion near a start and away from the known ones."""
-    # Newton's step of the deflated equations is that of the equations, times a number: with m the
-    # product of 1 + 1 / |y - y_i|^2 over the known motions it is 1 / (1 - m' . step / m).
-    motion = start
-    for _ in range(_ITERATIONS):
-        swept = sweep(solver.problem, value, motion)
-        change = closed(swept)
-        scale = solver.scale(motion)
-        slope = 0.0
-        for other in known:
-            for shift in range(other.turns):
-                apart = motion.states - _at_beginnings(other, motion, shift)
-                square = float(np.mean(np.sum((apart / scale) ** 2, axis=1))) + 1e-300
-                along = float(np.mean(np.sum(apart * change / scale**2, axis=1)))
-                slope -= 2.0 * along / (square * (1.0 + square))
-        factor = 1.0 / (1.0 - slope) if slope != 1.0 else 1.0
-        size = abs(factor) * float(np.max(np.abs(change) / scale))
-        if not np.isfinite(size) or float(np.max(np.abs(motion.x))) > bound:
-            break
-        if size <= _ARRIVED:
-            return motion
-        part = factor * min(1.0, 0.5 / size)
-        motion = taken(motion, swept, change, 0.0, part)
-    raise Lost("no periodic motion was found from the start")
-
-
-def _at_beginnings(other: Motion, motion: Motion, shift: int) -> Array:
-    """Return the states of one motion where the steps of another begin, some turns later."""
-    angles = motion.step * np.arange(len(motion.x)) + 2.0 * np.pi * shift
-    x, v, _ = other.at(np.mod(angles, other.span))
-    return np.concatenate([x, v], axis=1)
+def _turned_away(motion: Motion, change: Array, scale: Array, known: Sequence[Motion]) -> float:
+    """Return what a step of Newton's is multiplied by where the known motions are deflated."""
+    # With m the product of 1 + 1 / |y - y_i|^2 over them it is 1 / (1 - m' . step / m).
+    slope = 0.0
+    for other in known:
+        for shift in range(other.turns):
+            # Where the steps of the motion begin, some turns later.
+            angles = motion.step * np.arange(len(motion.x)) + 2.0 * np.pi * shift
+            x, v, _ = other.at(np.mod(angles, other.span))
+            apart = motion.states - np.concatenate([x, v], axis=1)
+            square = float(np.mean(np.sum((apart / scale) ** 2, axis=1))) + 1e-300
+            along = float(np.mean(np.sum(apart * change / scale**2, axis=1)))
+            slope -= 2.0 * along / (square * (1.0 + square))
+    return 1.0 / (1.0 - slope) if slope != 1.0 else 1.0
 
 
 def _shortest(motion: Motion) -> Motion:

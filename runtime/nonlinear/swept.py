@@ -437,21 +437,20 @@ def basins(
     states[:, 0], states[:, n] = grid[:, 0], grid[:, 1]
     ends = [motion.states[:: len(motion.x) // motion.turns] for motion in motions]
     sizes = np.max([np.max(np.abs(part), axis=0) for part in ends], axis=0) + system.small
-    attractors = _Attractors(ends, sizes)
+    number = np.repeat(np.arange(len(ends)), [len(part) for part in ends])
+    reached = partial(_reached, np.concatenate(ends) / sizes, number, sizes)
     wrong, mapped = 0.0, n == 1 and len(states) > _FEW
+    march = partial(_marched, marcher, speed)
     if mapped:
         step = _mapped(marcher, speed, columns, rows, progress)
-        found = attractors.reached(step, states)
+        found = reached(step, states)
         some = np.random.default_rng(0).choice(len(states), _FEW, replace=False)
-        march = attractors.reached(partial(_marched, marcher, speed), states[some])
-        wrong = float(np.mean(march != found[some]))
+        wrong = float(np.mean(reached(march, states[some]) != found[some]))
     else:
         found = np.full(len(states), -1)
         with bar(progress, len(states), unit="state") as tick:
             for i in range(len(states)):
-                found[i] = attractors.reached(partial(_marched, marcher, speed), states[i : i + 1])[
-                    0
-                ]
+                (found[i],) = reached(march, states[i : i + 1])
                 tick(i + 1)
     return Basins(
         method="map of a revolution on a grid" if mapped else "marching by revolutions",
@@ -473,35 +472,31 @@ def _peak_to_peak(problem: Problem, motion: Motion) -> float:
     return float(np.ptp(problem.system.shown(motion.at(angles)[0])))
 
 
-@dataclass(frozen=True)
-class _Attractors:
-    """States of periodic motions at the beginnings of revolutions, and sizes of the coordinates."""
+def _reached(
+    marks: Array,
+    number: NDArray[np.int64],
+    sizes: Array,
+    step: Callable[[Array], Array],
+    states: Array,
+) -> NDArray[np.int64]:
+    """Return the number of the motion that each state comes to, -1 where to none.
 
-    ends: list[Array]
-    sizes: Array
-
-    def reached(self, step: Callable[[Array], Array], states: Array) -> NDArray[np.int64]:
-        """Return the number of the motion that each state comes to, -1 where to none.
-
-        ``step`` takes states over a revolution; those that it loses become NaN.
-        """
-        found = np.full(len(states), -1)
-        alive = np.arange(len(states))
-        for _ in range(_REVOLUTIONS):
-            states = step(states)
-            near = np.array(
-                [
-                    np.min(np.max(np.abs(states[:, None] - part) / self.sizes, axis=2), axis=1)
-                    for part in self.ends
-                ]
-            )
-            arrived = np.min(near, axis=0) < _REACHED
-            found[alive[arrived]] = np.argmin(near, axis=0)[arrived]
-            keep = ~arrived & np.all(np.isfinite(states), axis=1)
-            alive, states = alive[keep], states[keep]
-            if not alive.size:
-                break
-        return found
+    ``marks``: states of all motions at the beginnings of revolutions, over sizes of the
+    coordinates, with the number of each one's motion.  ``step`` takes states over a revolution;
+    those that it loses become NaN.
+    """
+    found = np.full(len(states), -1)
+    alive = np.arange(len(states))
+    for _ in range(_REVOLUTIONS):
+        states = step(states)
+        gaps = np.max(np.abs((states / sizes)[:, None] - marks), axis=2)
+        arrived = np.min(gaps, axis=1) < _REACHED
+        found[alive[arrived]] = number[np.argmin(gaps, axis=1)[arrived]]
+        keep = ~arrived & np.all(np.isfinite(states), axis=1)
+        alive, states = alive[keep], states[keep]
+        if not alive.size:
+            break
+    return found
 
 
 def _marched(marcher: Marcher, speed: float, states: Array) -> Array:

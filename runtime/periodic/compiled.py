@@ -41,13 +41,6 @@ class CompiledTable:
         flow: Array = kernels()[0](self.groups, self.inner[:0], self.within, self._at(inverse))[1]
         return flow
 
-    def flows(self, inverse: float) -> tuple[Array, Array]:
-        """Return the flows to the angles, ``(nt, m, m)``, and over the period, ``(m, m)``."""
-        found: tuple[Array, Array] = kernels()[0](
-            self.groups, self.inner, self.within, self._at(inverse)
-        )
-        return found
-
     def march(self, inverse: float, start: Array, periods: int) -> tuple[Array, Array]:
         """Return states ``(periods nt + 1, m)``, and the largest of each component at starts."""
         states: tuple[Array, Array] = kernels()[1](

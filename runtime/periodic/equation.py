@@ -302,14 +302,13 @@ class Equation:
             value = -damping if value is None else value - damping
         return value
 
-    def state(self, angle: float, q: Array, slope: Array) -> Array:
-        """Return the scaled state of the first member from coordinates and dq/dtheta, ``(2n,)``."""
-        place = np.array([angle])
-        unit = self.scale[0]
-        momentum = self.at("mass", place)[0, 0] @ (slope / unit)
+    def states(self, angles: Array, q: Array, slope: Array) -> Array:
+        """Return scaled states of the first member ``(nt, 2n)`` from coordinates and dq/dtheta."""
+        place, rate = q / self.scale[0], slope / self.scale[0]
+        momentum = (self.at("mass", angles)[0] @ rate[..., None])[..., 0]
         if "gyroscopic" in self.fields:
-            momentum = momentum + self.at("gyroscopic", place)[0, 0] @ (q / unit)
-        return np.concatenate([q / unit, momentum])
+            momentum += (self.at("gyroscopic", angles)[0] @ place[..., None])[..., 0]
+        return np.concatenate([place, momentum], axis=-1)
 
     def divergence(self) -> Array:
         """Return the integral of the trace of L over a period, ``(nb,)``; Liouville's exponent."""
@@ -553,15 +552,8 @@ def _waves(harmonics: int, phase: Array) -> Array:
 
 def _rows(system: LinearPeriodic, terms: Sequence[Term], angles: Array) -> Array:
     """Return the values of all terms beside each other, one row per angle, finite."""
-    values = [np.asarray(term(angles), dtype=float) for term in terms]
-    for term, value in zip(terms, values, strict=True):
-        if value.shape != (len(angles),) + (system.size,) * (1 if term.array in "fhp" else 2):
-            _checked(system, term, angles)
-    table = np.concatenate([value.reshape(len(angles), -1) for value in values], axis=1)
-    if not np.all(np.isfinite(table)):
-        for term in terms:
-            _checked(system, term, angles)
-    return table
+    values = [_checked(system, term, angles).reshape(len(angles), -1) for term in terms]
+    return np.concatenate(values, axis=1)
 
 
 def _checked(system: LinearPeriodic, term: Term, angles: Array) -> Array:
@@ -594,19 +586,17 @@ def _fields(known: SampledSystem, factors: Mapping[int, Array]) -> dict[str, Fie
         members = [place for place in acting if FIELD[system.terms[place].array][0] == name]
         if not members:
             continue
-        constant: Array | None = None
-        for place in members:
-            if system.terms[place].constant:
-                part = np.multiply.outer(factors[place], values[place])
-                constant = part if constant is None else constant + part
         varying = [place for place in members if not system.terms[place].constant]
-        count = len(factors[members[0]])
+        fixed = [
+            np.multiply.outer(factors[place], values[place])
+            for place in members
+            if system.terms[place].constant
+        ]
+        each = [factors[place] for place in varying]
         fields[name] = Field(
-            constant,
-            np.stack([factors[place] for place in varying], axis=1)
-            if varying
-            else np.zeros((count, 0)),
-            np.stack([values[place] for place in varying]) if varying else np.zeros((0, 0)),
+            sum(fixed[1:], start=fixed[0]) if fixed else None,
+            np.stack(each, axis=1) if each else np.zeros((len(factors[members[0]]), 0)),
+            np.array([values[place] for place in varying]),
             tuple(system.terms[place] for place in varying),
         )
     return fields

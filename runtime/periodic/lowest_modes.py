@@ -21,7 +21,7 @@ from ..core.trigonometric import differentiated
 from .equation import equation_of, sampled
 from .moving_basis import still_modes
 from .swept_motions import Truncations
-from .tables import flows_at
+from .tables import flows_at, products_to
 from .transition import cheapest, segments_of
 from .truncation import TruncatedSystem
 
@@ -82,7 +82,11 @@ def exponent_changes(truncated: TruncatedSystem, speed: float) -> Array:
     equation = equation_of(sampled(truncated), np.array([speed]))
     period, m, theta = truncated.period, truncated.size, truncated.theta
     way, segments = cheapest(equation, _RTOL, len(theta), stiff=False)
-    flows, left_over, whole = _both_ways(segments_of(equation, segments, way).maps[0], len(theta))
+    maps = segments_of(equation, segments, way).maps
+    flows, whole = (part[0] for part in products_to(maps, len(theta)))
+    # From each angle to the end: transposed, the segments backwards.
+    back = products_to(maps[:, ::-1].mT, len(theta))[0][0].mT
+    left_over = np.concatenate([whole[None], back[:0:-1]])
     multipliers, vectors = np.linalg.eig(whole)
     alive = np.abs(multipliers) > _DEAD
     multipliers, adjoint = multipliers[alive].astype(complex), np.linalg.inv(vectors)[alive]
@@ -105,44 +109,15 @@ def exponent_changes(truncated: TruncatedSystem, speed: float) -> Array:
     return changes
 
 
-def _both_ways(maps: Array, angles: int) -> tuple[Array, Array, Array]:
-    """Return the matrices from 0 to even angles, from there to the end, and over the period."""
-    every = len(maps) // angles
-    running = after = np.eye(maps.shape[-1])
-    flows, left_over = np.empty((2, angles, *running.shape))
-    for k, step in enumerate(maps):
-        if k % every == 0:
-            flows[k // every] = running
-        running = step @ running
-    for k in range(len(maps) - 1, -1, -1):
-        after = after @ maps[k]
-        if k % every == 0:
-            left_over[k // every] = after
-    return flows, left_over, running
-
-
 class LowestModes:
-    """Truncations of a stiff system whose exponents are known, each made once.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        The system, with its present parameters.
-    least : int
-        Fewest modes that are kept.
-
-    Attributes
-    ----------
-    rounding : ndarray, shape (n,)
-        Relative error of each mode's exponents by round-off of the stiffest one.
-    """
+    """Truncations of a stiff system, ``least`` modes or more, whose exponents are known."""
 
     def __init__(self, system: LinearPeriodic, least: int = 4) -> None:
         self.truncations = Truncations(system, min(least, system.size))
         still = still_modes(system, _FEWEST)
         self._top = np.sqrt(np.max(still.squares, axis=0))
         # Entries are rounded as the stiffest mode's are, those of slow modes too: of their
-        # exponents this is a sixteenth or less.
+        # exponents, (n,), this relative error is a sixteenth or less.
         slowest, stiffest = np.min(still.squares, axis=0), np.max(still.squares)
         self.rounding = _EPS / 16.0 * stiffest / np.maximum(slowest, _EPS * stiffest)
 

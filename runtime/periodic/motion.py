@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from math import ceil, factorial, fmod
 from typing import Any, ClassVar
 
@@ -24,6 +24,7 @@ from .transition import Method, method, predicted_error, product, segments_from
 
 SCIPY_METHODS = ("RK45", "DOP853", "Radau", "BDF", "LSODA")
 _EPS = float(np.finfo(float).eps)
+_Tick = Callable[[int], None]
 # Given angles in all, and of a revolution.
 _MOST_INTERVALS, _MOST_SAMPLES = 2**22, 2**20
 # Nodes of collocation between given angles, and the fineness of what an interval is divided into
@@ -190,20 +191,20 @@ def simulate(
     """
     _check_arguments(method, revolutions, rtol, samples, bound, start)
     require_flag("forcing", forcing)
-    equation = equation_of(system, _number("speed", speed), parameters, forcing=forcing)
+    equation = equation_of(system, one_number("speed", speed), parameters, forcing=forcing)
     begin = _within(equation.period, float(start))
-    state = _start(equation, initial, begin)
-    grid = _Grid(equation.period, begin, float(revolutions), int(samples))
-    with bar(progress, grid.intervals) as tick:
+    start_state = begin, _start(equation, initial, begin)
+    march = _March(equation, start_state, float(revolutions), int(samples), bound)
+    with bar(progress, march.intervals) as tick:
         if method == "auto":
-            run, error, allowed = _converged(equation, grid, state, rtol, bound, tick)
+            run, error, allowed = march.converged(rtol, tick)
         else:
-            run = _by_scipy(equation, grid, state, method, rtol, bound, tick)
-            other, remaining, _ = _converged(equation, grid, state, 1e-10, bound, None)
-            error, allowed = _gap(equation, other, run) + remaining, FAIR
-    theta = grid.theta[: len(run.states)]
+            run = march.by_scipy(method, rtol, tick)
+            other, remaining, _ = march.converged(1e-10)
+            error, allowed = march.gap(other, run) + remaining, FAIR
+    theta = march.theta[: len(run.states)]
     q, slope = _unscaled(equation, theta, run.states)
-    largest = _largest(equation.system, grid, q)
+    largest = march.largest(q)
     warn_of_large_deflection(largest, nonlinear=equation.system.provenance.get("nonlinear", ""))
     checks = partial(_checks, equation, (theta, q, slope), float(np.max(error)), allowed, largest)
     value = float(equation.speed[0])
@@ -235,26 +236,6 @@ def _within(period: float, start: float) -> float:
     return fmod(start, period)
 
 
-class _Grid:
-    def __init__(self, period: float, start: float, revolutions: float, samples: int) -> None:
-        self.start, self.step = start, 2.0 * np.pi / samples
-        whole = revolutions * samples
-        self.intervals = max(1, ceil(whole - 1e-9))
-        self.theta = start + self.step * np.arange(self.intervals + 1.0)
-        self.theta[-1] = start + revolutions * 2.0 * np.pi
-        # Intervals after which the coefficients repeat; all of them, where at no given angle.
-        self.lengths = np.diff(self.theta)
-        self.short = self.lengths < (1.0 - 1e-8) * self.step
-        cycle = period / self.step
-        repeats = abs(cycle - round(cycle)) < 1e-9 * cycle
-        self.cycle = round(cycle) if repeats else self.intervals
-
-    def blocks(self) -> list[tuple[int, int]]:
-        """Return first and last interval of each period."""
-        edges = [*range(0, self.intervals, self.cycle), self.intervals]
-        return list(pairwise(edges))
-
-
 @dataclass(frozen=True)
 class _Run:
     """Scaled states at the given angles as far as a motion went."""
@@ -265,208 +246,245 @@ class _Run:
     message: str = "the end was reached"
 
 
-def _largest(system: LinearPeriodic, grid: _Grid, q: Array) -> float | None:
-    """Return the largest deflection over the length; the shapes are those of one period."""
-    cycle = min(grid.cycle, len(q))
-    whole = len(q) // cycle
-    parts = [q[: whole * cycle].reshape(whole, cycle, -1)]
-    if len(q) > whole * cycle:
-        parts.append(q[None, whole * cycle :])
-    sizes = [system.largest_deflection(grid.theta[: part.shape[1]], part) for part in parts]
-    return None if sizes[0] is None else max(size for size in sizes if size is not None)
+class _March:
+    """A motion that is wanted: from a scaled state on, at given angles, until it passes a bound."""
 
+    def __init__(
+        self,
+        equation: Equation,
+        start: tuple[float, Array],
+        revolutions: float,
+        samples: int,
+        bound: float,
+    ) -> None:
+        self.equation, self.samples, self.bound = equation, samples, bound
+        self.start, self.state = start
+        self.step = 2.0 * np.pi / samples
+        whole = revolutions * samples
+        self.intervals = max(1, ceil(whole - 1e-9))
+        self.theta = self.start + self.step * np.arange(self.intervals + 1.0)
+        self.theta[-1] = self.start + revolutions * 2.0 * np.pi
+        self.lengths = np.diff(self.theta)
+        self.short = self.lengths < (1.0 - 1e-8) * self.step
+        # Intervals after which the coefficients repeat; all of them, where at no given angle.
+        cycle = equation.period / self.step
+        repeats = abs(cycle - round(cycle)) < 1e-9 * cycle
+        self.cycle = round(cycle) if repeats else self.intervals
 
-def _converged(
-    equation: Equation,
-    grid: _Grid,
-    state: Array,
-    rtol: float,
-    bound: float,
-    tick: Callable[[int], None] | None,
-) -> tuple[_Run, Array, float]:
-    """Return a motion, its error and what it may be: levels are compared until they agree."""
-    turned = float(np.max(equation.frequency)) * (grid.theta[-1] - grid.start)
-    rounding = _EPS * (64.0 + 2.0 * turned)
-    kind, levels = _ladder(equation, grid, rtol)
-    coarse = _march(equation, grid, state, kind, levels[0], bound, None)
-    before, last = np.inf, np.zeros(equation.size)
-    for below, level in pairwise(levels):
-        fine = _march(equation, grid, state, kind, level, bound, tick)
-        _, likely, share = _likely(equation, grid, kind, (below, level))
-        gap = _gap(equation, coarse, fine)
-        # What is not resolved, but falls, falls at least as much again.
-        falling = _MARGIN * gap / np.maximum(last, 1e-300) if below[1] < 1.0 else 1.0
-        error, last = np.minimum(share, falling) * gap + rounding, gap
-        worst = float(np.max(error))
-        stuck = worst > 0.5 * before and worst < 1e-3 and likely < worst
-        if worst <= rtol or stuck:
-            break
-        coarse, before = fine, worst
-    return fine, error, max(rtol, 100.0 * rounding)
+    def largest(self, q: Array) -> float | None:
+        """Return the largest deflection over the length; the shapes are those of one period."""
+        cycle = min(self.cycle, len(q))
+        whole = len(q) // cycle
+        parts = [q[: whole * cycle].reshape(whole, cycle, -1)]
+        if len(q) > whole * cycle:
+            parts.append(q[None, whole * cycle :])
+        largest = self.equation.system.largest_deflection
+        sizes = [largest(self.theta[: part.shape[1]], part) for part in parts]
+        return None if sizes[0] is None else max(size for size in sizes if size is not None)
 
+    def converged(self, rtol: float, tick: _Tick | None = None) -> tuple[_Run, Array, float]:
+        """Return a motion, its error and what it may be: levels are compared until they agree."""
+        equation = self.equation
+        turned = float(np.max(equation.frequency)) * (self.theta[-1] - self.start)
+        rounding = _EPS * (64.0 + 2.0 * turned)
+        kind, levels = self._ladder(rtol)
+        coarse = self._on_level(kind, levels[0])
+        before, last = np.inf, np.zeros(equation.size)
+        for below, level in pairwise(levels):
+            fine = self._on_level(kind, level, tick)
+            _, likely, share = self._likely(kind, (below, level))
+            gap = self.gap(coarse, fine)
+            # What is not resolved, but falls, falls at least as much again.
+            falling = _MARGIN * gap / np.maximum(last, 1e-300) if below[1] < 1.0 else 1.0
+            error, last = np.minimum(share, falling) * gap + rounding, gap
+            worst = float(np.max(error))
+            stuck = worst > 0.5 * before and worst < 1e-3 and likely < worst
+            if worst <= rtol or stuck:
+                break
+            coarse, before = fine, worst
+        return fine, error, max(rtol, 100.0 * rounding)
 
-def _likely(
-    equation: Equation, grid: _Grid, kind: str, levels: tuple[_Level, _Level]
-) -> tuple[float, float, float]:
-    """Return the likely errors of two levels, and the share of their gap."""
-    coarse, fine = (_predicted(equation, grid, kind, level) for level in levels)
-    turned = float(equation.fastest[0]) * grid.step
-    unresolved = kind == "radau" and turned > _PHASE * levels[1][1]
-    least = _UNRESOLVED if unresolved else _LEAST
-    # What modes that the nodes resolve make of missed waves falls with the order of the method.
-    power = 2 if turned < levels[0][0] * ceil(levels[0][1]) else 1
-    missed = [_missed(equation, grid, level) ** power for level in levels]
-    # Waves that are missed by less than round-off do not count.
-    waves = missed[1] / max(missed[0], 1e-300) if missed[1] > _EPS else 0.0
-    part = max(_MARGIN * fine / max(coarse, 1e-300), waves)
-    return coarse, fine, float(np.clip(part, least, 1.0))
+    def _likely(self, kind: str, levels: tuple[_Level, _Level]) -> tuple[float, float, float]:
+        """Return the likely errors of two levels, and the share of their gap."""
+        coarse, fine = (self._predicted(kind, level) for level in levels)
+        turned = float(self.equation.fastest[0]) * self.step
+        unresolved = kind == "radau" and turned > _PHASE * levels[1][1]
+        least = _UNRESOLVED if unresolved else _LEAST
+        # What modes that the nodes resolve make of missed waves falls with the order of the method.
+        power = 2 if turned < levels[0][0] * ceil(levels[0][1]) else 1
+        missed = [self._missed(level) ** power for level in levels]
+        # Waves that are missed by less than round-off do not count.
+        waves = missed[1] / max(missed[0], 1e-300) if missed[1] > _EPS else 0.0
+        part = max(_MARGIN * fine / max(coarse, 1e-300), waves)
+        return coarse, fine, float(np.clip(part, least, 1.0))
 
+    def _missed(self, level: _Level) -> float:
+        """Return what the nodes of a step miss of the coefficients' waves, at most 1."""
+        # The polynomial through s nodes misses 2 (R h/4)^s / s! of a wave R; of amplitudes that
+        # fall to a millionth at the reach the worst is that of about s/14 of it.
+        stages, fineness = level
+        wave = self.equation.reach * min(1.0, stages / 14.0) * self.step / ceil(fineness)
+        return min(1.0, 2.0 * (0.25 * wave) ** stages / factorial(stages))
 
-def _missed(equation: Equation, grid: _Grid, level: _Level) -> float:
-    """Return what the nodes of a step miss of the coefficients' waves, at most 1."""
-    # The polynomial through s nodes misses 2 (R h/4)^s / s! of a wave R; of amplitudes that fall to
-    # a millionth at the reach the worst is that of about s/14 of it.
-    stages, fineness = level
-    wave = equation.reach * min(1.0, stages / 14.0) * grid.step / ceil(fineness)
-    return min(1.0, 2.0 * (0.25 * wave) ** stages / factorial(stages))
+    def _predicted(self, kind: str, level: _Level) -> float:
+        """Return the likely error of a motion on a level, over its first period."""
+        equation, (stages, fineness) = self.equation, level
+        way, steps = method(kind, stages), equation.period / self.step
+        parts = np.ceil(fineness * _power(equation.frequency[0] * self.step))
+        rates = equation.rates[0]
+        quick = replace(equation, frequency=rates[None])
+        error = [
+            predicted_error(quick.with_slow_modes(rate), way, np.array([steps * part]))[0]
+            for rate, part in zip(rates, parts, strict=True)
+        ]
+        return float(np.max(error, initial=0.0))
 
+    def _ladder(self, rtol: float) -> tuple[str, tuple[_Level, ...]]:
+        """Return the kind of collocation, and levels whose second is likely accurate enough."""
+        equation = self.equation
+        kind = "radau" if equation.damped else "gauss"
+        periods = (self.theta[-1] - self.start) / equation.period
+        turned = float(np.max(equation.frequency, initial=0.0)) * self.step
+        if turned > 2.0:
+            # How far fast modes are excited is not known beforehand: seldom much.
+            most = float(np.max(equation.decay, initial=0.0))
+            if most * periods > _DEAD or most * self.step > _LIVELY * equation.period:
+                return kind, _LEVELS[_STIFF - 1 :]
+            parts = np.max(self._divisions(1, 1.0))
+            coarser = (at for at in _COARSE if at[1] * parts >= 1.0)
+            return "gauss", (*coarser, *_LEVELS[_STIFF - 1 :])
+        # Errors of an undamped mode add up from one period to the next.
+        decay = float(np.min(equation.decay, initial=np.inf))
+        adding = min(max(periods, 1.0), 1.0 + 1.0 / max(decay, 1e-9))
+        for place in range(1, len(_LEVELS) - 1):
+            coarse, fine, share = self._likely(kind, (_LEVELS[place - 1], _LEVELS[place]))
+            if max(_MARGIN * fine, share * coarse) * adding <= rtol:
+                break
+        return kind, _LEVELS[place - 1 :]
 
-def _predicted(equation: Equation, grid: _Grid, kind: str, level: _Level) -> float:
-    """Return the likely error of a motion on a level, over its first period."""
-    stages, fineness = level
-    way, h = method(kind, stages), grid.step
-    parts = np.ceil(fineness * _power(equation.frequency[0] * h))
-    rates = equation.rates[0]
-    quick = replace(equation, frequency=rates[None])
-    error = [
-        predicted_error(quick.with_slow_modes(rate), way, np.array([equation.period / h * r]))[0]
-        for rate, r in zip(rates, parts, strict=True)
-    ]
-    return float(np.max(error, initial=0.0))
+    def _divisions(self, count: int, fineness: float) -> NDArray[np.intp]:
+        """Return the steps that each of the first intervals is divided into, by modes alive."""
+        equation = self.equation
+        passed = self.step * np.arange(float(count)) / equation.period
+        alive = equation.decay[0] * passed[:, None] < _DEAD
+        rate = np.max(np.where(alive, equation.frequency[0], 0.0), axis=1)
+        parts = np.ceil(fineness * _power(rate * self.step))
+        if np.max(parts) > _MOST_DIVISIONS:
+            raise bad(
+                "speed",
+                f"{float(equation.speed[0]):.6g} rad/s, where the highest mode turns through "
+                f"{float(np.max(equation.frequency)) * equation.period:.3g} rad in a period",
+                f"{_MOST_DIVISIONS} steps at most between two given angles",
+                "raise the speed or samples, or leave out the highest modes",
+            )
+        return np.asarray(parts, dtype=np.intp)
 
+    def _on_level(self, kind: str, level: _Level, tick: _Tick | None = None) -> _Run:
+        """Return the motion by transition matrices between the given angles."""
+        stages, fineness = level
+        way = method(kind, stages)
+        divisions = self._divisions(self.intervals, fineness)
+        steps = int(self.samples * divisions[-1])
+        pieces = [self.state[None]]
+        limit = self.bound / self.equation.scale[0]
+        known: dict[tuple[int, int, bool], Array] = {}
+        # From period to period.
+        for begin, end in pairwise([*range(0, self.intervals, self.cycle), self.intervals]):
+            key = (end - begin, int(np.max(divisions[begin:end])), bool(self.short[end - 1]))
+            same = key in known and bool(np.all(divisions[begin:end] == divisions[-1]))
+            if not same:
+                known[key] = self._flows((begin, end), divisions[begin:end], way)
+            with np.errstate(over="ignore", invalid="ignore"):
+                piece = (known[key] @ pieces[-1][-1][:, None])[:, :, 0]
+            pieces.append(piece)
+            if tick is not None:
+                tick(end)
+            outside = ~np.all(np.abs(piece[:, : self.equation.size]) <= limit, axis=1)
+            if np.any(outside):
+                last = int(np.argmax(outside))
+                kept = last if not np.all(np.isfinite(piece[last])) else last + 1
+                pieces[-1] = piece[:kept]
+                return self._passed(np.concatenate(pieces), steps)
+        return _Run(np.concatenate(pieces), steps)
 
-def _ladder(equation: Equation, grid: _Grid, rtol: float) -> tuple[str, tuple[_Level, ...]]:
-    """Return the kind of collocation, and levels whose second one is likely accurate enough."""
-    kind = "radau" if equation.damped else "gauss"
-    periods = (grid.theta[-1] - grid.start) / equation.period
-    turned = float(np.max(equation.frequency, initial=0.0)) * grid.step
-    if turned > 2.0:
-        # How far fast modes are excited is not known beforehand: seldom much.
-        most = float(np.max(equation.decay, initial=0.0))
-        if most * periods > _DEAD or most * grid.step > _LIVELY * equation.period:
-            return kind, _LEVELS[_STIFF - 1 :]
-        parts = np.max(_divisions(equation, grid, 1, 1.0))
-        return "gauss", (*(at for at in _COARSE if at[1] * parts >= 1.0), *_LEVELS[_STIFF - 1 :])
-    # Errors of an undamped mode add up from one period to the next.
-    decay = float(np.min(equation.decay, initial=np.inf))
-    adding = min(max(periods, 1.0), 1.0 + 1.0 / max(decay, 1e-9))
-    for place in range(1, len(_LEVELS) - 1):
-        coarse, fine, share = _likely(equation, grid, kind, (_LEVELS[place - 1], _LEVELS[place]))
-        if max(_MARGIN * fine, share * coarse) * adding <= rtol:
-            break
-    return kind, _LEVELS[place - 1 :]
+    def _passed(self, states: Array, steps: int) -> _Run:
+        turns = (self.theta[len(states) - 1] - self.start) / (2 * np.pi)
+        told = f"a coordinate passed the bound {self.bound:.3g} after {turns:.6g} revolutions"
+        return _Run(states, steps, 1, told)
 
+    def _flows(self, block: tuple[int, int], divisions: NDArray[np.intp], way: Method) -> Array:
+        """Return the transition matrices from the beginning of a block of intervals to the ends."""
+        begin, end = block
+        m = 2 * self.equation.size + self.equation.forced
+        single = np.empty((end - begin, m, m))
+        lengths = self.lengths[begin:end]
+        kinds = np.stack([divisions, self.short[begin:end]])
+        for parts, short in np.unique(kinds, axis=1).T:
+            places = np.flatnonzero((kinds[0] == parts) & (kinds[1] == short))
+            count = int(parts)
+            h = float(lengths[places[0]] if short else self.step) / count
+            left = self.theta[begin + places][:, None] + h * np.arange(float(count))
+            maps = segments_from(self.equation, left.ravel(), h, way).maps[0]
+            single[places], _ = product(maps.reshape(len(places), count, m, m))
+        with np.errstate(over="ignore", invalid="ignore"):
+            return np.array([*accumulate(single, lambda total, one: one @ total)])
 
-def _divisions(equation: Equation, grid: _Grid, count: int, fineness: float) -> NDArray[np.intp]:
-    """Return into how many steps each of the first intervals is divided, for the modes alive."""
-    passed = grid.step * np.arange(float(count)) / equation.period
-    alive = equation.decay[0] * passed[:, None] < _DEAD
-    rate = np.max(np.where(alive, equation.frequency[0], 0.0), axis=1)
-    parts = np.ceil(fineness * _power(rate * grid.step))
-    if np.max(parts) > _MOST_DIVISIONS:
-        raise bad(
-            "speed",
-            f"{float(equation.speed[0]):.6g} rad/s, where the highest mode turns through "
-            f"{float(np.max(equation.frequency)) * equation.period:.3g} rad in a period",
-            f"{_MOST_DIVISIONS} steps at most between two given angles",
-            "raise the speed or samples, or leave out the highest modes",
-        )
-    return np.asarray(parts, dtype=np.intp)
+    def gap(self, coarse: _Run, fine: _Run) -> Array:
+        """Return the largest difference of each coordinate over its peak, ``(n,)``."""
+        n, number = self.equation.size, min(len(coarse.states), len(fine.states))
+        first, second = coarse.states[:number, :n], fine.states[:number, :n]
+        with np.errstate(over="ignore", invalid="ignore"):
+            gap = np.max(np.abs(first - second), axis=0) / peaks(second[None])[0]
+        return np.where(np.isfinite(gap), gap, 1.0)
+
+    def by_scipy(self, name: str, rtol: float, tick: _Tick | None) -> _Run:
+        """Return the motion by a method of :func:`scipy.integrate.solve_ivp`."""
+        from scipy.integrate import solve_ivp
+
+        equation, state = self.equation, self.state
+        limit, reached = self.bound / equation.scale[0], 0
+
+        def jacobian(angle: float, y: Array) -> Array:
+            del y
+            value: Array = equation.generator(np.array([angle]))[0, 0]
+            return value
+
+        def slope(angle: float, y: Array) -> Array:
+            return np.asarray(jacobian(angle, y) @ y)
+
+        def inside(angle: float, y: Array) -> float:
+            nonlocal reached
+            if tick is not None:
+                reached = max(reached, int(np.searchsorted(self.theta, angle, side="right")) - 1)
+                tick(reached)
+            return float(1.0 - np.max(np.abs(y[: len(limit)]) / limit))
+
+        inside.terminal = True  # type: ignore[attr-defined]
+        options: dict[str, Any] = {"method": name, "events": inside, "t_eval": self.theta}
+        if name in ("Radau", "BDF", "LSODA"):
+            options["jac"] = jacobian
+        # A motion from rest has no size yet: that of the first quarter of a wave.
+        quarter = 0.25 / max(1.0, float(np.max(equation.frequency)))
+        beginning = _March(equation, (self.start, state), quarter, 16, np.inf)
+        states = beginning._on_level("radau", _LEVELS[5]).states
+        peak = float(np.max(np.abs(states[:, : 2 * equation.size])))
+        atol = np.full(len(state), rtol * (peak if 0 < peak < np.inf else 1.0) * 1e-2)
+        options |= {"rtol": max(rtol, 2.5e-14), "atol": atol, "dense_output": True}
+        with np.errstate(over="ignore", invalid="ignore"):
+            solution = solve_ivp(slope, (self.theta[0], self.theta[-1]), state, **options)
+        states = np.ascontiguousarray(solution.y.T)
+        steps = 0 if solution.sol is None else len(solution.sol.ts) - 1
+        if solution.status == 1:
+            return self._passed(states, steps)
+        if solution.status == 0:
+            return _Run(states, steps)
+        return _Run(states, steps, 2, str(solution.message))
 
 
 def _power(turned: Array) -> Array:
     """Return the divisions of fineness 1, powers of two: so few different numbers occur."""
     value: Array = np.exp2(np.ceil(np.log2(np.maximum(1.0, turned / _PHASE))))
     return value
-
-
-def _march(
-    equation: Equation,
-    grid: _Grid,
-    state: Array,
-    kind: str,
-    level: _Level,
-    bound: float,
-    tick: Callable[[int], None] | None,
-) -> _Run:
-    """Return the motion by transition matrices between the given angles."""
-    stages, fineness = level
-    way = method(kind, stages)
-    divisions = _divisions(equation, grid, grid.intervals, fineness)
-    steps = int(round(2.0 * np.pi / grid.step) * divisions[-1])
-    pieces, done = [state[None]], 0
-    limit = bound / equation.scale[0]
-    known: dict[tuple[int, int, bool], Array] = {}
-    for begin, end in grid.blocks():
-        key = (end - begin, int(np.max(divisions[begin:end])), bool(grid.short[end - 1]))
-        same = key in known and bool(np.all(divisions[begin:end] == divisions[-1]))
-        if not same:
-            known[key] = _flows(equation, grid, (begin, end), divisions[begin:end], way)
-        with np.errstate(over="ignore", invalid="ignore"):
-            piece = (known[key] @ pieces[-1][-1][:, None])[:, :, 0]
-        pieces.append(piece)
-        done = end
-        if tick is not None:
-            tick(done)
-        outside = ~np.all(np.abs(piece[:, : equation.size]) <= limit, axis=1)
-        if np.any(outside):
-            last = int(np.argmax(outside))
-            kept = last if not np.all(np.isfinite(piece[last])) else last + 1
-            pieces[-1] = piece[:kept]
-            return _Run(np.concatenate(pieces), steps, 1, _passed(grid, pieces, bound))
-    return _Run(np.concatenate(pieces), steps)
-
-
-def _passed(grid: _Grid, pieces: Sequence[Array], bound: float) -> str:
-    turns = (grid.theta[sum(map(len, pieces)) - 1] - grid.start) / (2 * np.pi)
-    return f"a coordinate passed the bound {bound:.3g} after {turns:.6g} revolutions"
-
-
-def _flows(
-    equation: Equation,
-    grid: _Grid,
-    block: tuple[int, int],
-    divisions: NDArray[np.intp],
-    way: Method,
-) -> Array:
-    """Return the transition matrices from the left end of a block of intervals to their ends."""
-    begin, end = block
-    m = 2 * equation.size + equation.forced
-    single = np.empty((end - begin, m, m))
-    lengths = grid.lengths[begin:end]
-    kinds = np.stack([divisions, grid.short[begin:end]])
-    for parts, short in np.unique(kinds, axis=1).T:
-        places = np.flatnonzero((kinds[0] == parts) & (kinds[1] == short))
-        count = int(parts)
-        h = float(lengths[places[0]] if short else grid.step) / count
-        left = grid.theta[begin + places][:, None] + h * np.arange(float(count))
-        maps = segments_from(equation, left.ravel(), h, way).maps[0]
-        single[places], _ = product(maps.reshape(len(places), count, m, m))
-    total = np.eye(m)
-    with np.errstate(over="ignore", invalid="ignore"):
-        for k, one in enumerate(single):
-            total = one @ total
-            single[k] = total
-    return single
-
-
-def _gap(equation: Equation, coarse: _Run, fine: _Run) -> Array:
-    """Return the largest difference of each coordinate over its peak, ``(n,)``."""
-    n, number = equation.size, min(len(coarse.states), len(fine.states))
-    first, second = coarse.states[:number, :n], fine.states[:number, :n]
-    with np.errstate(over="ignore", invalid="ignore"):
-        gap = np.max(np.abs(first - second), axis=0) / peaks(second[None])[0]
-    return np.where(np.isfinite(gap), gap, 1.0)
 
 
 def _unscaled(equation: Equation, theta: Array, states: Array) -> tuple[Array, Array]:
@@ -478,58 +496,6 @@ def _unscaled(equation: Equation, theta: Array, states: Array) -> tuple[Array, A
     mass = np.broadcast_to(equation.at("mass", theta)[0], (len(theta), n, n))
     slope = np.linalg.solve(mass, momentum[..., None])[..., 0]
     return q * unit, slope * unit
-
-
-def _by_scipy(
-    equation: Equation,
-    grid: _Grid,
-    state: Array,
-    name: str,
-    rtol: float,
-    bound: float,
-    tick: Callable[[int], None] | None,
-) -> _Run:
-    """Return the motion by a method of :func:`scipy.integrate.solve_ivp`."""
-    from scipy.integrate import solve_ivp
-
-    limit, reached = bound / equation.scale[0], 0
-
-    def jacobian(angle: float, y: Array) -> Array:
-        del y
-        value: Array = equation.generator(np.array([angle]))[0, 0]
-        return value
-
-    def slope(angle: float, y: Array) -> Array:
-        return np.asarray(jacobian(angle, y) @ y)
-
-    def inside(angle: float, y: Array) -> float:
-        nonlocal reached
-        if tick is not None:
-            reached = max(reached, int(np.searchsorted(grid.theta, angle, side="right")) - 1)
-            tick(reached)
-        return float(1.0 - np.max(np.abs(y[: len(limit)]) / limit))
-
-    inside.terminal = True  # type: ignore[attr-defined]
-    options: dict[str, Any] = {"method": name, "events": inside, "t_eval": grid.theta}
-    if name in ("Radau", "BDF", "LSODA"):
-        options["jac"] = jacobian
-    # A motion from rest has no size yet: that of the first quarter of a wave.
-    quarter = _Grid(
-        equation.period, grid.start, 0.25 / max(1.0, float(np.max(equation.frequency))), 16
-    )
-    beginning = _march(equation, quarter, state, "radau", _LEVELS[5], np.inf, None).states
-    peak = float(np.max(np.abs(beginning[:, : 2 * equation.size])))
-    atol = np.full(len(state), rtol * (peak if 0 < peak < np.inf else 1.0) * 1e-2)
-    options |= {"rtol": max(rtol, 2.5e-14), "atol": atol, "dense_output": True}
-    with np.errstate(over="ignore", invalid="ignore"):
-        solution = solve_ivp(slope, (grid.theta[0], grid.theta[-1]), state, **options)
-    states = np.ascontiguousarray(solution.y.T)
-    steps = 0 if solution.sol is None else len(solution.sol.ts) - 1
-    if solution.status == 1:
-        return _Run(states, steps, 1, _passed(grid, [states], bound))
-    if solution.status == 0:
-        return _Run(states, steps)
-    return _Run(states, steps, 2, str(solution.message))
 
 
 def _checks(
@@ -561,7 +527,7 @@ def _start(
             raise bad("initial", "nothing, and no forcing acts", "a start away from rest", fix)
         return np.concatenate([np.zeros(2 * n), [1.0]])
     q, qd = start_values(equation.system, initial)
-    state = equation.state(float(start), q, qd / float(equation.speed[0]))
+    (state,) = equation.states(np.array([start]), q[None], qd[None] / equation.speed[0])
     return np.append(state, 1.0) if equation.forced else state
 
 
@@ -581,10 +547,11 @@ def start_values(
     return parts
 
 
-def _number(name: str, value: ArrayLike) -> float:
+def one_number(name: str, value: ArrayLike, fix: str = "simulate one speed at a time") -> float:
+    """Return a number; refuse an array of several."""
     array = numbers(name, value)
     if array.ndim:
-        raise bad(name, f"shape {array.shape}", "one number", "simulate one speed at a time")
+        raise bad(name, f"shape {array.shape}", "one number", fix)
     return float(array)
 
 
@@ -595,11 +562,11 @@ def _check_arguments(
     if not is_one_of(method, names):
         raise bad("method", repr(method), f"one of {names}", "choose 'auto'")
     for name, value, least in (("revolutions", revolutions, 1e-12), ("bound", bound, 1e-300)):
-        if not least <= _number(name, value) < np.inf:
+        if not least <= one_number(name, value) < np.inf:
             raise bad(name, value, f"a positive finite number, from {least:g}", "correct it")
-    if not np.isfinite(_number("start", start)):
+    if not np.isfinite(one_number("start", start)):
         raise bad("start", start, "a finite crank angle [rad]", "correct it")
-    given = _number("samples", samples)
+    given = one_number("samples", samples)
     if not 1 <= given <= _MOST_SAMPLES or given != int(given):
         expected = f"a whole number from 1 to {_MOST_SAMPLES}"
         raise bad("samples", samples, expected, "correct it")
@@ -607,7 +574,7 @@ def _check_arguments(
         found = f"{revolutions:.6g} of {samples} samples each"
         fix = "go on from at_end in parts, or lower samples"
         raise bad("revolutions", found, f"at most {_MOST_INTERVALS} given angles in all", fix)
-    if not 1e-14 <= _number("rtol", rtol) < 1:
+    if not 1e-14 <= one_number("rtol", rtol) < 1:
         raise bad("rtol", rtol, "a number from 1e-14 to 1", "choose 1e-8")
 
 

@@ -186,20 +186,12 @@ def _lowest(system: LinearPeriodic, theta: Array) -> tuple[Array, Array, Array]:
             factor = 1.0 if term.scale is None else float(system.scale_values()[term.scale])
             stiffness = stiffness + factor * term(theta)
     try:
-        return (*natural_modes(mass, stiffness), mass)
+        values, shapes = flexible_modes(mass, stiffness)
     except np.linalg.LinAlgError as indefinite:
         found = "a mass or stiffness that is not positive definite at some angle"
         fix = "check the parameters; hold the structure"
         raise bad("system", found, "both positive definite", fix) from indefinite
-
-
-def natural_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
-    """Return squared natural frequencies, rising, and M-orthonormal modes at angles.
-
-    NumPy's ``LinAlgError`` says that a matrix is not positive definite.
-    """
-    values, shapes = flexible_modes(mass, stiffness)
-    return 1.0 / values, shapes / np.sqrt(values)[:, None, :]
+    return 1.0 / values, shapes / np.sqrt(values)[:, None, :], mass
 
 
 def flexible_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:

@@ -129,7 +129,8 @@ def monodromy(
     >>> print(el.monodromy(system, speed=80.0).matrix.trace().round(4))
     2.0202
     """
-    equation = equation_of(system, speed, _checked(rtol, parameters))
+    require_between("rtol", rtol, 1e-13, 1e-2, "choose 1e-8")
+    equation = equation_of(system, speed, parameters)
     way, m = choose(equation, rtol), 2 * equation.size
     solutions, errors, segments = refined(equation, way, rtol, partial(_matrices, way), _gap)
     scaled, exponent, rounding = _stacked(solutions, (m, m), (), ())
@@ -261,7 +262,8 @@ def floquet_multipliers(
     >>> print(found.stable, abs(found.multipliers).max(axis=-1).round(4))
     [ True False] [1.     1.1526]
     """
-    equation = equation_of(system, speed, _checked(rtol, parameters))
+    require_between("rtol", rtol, 1e-13, 1e-2, "choose 1e-8")
+    equation = equation_of(system, speed, parameters)
     way, m = choose(equation, rtol), 2 * equation.size
     solutions, relative, segments = refined(
         equation, way, rtol, partial(_spectra, way), partial(_shifts, way)
@@ -339,11 +341,6 @@ def rounding_error(equation: Equation, segments: int) -> Array:
     turning = np.max(living, axis=1, initial=0.0) * equation.period
     value: Array = _EPS * (128.0 + 3.0 * segments + 3.0 * turning)
     return value
-
-
-def _checked(rtol: float, parameters: Mapping[str, ArrayLike]) -> Mapping[str, ArrayLike]:
-    require_between("rtol", rtol, 1e-13, 1e-2, "choose 1e-8")
-    return parameters
 
 
 def _matrices(way: Method, equation: Equation, segments: int) -> tuple[NDArray[Any], ...]:
@@ -447,17 +444,14 @@ def _second_from_determinant(
     logarithm: Array, angle: Array, error: Array, divergence: Array
 ) -> None:
     """Put in place the smaller of two real multipliers from Liouville's determinant."""
-    rows = np.arange(len(divergence))
-    large = np.argmax(logarithm, axis=-1)
-    small = 1 - large
-    apart = logarithm[rows, large] - divergence / 2 > 1.0
-    known = error[rows, large] - logarithm[rows, large]
-    logarithm[rows[apart], small[apart]] = (divergence - logarithm[rows, large])[apart]
-    angle[rows[apart], small[apart]] = angle[rows, large][apart]
+    rows = np.flatnonzero(np.max(logarithm, axis=-1) - divergence / 2 > 1.0)
+    large = np.argmax(logarithm[rows], axis=-1)
+    top, divergence = logarithm[rows, large], divergence[rows]
     rounding = np.log(8 * _EPS * (1 + np.abs(divergence)))
-    error[rows[apart], small[apart]] = (
-        divergence - logarithm[rows, large] + np.logaddexp(known, rounding)
-    )[apart]
+    known = np.logaddexp(error[rows, large] - top, rounding)
+    logarithm[rows, 1 - large] = divergence - top
+    angle[rows, 1 - large] = angle[rows, large]
+    error[rows, 1 - large] = divergence - top + known
 
 
 def _grade_hidden(
@@ -674,11 +668,9 @@ def cycles_to_settle(
         raise bad("norm", repr(norm), "'change' or 'remaining'", "choose 'change'")
     rho = np.asarray(multiplier, dtype=complex)
     size = np.abs(rho)
-    first = np.abs(1.0 - rho) if norm == "change" else np.ones_like(size)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        before = 2.0 if norm == "change" else 1.0
-        needed = before + np.log(tolerance / np.maximum(first, 1e-300)) / np.log(size)
     # The change of a first period from none is no change.
-    least = 2.0 if norm == "change" else 1.0
+    first, least = (np.abs(1.0 - rho), 2.0) if norm == "change" else (np.ones_like(size), 1.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        needed = least + np.log(tolerance / np.maximum(first, 1e-300)) / np.log(size)
     whole = np.ceil(np.where(size > 0.0, np.maximum(needed, least), least))
     return np.where(size < 1.0, whole, -1.0).astype(np.int64)

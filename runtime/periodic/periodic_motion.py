@@ -55,7 +55,7 @@ _ROUNDED = 48.0
 _LOST = 1.0 / 16.0
 
 # Fields that are computed when they are first looked at.
-_LATER = {
+LATER = {
     name: DeferredField() for name in ("multipliers", "multiplier_error", "stable", "distance")
 }
 
@@ -108,10 +108,10 @@ class SteadyState(Result):
     theta: Array
     q: Array
     qd: Array
-    multipliers: Any = _LATER["multipliers"]
-    multiplier_error: Any = _LATER["multiplier_error"]
-    stable: Any = _LATER["stable"]
-    distance: Any = _LATER["distance"]
+    multipliers: Any = LATER["multipliers"]
+    multiplier_error: Any = LATER["multiplier_error"]
+    stable: Any = LATER["stable"]
+    distance: Any = LATER["distance"]
     sensitivity: Array
     period: float
     labels: tuple[str, ...]
@@ -335,10 +335,7 @@ def steady_state(
         theta=theta,
         q=q.reshape(*batch, samples, n),
         qd=(slope * equation.speed[:, None, None]).reshape(*batch, samples, n),
-        multipliers=later.later("multipliers"),
-        multiplier_error=later.later("multiplier_error"),
-        stable=later.later("stable"),
-        distance=later.later("distance"),
+        **later.fields(LATER),
         sensitivity=sensitivity.reshape(batch),
         period=equation.period,
         labels=system.labels,
@@ -480,11 +477,7 @@ def _residual(equation: Equation, theta: Array, q: Array, slope: Array, error: f
     # The derivative of the series has nothing to do with the method.  Limit: an error of the
     # highest harmonic kept, over the largest rate.
     count = len(theta)
-    unit = equation.scale[0]
-    momentum = (equation.at("mass", theta)[0] @ (slope / unit)[..., None])[..., 0]
-    if "gyroscopic" in equation.fields:
-        momentum += (equation.at("gyroscopic", theta)[0] @ (q / unit)[..., None])[..., 0]
-    states = np.concatenate([q / unit, momentum], axis=1)
+    states = equation.states(theta, q, slope)
     waves = np.arange(count // 2 + 1) * (2 * np.pi / equation.period)
     half_step = np.exp(0.5j * waves * equation.period / count)[:, None]
     series = np.fft.rfft(states, axis=0) * half_step

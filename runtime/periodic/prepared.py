@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
@@ -17,9 +18,9 @@ from ..core.inputs import numbers, require_between, require_whole
 from ..core.results import Check, DeferredChecks, DeferredGroup, provenance
 from .compiled import CompiledTable, require_numba
 from .equation import SPEED_POWER, Equation, SampledSystem, at_geometry, equation_of, sampled
-from .motion import Trajectory, simulate, start_values
+from .motion import Trajectory, one_number, simulate, start_values
 from .multipliers import ROUNDED, Monodromy, eigenvalues, rounding_error
-from .periodic_motion import SteadyState, peaks
+from .periodic_motion import LATER, SteadyState, peaks
 from .tables import Table, flows_at, next_rung, octaves, table_of
 from .transition import cheapest
 
@@ -178,7 +179,7 @@ class Prepared:
         slope[-1] = self.readout[0] @ states[-1]
         theta = (self.system.period * np.arange(count)[:, None] + self.theta).reshape(-1)
         theta = np.append(theta, self.system.period * count)
-        flow = self.errors.of_flow(given)
+        flow = self.errors.at(np.array([given]), self.errors.flow)[0]
         error = (count + 1) * np.sqrt(flow**2 @ sizes**2) * self.scale[:n] / peaks(q[None])[0]
         if not np.max(error) <= _TRANSIENT:
             turn = 2 * np.pi / self.system.period
@@ -248,10 +249,7 @@ class Prepared:
             theta=self.theta,
             q=q.reshape(*batch, -1, n),
             qd=(flat[:, None, None] * slope).reshape(*batch, -1, n),
-            multipliers=later.later("multipliers"),
-            multiplier_error=later.later("multiplier_error"),
-            stable=later.later("stable"),
-            distance=later.later("distance"),
+            **later.fields(LATER),
             sensitivity=sensitivity.reshape(batch),
             period=self.system.period,
             labels=self.system.labels,
@@ -262,10 +260,6 @@ class Prepared:
     def _stability(
         self, speeds: Array, whole: Array, batch: tuple[int, ...]
     ) -> Mapping[str, NDArray[Any]]:
-        """Return multipliers with their errors, whether all are inside, and their distance from 1.
-
-        The last is the distance of the nearest of them.
-        """
         m = 2 * self.system.size
         matrices = whole[:, :m, :m]
         size = self.errors.of_matrices(speeds) * np.max(np.abs(matrices), axis=(1, 2))
@@ -322,10 +316,7 @@ class Prepared:
         return given
 
     def _place(self, speed: float) -> int:
-        for place, table in enumerate(self.tables[:-1]):
-            if speed <= 1.0 / table.low:
-                return place
-        return len(self.tables) - 1
+        return bisect_left([1.0 / table.low for table in self.tables[:-1]], speed)
 
     def _compiled_at(self, speed: float) -> CompiledTable:
         return self.compiled[self._place(speed)]
@@ -411,7 +402,8 @@ def prepare(
         require_numba()
     require_whole("samples", samples, 1, 4096, "take 64")
     require_between("rtol", rtol, 1e-13, 1e-4, "choose 1e-10")
-    plain = {name: _one(name, value) for name, value in parameters.items()}
+    fix = "prepare once for each value"
+    plain = {name: one_number(name, value, fix) for name, value in parameters.items()}
     made, inside = at_geometry(system, plain)
     _check_inertia(made)
     maker = TableMaker(sampled(made, forcing=forcing), (low * high) ** 0.5, inside)
@@ -448,13 +440,9 @@ class TableErrors:
     @classmethod
     def joined(cls, parts: list[TableErrors]) -> TableErrors:
         """Return the errors of tables by rising speed."""
-        return cls(
-            speed=np.concatenate([part.speed for part in parts]),
-            matrix=np.concatenate([part.matrix for part in parts]),
-            size=np.concatenate([part.size for part in parts]),
-            flow=np.concatenate([part.flow for part in parts]),
-            rounding=max(part.rounding for part in parts),
-        )
+        rows = [(part.speed, part.matrix, part.size, part.flow) for part in parts]
+        speed, matrix, size, flow = map(np.concatenate, zip(*rows, strict=True))
+        return cls(speed, matrix, size, flow, max(part.rounding for part in parts))
 
     @property
     def largest(self) -> float:
@@ -463,14 +451,9 @@ class TableErrors:
 
     def of_matrices(self, speeds: Array) -> Array:
         """Return errors of monodromy matrices over their largest entries, at speeds ``(ns,)``."""
-        return self._at(speeds, self.matrix)
+        return self.at(speeds, self.matrix)
 
-    def of_flow(self, speed: float) -> Array:
-        """Return the errors of the entries that give coordinates at a speed, ``(n, m)``."""
-        found: Array = self._at(np.array([speed]), self.flow)[0]
-        return found
-
-    def _at(self, speeds: Array, errors: Array) -> Array:
+    def at(self, speeds: Array, errors: Array) -> Array:
         """Return errors ``(k, ...)`` at speeds ``(ns,)``, ``(ns, ...)``."""
         # Between two speeds they fall with a power of the speed, as the segments' phases do.
         if len(self.speed) == 1:
@@ -616,10 +599,3 @@ def _ends(speeds: tuple[float, float] | float) -> tuple[float, float]:
     if not fits or given[0] > given[-1]:
         raise bad("speeds", speeds, "a rising pair of positive speeds [rad/s]", "correct it")
     return float(given[0]), float(given[-1])
-
-
-def _one(name: str, value: ArrayLike) -> float:
-    given = numbers(name, value)
-    if given.ndim:
-        raise bad(name, f"shape {given.shape}", "one number", "prepare once for each value")
-    return float(given)

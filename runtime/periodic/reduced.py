@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from typing import TypeVar
 
 import numpy as np
 
 from ..core.families import LinearPeriodic, Term
 from ..core.trigonometric import Array, even_angles, interpolated, tail
 from .moving_basis import RESOLVED, MovingBasis, moving_basis
+
+Key = TypeVar("Key")
 
 # Even angles from which the reduced arrays are interpolated.
 _FEWEST, _MOST = 128, 2048
@@ -171,18 +174,21 @@ def projections(array: str, values: Array, phi: Array, slope: Array) -> Iterator
         yield "D", across @ (values @ slope)
 
 
+def summed(parts: Iterable[tuple[Key, Array]]) -> dict[Key, Array]:
+    """Return the sums of what has the same key."""
+    sums: dict[Key, Array] = {}
+    for key, part in parts:
+        sums[key] = sums[key] + part if key in sums else part
+    return sums
+
+
 def _on_fixed(term: Term, values: Array) -> Callable[[Array], Array] | Array:
-    if term.constant:
-        return np.asarray(_projected(term.array, values, term(np.zeros(1)))[0])
-    return partial(_projected_at, term, values)
+    projected = partial(_projected, term, values)
+    return projected(np.zeros(1))[0] if term.constant else projected
 
 
-def _projected_at(term: Term, values: Array, theta: Array) -> Array:
-    return _projected(term.array, values, term(theta))
-
-
-def _projected(array: str, values: Array, samples: Array) -> Array:
-    found: Array = next(projections(array, samples, values, np.zeros_like(values)))[1]
+def _projected(term: Term, values: Array, theta: Array) -> Array:
+    _, found = next(projections(term.array, term(theta), values, np.zeros_like(values)))
     return found
 
 
@@ -190,7 +196,13 @@ def _moving_terms(system: LinearPeriodic, phi: MovingBasis) -> tuple[Term, ...]:
     """Return the terms on a moving basis, like ones put together, as trigonometric series."""
     count, before = max(_FEWEST, len(phi.theta)), np.inf
     while True:
-        found = _sampled_terms(system, phi, even_angles(system.period, count))
+        theta = even_angles(system.period, count)
+        values, slope = phi(theta), phi.derivative(theta)
+        found = summed(
+            ((array, term.scale, term.power), part)
+            for term in system.terms
+            for array, part in projections(term.array, term(theta), values, slope)
+        )
         worst = max(map(tail, found.values()), default=0.0)
         # What stays as it is by twice as many angles is the round-off of a stiff system.
         # More angles are worth it where the error falls to a tenth of what it was.
@@ -202,16 +214,3 @@ def _moving_terms(system: LinearPeriodic, phi: MovingBasis) -> tuple[Term, ...]:
         for (array, scale, power), values in found.items()
         if np.any(values)
     )
-
-
-def _sampled_terms(
-    system: LinearPeriodic, phi: MovingBasis, theta: Array
-) -> dict[tuple[str, str | None, int], Array]:
-    """Return samples of the terms on the basis, by array, scale and power."""
-    values, slope = phi(theta), phi.derivative(theta)
-    sums: dict[tuple[str, str | None, int], Array] = {}
-    for term in system.terms:
-        for array, found in projections(term.array, term(theta), values, slope):
-            key = (array, term.scale, term.power)
-            sums[key] = sums[key] + found if key in sums else found
-    return sums

@@ -111,20 +111,12 @@ class Trial:
 
 
 class Truncations:
-    """Modal truncations of one system by number of modes and of angles, each made once.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        The system.
-    least : int
-        Fewest modes that are offered.
-    """
+    """Modal truncations of one system, ``least`` modes or more, by modes and angles made once."""
 
     def __init__(self, system: LinearPeriodic, least: int = 4) -> None:
         self.system = system
         self.numbers = modes_offered(system, least)
-        self._made: dict[tuple[int, int], tuple[TruncatedSystem, SampledSystem] | None] = {}
+        self._made = lru_cache(maxsize=None)(self._truncated)
         self._held = lru_cache(maxsize=None)(partial(still_modes, system))
         self._arrays = lru_cache(maxsize=None)(
             lambda angles: arrays_at(system, even_angles(system.period, angles))
@@ -132,10 +124,7 @@ class Truncations:
 
     def at(self, modes: int, angles: int) -> tuple[TruncatedSystem, SampledSystem] | None:
         """Return the truncation to a number of modes; None where these do not stay smooth."""
-        key = modes, angles
-        if key not in self._made:
-            self._made[key] = self._truncated(modes, max(angles, _CARRIED[0]))
-        return self._made[key]
+        return self._made(modes, max(angles, _CARRIED[0]))
 
     def _truncated(self, modes: int, angles: int) -> tuple[TruncatedSystem, SampledSystem] | None:
         system, every = self.system, modes == self.system.size

@@ -33,29 +33,17 @@ _BLOCK = 1_000_000
 
 @dataclass(frozen=True)
 class Table:
-    """Transition matrices over a range of one variable.
+    """Transition matrices over a range of one variable."""
 
-    Attributes
-    ----------
-    low, high : float
-        Ends of the variable; ``low`` may equal ``high``.
-    groups : ndarray
-        Chebyshev coefficients of the matrices of groups of segments, ``(nodes, count, m, m)``.
-    inner : ndarray
-        Those from the left end of its group to each given angle, ``(nodes, nt, m, m)``; ``(nodes,
-        0, m, m)`` where each angle is a left end.
-    within : ndarray of int
-        The group of each given angle, ``(nt,)``.
-    tail : float
-        What the series leave out, relative to the matrices.
-    """
-
-    low: float
+    low: float  # ends of the variable
     high: float
+    # Chebyshev coefficients of the matrices of groups of segments, (nodes, count, m, m), and of
+    # those from the left end of its group to each given angle, (nodes, nt, m, m), or (nodes, 0, m,
+    # m) where each angle is a left end.
     groups: Array
     inner: Array
-    within: NDArray[np.intp]
-    tail: float
+    within: NDArray[np.intp]  # the group of each given angle, (nt,)
+    tail: float  # what the series leave out, relative to the matrices
 
     def weights(self, values: Array) -> Array:
         """Return the Chebyshev polynomials at values of the variable, ``(n, nodes)``."""
@@ -63,13 +51,7 @@ class Table:
         return np.cos(np.arccos(places)[:, None] * np.arange(len(self.groups)))
 
     def products(self, values: Array) -> tuple[Array, NDArray[np.int64]]:
-        """Return the matrices of all groups multiplied, ``(n, m, m)``, and powers of two taken out.
-
-        Parameters
-        ----------
-        values : ndarray
-            Values of the variable, shape ``(n,)``.
-        """
+        """Return the matrices over the period ``(n, m, m)``, powers of two taken out, and these."""
         together = max(1, _BLOCK // self.groups[0].size)
         parts = [
             product(_mixed(self.weights(values[begin : begin + together]), self.groups))
@@ -189,8 +171,15 @@ def flows_at(equation: Equation, count: int, way: Method, samples: int) -> tuple
     Shapes ``(n, samples, m, m)`` and ``(n, m, m)``; ``count`` segments, or the next multiple of
     the number of angles.
     """
-    every = -(-count // samples)
-    maps = segments_of(equation, samples * every, way).maps
+    return products_to(segments_of(equation, samples * -(-count // samples), way).maps, samples)
+
+
+def products_to(maps: Array, samples: int) -> tuple[Array, Array]:
+    """Return products of maps ``(n, count, m, m)``: to even places from the first on, and of all.
+
+    The number of maps is a multiple of that of the places.
+    """
+    every = maps.shape[1] // samples
     running = np.broadcast_to(np.eye(maps.shape[-1]), maps[:, 0].shape)
     flows = np.empty((len(maps), samples, *maps.shape[2:]))
     for k in range(samples * every):

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,7 @@ from ..core.families import Array, LinearPeriodic, Term
 from ..core.trigonometric import differentiated, interpolated, resampled
 from .equation import SPEED_POWER
 from .moving_basis import MovingBasis, still_modes
-from .reduced import projections
+from .reduced import projections, summed
 
 ComplexArray = NDArray[np.complex128]
 
@@ -98,19 +99,18 @@ def truncated_on(
     held = across @ stiffness @ phi
     compliance = np.asarray(np.linalg.inv(stiffness), dtype=np.float64)
     flexibility = _symmetric(compliance - phi @ np.linalg.solve(held, across))
-    sums: dict[tuple[str, int], Array] = {}
-    for (array, power), values in arrays.items():
-        for name, part in projections(array, values, phi, slope):
-            key = (name, power - 2 - SPEED_POWER[name])
-            sums[key] = sums[key] + part if key in sums else part
-    for name, power, part in _followed(arrays, phi, slope, flexibility, period):
-        sums[name, power] = sums[name, power] + part if (name, power) in sums else part
+    kept = (
+        ((name, power - 2 - SPEED_POWER[name]), part)
+        for (array, power), values in arrays.items()
+        for name, part in projections(array, values, phi, slope)
+    )
+    followed = _followed(_couplings(arrays, phi, slope, period), flexibility, period)
     size = phi.shape[-1]
     return TruncatedSystem(
         size=size,
         terms=tuple(
             Term(name, None, interpolated(values, period), power)
-            for (name, power), values in sums.items()
+            for (name, power), values in summed(chain(kept, followed)).items()
             if np.any(values)
         ),
         period=period,
@@ -134,16 +134,15 @@ def arrays_at(system: LinearPeriodic, theta: Array) -> dict[tuple[str, int], Arr
     and f, 1 for C, D and h, 0 for K, Kg and p, and what the term adds to it.
     """
     scales = system.scale_values()
-    sums: dict[tuple[str, int], Array] = {}
-    for term in system.terms:
-        if term.array not in SPEED_POWER:
-            continue
-        factor = 1.0 if term.scale is None else float(scales[term.scale])
-        key = (term.array, 2 + SPEED_POWER[term.array] + term.power)
-        part = factor * term(theta)
-        if np.any(part):
-            sums[key] = sums[key] + part if key in sums else part
-    return sums
+    parts = (
+        (
+            (term.array, 2 + SPEED_POWER[term.array] + term.power),
+            term(theta) * (1.0 if term.scale is None else float(scales[term.scale])),
+        )
+        for term in system.terms
+        if term.array in SPEED_POWER
+    )
+    return summed((key, part) for key, part in parts if np.any(part))
 
 
 def unmet_forces(
@@ -184,95 +183,67 @@ def _slope(q: Any, period: float, exponents: ComplexArray | float) -> Any:
     return both[..., 0] + 1j * both[..., 1] + exponents * q
 
 
-@dataclass
-class _Coupling:
-    """What ties the modes left out to those kept at one power of the speed.
-
-    The others are pushed by ``rate z' + place z + load``, and push the kept ones back by
-    ``back delta - (forth delta)'``.
-    """
-
-    rate: Array
-    place: Array
-    load: Array
-    forth: Array
-    back: Array
-
-    @classmethod
-    def none(cls, nt: int, n: int, m: int) -> _Coupling:
-        """Return none, at nt angles."""
-        shapes = (nt, n, m), (nt, n, m), (nt, n), (nt, m, n), (nt, m, n)
-        return cls(*(np.zeros(shape) for shape in shapes))
-
-
 def _couplings(
     arrays: Mapping[tuple[str, int], Array], phi: Array, slope: Array, period: float
-) -> dict[int, _Coupling]:
-    nt, n, m = phi.shape
-    found: dict[int, _Coupling] = {}
-    for (array, power), values in arrays.items():
-        if array in ("K", "Kg") and power == 0:
-            continue
-        at = found.setdefault(power, _Coupling.none(nt, n, m))
-        if values.ndim == 2:
-            at.load += values
-            continue
-        carried, moved = values @ phi, values @ slope
-        rate, place = np.zeros((nt, n, m)), np.zeros((nt, n, m))
-        if array == "M":
-            rate = -differentiated(carried, period) - moved
-            place = -differentiated(moved, period)
-        elif array == "A":
-            turned = np.swapaxes(values, -1, -2)
-            rate = turned @ phi - carried
-            place = turned @ slope - differentiated(carried, period)
-        elif array == "B":
-            place = carried
-        elif array in ("K", "Kg"):
-            place = -carried
-        if array in ("M", "A", "B", "K", "Kg"):
-            at.forth += np.swapaxes(rate, -1, -2)
-            at.back += np.swapaxes(place, -1, -2)
-        elif array == "C":
-            rate, place = -carried, -moved
-            at.forth += np.swapaxes(carried, -1, -2)
-            at.back += np.swapaxes(differentiated(carried, period), -1, -2)
-        else:
-            place = -carried
-            at.back -= np.swapaxes(np.swapaxes(values, -1, -2) @ phi, -1, -2)
-        at.rate += rate
-        at.place += place
-    return found
+) -> dict[int, list[Array]]:
+    """Return by power of the speed what ties the modes left out to those kept.
+
+    The others are pushed by ``rate z' + place z + load``, and push the kept ones back by
+    ``back^T delta - (forth^T delta)'``: rate, place, forth and back, ``(nt, n, m)``, and load,
+    ``(nt, n, 1)``.
+    """
+    m = phi.shape[-1]
+    parts = (
+        (power, np.concatenate(_coupling(array, values, phi, slope, period), axis=-1))
+        for (array, power), values in arrays.items()
+        if (array, power) not in (("K", 0), ("Kg", 0))
+    )
+    each = summed(parts)
+    return {power: np.split(both, [m, 2 * m, 3 * m, 4 * m], -1) for power, both in each.items()}
+
+
+def _coupling(
+    array: str, values: Array, phi: Array, slope: Array, period: float
+) -> tuple[Array, Array, Array, Array, Array]:
+    """Return what one array has in them."""
+    none, load = np.zeros_like(phi), np.zeros_like(phi[..., :1])
+    if values.ndim == 2:
+        return none, none, none, none, values[..., None]
+    carried, moved, turned = values @ phi, values @ slope, np.swapaxes(values, -1, -2)
+    if array == "C":
+        return -carried, -moved, carried, differentiated(carried, period), load
+    if array == "D":
+        return none, -carried, none, -turned @ phi, load
+    # What is conservative pushes back as it is pushed.
+    rate, place = none, carried if array == "B" else -carried
+    if array == "M":
+        rate = -differentiated(carried, period) - moved
+        place = -differentiated(moved, period)
+    elif array == "A":
+        rate = turned @ phi - carried
+        place = turned @ slope - differentiated(carried, period)
+    return rate, place, rate, place, load
 
 
 def _followed(
-    arrays: Mapping[tuple[str, int], Array],
-    phi: Array,
-    slope: Array,
-    flexibility: Array,
-    period: float,
-) -> Iterator[tuple[str, int, Array]]:
-    """Yield what the modes left out add to those kept: array, extra power of the speed, values."""
+    couplings: Mapping[int, list[Array]], flexibility: Array, period: float
+) -> Iterator[tuple[tuple[str, int], Array]]:
+    """Yield what the modes left out add to those kept, by array and extra power of the speed."""
     # For powers k and l of the speed, back_k F (rate_l z' + place_l z + load_l) less the derivative
     # of forth_k F (...).  Where both are conservative the parts go to M, A and B, so that the
     # truncated system stays conservative; else to C and D.
-    couplings = _couplings(arrays, phi, slope, period)
-    for k, one in couplings.items():
-        forth, back = one.forth @ flexibility, one.back @ flexibility
-        for j, other in couplings.items():
-            power = k + j - 2
-            load = (back @ other.load[..., None])[..., 0]
-            pushed = (forth @ other.load[..., None])[..., 0]
-            yield "f", power, load - differentiated(pushed, period)
+    for k, (*_, forwards, backwards, _) in couplings.items():
+        forth, back = (np.swapaxes(part, -1, -2) @ flexibility for part in (forwards, backwards))
+        for j, (rate, place, *_, load) in couplings.items():
+            power, follows = k + j - 2, forth @ place
+            yield ("f", power), (back @ load - differentiated(forth @ load, period))[..., 0]
+            yield ("M", power), _symmetric(forth @ rate)
             if k == j and k != 1:
-                yield "M", power, _symmetric(forth @ other.rate)
-                yield "A", power, forth @ other.place
-                yield "B", power, _symmetric(back @ other.place)
-                continue
-            mass = forth @ other.rate
-            yield "M", power, _symmetric(mass)
-            yield "C", power + 1, forth @ other.place - back @ other.rate
-            yield "D", power + 1, differentiated(forth @ other.place, period) - back @ other.place
+                yield ("A", power), follows
+                yield ("B", power), _symmetric(back @ place)
+            else:
+                yield ("C", power + 1), follows - back @ rate
+                yield ("D", power + 1), differentiated(follows, period) - back @ place
 
 
 def _symmetric(matrices: Array) -> Array:

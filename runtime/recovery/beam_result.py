@@ -75,7 +75,7 @@ def in_motion(
         warn_of_large_deflection(max(sizes), "the length of its beam", fix, stacklevel=4)
     group = DeferredGroup(doubt)
     return {
-        **{name: group.later(name) for name in ("error", "error_norm", *later)},
+        **group.fields(("error", "error_norm", *later)),
         "checks": found,
         "provenance": provenance({**system.provenance, **motion.provenance}),
         "speed": motion.speed,

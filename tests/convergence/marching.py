@@ -15,7 +15,8 @@ def marched(stages, system, speed, steps, turns, *, start=0.0, q=None, slope=Non
     theta = start + step * np.arange(steps)
     maps = gauss_maps(stages, lambda angles: equation.generator(angles)[0], theta, step)
     rest = np.zeros(n)
-    first = equation.state(start, rest if q is None else q, rest if slope is None else slope)
+    given = (np.atleast_2d(rest if values is None else values) for values in (q, slope))
+    first = equation.states(np.array([start]), *given)
     states = [np.append(first, 1.0)]
     for _ in range(turns):
         for one in maps:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, ClassVar, NamedTuple
@@ -384,16 +384,20 @@ class Judged(NamedTuple):
 
 
 def judged(sampler: Sampler, series: Series, workers: Map) -> Judged:
-    """Return what is told of each point."""
-    if sampler.hill:
-        return _judged_hill(sampler, series)
+    """Return what is told of each point, some rows at a time, which bounds the memory."""
     rows, points = series.values.shape[:2]
-    # So many points are judged together, which bounds the memory.
     together = max(1, 250_000 // max(1, points))
     parts = [slice(start, start + together) for start in range(0, rows, together)]
-    error = series.error if series.errors is None else series.errors
-    judge = partial(_judged_rows, sampler.reduced)
-    blocks = workers(judge, ((series.values[part], error[part]) for part in parts))
+    blocks: Iterable[Judged]
+    if sampler.hill:
+        traces, level, error = series.values[..., 0], _determinants(sampler), series.error
+        level = np.broadcast_to(level, error.shape)
+        # The verdict is quicker than the way to another process and back.
+        blocks = (_judged_hill(traces[part], level[part], error[part]) for part in parts)
+    else:
+        error = series.error if series.errors is None else series.errors
+        judge = partial(_judged_rows, sampler.reduced)
+        blocks = workers(judge, ((series.values[part], error[part]) for part in parts))
     return Judged(*(np.concatenate(columns) for columns in zip(*blocks, strict=True)))
 
 
@@ -407,21 +411,25 @@ def _judged_rows(reduced: bool, item: tuple[Array, Array]) -> Judged:
     return Judged(largest, stable, slack, undecided, instability_kind(values, stable, reduced))
 
 
-def _judged_hill(sampler: Sampler, series: Series) -> Judged:
+def _determinants(sampler: Sampler) -> Array:
+    """Return the determinants of the monodromy matrices of one mode; they broadcast to points."""
+    if not sampler.damped:
+        return np.ones((1, 1))
+    speed, grid = on_grid(sampler.names, sampler.axes, sampler.speed)
+    values: dict[str, Any] = {**grid}
+    # Of one coordinate: what belongs to the points takes the place of rows and columns.
+    mass, drag = (sampler.system.array(name, 0.0, **values)[0] for name in ("M", "C"))
+    return np.asarray(np.exp(-2 * np.pi * drag / (mass * speed)))
+
+
+def _judged_hill(trace: Array, level: Array, error: Array) -> Judged:
     """Return what half traces X and the determinants W of the monodromy matrices tell."""
-    trace, level = series.values[..., 0], np.ones_like(series.error)
-    if sampler.damped:
-        speed, grid = on_grid(sampler.names, sampler.axes, sampler.speed)
-        values: dict[str, Any] = {**grid}
-        # Of one coordinate: what belongs to the points takes the place of rows and columns.
-        mass, drag = (sampler.system.array(name, 0.0, **values)[0] for name in ("M", "C"))
-        level = level * np.exp(-2 * np.pi * drag / (mass * speed))
     half = np.abs(trace)
     # An error of the half trace moves the boundary, where it is (1 + W) / 2.
     edge = 0.5 * (1.0 + level)
-    slack = _larger_root(edge + series.error, level) - 1.0
-    stable = half <= edge + series.error
-    undecided = np.abs(half - edge) <= series.error
+    slack = _larger_root(edge + error, level) - 1.0
+    stable = half <= edge + error
+    undecided = np.abs(half - edge) <= error
     kind = np.where(stable | np.isnan(trace), 0.0, np.sign(trace)).astype(np.int8)
     return Judged(_larger_root(half, level), stable, slack, undecided, kind)
 

@@ -80,7 +80,10 @@ def exact_stiffness(problem, omega):
     assembly, structure_freedoms = problem.assembly, problem.structure.freedoms
     size = assembly.size
     total = mpmath.zeros(size)
-    lengths, bending, axial, mass = (map(mpmath.mpf, map(float, v)) for v in assembly.members)
+    lengths, bending, axial, mass = (
+        [mpmath.mpf(float(value)) for value in getattr(assembly.members, name)]
+        for name in ("length", "bending", "axial", "mass")
+    )
     for k, (length, ei, ea, m) in enumerate(zip(lengths, bending, axial, mass, strict=True)):
         local = _local(omega, length, ei, ea, m)
         turn = _turn(mpmath.mpf(float(assembly.angles[k])))

@@ -116,7 +116,8 @@ class Truncations:
     def __init__(self, system: LinearPeriodic, least: int = 4) -> None:
         self.system = system
         self.numbers = modes_offered(system, least)
-        self._made = lru_cache(maxsize=None)(self._truncated)
+        # A cache of the method would hold the arrays in a circle until one looks for these.
+        self._made: dict[tuple[int, int], tuple[TruncatedSystem, SampledSystem] | None] = {}
         self._held = lru_cache(maxsize=None)(partial(still_modes, system))
         self._arrays = lru_cache(maxsize=None)(
             lambda angles: arrays_at(system, even_angles(system.period, angles))
@@ -124,7 +125,10 @@ class Truncations:
 
     def at(self, modes: int, angles: int) -> tuple[TruncatedSystem, SampledSystem] | None:
         """Return the truncation to a number of modes; None where these do not stay smooth."""
-        return self._made(modes, max(angles, _CARRIED[0]))
+        key = modes, max(angles, _CARRIED[0])
+        if key not in self._made:
+            self._made[key] = self._truncated(*key)
+        return self._made[key]
 
     def _truncated(self, modes: int, angles: int) -> tuple[TruncatedSystem, SampledSystem] | None:
         system, every = self.system, modes == self.system.size

@@ -65,8 +65,8 @@ Answer: TypeAlias = (
 # angle over that of the motion, over its peak; and what round-off of a sum's terms leaves, over all
 # of them without signs.
 _COLLIDED, _CANCELLED, _ANGLE, _SUMMED = 1e-6, 1e-6, 2.0, 4.0 * 2.0**-52
-# Entries of vectors at all nodes that are handled at once (measured on a hundred speeds, one to five
-# modes, with damping and without: 2^17 takes up to a third longer, 2^13 up to two thirds); angles
+# Entries of vectors at all nodes that are handled at once (measured on a hundred speeds and one
+# to five modes, with damping and without: 2^17 takes up to a third longer, 2^13 two thirds); angles
 # of a period at which the motion is told whose stresses are differentiated.
 _TOGETHER, _SAMPLES = 1 << 15, 512
 
